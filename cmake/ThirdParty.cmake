@@ -1,0 +1,37 @@
+# Every third-party library, found once. All come from the distribution's packages.
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(glm QUIET)
+if(NOT TARGET glm::glm)
+    find_path(GLM_INCLUDE_DIR glm/glm.hpp REQUIRED)
+    add_library(glm::glm INTERFACE IMPORTED)
+    set_target_properties(glm::glm PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${GLM_INCLUDE_DIR})
+endif()
+find_package(embree 3 REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(assimp REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 QUIET)
+if(NOT TARGET CLI11::CLI11)
+    find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)
+    add_library(CLI11::CLI11 INTERFACE IMPORTED)
+    set_target_properties(CLI11::CLI11 PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${CLI11_INCLUDE_DIR})
+endif()
+
+# OpenVDB ships find modules, not a package config; their folder names the architecture.
+file(GLOB UWVDB_OPENVDB_MODULES /usr/lib/*/cmake/OpenVDB /usr/lib/cmake/OpenVDB
+     /usr/local/lib/cmake/OpenVDB)
+list(APPEND CMAKE_MODULE_PATH ${UWVDB_OPENVDB_MODULES})
+find_package(OpenVDB REQUIRED)
+find_path(NANOVDB_INCLUDE_DIR nanovdb/NanoVDB.h REQUIRED)
+add_library(uwvdb_nanovdb INTERFACE)
+target_include_directories(uwvdb_nanovdb SYSTEM INTERFACE ${NANOVDB_INCLUDE_DIR})
+target_link_libraries(uwvdb_nanovdb INTERFACE OpenVDB::openvdb)
+
+# OpenImageIO's exported target names an OpenCV include folder that its package does not bring.
+find_package(OpenImageIO REQUIRED)
+get_target_property(uwvdb_oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+list(FILTER uwvdb_oiio_includes EXCLUDE REGEX opencv)
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES
+                      INTERFACE_INCLUDE_DIRECTORIES "${uwvdb_oiio_includes}")

@@ -1,0 +1,19 @@
+# Flags every target of the project is built with; third-party headers are SYSTEM and exempt.
+add_library(uwvdb_options INTERFACE)
+target_compile_options(uwvdb_options INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+    # a*b+c is never fused behind our back: the same scene gives the same bits on every build
+    -ffp-contract=off)
+if(UWVDB_WARNINGS_AS_ERRORS)
+    target_compile_options(uwvdb_options INTERFACE -Werror)
+endif()
+if(UWVDB_SANITIZE)
+    target_compile_options(uwvdb_options INTERFACE -fsanitize=${UWVDB_SANITIZE})
+    target_link_options(uwvdb_options INTERFACE -fsanitize=${UWVDB_SANITIZE})
+endif()
+target_include_directories(uwvdb_options INTERFACE ${PROJECT_SOURCE_DIR})
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/bands.h"
+#include "core/ray.h"
+#include "core/scene_desc.h"
+
+namespace uw {
+
+/// A point-like lamp in the world: radiant intensity I(w, lambda) = intensity * profile(w) [W/sr].
+class Lamp {
+  public:
+    /// Builds the lamp from its description; `world_from_camera` places lamps fixed to the camera.
+    Lamp(const LampDesc& desc, const class Affine& world_from_camera, int band_count);
+
+    const std::string& name() const { return name_; }
+    const Point3& position() const { return position_; }
+    /// Radiant intensity on the axis per band [W/sr].
+    const Spectrum& axis_intensity() const { return axis_intensity_; }
+
+    /// Intensity in the direction of `v` (from the lamp, any length), relative to the axis: 0..1.
+    double relative_intensity(const Vector3& v) const;
+    bool isotropic() const { return profile_.type == LampProfileDesc::Type::isotropic; }
+
+    /// Appends the distances along `ray` where the profile is not smooth (edges of its cone).
+    void append_profile_breaks(const Ray& ray, std::vector<double>& s) const;
+
+  private:
+    std::string name_;
+    Point3 position_;
+    Vector3 axis_;
+    LampProfileDesc profile_;
+    double cos_full_ = -1;   // inside this angle a spot shines fully
+    double cos_dark_ = -1;   // outside this angle it is dark
+    double exponent_ = 0;    // of cos^m
+    Spectrum axis_intensity_{};
+};
+
+}  // namespace uw

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/ray.h"
+
+namespace uw {
+
+/// What one lamp's light meets on its way: visibility and column concentrations, splatted ahead
+/// of time so that integrators ask without tracing. Thread safe.
+class LightField {
+  public:
+    virtual ~LightField() = default;
+
+    /// The stretches of `ray` within [0, s_end] that the lamp sees, ascending and disjoint.
+    virtual void lit_intervals(const Ray& ray, double s_end,
+                               std::vector<Interval>& lit) const = 0;
+
+    /// Appends distances along `ray` inside `interval` such that between neighbours the lamp's
+    /// columns are close to linear. Nothing where the light has met no grid.
+    virtual void append_column_breaks(const Ray& ray, const Interval& interval,
+                                      std::vector<double>& s) const = 0;
+
+    /// Column concentrations from the lamp to each point, [i * constituent_count + k], [unit m].
+    virtual void columns(std::span<const Point3> x, std::span<double> column) const = 0;
+};
+
+}  // namespace uw

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/scene_desc.h"
+
+namespace uw {
+
+/// Reads a scene file (version 1, docs/scene-file.md) and checks all of it.
+/// `overrides` are "key.path=value" as given to --set, applied in order before checking.
+/// Throws InputError with one line "file:line:column: key path: what; mend", IoError if the file
+/// cannot be read, UsageError for an override that is not of that form.
+SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+}  // namespace uw

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/bands.h"
+#include "core/ray.h"
+
+namespace uw {
+
+/// Where a ray meets a surface. World space.
+struct SurfaceHit {
+    double distance = 0;             // along the ray [m]
+    Point3 position;
+    Vector3 normal{0, 0, 1};         // shading normal, unit, on the side the ray comes from
+    Vector3 geometric_normal{0, 0, 1};  // of the true surface, unit, same side
+    Spectrum reflectance{};          // diffuse reflectance rho per band, 0..1
+    std::uint32_t object_id = 0;     // index of the entry of `geometry`, from 1
+};
+
+/// The opaque surfaces of a scene: what stops camera rays and casts shadows. Thread safe.
+class Surfaces {
+  public:
+    virtual ~Surfaces() = default;
+
+    /// The nearest surface along `ray` within (0, s_end]; false if there is none.
+    virtual bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const = 0;
+
+    /// Distance to the nearest surface from the ray's origin, infinity if there is none. Cheaper
+    /// than closest_hit: no shading.
+    virtual double hit_distance(const Ray& ray) const = 0;
+
+    /// Whether something stands between `from` and `to`. Surfaces that hold either end (within
+    /// 1e-5 of the distance) do not count.
+    virtual bool occluded(const Point3& from, const Point3& to) const = 0;
+
+    /// World bounds of everything finite; empty if there is nothing.
+    virtual Bounds bounds() const = 0;
+    virtual std::uint64_t triangle_count() const = 0;
+    virtual bool empty() const = 0;
+};
+
+}  // namespace uw
