@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace uw {
+
+/// Runs `body(i)` for i in [0, count) on all threads allowed. Iterations must be independent;
+/// the first exception thrown by a body stops the rest and is rethrown.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
+
+/// Limits how many threads parallel_for (and the libraries that share its pool) may use for as
+/// long as the object lives; 0 means all cores.
+class ThreadLimit {
+  public:
+    explicit ThreadLimit(int threads);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+  private:
+    void* control_ = nullptr;
+};
+
+}  // namespace uw

@@ -1,0 +1,34 @@
+#include "core/ray_panels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uw {
+
+LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
+    const Vector3 to_lamp = lamp - ray.origin;
+    foot = glm::dot(to_lamp, ray.direction);
+    distance = glm::length(to_lamp - foot * ray.direction);
+}
+
+double LampPassage::radius(double s) const { return std::hypot(s - foot, distance); }
+
+double LampPassage::scattering_angle(double s) const { return std::atan2(distance, foot - s); }
+
+void append_passage_breaks(const LampPassage& passage, const Interval& interval,
+                           std::span<const double> phase_breakpoints, std::vector<double>& s) {
+    const auto append = [&](double at) {
+        if (at > interval.begin && at < interval.end) s.push_back(at);
+    };
+    append(passage.foot);
+    const double reach =
+        std::max(std::abs(interval.begin - passage.foot), std::abs(interval.end - passage.foot));
+    for (double u = 0.75 * std::max(passage.distance, k_lamp_radius); u < reach; u *= 2) {
+        append(passage.foot - u);
+        append(passage.foot + u);
+    }
+    for (const double psi : phase_breakpoints)
+        append(passage.foot - passage.distance / std::tan(psi));
+}
+
+}  // namespace uw

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/lamp.h"
+#include "core/ray.h"
+
+namespace uw {
+
+/// How a camera ray passes one lamp.
+struct LampPassage {
+    double foot = 0;      // distance along the ray of the point nearest to the lamp [m]; may be < 0
+    double distance = 0;  // of that point from the lamp [m]
+
+    LampPassage(const Ray& ray, const Point3& lamp);
+
+    /// Distance from the lamp of the point at `s`.
+    double radius(double s) const;
+    /// Scattering angle at `s` for light from the lamp to the ray's origin [rad]: pi beyond the
+    /// lamp, 0 well before it (physics section 2).
+    double scattering_angle(double s) const;
+};
+
+/// A lamp counts as a sphere this large: no in-scatter is gathered inside, where 1/r^2 of a point
+/// would grow without bound [m].
+inline constexpr double k_lamp_radius = 1e-3;
+
+/// Appends the distances in (begin, end) at which the integrand of single scattering changes its
+/// scale, so that a Gauss rule of few nodes is exact to 1e-5 between neighbours: octaves of the
+/// distance from the foot (1/r^2 and the forward peak are power laws there), and the phase
+/// functions' own breakpoints [rad].
+void append_passage_breaks(const LampPassage& passage, const Interval& interval,
+                           std::span<const double> phase_breakpoints, std::vector<double>& s);
+
+}  // namespace uw

@@ -1,0 +1,31 @@
+#include "core/surface_lighting.h"
+
+namespace uw {
+
+void light_surface(const LitScene& scene, const AttenuationTable& attenuation, const Ray& ray,
+                   const SurfaceHit& hit, const LampColumn& lamp_column, SurfaceLight& light) {
+    std::vector<double> column(attenuation.constituents.size());
+    scene.field->column(ray.origin, hit.position, column);
+    light.transmittance = attenuation.transmittance(hit.distance, column);
+    light.lamps.assign(scene.lamps->size(), LampIrradiance{});
+    for (std::size_t j = 0; j < scene.lamps->size(); ++j) {
+        const Lamp& lamp = (*scene.lamps)[j];
+        const Vector3 to_lamp = lamp.position() - hit.position;
+        const double radius = glm::length(to_lamp);
+        const double cosine = glm::dot(hit.normal, to_lamp) / radius;
+        const double relative = lamp.relative_intensity(-to_lamp);
+        // The true surface decides what a lamp can reach; the shading normal only shades.
+        if (cosine <= 0 || relative <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
+        if (scene.surfaces->occluded(lamp.position(), hit.position)) continue;
+        lamp_column(j, column);
+        const Spectrum transmittance = attenuation.transmittance(radius, column);
+        LampIrradiance& out = light.lamps[j];
+        out.visible = true;
+        for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation.band_count); ++b) {
+            out.clean[b] = lamp.axis_intensity()[b] * relative * cosine / (radius * radius);
+            out.irradiance[b] = out.clean[b] * transmittance[b];
+        }
+    }
+}
+
+}  // namespace uw

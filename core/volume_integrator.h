@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/integrator.h"
+#include "core/light_field.h"
+#include "core/lit_scene.h"
+#include "core/ray_panels.h"
+#include "core/scatter_nodes.h"
+
+namespace uw {
+
+/// Deterministic quadrature of single scattering (physics section 5) on light splatted ahead of
+/// time: Gauss rules on panels that follow the lamp's octaves, the phase functions' breakpoints,
+/// lit intervals, voxels and the lamp's columns.
+class VolumeIntegrator : public Integrator {
+  public:
+    /// `light_fields`: one per lamp of `scene`.
+    VolumeIntegrator(const LitScene& scene,
+                     std::vector<std::shared_ptr<const LightField>> light_fields);
+
+    void in_scatter(const Ray& ray, std::span<const double> ends,
+                    InScatter& result) const override;
+    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
+
+  private:
+    // Where the integrand of lamp `lamp` changes its character within a lit interval, ascending.
+    void append_breaks(const Ray& ray, std::size_t lamp, const LampPassage& passage,
+                       const Interval& interval, std::span<const double> ends,
+                       const ConcentrationProfile& profile, std::vector<double>& breaks) const;
+    void add_panels(const Ray& ray, std::size_t lamp, const LampPassage& passage,
+                    std::span<const double> ends, std::span<const double> breaks,
+                    const ConcentrationProfile& profile, ScatterNodes& nodes) const;
+
+    LitScene scene_;
+    std::vector<std::shared_ptr<const LightField>> light_fields_;
+    std::vector<double> phase_breakpoints_;  // of all phase functions, ascending [rad]
+    ScatterSum sum_;
+    double largest_attenuation_ = 0;  // of the uniform water over the bands [1/m]
+    double smallest_attenuation_ = 0;
+    std::vector<double> largest_per_unit_;  // over the bands, per constituent [1/m per unit]
+};
+
+}  // namespace uw
