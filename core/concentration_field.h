@@ -11,14 +11,14 @@ namespace uw {
 /// between neighbours, and their running integrals (columns).
 struct ConcentrationProfile {
     int constituent_count = 0;
-    std::vector<double> s;               // knot positions [m]; first 0, last the end asked for
-    std::vector<double> concentration;   // [knot * constituent_count + k], in the constituent's unit
-    std::vector<double> column;          // int_0^s, same layout [unit m]
+    std::vector<double> s;              // knot positions [m]; first 0, last the end asked for
+    std::vector<double> concentration;  // [knot * constituent_count + k], in the constituent's unit
+    std::vector<double> column;         // int_0^s, same layout [unit m]
 
     bool empty_between(std::size_t knot) const {  // nothing between knot and knot + 1
         for (int k = 0; k < constituent_count; ++k) {
-            const std::size_t i = knot * static_cast<std::size_t>(constituent_count) +
-                                  static_cast<std::size_t>(k);
+            const std::size_t i =
+                knot * static_cast<std::size_t>(constituent_count) + static_cast<std::size_t>(k);
             if (concentration[i] != 0 ||
                 concentration[i + static_cast<std::size_t>(constituent_count)] != 0)
                 return false;

@@ -9,7 +9,9 @@ namespace uw {
 
 namespace {
 
-double smoothstep(double x) { return x * x * (3.0 - 2.0 * x); }
+double smoothstep(double x) {
+    return x * x * (3.0 - 2.0 * x);
+}
 
 // Solid angle weighted with the relative intensity: the power of a lamp of 1 W/sr on its axis.
 double relative_power(const Lamp& lamp, const Vector3& axis) {
@@ -90,8 +92,7 @@ void Lamp::append_profile_breaks(const Ray& ray, std::vector<double>& s) const {
     if (profile_.type == LampProfileDesc::Type::isotropic) return;
     if (profile_.type == LampProfileDesc::Type::spot) {
         append_cone_crossings(ray, position_, axis_, cos_full_, s);
-        if (cos_dark_ != cos_full_)
-            append_cone_crossings(ray, position_, axis_, cos_dark_, s);
+        if (cos_dark_ != cos_full_) append_cone_crossings(ray, position_, axis_, cos_dark_, s);
         return;
     }
     const double along = glm::dot(ray.direction, axis_);

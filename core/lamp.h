@@ -32,9 +32,9 @@ class Lamp {
     Point3 position_;
     Vector3 axis_;
     LampProfileDesc profile_;
-    double cos_full_ = -1;   // inside this angle a spot shines fully
-    double cos_dark_ = -1;   // outside this angle it is dark
-    double exponent_ = 0;    // of cos^m
+    double cos_full_ = -1;  // inside this angle a spot shines fully
+    double cos_dark_ = -1;  // outside this angle it is dark
+    double exponent_ = 0;   // of cos^m
     Spectrum axis_intensity_{};
 };
 

@@ -26,9 +26,9 @@ struct OpticalCoefficients {
 
 /// Something dissolved or suspended whose concentration varies in space.
 struct Constituent {
-    std::string name;               // "small", "large", or the name of a grid with its own optics
-    std::string unit;               // "ppm" by volume, or "1" for a bare grid value
-    OpticalCoefficients per_unit;   // per unit of concentration
+    std::string name;              // "small", "large", or the name of a grid with its own optics
+    std::string unit;              // "ppm" by volume, or "1" for a bare grid value
+    OpticalCoefficients per_unit;  // per unit of concentration
 };
 
 /// The optical properties of a scene's water. Every coefficient is linear in the concentrations
@@ -36,8 +36,8 @@ struct Constituent {
 struct Medium {
     std::vector<double> wavelengths_nm;  // the bands
     std::vector<std::shared_ptr<const PhaseFunction>> phase_functions;
-    OpticalCoefficients uniform;             // water and everything that is the same everywhere
-    std::vector<Constituent> constituents;   // what the grids add
+    OpticalCoefficients uniform;            // water and everything that is the same everywhere
+    std::vector<Constituent> constituents;  // what the grids add
 
     int band_count() const { return static_cast<int>(wavelengths_nm.size()); }
     int constituent_count() const { return static_cast<int>(constituents.size()); }

@@ -11,9 +11,13 @@ LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
     distance = glm::length(to_lamp - foot * ray.direction);
 }
 
-double LampPassage::radius(double s) const { return std::hypot(s - foot, distance); }
+double LampPassage::radius(double s) const {
+    return std::hypot(s - foot, distance);
+}
 
-double LampPassage::scattering_angle(double s) const { return std::atan2(distance, foot - s); }
+double LampPassage::scattering_angle(double s) const {
+    return std::atan2(distance, foot - s);
+}
 
 void append_passage_breaks(const LampPassage& passage, const Interval& interval,
                            std::span<const double> phase_breakpoints, std::vector<double>& s) {

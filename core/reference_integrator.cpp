@@ -72,8 +72,7 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
     const Vector3 from_lamp = x - lamp.position();
     const double radius = glm::length(from_lamp);
     const double relative = lamp.relative_intensity(from_lamp);
-    if (radius < k_lamp_radius || relative <= 0 ||
-        scene_.surfaces->occluded(lamp.position(), x))
+    if (radius < k_lamp_radius || relative <= 0 || scene_.surfaces->occluded(lamp.position(), x))
         return {};
     // psi between the directions of travel: w_in = from_lamp, w_out = -ray.direction.
     const double psi = std::atan2(glm::length(glm::cross(from_lamp, ray.direction)),

@@ -16,8 +16,7 @@ class ReferenceIntegrator : public Integrator {
     /// and as step at shadow edges.
     explicit ReferenceIntegrator(const LitScene& scene, double step = 0.005);
 
-    void in_scatter(const Ray& ray, std::span<const double> ends,
-                    InScatter& result) const override;
+    void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
     void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
 
   private:

@@ -36,8 +36,8 @@ void ScatterNodes::look_up(const ConcentrationProfile& profile) {
 void ScatterNodes::evaluate_phases(const Medium& medium) {
     phase.resize(size() * medium.phase_functions.size());
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m)
-        medium.phase_functions[m]->evaluate(
-            psi, std::span<double>(phase).subspan(m * size(), size()));
+        medium.phase_functions[m]->evaluate(psi,
+                                            std::span<double>(phase).subspan(m * size(), size()));
 }
 
 ScatterSum::ScatterSum(const Medium& medium)

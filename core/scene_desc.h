@@ -28,7 +28,7 @@ struct DistortionDesc {  // Brown-Conrady, rational when k4..k6 are not 0
     std::array<double, 2> p{};
 };
 
-struct FlatPortDesc {  // camera frame
+struct FlatPortDesc {         // camera frame
     Vector3 normal{0, 0, 1};  // unit, z > 0
     double distance = 0;      // camera centre to inner glass surface, along the normal
     double thickness = 0;
@@ -51,9 +51,9 @@ struct CameraDesc {
 struct PhaseDesc {
     enum class Type { henyey_greenstein, fournier_forand, petzold, table, water };
     Type type = Type::henyey_greenstein;
-    double g = 0;                 // henyey_greenstein
-    double n = 1.10, mu = 3.5835; // fournier_forand: relative index, Junge slope
-    std::filesystem::path file;   // table: CSV of angle_deg,phase
+    double g = 0;                  // henyey_greenstein
+    double n = 1.10, mu = 3.5835;  // fournier_forand: relative index, Junge slope
+    std::filesystem::path file;    // table: CSV of angle_deg,phase
     SourceLocation where;
 };
 
@@ -64,27 +64,27 @@ struct ScatteringDesc {
 
 struct WaterDesc {
     std::vector<double> bands_nm{620, 540, 450};
-    std::string preset;                  // "", or "jerlov-II"
-    double salinity = 35;                // PSU
-    double temperature = 20;             // deg C
-    std::optional<PerBand> absorption;   // a_0 of everything but particles
-    double cdom = 0;                     // a_g(440 nm) [1/m]
-    double chlorophyll = 0;              // mg/m^3
+    std::string preset;                 // "", or "jerlov-II"
+    double salinity = 35;               // PSU
+    double temperature = 20;            // deg C
+    std::optional<PerBand> absorption;  // a_0 of everything but particles
+    double cdom = 0;                    // a_g(440 nm) [1/m]
+    double chlorophyll = 0;             // mg/m^3
     std::optional<double> small_ppm, large_ppm;
-    bool mineral_absorption = false;     // particles absorb as mineral sediment
+    bool mineral_absorption = false;           // particles absorb as mineral sediment
     std::optional<ScatteringDesc> scattering;  // instead of particles and molecules
     SourceLocation where;
 };
 
 /// What one unit of a grid's value means.
 struct GridMappingDesc {
-    std::string grid;                 // name in the file; name[i] where several share one
+    std::string grid;  // name in the file; name[i] where several share one
     double small_ppm = 0, large_ppm = 0;
     struct Optics {
         PerBand absorption, scattering;
         std::optional<PhaseDesc> phase;  // the water's if left out
     };
-    std::optional<Optics> optics;     // instead of ppm
+    std::optional<Optics> optics;  // instead of ppm
     SourceLocation where;
 };
 
@@ -105,11 +105,11 @@ struct GeometryDesc {
     Type type = Type::file;
     std::filesystem::path file;
     Affine world_from_object;
-    Point3 point;               // plane
-    Vector3 normal{0, 0, 1};    // plane, unit
-    Point3 min, max;            // box
-    Point3 center;              // sphere
-    double radius = 0;          // sphere
+    Point3 point;                        // plane
+    Vector3 normal{0, 0, 1};             // plane, unit
+    Point3 min, max;                     // box
+    Point3 center;                       // sphere
+    double radius = 0;                   // sphere
     std::optional<PerBand> reflectance;  // replaces the file's colours; without either, 0.5
     SourceLocation where;
 };

@@ -9,12 +9,12 @@ namespace uw {
 
 /// Where a ray meets a surface. World space.
 struct SurfaceHit {
-    double distance = 0;             // along the ray [m]
+    double distance = 0;  // along the ray [m]
     Point3 position;
-    Vector3 normal{0, 0, 1};         // shading normal, unit, on the side the ray comes from
+    Vector3 normal{0, 0, 1};            // shading normal, unit, on the side the ray comes from
     Vector3 geometric_normal{0, 0, 1};  // of the true surface, unit, same side
-    Spectrum reflectance{};          // diffuse reflectance rho per band, 0..1
-    std::uint32_t object_id = 0;     // index of the entry of `geometry`, from 1
+    Spectrum reflectance{};             // diffuse reflectance rho per band, 0..1
+    std::uint32_t object_id = 0;        // index of the entry of `geometry`, from 1
 };
 
 /// The opaque surfaces of a scene: what stops camera rays and casts shadows. Thread safe.

@@ -31,10 +31,16 @@ inline Vector3 operator-(const Point3& a, const Point3& b) {
 }
 
 /// The vector from the origin to `p`; the one way to turn a point into a vector.
-inline Vector3 from_origin(const Point3& p) { return {p.x, p.y, p.z}; }
+inline Vector3 from_origin(const Point3& p) {
+    return {p.x, p.y, p.z};
+}
 /// The point at `v` from the origin.
-inline Point3 at_origin_plus(const Vector3& v) { return {v.x, v.y, v.z}; }
+inline Point3 at_origin_plus(const Vector3& v) {
+    return {v.x, v.y, v.z};
+}
 
-inline double distance(const Point3& a, const Point3& b) { return glm::length(a - b); }
+inline double distance(const Point3& a, const Point3& b) {
+    return glm::length(a - b);
+}
 
 }  // namespace uw

@@ -47,8 +47,8 @@ int node_count(double length, double nearest_radius) {
 }
 
 // Puts Gauss nodes on [begin, end], between two breaks, in `pieces` equal parts.
-void add_panel(const Ray& ray, const Lamp& lamp, const LampPassage& passage,
-               const Interval& panel, int pieces, std::size_t end_index, ScatterNodes& nodes) {
+void add_panel(const Ray& ray, const Lamp& lamp, const LampPassage& passage, const Interval& panel,
+               int pieces, std::size_t end_index, ScatterNodes& nodes) {
     const double length = panel.length() / pieces;
     for (int piece = 0; piece < pieces; ++piece) {
         const double begin = panel.begin + piece * length;
@@ -111,8 +111,8 @@ void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
         const LampPassage passage(ray, lamps[j].position());
         double reach = ends.back();
         if (smallest_attenuation_ > 0)
-            reach = std::min(reach, passage.radius(0) +
-                                        k_negligible_optical_depth / smallest_attenuation_);
+            reach = std::min(
+                reach, passage.radius(0) + k_negligible_optical_depth / smallest_attenuation_);
         light_fields_[j]->lit_intervals(ray, reach, w.lit);
         w.nodes.clear();
         for (const Interval& interval : w.lit) {
@@ -144,8 +144,8 @@ void VolumeIntegrator::append_breaks(const Ray& ray, std::size_t lamp, const Lam
     (*scene_.lamps)[lamp].append_profile_breaks(ray, breaks);
     append_passage_breaks(passage, interval, phase_breakpoints_, breaks);
     if (passage.distance < k_lamp_radius) {
-        const double half = std::sqrt(k_lamp_radius * k_lamp_radius -
-                                      passage.distance * passage.distance);
+        const double half =
+            std::sqrt(k_lamp_radius * k_lamp_radius - passage.distance * passage.distance);
         breaks.push_back(passage.foot - half);
         breaks.push_back(passage.foot + half);
     }
@@ -159,8 +159,7 @@ void VolumeIntegrator::append_breaks(const Ray& ray, std::size_t lamp, const Lam
 
 void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPassage& passage,
                                   std::span<const double> ends, std::span<const double> breaks,
-                                  const ConcentrationProfile& profile,
-                                  ScatterNodes& nodes) const {
+                                  const ConcentrationProfile& profile, ScatterNodes& nodes) const {
     const Lamp& source = (*scene_.lamps)[lamp];
     std::size_t end_index = 0;
     std::size_t knot = 0;

@@ -20,8 +20,7 @@ class VolumeIntegrator : public Integrator {
     VolumeIntegrator(const LitScene& scene,
                      std::vector<std::shared_ptr<const LightField>> light_fields);
 
-    void in_scatter(const Ray& ray, std::span<const double> ends,
-                    InScatter& result) const override;
+    void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
     void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
 
   private:

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/concentration_field.h"
+#include "media/cube_face.h"
+
+namespace uw {
+
+/// Column concentrations around one lamp: rays from the lamp over the directions in which there
+/// is a grid, each with its running columns at equal steps of distance. Optical depth of every
+/// band follows from them (physics section 1).
+class ColumnMap {
+  public:
+    /// Marches the field once along each texel's ray. Texels are about as wide as the finest voxel
+    /// at the field's centre and steps as long as it, coarser where `memory_budget` [bytes] would
+    /// be exceeded. `field` is not kept.
+    ColumnMap(const ConcentrationField& field, const Point3& lamp, std::size_t memory_budget);
+
+    /// As LightField::columns: bilinear over directions, linear over distance.
+    void columns(std::span<const Point3> x, std::span<double> column) const;
+
+    /// As LightField::append_column_breaks: one break a texel where the ray crosses directions
+    /// whose rays meet particles.
+    void append_breaks(const Ray& ray, const Interval& interval, std::vector<double>& s) const;
+
+    std::size_t bytes() const;
+    std::uint64_t rays_traced() const;
+
+  private:
+    struct TexelRay {
+        float begin = 0;          // distance at which columns start to grow [m]
+        std::uint32_t count = 0;  // samples; 0: nothing this way
+        std::size_t offset = 0;   // of the first in samples
+    };
+    struct Face {
+        int u0 = 0, v0 = 0, width = 0, height = 0;  // the rectangle of texels that is stored
+        std::vector<TexelRay> rays;
+        std::vector<float> samples;  // [ray offset + step * constituents + k]
+    };
+
+    bool crop_to_field(const Bounds& bounds, int face, Face& out) const;
+    void trace_face(const ConcentrationField& field, int face, double reach);
+    static void append_samples(const ConcentrationProfile& profile, double step,
+                               std::vector<float>& samples, TexelRay& ray);
+    void add_texel(const Face& face, int u, int v, double distance, double weight,
+                   std::span<double> column) const;
+    bool any_particles(const Face& face, double u, double v) const;
+    double texel_u(double u) const { return (u + 1) * 0.5 * resolution_ - 0.5; }
+
+    Point3 lamp_;
+    std::size_t constituents_;
+    int resolution_ = 0;
+    double step_ = 0;  // [m]
+    std::array<Face, 6> faces_;
+};
+
+}  // namespace uw

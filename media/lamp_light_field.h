@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/light_field.h"
+#include "media/column_map.h"
+#include "media/shadow_map.h"
+
+namespace uw {
+
+/// How finely lamps are splatted.
+struct LightFieldOptions {
+    int shadow_resolution = 512;               // texels along an edge of a cube face
+    std::size_t column_budget = 256ull << 20;  // bytes of columns per lamp
+};
+
+/// One lamp's light splatted into the scene (docs/design.md): a shadow map and a column map.
+class LampLightField : public LightField {
+  public:
+    /// `surfaces` outlives the light field; `field` is only read here.
+    LampLightField(const ConcentrationField& field, const Surfaces& surfaces, const Point3& lamp,
+                   const LightFieldOptions& options)
+        : shadows_(surfaces, lamp, options.shadow_resolution),
+          columns_(field, lamp, options.column_budget) {}
+
+    void lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const override {
+        shadows_.lit_intervals(ray, s_end, lit);
+    }
+    void append_column_breaks(const Ray& ray, const Interval& interval,
+                              std::vector<double>& s) const override {
+        columns_.append_breaks(ray, interval, s);
+    }
+    void columns(std::span<const Point3> x, std::span<double> column) const override {
+        columns_.columns(x, column);
+    }
+
+    std::size_t bytes() const { return shadows_.bytes() + columns_.bytes(); }
+    std::uint64_t rays_traced() const { return shadows_.rays_traced() + columns_.rays_traced(); }
+
+  private:
+    ShadowMap shadows_;
+    ColumnMap columns_;
+};
+
+}  // namespace uw

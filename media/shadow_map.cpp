@@ -1,0 +1,227 @@
+#include "media/shadow_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.h"
+#include "core/ray_panels.h"
+
+namespace uw {
+
+namespace {
+
+constexpr float k_nothing = std::numeric_limits<float>::infinity();
+// The map's depths are float and its texels are compared with points between their centres; a
+// decision needs this relative margin, or the search goes on to exact shadow rays.
+constexpr double k_margin = 1e-3;
+constexpr int k_edge_bisections = 8;
+
+std::size_t square(int n) {
+    return static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+}
+
+}  // namespace
+
+ShadowMap::ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution)
+    : surfaces_(&surfaces), lamp_(lamp), resolution_(resolution) {
+    if (surfaces.empty()) return;
+    for (int face = 0; face < 6; ++face) trace_face(face);
+}
+
+void ShadowMap::trace_face(int face_index) {
+    const CubeFace face(face_index);
+    const int n = resolution_;
+    const int padded = n + 2;  // one texel beyond each edge, so that neighbours always exist
+    std::vector<float> depth(square(padded));
+    parallel_for(static_cast<std::size_t>(padded), [&](std::size_t row) {
+        for (int column = 0; column < padded; ++column) {
+            const double u = (2.0 * column - 1.0) / n - 1.0;
+            const double v = (2.0 * static_cast<double>(row) - 1.0) / n - 1.0;
+            const Vector3 direction = face.direction(u, v);
+            const double length = glm::length(direction);
+            const double hit = surfaces_->hit_distance({lamp_, direction / length});
+            depth[row * static_cast<std::size_t>(padded) + static_cast<std::size_t>(column)] =
+                static_cast<float>(hit / length);
+        }
+    });
+    rays_traced_ += depth.size();
+
+    Pyramid& pyramid = faces_[static_cast<std::size_t>(face_index)];
+    pyramid.push_back(neighbourhood_ranges(depth));
+    while (pyramid.back().size > 1) pyramid.push_back(halved(pyramid.back()));
+}
+
+// The range over each texel and its eight neighbours covers what lies between the samples.
+ShadowMap::Level ShadowMap::neighbourhood_ranges(const std::vector<float>& padded_depth) const {
+    const int n = resolution_;
+    Level level{n, std::vector<DepthRange>(square(n))};
+    for (int row = 0; row < n; ++row) {
+        for (int column = 0; column < n; ++column) {
+            DepthRange range{k_nothing, 0};
+            for (int j = row; j <= row + 2; ++j) {
+                for (int i = column; i <= column + 2; ++i) {
+                    const float d = padded_depth[static_cast<std::size_t>(j * (n + 2) + i)];
+                    range.nearest = std::min(range.nearest, d);
+                    range.farthest = std::max(range.farthest, d);
+                }
+            }
+            level.texels[static_cast<std::size_t>(row * n + column)] = range;
+        }
+    }
+    return level;
+}
+
+ShadowMap::Level ShadowMap::halved(const Level& fine) {
+    const int size = (fine.size + 1) / 2;
+    Level coarse{size, std::vector<DepthRange>(square(size), DepthRange{k_nothing, 0})};
+    for (int row = 0; row < fine.size; ++row) {
+        for (int column = 0; column < fine.size; ++column) {
+            const DepthRange& in = fine.texels[static_cast<std::size_t>(row * fine.size + column)];
+            DepthRange& out =
+                coarse.texels[static_cast<std::size_t>((row / 2) * size + column / 2)];
+            out.nearest = std::min(out.nearest, in.nearest);
+            out.farthest = std::max(out.farthest, in.farthest);
+        }
+    }
+    return coarse;
+}
+
+std::size_t ShadowMap::bytes() const {
+    std::size_t total = 0;
+    for (const Pyramid& pyramid : faces_)
+        for (const Level& level : pyramid) total += level.texels.size() * sizeof(DepthRange);
+    return total;
+}
+
+/// The walk along one ray: halves stretches until the pyramid decides or a texel is reached.
+class ShadowMap::Search {
+  public:
+    Search(const ShadowMap& map, const Ray& ray, std::vector<Interval>& lit)
+        : map_(map), ray_(ray), lit_(lit) {}
+
+    void run(const Interval& stretch) {
+        thread_local std::vector<FaceSegment> segments;
+        split_by_face(ray_, map_.lamp_, stretch, segments);
+        for (const FaceSegment& segment : segments) {
+            face_ = CubeFace(segment.face);
+            pyramid_ = &map_.faces_[static_cast<std::size_t>(segment.face)];
+            descend(project(segment.stretch.begin), project(segment.stretch.end));
+        }
+    }
+
+    void append(const Interval& interval) {
+        if (!lit_.empty() && lit_.back().end == interval.begin)
+            lit_.back().end = interval.end;
+        else
+            lit_.push_back(interval);
+    }
+
+  private:
+    struct MapPoint {
+        double s;      // along the ray
+        double depth;  // along the face's axis
+        double u, v;   // in texels
+    };
+
+    MapPoint project(double s) const {
+        const Vector3 x = ray_.at(s) - map_.lamp_;
+        const double half = 0.5 * map_.resolution_;
+        return {s, face_.depth(x), (face_.u(x) + 1) * half, (face_.v(x) + 1) * half};
+    }
+
+    void descend(const MapPoint& a, const MapPoint& b) {
+        const DepthRange range = bound(a, b);
+        if (std::max(a.depth, b.depth) * (1 + k_margin) < range.nearest)
+            append({a.s, b.s});
+        else if (std::min(a.depth, b.depth) > range.farthest * (1 + k_margin))
+            return;
+        else if (std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) <= 1.0 &&
+                 std::max(a.depth, b.depth) < 2 * std::min(a.depth, b.depth))
+            resolve(a.s, b.s);
+        else {
+            // Halfway on the face where the stretch is long there, else halfway in depth.
+            const bool far_on_face = std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) > 1.0;
+            const MapPoint middle =
+                project(far_on_face ? (a.s * b.depth + b.s * a.depth) / (a.depth + b.depth)
+                                    : 0.5 * (a.s + b.s));
+            descend(a, middle);
+            descend(middle, b);
+        }
+    }
+
+    // Nearest and farthest surface over the texels that the stretch touches.
+    DepthRange bound(const MapPoint& a, const MapPoint& b) const {
+        const auto texel = [&](double t) {
+            return std::clamp(static_cast<int>(t), 0, map_.resolution_ - 1);
+        };
+        int u0 = texel(std::min(a.u, b.u)), u1 = texel(std::max(a.u, b.u));
+        int v0 = texel(std::min(a.v, b.v)), v1 = texel(std::max(a.v, b.v));
+        std::size_t level = 0;
+        while (u1 - u0 > 1 || v1 - v0 > 1) {
+            u0 /= 2, u1 /= 2, v0 /= 2, v1 /= 2;
+            ++level;
+        }
+        const Level& texels = (*pyramid_)[level];
+        DepthRange range{k_nothing, 0};
+        for (int v = v0; v <= v1; ++v) {
+            for (int u = u0; u <= u1; ++u) {
+                const DepthRange& t = texels.texels[static_cast<std::size_t>(v * texels.size + u)];
+                range.nearest = std::min(range.nearest, t.nearest);
+                range.farthest = std::max(range.farthest, t.farthest);
+            }
+        }
+        return range;
+    }
+
+    bool visible(double s) const { return !map_.surfaces_->occluded(map_.lamp_, ray_.at(s)); }
+
+    // A stretch of at most a texel that the map cannot decide.
+    void resolve(double begin, double end) {
+        // Ends are looked at a little inside: the last one may lie on a surface.
+        const double inset = 1e-3 * (end - begin);
+        const bool lit_at_begin = visible(begin + inset);
+        const bool lit_at_end = visible(end - inset);
+        if (lit_at_begin == lit_at_end) {
+            if (lit_at_begin) append({begin, end});
+            return;
+        }
+        double a = begin, b = end;
+        for (int i = 0; i < k_edge_bisections; ++i) {
+            const double middle = 0.5 * (a + b);
+            (visible(middle) == lit_at_begin ? a : b) = middle;
+        }
+        const double edge = 0.5 * (a + b);
+        append(lit_at_begin ? Interval{begin, edge} : Interval{edge, end});
+    }
+
+    const ShadowMap& map_;
+    const Ray& ray_;
+    std::vector<Interval>& lit_;
+    CubeFace face_{0};
+    const Pyramid* pyramid_ = nullptr;
+};
+
+void ShadowMap::lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const {
+    lit.clear();
+    if (surfaces_->empty()) {
+        lit.push_back({0, s_end});
+        return;
+    }
+    Search search(*this, ray, lit);
+    // The lamp's own place has no direction to look up; what is that near sees the lamp.
+    const double foot = glm::dot(lamp_ - ray.origin, ray.direction);
+    const double offset = distance(lamp_, ray.at(foot));
+    const double half =
+        offset < k_lamp_radius ? std::sqrt(k_lamp_radius * k_lamp_radius - offset * offset) : 0.0;
+    const Interval core{std::clamp(foot - half, 0.0, s_end), std::clamp(foot + half, 0.0, s_end)};
+    if (half == 0 || core.length() == 0) {
+        search.run({0, s_end});
+        return;
+    }
+    search.run({0, core.begin});
+    search.append(core);
+    search.run({core.end, s_end});
+}
+
+}  // namespace uw
