@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <string>
+
+namespace uw {
+
+/// Progress of long work on stderr: a bar with rate and time left on a terminal, plain lines
+/// every few seconds otherwise. Thread safe.
+class Progress {
+  public:
+    /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole.
+    Progress(std::string label, std::string unit, double scale, bool quiet);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    /// Reports that the share `fraction` (0..1) of the work is done.
+    void update(double fraction);
+
+  private:
+    void draw(double fraction, double seconds);
+
+    std::string label_;
+    std::string unit_;
+    double scale_;
+    bool quiet_;
+    bool terminal_;
+    bool drawn_ = false;
+    std::mutex mutex_;
+    std::chrono::steady_clock::time_point start_;
+    double last_drawn_ = 0;  // seconds since start
+};
+
+/// Seconds as "0.8 s", "12 s", "3 min 05 s", "1 h 12 min".
+std::string format_duration(double seconds);
+
+}  // namespace uw

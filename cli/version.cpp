@@ -1,0 +1,9 @@
+#include "cli/version.h"
+
+namespace uw {
+
+std::string program_version() {
+    return UWVDB_VERSION_STRING;
+}
+
+}  // namespace uw

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "core/integrator.h"
+#include "core/lit_scene.h"
+#include "core/water_ray.h"
+
+namespace uw {
+
+/// Everything one pixel holds. Radiometric values are means over the pixel's samples; ground truth
+/// (`hit` and the depths) belongs to the pixel's centre. W m^-2 sr^-1, W m^-2, metres, world space.
+struct PixelResult {
+    double alpha = 0;  // share of samples whose ray enters the water
+    Spectrum direct{};
+    Spectrum backscatter{};
+    Spectrum irradiance{};        // on the surface, 0 where there is none
+    Spectrum clean{};             // radiance of the surface without water
+    Spectrum transmittance{};     // surface to port, mean over samples that meet a surface
+    double lit = 0;               // mean fraction of lamps that see the surface
+    std::vector<Spectrum> lamps;  // radiance due to each lamp: direct + backscatter
+    bool has_hit = false;         // whether the centre's ray meets a surface
+    SurfaceHit hit;
+    double depth_z = 0;  // camera-frame z of the hit
+    double range = 0;    // from the camera's centre to the hit
+    double path = 0;     // in water, from the outer glass surface to the hit
+};
+
+/// Turns integrators into pixels: many samples for the edges of surfaces, one ray for the water.
+class PixelRenderer {
+  public:
+    /// All references outlive the renderer. `samples` >= 1 per pixel; one lies at the centre.
+    PixelRenderer(const RaySource& rays, const LitScene& scene, const Integrator& integrator,
+                  int samples);
+
+    int lamp_count() const { return static_cast<int>(scene_.lamps->size()); }
+    int band_count() const { return scene_.medium->band_count(); }
+
+    /// Renders pixel (x, y); `result` is reused storage. Thread safe.
+    void render(int x, int y, PixelResult& result) const;
+
+  private:
+    struct Workspace;
+
+    void add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
+                            PixelResult& result) const;
+    void add_water(const Ray& ray, Workspace& w, PixelResult& result) const;
+    void record_ground_truth(int x, int y, PixelResult& result) const;
+
+    const RaySource& rays_;
+    LitScene scene_;
+    const Integrator& integrator_;
+    int samples_;
+};
+
+}  // namespace uw
