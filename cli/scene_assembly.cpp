@@ -1,0 +1,77 @@
+#include "cli/scene_assembly.h"
+
+#include <fmt/format.h>
+
+#include "core/geometry_scene.h"
+#include "core/ray_panels.h"
+#include "core/reference_integrator.h"
+#include "core/volume_integrator.h"
+
+namespace uw {
+
+namespace {
+
+void append(std::vector<std::string>& to, std::vector<std::string> from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+// A lamp where the camera's rays begin has in-scatter that grows without bound (1/r^2).
+void warn_of_lamps_at_the_camera(AssembledScene& scene) {
+    const CameraDesc& camera = scene.desc.camera;
+    const std::optional<Ray> ray = scene.camera->water_ray(0.5 * camera.width, 0.5 * camera.height);
+    if (!ray) {
+        scene.warnings.push_back(fmt::format(
+            "{}: camera: no ray of the image centre enters the water; check camera.port",
+            scene.desc.file.filename().string()));
+        return;
+    }
+    for (std::size_t j = 0; j < scene.lamps.size(); ++j) {
+        if (distance(scene.lamps[j].position(), ray->origin) < k_lamp_radius)
+            scene.warnings.push_back(fmt::format(
+                "{}: the lamp stands where the camera's rays enter the water; its in-scatter "
+                "grows without bound there and is cut at {} m from it; move it aside",
+                scene.desc.lamps[j].where, k_lamp_radius));
+    }
+}
+
+}  // namespace
+
+AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage) {
+    AssembledScene scene;
+    scene.desc = desc;
+    scene.warnings = desc.warnings;
+    scene.camera = std::make_unique<Camera>(desc.camera);
+    scene.water = build_water_model(desc.water, desc.volumes);
+    append(scene.warnings, scene.water.warnings);
+    const Medium& medium = scene.water.medium;
+    begin_stage("volumes");
+    scene.field = load_volumes(desc.volumes, scene.water.loads, medium.constituent_count(),
+                               scene.volume_reports, scene.warnings);
+    begin_stage("geometry");
+    scene.surfaces = build_surfaces(desc.geometry, medium.wavelengths_nm, scene.warnings);
+    for (const LampDesc& lamp : desc.lamps)
+        scene.lamps.emplace_back(lamp, desc.camera.world_from_camera, medium.band_count());
+    warn_of_lamps_at_the_camera(scene);
+    return scene;
+}
+
+std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledScene& scene,
+                                                               const LightFieldOptions& options) {
+    std::vector<std::shared_ptr<const LampLightField>> fields;
+    for (const Lamp& lamp : scene.lamps)
+        fields.push_back(std::make_shared<LampLightField>(*scene.field, *scene.surfaces,
+                                                          lamp.position(), options));
+    return fields;
+}
+
+std::unique_ptr<Integrator> make_integrator(
+    const AssembledScene& scene,
+    const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
+    if (scene.desc.render.integrator == RenderDesc::Integrator::reference)
+        return std::make_unique<ReferenceIntegrator>(scene.lit());
+    return std::make_unique<VolumeIntegrator>(
+        scene.lit(),
+        std::vector<std::shared_ptr<const LightField>>(light_fields.begin(), light_fields.end()));
+}
+
+}  // namespace uw

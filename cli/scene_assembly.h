@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "camera/camera.h"
+#include "core/lit_scene.h"
+#include "core/scene_desc.h"
+#include "media/grid_field.h"
+#include "media/lamp_light_field.h"
+#include "media/water_model.h"
+
+namespace uw {
+
+/// A scene description turned into the concrete parts that integrators work on.
+struct AssembledScene {
+    SceneDesc desc;
+    std::unique_ptr<Camera> camera;
+    WaterModel water;
+    std::unique_ptr<ConcentrationField> field;
+    std::unique_ptr<Surfaces> surfaces;
+    std::vector<Lamp> lamps;
+    std::vector<VolumeReport> volume_reports;
+    std::vector<std::string> warnings;  // one line each, in the order met
+
+    LitScene lit() const { return {&water.medium, field.get(), surfaces.get(), &lamps}; }
+};
+
+/// Called with the name of each stage as it begins.
+using StageCallback = std::function<void(const std::string& stage)>;
+
+/// Loads what `desc` names and builds it. Throws InputError and IoError of one line each.
+AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage);
+
+/// Splats the light of every lamp of `scene`.
+std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledScene& scene,
+                                                               const LightFieldOptions& options);
+
+/// The integrator that the scene asks for, on light splatted before; `light_fields` may be empty
+/// for the reference integrator.
+std::unique_ptr<Integrator> make_integrator(
+    const AssembledScene& scene,
+    const std::vector<std::shared_ptr<const LampLightField>>& light_fields);
+
+}  // namespace uw

@@ -1,0 +1,81 @@
+#include "support/test_scene.h"
+
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace uw::test {
+
+SceneDesc pinhole_scene(int width, int height) {
+    SceneDesc desc;
+    desc.file = "test.yaml";
+    desc.camera.width = width;
+    desc.camera.height = height;
+    const double focal = 0.5 * width / std::tan(glm::radians(30.0));
+    desc.camera.intrinsics = {focal, focal, 0.5 * width, 0.5 * height};
+    desc.water = hg_water(0.9);
+    desc.render.samples = 1;
+    return desc;
+}
+
+WaterDesc hg_water(double g) {
+    WaterDesc water;
+    water.bands_nm = {620, 540, 450};
+    water.absorption = PerBand{0.35, 0.08, 0.05};
+    ScatteringDesc scattering;
+    scattering.b = {0.20, 0.22, 0.25};
+    scattering.phase.type = PhaseDesc::Type::henyey_greenstein;
+    scattering.phase.g = g;
+    water.scattering = scattering;
+    return water;
+}
+
+LampDesc isotropic_lamp(const Point3& position, double intensity) {
+    LampDesc lamp;
+    lamp.name = "lamp";
+    lamp.position = position;
+    lamp.intensity = PerBand{intensity, intensity, intensity};
+    return lamp;
+}
+
+GeometryDesc plane_at_z(double z) {
+    GeometryDesc plane;
+    plane.type = GeometryDesc::Type::plane;
+    plane.point = {0, 0, z};
+    plane.normal = {0, 0, -1};
+    return plane;
+}
+
+GeometryDesc box(const Point3& min, const Point3& max) {
+    GeometryDesc desc;
+    desc.type = GeometryDesc::Type::box;
+    desc.min = min;
+    desc.max = max;
+    return desc;
+}
+
+TestScene::TestScene(const SceneDesc& desc, const LightFieldOptions& options)
+    : scene_(assemble_scene(desc, [](const std::string&) {})) {
+    if (desc.render.integrator == RenderDesc::Integrator::volume)
+        light_fields_ = splat_lamps(scene_, options);
+    integrator_ = make_integrator(scene_, light_fields_);
+    renderer_ = std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
+                                                desc.render.samples);
+}
+
+PixelResult TestScene::pixel(int x, int y) const {
+    PixelResult result;
+    renderer_->render(x, y, result);
+    return result;
+}
+
+std::vector<PixelResult> TestScene::image() const {
+    const int width = scene_.camera->width(), height = scene_.camera->height();
+    std::vector<PixelResult> pixels(static_cast<std::size_t>(width * height));
+    parallel_for(pixels.size(), [&](std::size_t i) {
+        renderer_->render(static_cast<int>(i) % width, static_cast<int>(i) / width, pixels[i]);
+    });
+    return pixels;
+}
+
+}  // namespace uw::test

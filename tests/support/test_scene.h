@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "cli/scene_assembly.h"
+#include "core/pixel_renderer.h"
+
+namespace uw::test {
+
+/// A camera at the origin looking along +z (camera axes = world axes), 60 degrees wide, no port.
+SceneDesc pinhole_scene(int width, int height);
+
+/// Explicit water: absorption, scattering with one Henyey-Greenstein phase function, three bands.
+WaterDesc hg_water(double g);
+
+LampDesc isotropic_lamp(const Point3& position, double intensity);
+GeometryDesc plane_at_z(double z);
+GeometryDesc box(const Point3& min, const Point3& max);
+
+/// A scene with its integrator, ready to render pixels.
+class TestScene {
+  public:
+    explicit TestScene(const SceneDesc& desc, const LightFieldOptions& options = {});
+
+    const AssembledScene& assembled() const { return scene_; }
+    const Integrator& integrator() const { return *integrator_; }
+    PixelResult pixel(int x, int y) const;
+    std::vector<PixelResult> image() const;
+
+  private:
+    AssembledScene scene_;
+    std::vector<std::shared_ptr<const LampLightField>> light_fields_;
+    std::unique_ptr<Integrator> integrator_;
+    std::unique_ptr<PixelRenderer> renderer_;
+};
+
+}  // namespace uw::test
