@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+
+#include "core/scene_desc.h"
+
+namespace uw {
+
+/// Where a ray (x, y, 1) meets the plane z = 1 of the camera frame; dimensionless.
+struct NormalizedPoint {
+    double x = 0;
+    double y = 0;
+};
+
+/// Brown-Conrady lens distortion, rational form, as in OpenCV (k1 k2 p1 p2 k3 k4 k5 k6):
+///   f(r) = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
+///   x'   = f x + 2 p1 x y + p2 (r^2 + 2 x^2),   y' = f y + p1 (r^2 + 2 y^2) + 2 p2 x y.
+/// The polynomial turns back on itself at some radius for most real lenses. Only the part around
+/// the axis, up to that fold, has a meaning; beyond it there is no ray.
+class Distortion {
+  public:
+    explicit Distortion(const DistortionDesc& desc);
+
+    /// The distorted place of an undistorted point. Points beyond the fold give what the formula
+    /// gives, which no camera shows.
+    NormalizedPoint distort(const NormalizedPoint& undistorted) const;
+
+    /// The inverse of `distort` on the part around the axis, to 1e-10; empty where no point of
+    /// that part is shown at `distorted`.
+    std::optional<NormalizedPoint> undistort(const NormalizedPoint& distorted) const;
+
+    /// Undistorted radius up to which the radial model grows; infinite if it always does.
+    double fold_radius() const { return fold_radius_; }
+
+  private:
+    struct Jacobian {  // symmetric: the model is the gradient of a potential
+        double xx, xy, yy;
+    };
+    /// f and df/d(r^2).
+    struct Radial {
+        double factor, slope;
+    };
+    Radial radial(double r2) const;
+    Jacobian jacobian(const NormalizedPoint& p) const;
+    bool in_domain(const NormalizedPoint& p, const Jacobian& j) const;
+
+    DistortionDesc desc_;
+    bool identity_ = true;
+    double fold_radius_ = 0;
+};
+
+}  // namespace uw
