@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/config_map.h"
+#include "core/scene_sections.h"
+
+namespace uw {
+namespace {
+
+constexpr auto k_lengths = "give three lengths in metres";
+
+PerBand read_reflectance(const ConfigValue& value, const SceneContext& context) {
+    constexpr auto k_mend = "give the fraction of light reflected, from 0 to 1";
+    PerBand reflectance;
+    for (const ConfigValue& entry : value.per_band(context.band_count, k_mend)) {
+        const double rho = entry.non_negative(k_mend);
+        if (rho > 1) {
+            entry.fail(
+                fmt::format("must be from 0 to 1, found {}, which looks like {}; give the "
+                            "fraction of light reflected",
+                            rho, rho <= 100 ? "percent" : "an 8-bit colour"));
+        }
+        reflectance.push_back(rho);
+    }
+    return reflectance;
+}
+
+void read_box(ConfigMap& map, GeometryDesc& object) {
+    const ConfigValue low = map.require("min", "give the box's lowest corner in metres");
+    const ConfigValue high = map.require("max", "give the box's highest corner in metres");
+    object.min = at_origin_plus(low.vector(k_lengths));
+    object.max = at_origin_plus(high.vector(k_lengths));
+    constexpr std::string_view k_axes = "xyz";
+    for (int axis = 0; axis < 3; ++axis) {
+        if (object.min[axis] < object.max[axis]) continue;
+        high.fail(fmt::format(
+            "max must be greater than min on every axis, found {} against {} on "
+            "{}; swap or mend them",
+            object.max[axis], object.min[axis], k_axes[static_cast<std::size_t>(axis)]));
+    }
+}
+
+void read_shape(ConfigMap& map, const ConfigValue& type, GeometryDesc& object) {
+    using Type = GeometryDesc::Type;
+    constexpr std::array<std::pair<std::string_view, Type>, 3> k_types{
+        {{"plane", Type::plane}, {"box", Type::box}, {"sphere", Type::sphere}}};
+    object.type = type.choice(k_types);
+    if (object.type == Type::plane) {
+        object.point =
+            at_origin_plus(map.require("point", "give a point of the plane").vector(k_lengths));
+        object.normal = map.require("normal", "give the plane's normal")
+                            .direction("give the plane's normal, of any length but 0");
+    } else if (object.type == Type::box) {
+        read_box(map, object);
+    } else {
+        object.center =
+            at_origin_plus(map.require("center", "give the sphere's centre").vector(k_lengths));
+        object.radius = map.require("radius", "give the sphere's radius in metres")
+                            .positive("give the sphere's radius in metres");
+    }
+    map.finish("type '" + type.node().scalar + "'");
+}
+
+GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) {
+    ConfigMap map(value,
+                  {"file", "transform", "reflectance", "type", "point", "normal", "min", "max",
+                   "center", "radius"},
+                  "write {file: seabed.glb} or {type: sphere, center: [0, 0, 2], radius: 0.2}");
+    GeometryDesc object;
+    object.where = value.location();
+    if (const auto entry = map.find("reflectance")) {
+        object.reflectance = read_reflectance(*entry, context);
+    }
+    if (const auto type = map.find("type")) {
+        read_shape(map, *type, object);
+        return object;
+    }
+    object.file = read_existing_file(
+        map.require("file", "give a mesh file, or type: plane, box or sphere"), context);
+    if (const auto entry = map.find("transform")) object.world_from_object = read_transform(*entry);
+    map.finish("a mesh file");
+    return object;
+}
+
+}  // namespace
+
+std::vector<GeometryDesc> read_geometry(const ConfigValue& value, const SceneContext& context) {
+    std::vector<GeometryDesc> objects;
+    for (const ConfigValue& entry : value.list("write one '- file: ...' or '- type: ...' each")) {
+        objects.push_back(read_object(entry, context));
+    }
+    return objects;
+}
+
+}  // namespace uw

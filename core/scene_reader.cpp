@@ -1,0 +1,113 @@
+#include "core/scene_reader.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <system_error>
+
+#include "core/config_map.h"
+#include "core/config_text.h"
+#include "core/error.h"
+#include "core/scene_override.h"
+#include "core/scene_sections.h"
+#include "core/yaml_document.h"
+
+namespace uw {
+namespace {
+
+/// The file's text; of a larger file just enough to be refused for its size.
+std::string read_text(const std::filesystem::path& file, const std::string& origin) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored)) {
+        throw IoError(fmt::format("{}: is a folder; name a scene file in it", origin));
+    }
+    if (!std::filesystem::exists(file, ignored)) {
+        throw IoError(fmt::format("{}: no such file; check the name of the scene", origin));
+    }
+    std::ifstream stream(file, std::ios::binary);
+    std::string text(YamlLimits{}.bytes + 1, '\0');
+    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!stream.is_open() || stream.bad()) {
+        throw IoError(fmt::format("{}: cannot be read; check its permissions", origin));
+    }
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    return text;
+}
+
+/// Comes first: another version may have other keys.
+void check_version(const ConfigValue& scene) {
+    const ConfigNode* const version = scene.node().find("uwvdb");
+    if (version == nullptr) return;
+    double number = 0;
+    if (version->kind == ConfigNode::Kind::scalar && !version->quoted &&
+        parse_number(version->scalar, number) == NumberText::number && number == 1) {
+        return;
+    }
+    ConfigValue(*version, "uwvdb")
+        .fail(fmt::format("this program reads scene version 1, found {}; write 'uwvdb: 1', or use "
+                          "the program that goes with that version",
+                          version->description()));
+}
+
+}  // namespace
+
+RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
+    ConfigMap map(value, {"integrator", "planes", "samples"}, "write {samples: 4}");
+    RenderDesc render;
+    if (const auto entry = map.find("integrator")) {
+        constexpr std::array<std::string_view, 3> k_words{"volume", "reference", "planes"};
+        const std::size_t index = entry->word_index(k_words);
+        if (index == 2) entry->fail("'planes' is not supported yet; use volume or reference");
+        render.integrator =
+            index == 0 ? RenderDesc::Integrator::volume : RenderDesc::Integrator::reference;
+    }
+    if (const auto entry = map.find("planes")) {
+        constexpr auto k_example = "write {count: 64, near: 0.1, far: 12}";
+        ConfigMap planes(*entry, {"count", "near", "far"}, k_example);
+        planes.require("count", k_example).integer(1, 65536, "give the number of slabs");
+        const double near = planes.require("near", k_example).non_negative("give metres");
+        const ConfigValue far = planes.require("far", k_example);
+        if (far.positive("give metres") <= near) {
+            far.fail(
+                fmt::format("must be greater than near ({}); give metres along camera z", near));
+        }
+        context.warn(*entry, "only the planes integrator uses this, and that is not supported yet");
+    }
+    if (const auto entry = map.find("samples")) {
+        render.samples = entry->integer(1, 4096, "give the samples per pixel");
+    }
+    return render;
+}
+
+SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+    const std::string origin = printable(file.string(), 300);
+    ConfigNode root = parse_yaml(read_text(file, origin), origin);
+    for (const std::string& text : overrides) apply_override(root, text);
+
+    const ConfigValue scene(root, "");
+    check_version(scene);
+    ConfigMap map(scene, {"uwvdb", "camera", "water", "volumes", "geometry", "lamps", "render"},
+                  "a scene starts with 'uwvdb: 1'");
+    map.require("uwvdb", "a scene starts with 'uwvdb: 1'");
+
+    SceneDesc desc;
+    desc.file = file;
+    SceneContext context{file.parent_path(), desc.water.bands_nm.size(), &desc.warnings};
+    desc.water.where = scene.location();
+    if (const auto entry = map.find("water")) desc.water = read_water(*entry, context);
+    desc.camera = read_camera(
+        map.require("camera", "give camera: {resolution: [W, H], intrinsics: {fov_x: 60}}"),
+        context);
+    if (const auto entry = map.find("volumes")) desc.volumes = read_volumes(*entry, context);
+    if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
+    if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
+    if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
+    if (desc.lamps.empty()) {
+        context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
+    }
+    desc.hash = config_hash(root);
+    return desc;
+}
+
+}  // namespace uw

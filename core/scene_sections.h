@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/config_value.h"
+#include "core/scene_desc.h"
+
+namespace uw {
+
+/// What the readers of a scene's sections share. Private to the scene reader: one function per
+/// section, each of which checks all of its section and throws InputError (see read_scene).
+struct SceneContext {
+    std::filesystem::path folder;        // of the scene file; file names are relative to it
+    std::size_t band_count = 0;          // of water.bands, which is read first
+    std::vector<std::string>* warnings;  // one line each
+
+    /// Adds the warning "<location>: <what>".
+    void warn(const ConfigValue& value, const std::string& what) const {
+        warnings->push_back(value.location() + ": " + what);
+    }
+};
+
+CameraDesc read_camera(const ConfigValue& value, const SceneContext& context);
+/// `camera.pose` as world_from_camera.
+Affine read_pose(const ConfigValue& value);
+
+/// Also sets the number of bands for the sections that follow.
+WaterDesc read_water(const ConfigValue& value, SceneContext& context);
+PhaseDesc read_phase(const ConfigValue& value, const SceneContext& context);
+
+std::vector<VolumeDesc> read_volumes(const ConfigValue& value, const SceneContext& context);
+std::vector<GeometryDesc> read_geometry(const ConfigValue& value, const SceneContext& context);
+std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context);
+RenderDesc read_render(const ConfigValue& value, const SceneContext& context);
+
+/// `transform: {scale, rotate, translate}` as translate * rotate * scale.
+Affine read_transform(const ConfigValue& value);
+
+/// A file name, resolved against the scene's folder. Throws InputError where no such file exists.
+std::filesystem::path read_existing_file(const ConfigValue& value, const SceneContext& context);
+
+}  // namespace uw

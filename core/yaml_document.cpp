@@ -1,0 +1,258 @@
+#include "core/yaml_document.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "core/config_text.h"
+#include "core/error.h"
+#include "core/utf8.h"
+
+namespace uw {
+namespace {
+
+/// A node's share of YamlLimits::nodes; long texts count for more, so that aliases of them do too.
+std::size_t weight(const ConfigNode& node) {
+    std::size_t sum = 1 + node.scalar.size() / 256;
+    for (const ConfigNode& item : node.items) sum += weight(item);
+    for (const ConfigNode::Entry& entry : node.entries) {
+        sum += entry.key.size() / 256 + weight(entry.value);
+    }
+    return sum;
+}
+
+/// Builds the tree from the parser's events, so that a hostile document ends at its first excess.
+class TreeBuilder : public YAML::EventHandler {
+  public:
+    TreeBuilder(std::shared_ptr<const std::string> origin, const YamlLimits& limits)
+        : origin_(std::move(origin)), limits_(limits) {}
+
+    std::optional<ConfigNode> take_root() { return std::move(root_); }
+
+    void OnDocumentStart(const YAML::Mark& mark) override {
+        if (++documents_ > 1) {
+            fail(mark, "a second document starts here; a scene is one document: remove the '---'");
+        }
+    }
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+        add(make(ConfigNode::Kind::null, mark), anchor);
+    }
+    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  const std::string& value) override {
+        check_tag(mark, tag);
+        ConfigNode node = make(ConfigNode::Kind::scalar, mark);
+        node.quoted = tag == "!";  // the parser's mark of what is not plain
+        node.scalar = value;
+        add(std::move(node), anchor);
+    }
+    void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+        const auto found = anchors_.find(anchor);
+        if (found == anchors_.end()) fail(mark, "an alias inside what it names; write it out");
+        count(mark, weight(found->second));
+        ConfigNode copy = found->second;
+        add(std::move(copy), YAML::NullAnchor);
+    }
+    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                         YAML::EmitterStyle::value /*style*/) override {
+        open(ConfigNode::Kind::sequence, mark, tag, anchor);
+    }
+    void OnSequenceEnd() override { close(); }
+    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                    YAML::EmitterStyle::value /*style*/) override {
+        open(ConfigNode::Kind::map, mark, tag, anchor);
+    }
+    void OnMapEnd() override { close(); }
+
+  private:
+    struct Open {
+        ConfigNode node;
+        YAML::anchor_t anchor;
+        std::optional<ConfigNode> key;  // map: a key whose value has yet to come
+    };
+
+    ConfigPosition position(const YAML::Mark& mark) const {
+        return {origin_, mark.line + 1, mark.column + 1};
+    }
+    [[noreturn]] void fail(const YAML::Mark& mark, std::string_view what) const {
+        throw InputError(fmt::format("{}: {}", position(mark).text(), what));
+    }
+    void check_tag(const YAML::Mark& mark, const std::string& tag) const {
+        if (tag.empty() || tag == "?" || tag == "!") return;
+        fail(mark,
+             fmt::format("the tag '{}' has no meaning in a scene; remove it", printable(tag)));
+    }
+    void count(const YAML::Mark& mark, std::size_t nodes) {
+        nodes_ += nodes;
+        if (nodes_ <= limits_.nodes) return;
+        fail(mark, fmt::format("more than {} values (aliases count each time); this is no scene",
+                               limits_.nodes));
+    }
+    ConfigNode make(ConfigNode::Kind kind, const YAML::Mark& mark) {
+        count(mark, 1);
+        ConfigNode node;
+        node.kind = kind;
+        node.position = position(mark);
+        return node;
+    }
+    void open(ConfigNode::Kind kind, const YAML::Mark& mark, const std::string& tag,
+              YAML::anchor_t anchor) {
+        check_tag(mark, tag);
+        if (open_.size() >= limits_.depth) {
+            fail(mark, fmt::format("nested more than {} deep; this is no scene", limits_.depth));
+        }
+        open_.push_back({make(kind, mark), anchor, std::nullopt});
+    }
+    void close() {
+        ConfigNode node = std::move(open_.back().node);
+        const YAML::anchor_t anchor = open_.back().anchor;
+        open_.pop_back();
+        add(std::move(node), anchor);
+    }
+    void add(ConfigNode node, YAML::anchor_t anchor) {
+        if (anchor != YAML::NullAnchor) {
+            nodes_ += weight(node);
+            if (nodes_ > limits_.nodes) {
+                throw InputError(
+                    fmt::format("{}: more than {} values (anchors count twice); this "
+                                "is no scene",
+                                node.position.text(), limits_.nodes));
+            }
+            anchors_.insert_or_assign(anchor, node);
+        }
+        if (open_.empty()) {
+            root_ = std::move(node);
+        } else if (open_.back().node.kind == ConfigNode::Kind::sequence) {
+            open_.back().node.items.push_back(std::move(node));
+        } else {
+            add_to_map(open_.back(), std::move(node));
+        }
+    }
+    static void add_to_map(Open& map, ConfigNode node) {
+        if (!map.key) {
+            if (node.kind != ConfigNode::Kind::scalar || node.scalar.empty()) {
+                throw InputError(fmt::format("{}: a key must be a word, found {}; write key: value",
+                                             node.position.text(), node.description()));
+            }
+            map.key = std::move(node);
+            return;
+        }
+        ConfigNode::Entry entry;
+        entry.key = std::move(map.key->scalar);
+        entry.position = std::move(map.key->position);
+        // the parser places an empty value at whatever follows it
+        if (node.kind == ConfigNode::Kind::null) node.position = entry.position;
+        entry.value = std::move(node);
+        map.key.reset();
+        map.node.entries.push_back(std::move(entry));
+    }
+
+    std::shared_ptr<const std::string> origin_;
+    YamlLimits limits_;
+    int documents_ = 0;
+    std::size_t nodes_ = 0;
+    std::vector<Open> open_;
+    std::map<YAML::anchor_t, ConfigNode> anchors_;
+    std::optional<ConfigNode> root_;
+};
+
+/// Throws at the second of two equal keys.
+void check_keys_unique(const ConfigNode& node, const std::string& path) {
+    std::map<std::string_view, int> first_lines;
+    for (const ConfigNode::Entry& entry : node.entries) {
+        const std::string key_path = path + (path.empty() ? "" : ".") + printable(entry.key);
+        const auto [first, is_new] = first_lines.emplace(entry.key, entry.position.line);
+        if (!is_new) {
+            throw InputError(
+                fmt::format("{}: {}: the key is given twice (first in line {}); "
+                            "remove one",
+                            entry.position.text(), key_path, first->second));
+        }
+        check_keys_unique(entry.value, key_path);
+    }
+    for (std::size_t i = 0; i < node.items.size(); ++i) {
+        check_keys_unique(node.items[i], fmt::format("{}[{}]", path, i));
+    }
+}
+
+/// What the parser would need gigabytes or minutes for is turned away before it sees it.
+void check_text(std::string_view text, const std::string& origin, const YamlLimits& limits) {
+    if (text.size() > limits.bytes) {
+        throw InputError(
+            fmt::format("{}: is larger than {} bytes; this is no scene", origin, limits.bytes));
+    }
+    const std::size_t bad = first_non_text(text);
+    if (bad != text.size()) {
+        const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(bad), '\n');
+        throw InputError(
+            fmt::format("{}:{}:1: is not UTF-8 text (byte {}); a scene is a YAML text "
+                        "file saved as UTF-8",
+                        origin, line, bad));
+    }
+    constexpr std::string_view k_indicators = "[]{},:&*!\"'?";
+    const auto indicators = std::count_if(text.begin(), text.end(), [&](char c) {
+        return k_indicators.find(c) != std::string_view::npos;
+    });
+    if (static_cast<std::size_t>(indicators) > limits.indicators) {
+        throw InputError(
+            fmt::format("{}: holds more than {} brackets, commas, colons and quotes; "
+                        "this is no scene",
+                        origin, limits.indicators));
+    }
+}
+
+std::optional<ConfigNode> parse(std::string_view text, const std::string& origin,
+                                const YamlLimits& limits) {
+    check_text(text, origin, limits);
+    TreeBuilder builder(std::make_shared<const std::string>(origin), limits);
+    std::istringstream stream{std::string(text)};
+    try {
+        YAML::Parser parser(stream);
+        while (parser.HandleNextDocument(builder)) {
+        }
+    } catch (const YAML::Exception& error) {
+        throw InputError(fmt::format("{}:{}:{}: {}; mend the YAML here or just above", origin,
+                                     std::max(error.mark.line, 0) + 1,
+                                     std::max(error.mark.column, 0) + 1,
+                                     printable(error.msg, 200)));
+    }
+    std::optional<ConfigNode> root = builder.take_root();
+    if (root) check_keys_unique(*root, "");
+    return root;
+}
+
+void set_positions(ConfigNode& node, const ConfigPosition& position) {
+    node.position = position;
+    for (ConfigNode& item : node.items) set_positions(item, position);
+    for (ConfigNode::Entry& entry : node.entries) {
+        entry.position = position;
+        set_positions(entry.value, position);
+    }
+}
+
+}  // namespace
+
+ConfigNode parse_yaml(std::string_view text, const std::string& origin, const YamlLimits& limits) {
+    std::optional<ConfigNode> root = parse(text, origin, limits);
+    if (!root || root->kind == ConfigNode::Kind::null) {
+        throw InputError(fmt::format("{}:1:1: is empty; a scene starts with 'uwvdb: 1'", origin));
+    }
+    return *std::move(root);
+}
+
+ConfigNode parse_yaml_value(std::string_view text, const std::string& origin) {
+    ConfigNode node = parse(text, origin, YamlLimits{}).value_or(ConfigNode{});
+    set_positions(node, {std::make_shared<const std::string>(origin), 0, 0});
+    return node;
+}
+
+}  // namespace uw
