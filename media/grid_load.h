@@ -1,0 +1,11 @@
+#pragma once
+
+namespace uw {
+
+/// What one unit of a grid's value adds to a constituent of the water.
+struct GridLoad {
+    int constituent = 0;
+    double per_unit = 0;  // in the constituent's unit, e.g. ppm
+};
+
+}  // namespace uw

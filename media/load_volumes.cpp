@@ -1,0 +1,76 @@
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "media/grid_field.h"
+
+namespace uw {
+namespace {
+
+/// Integrals along the world's axes through the middle of `bounds`.
+std::array<double, 3> columns_through_middle(const GridVolume& volume) {
+    std::array<double, 3> columns{};
+    if (volume.bricks().empty()) return columns;
+    for (int axis = 0; axis < 3; ++axis) {
+        Point3 a = volume.bounds().center(), b = a;
+        a[axis] = volume.bounds().min[axis];
+        b[axis] = volume.bounds().max[axis];
+        columns[static_cast<std::size_t>(axis)] = volume.column(a, b);
+    }
+    return columns;
+}
+
+VolumeReport report_on(const VolumeDesc& desc, const LoadedGrid& loaded, const GridVolume& volume,
+                       const Placement& placement) {
+    VolumeReport report;
+    report.file = desc.file;
+    report.grid = loaded.name;
+    report.metres_per_voxel = volume.voxel_size();
+    report.bounds = volume.voxel_bounds();
+    report.placement = placement;
+    report.statistics = loaded.statistics;
+    report.column = columns_through_middle(volume);
+    report.bricks = volume.bricks().size();
+    for (const NanoGrid& brick : volume.bricks()) report.bytes += brick.bytes();
+    for (const GridLoad& load : volume.loads()) {
+        ConstituentReport part;
+        part.constituent = load.constituent;
+        part.min = load.per_unit * loaded.statistics.min;
+        part.mean = load.per_unit * loaded.statistics.mean;
+        part.max = load.per_unit * loaded.statistics.max;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            part.column[axis] = load.per_unit * report.column[axis];
+        report.constituents.push_back(part);
+    }
+    return report;
+}
+
+}  // namespace
+
+std::unique_ptr<ConcentrationField> load_volumes(
+    const std::vector<VolumeDesc>& volumes,
+    const std::vector<std::vector<std::vector<GridLoad>>>& loads, int constituent_count,
+    std::vector<VolumeReport>& reports, std::vector<std::string>& warnings,
+    std::size_t slab_bytes) {
+    std::vector<GridVolume> placed;
+    for (std::size_t v = 0; v < volumes.size(); ++v) {
+        const VolumeDesc& desc = volumes[v];
+        const VdbHeader header = read_vdb_header(desc.file, desc.where);
+        const Placement placement = decide_placement(header, desc);
+        for (std::size_t g = 0; g < desc.grids.size(); ++g) {
+            const GridMappingDesc& mapping = desc.grids[g];
+            LoadedGrid loaded = load_grid(header, mapping.grid, mapping.where, slab_bytes);
+            warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
+            const Affine place = world_from_index(loaded, placement, desc.world_from_upright);
+            const double determinant = place.determinant();
+            if (!std::isfinite(determinant) || determinant == 0)
+                throw InputError(desc.where + ": its transform leaves the volume no extent");
+            placed.emplace_back(std::move(loaded.bricks), place, placement.centering,
+                                loads.at(v).at(g));
+            reports.push_back(report_on(desc, loaded, placed.back(), placement));
+        }
+    }
+    return std::make_unique<GridField>(std::move(placed), constituent_count);
+}
+
+}  // namespace uw

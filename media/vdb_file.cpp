@@ -1,0 +1,307 @@
+#include "media/vdb_file.h"
+
+#include <fmt/format.h>
+
+#define NANOVDB_USE_TBB
+#include <nanovdb/util/OpenToNanoVDB.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tree/LeafManager.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+
+#include "core/error.h"
+
+namespace uw {
+namespace {
+
+constexpr int k_largest_index = 1 << 30;
+
+void initialize_once() {
+    static const bool done = (openvdb::initialize(), true);
+    static_cast<void>(done);
+}
+
+/// One grid's part of the file, as a stream set up the way openvdb::io::File does it. File itself
+/// would refuse the whole file for one grid of a type it does not know, and clips in world space.
+class GridStream {
+  public:
+    GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels)
+        : grid_(grid), voxels_(voxels), stream_(header.file, std::ios::binary) {
+        stream_.exceptions(std::ios::failbit | std::ios::badbit);
+        openvdb::io::StreamMetadata::Ptr metadata(new openvdb::io::StreamMetadata);
+        metadata->setFileVersion(header.version);
+        metadata->setLibraryVersion({header.library_major, header.library_minor});
+        metadata->setCompression(voxels.compression);
+        metadata->setHalfFloat(voxels.half);
+        metadata->setSeekable(true);
+        openvdb::io::setStreamMetadataPtr(stream_, metadata, /*transfer=*/false);
+    }
+
+    /// A grid with its transform and tree, but no voxel values yet.
+    template <class GridT>
+    typename GridT::Ptr read_topology() {
+        auto grid = GridT::create();
+        grid->setSaveFloatAsHalf(voxels_.half);
+        stream_.seekg(voxels_.transform_offset);
+        grid->readTransform(stream_);
+        grid->readTopology(stream_);
+        const auto blocks = stream_.tellg();
+        if (&grid_ != &voxels_) {
+            stream_.seekg(grid_.transform_offset);
+            grid->readTransform(stream_);
+            stream_.seekg(blocks);
+        }
+        return grid;
+    }
+    template <class GridT>
+    void read_values(GridT& grid) {
+        grid.readBuffers(stream_);
+    }
+    /// Only the voxels within `box`; the others become inactive.
+    template <class GridT>
+    void read_values(GridT& grid, const openvdb::CoordBBox& box) {
+        grid.readBuffers(stream_, box);
+    }
+
+  private:
+    const GridSummary& grid_;
+    const GridSummary& voxels_;
+    std::ifstream stream_;
+};
+
+Affine to_affine(const openvdb::math::Transform& transform) {
+    const auto column = [&](int axis) {
+        openvdb::Vec3d unit(0, 0, 0);
+        unit[axis] = 1;
+        const openvdb::Vec3d v =
+            transform.indexToWorld(unit) - transform.indexToWorld(openvdb::Vec3d(0, 0, 0));
+        return Vector3(v.x(), v.y(), v.z());
+    };
+    const openvdb::Vec3d origin = transform.indexToWorld(openvdb::Vec3d(0, 0, 0));
+    return {Matrix3(column(0), column(1), column(2)), {origin.x(), origin.y(), origin.z()}};
+}
+
+/// Cuts a tree (topology only) across its longest axis at block boundaries, so that no slab holds
+/// more than `slab_bytes` of leaf values, or an eighth of all.
+template <class TreeT>
+std::vector<openvdb::CoordBBox> cut_into_slabs(const TreeT& tree, std::size_t slab_bytes) {
+    openvdb::CoordBBox box;
+    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) box.expand(leaf->origin());
+    const std::size_t leaf_bytes = sizeof(float) * TreeT::LeafNodeType::SIZE;
+    const std::size_t total = tree.leafCount() * leaf_bytes;
+    if (total <= slab_bytes) return {};
+    slab_bytes = std::max(slab_bytes, total / 8);
+
+    const auto axis = static_cast<int>(box.maxExtent());
+    std::map<int, std::size_t> leaves_at;
+    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) ++leaves_at[leaf->origin()[axis]];
+    std::vector<openvdb::CoordBBox> slabs{openvdb::CoordBBox::inf()};
+    std::size_t bytes = 0;
+    for (const auto& [origin, leaves] : leaves_at) {
+        if (bytes > 0 && bytes + leaves * leaf_bytes > slab_bytes) {
+            slabs.back().max()[axis] = origin - 1;
+            slabs.push_back(openvdb::CoordBBox::inf());
+            slabs.back().min()[axis] = origin;
+            bytes = 0;
+        }
+        bytes += leaves * leaf_bytes;
+    }
+    return slabs;
+}
+
+/// Sums and counts of active values; also makes each value fit for use.
+struct Intake {
+    std::int64_t active = 0, nan = 0, infinite = 0, negative = 0;
+    double sum = 0;
+    float min = std::numeric_limits<float>::infinity(), max = -min;
+
+    /// `value` as it is used, counted for `voxels` voxels.
+    float take(float value, std::int64_t voxels) {
+        active += voxels;
+        if (!std::isfinite(value)) {
+            (std::isnan(value) ? nan : infinite) += voxels;
+            value = 0;
+        } else if (value < 0) {
+            negative += voxels;
+            value = 0;
+        }
+        sum += static_cast<double>(value) * static_cast<double>(voxels);
+        min = std::min(min, value);
+        max = std::max(max, value);
+        return value;
+    }
+    void add(const Intake& other) {
+        active += other.active;
+        nan += other.nan;
+        infinite += other.infinite;
+        negative += other.negative;
+        sum += other.sum;
+        min = std::min(min, other.min);
+        max = std::max(max, other.max);
+    }
+};
+
+/// Makes every value finite and >= 0, zero voxels inactive, inactive ones zero, and prunes.
+Intake sanitize(openvdb::FloatTree& tree) {
+    using Tree = openvdb::FloatTree;
+    tree.root().setBackground(0.0F, /*updateChildNodes=*/false);
+    Intake total;
+    auto tiles = tree.beginValueAll();
+    tiles.setMaxDepth(Tree::ValueAllIter::LEAF_DEPTH - 1);
+    for (; tiles; ++tiles) {
+        const auto voxels = static_cast<std::int64_t>(tiles.getVoxelCount());
+        const float value = tiles.isValueOn() ? total.take(*tiles, voxels) : 0.0F;
+        tiles.setValue(value);
+        tiles.setActiveState(value > 0);
+    }
+    openvdb::tree::LeafManager<Tree> leaves(tree);
+    std::vector<Intake> parts(leaves.leafCount());  // summed in order: the same for any threads
+    leaves.foreach ([&parts](Tree::LeafNodeType& leaf, std::size_t index) {
+        float* values = leaf.buffer().data();
+        for (openvdb::Index n = 0; n < Tree::LeafNodeType::SIZE; ++n) {
+            values[n] = leaf.isValueOn(n) ? parts[index].take(values[n], 1) : 0.0F;
+            leaf.setActiveState(n, values[n] > 0);
+        }
+    });
+    for (const Intake& part : parts) total.add(part);
+    openvdb::tools::prune(tree);  // blocks of one value become tiles, which cost nothing
+    return total;
+}
+
+void append_brick(const openvdb::FloatGrid& grid, std::vector<NanoGrid>& bricks) {
+    openvdb::CoordBBox box;
+    if (!grid.tree().evalActiveVoxelBoundingBox(box)) return;
+    for (int axis = 0; axis < 3; ++axis)
+        if (box.min()[axis] <= -k_largest_index || box.max()[axis] >= k_largest_index)
+            throw std::range_error("it has voxels further than 2^30 from its origin");
+    nanovdb::OpenToNanoVDB<float, nanovdb::Fp16> converter;
+    converter.setStats(nanovdb::StatsMode::Disable);
+    converter.setChecksum(nanovdb::ChecksumMode::Disable);
+    auto handle = std::make_shared<nanovdb::GridHandle<nanovdb::HostBuffer>>(converter(grid));
+    const void* data = handle->data();
+    const std::size_t bytes = handle->size();
+    bricks.emplace_back(std::move(handle), data, bytes,
+                        std::array{box.min().x(), box.min().y(), box.min().z()},
+                        std::array{box.max().x(), box.max().y(), box.max().z()});
+}
+
+/// The slab's values as a float grid without transform (bricks work in index space).
+Intake take_slab(openvdb::FloatGrid::Ptr grid, std::vector<NanoGrid>& bricks) {
+    const Intake intake = sanitize(grid->tree());
+    grid->setTransform(openvdb::math::Transform::createLinearTransform());
+    append_brick(*grid, bricks);
+    return intake;
+}
+
+Intake take_slab(openvdb::DoubleGrid::Ptr grid, std::vector<NanoGrid>& bricks) {
+    auto tree = std::make_shared<openvdb::FloatTree>(grid->tree());
+    grid.reset();
+    return take_slab(openvdb::FloatGrid::create(tree), bricks);
+}
+
+template <class GridT>
+Intake read_grid(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
+                 std::size_t slab_bytes, LoadedGrid& loaded) {
+    GridStream stream(header, grid, voxels);
+    typename GridT::Ptr first = stream.template read_topology<GridT>();
+    loaded.file_from_index = to_affine(first->transform());
+    loaded.statistics.background = static_cast<double>(first->background());
+    const std::vector<openvdb::CoordBBox> slabs = cut_into_slabs(first->tree(), slab_bytes);
+    if (slabs.empty()) {
+        stream.read_values(*first);
+        return take_slab(std::move(first), loaded.bricks);
+    }
+    first.reset();
+    Intake total;
+    for (const openvdb::CoordBBox& slab : slabs) {
+        typename GridT::Ptr part = stream.template read_topology<GridT>();
+        stream.read_values(*part, slab);
+        total.add(take_slab(std::move(part), loaded.bricks));
+    }
+    return total;
+}
+
+const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& grid) {
+    if (grid.instance_of.empty()) return grid;
+    for (const GridSummary& other : header.grids)
+        if (other.unique_name == grid.instance_of && other.instance_of.empty() &&
+            other.tree_type == grid.tree_type)
+            return other;
+    throw std::runtime_error("the grid it shares its voxels with is missing");
+}
+
+void set_statistics(const Intake& intake, GridStatistics& statistics) {
+    statistics.active_voxels = intake.active;
+    statistics.nan_voxels = intake.nan;
+    statistics.infinite_voxels = intake.infinite;
+    statistics.negative_voxels = intake.negative;
+    if (intake.active == 0) return;
+    statistics.min = static_cast<double>(intake.min);
+    statistics.max = static_cast<double>(intake.max);
+    statistics.mean = intake.sum / static_cast<double>(intake.active);
+}
+
+void add_warnings(const std::string& prefix, LoadedGrid& loaded) {
+    const GridStatistics& s = loaded.statistics;
+    const auto warn = [&](const std::string& what) { loaded.warnings.push_back(prefix + what); };
+    const auto count = [&](std::int64_t voxels, const char* what) {
+        if (voxels > 0)
+            warn(fmt::format("{} of {} active voxels are {}: treated as 0", voxels, s.active_voxels,
+                             what));
+    };
+    count(s.nan_voxels, "NaN");
+    count(s.infinite_voxels, "infinite");
+    count(s.negative_voxels, "negative");
+    if (s.background != 0)
+        warn(fmt::format("its background is {:g}: treated as 0 outside the active voxels",
+                         s.background));
+    if (s.active_voxels == 0)
+        warn("it has no active voxels and contributes nothing");
+    else if (loaded.bricks.empty())
+        warn("all its active voxels are 0 and it contributes nothing");
+}
+
+}  // namespace
+
+LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,
+                     std::size_t slab_bytes) {
+    initialize_once();
+    const GridSummary& grid = select_grid(header, name, where);
+    const std::string prefix =
+        fmt::format("{}: grid '{}' of '{}': ", where, grid.name, header.file.string());
+    LoadedGrid loaded;
+    loaded.name = grid.name;
+    Intake intake;
+    try {
+        const GridSummary& voxels = holder_of_voxels(header, grid);
+        intake = grid.value_type == "double"
+                     ? read_grid<openvdb::DoubleGrid>(header, grid, voxels, slab_bytes, loaded)
+                     : read_grid<openvdb::FloatGrid>(header, grid, voxels, slab_bytes, loaded);
+    } catch (const std::ios_base::failure&) {
+        throw InputError(prefix + "the file is cut short or damaged; copy or export it again");
+    } catch (const std::bad_alloc&) {
+        throw InputError(prefix + "it needs more memory than there is");
+    } catch (const std::exception& error) {
+        throw InputError(prefix + "cannot be read: " + error.what());
+    }
+    set_statistics(intake, loaded.statistics);
+    const bool classless = grid.grid_class != "fog volume";
+    if (classless && loaded.statistics.background > 0 && intake.negative > 0)
+        throw InputError(fmt::format(
+            "{}is a level set, though its class is '{}' (background {:g}, {} negative voxels), not "
+            "a concentration; export a fog volume; the file has {}",
+            prefix, grid.grid_class, loaded.statistics.background, intake.negative,
+            header.describe_grids()));
+    const double determinant = loaded.file_from_index.determinant();
+    if (!std::isfinite(determinant) || determinant == 0)
+        throw InputError(prefix + "its transform is singular (voxels without volume)");
+    add_warnings(prefix, loaded);
+    return loaded;
+}
+
+}  // namespace uw

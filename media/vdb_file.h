@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/affine.h"
+#include "media/nano_grid.h"
+#include "media/vdb_header.h"
+
+namespace uw {
+
+/// What was found in a grid's active voxels (tiles count with all their voxels). Inactive voxels
+/// are no data by OpenVDB's convention, whatever value a writer left in them.
+struct GridStatistics {
+    std::int64_t active_voxels = 0;
+    std::int64_t nan_voxels = 0, infinite_voxels = 0, negative_voxels = 0;  // treated as 0
+    double background = 0;                                                  // treated as 0
+    double min = 0, mean = 0, max = 0;  // over active voxels, after the bad ones became 0
+};
+
+/// A grid ready to be sampled. Large grids come in several bricks whose values add: each holds a
+/// slab of whole 8^3 blocks, and interpolation with zeros outside is linear.
+struct LoadedGrid {
+    std::string name;
+    Affine file_from_index;  // the file's transform: metres, index (i, j, k) where OpenVDB puts it
+    std::vector<NanoGrid> bricks;  // none if every value is zero
+    GridStatistics statistics;
+    std::vector<std::string> warnings;  // one line each, starting with `where`
+};
+
+inline constexpr std::size_t k_default_slab_bytes = std::size_t{256} << 20;
+
+/// Reads one grid of `header.file`. Voxels pass through memory in slabs of at most about
+/// `slab_bytes` of 32-bit values (but no fewer than an eighth of the grid); what stays is 16-bit.
+/// Throws InputError starting with `where` if it cannot be used (see select_grid), is a level set
+/// in disguise, or cannot be decoded.
+LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,
+                     std::size_t slab_bytes = k_default_slab_bytes);
+
+}  // namespace uw

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scene_desc.h"
+
+namespace uw {
+
+/// What a VDB file says about one of its grids, read without its voxels. Names are made printable.
+struct GridSummary {
+    std::string name;        // as scenes address it: "density", or "density[1]" among namesakes
+    std::string base_name;   // "density" in both cases
+    std::string value_type;  // "float", "double", "vec3s", "ptdataidx32", ...
+    bool half = false;       // saved with 16 bits per number
+    std::string grid_class = "unknown";         // "fog volume", "level set", "staggered", "unknown"
+    std::optional<std::int64_t> active_voxels;  // if the file says so
+    std::string map_type;                       // e.g. "UniformScaleMap", "NonlinearFrustumMap"
+    bool has_base_resolution = false;           // Blender's fluid solver notes it with each grid
+
+    // For the reader: where in the file things are.
+    std::string tree_type;    // "Tree_float_5_4_3"
+    std::string unique_name;  // raw
+    std::string instance_of;  // raw unique name of the grid whose voxels this one shares, or ""
+    std::uint32_t compression = 0;
+    std::int64_t transform_offset = 0;
+    std::int64_t blocks_offset = 0;
+};
+
+/// What a VDB file says about itself.
+struct VdbHeader {
+    std::filesystem::path file;
+    std::uint32_t version = 0;  // of the format: 224 for OpenVDB 4 to 12
+    std::uint32_t library_major = 0, library_minor = 0;
+    std::string creator;  // file metadata "creator"; "" if there is none
+    std::vector<GridSummary> grids;
+
+    /// True for a cache of Blender's fluid solver (Mantaflow): no creator, and either the solver's
+    /// own metadata or nothing but the names it uses.
+    bool from_blender_fluid() const;
+    /// One line that lists the grids with type and class, for messages.
+    std::string describe_grids() const;
+};
+
+inline constexpr std::uint32_t k_oldest_vdb_version = 220;
+inline constexpr std::uint32_t k_newest_vdb_version = 224;
+
+/// Reads the header and the metadata of all grids; sizes the file claims are checked against its
+/// length first. Throws IoError if the file cannot be opened; InputError, starting with `where`,
+/// if it is not a VDB file, is cut short, or has a version other than 220 to 224.
+VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocation& where);
+
+/// The summaries alone.
+std::vector<GridSummary> list_grids(const std::filesystem::path& file, const SourceLocation& where);
+
+/// The grid a scene calls `name`, if its concentrations can be used. Throws InputError, starting
+/// with `where`, for a name that is missing or shared by several grids, and for level sets, points,
+/// vectors, other types, and transforms that are not affine; the message lists what the file has.
+const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
+                               const SourceLocation& where);
+
+}  // namespace uw

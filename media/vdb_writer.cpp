@@ -1,0 +1,95 @@
+#include "media/vdb_writer.h"
+
+#include <fmt/format.h>
+#include <openvdb/openvdb.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <memory>
+#include <system_error>
+
+#include "core/error.h"
+#include "media/vdb_header.h"
+
+namespace uw {
+namespace {
+
+constexpr int k_block = 8;
+
+/// One block of 8^3 values, or nothing if all are 0 or outside the grid.
+std::unique_ptr<openvdb::FloatTree::LeafNodeType> make_block(const VdbOutputGrid& grid,
+                                                             const openvdb::Coord& origin) {
+    auto leaf = std::make_unique<openvdb::FloatTree::LeafNodeType>(origin, 0.0F);
+    const auto end = [&](int axis) {
+        return std::min(origin[axis] + k_block, grid.size[static_cast<std::size_t>(axis)]);
+    };
+    for (int i = origin[0]; i < end(0); ++i)
+        for (int j = origin[1]; j < end(1); ++j)
+            for (int k = origin[2]; k < end(2); ++k) {
+                const float value = grid.value(i, j, k);
+                if (value != 0) leaf->setValueOn(openvdb::Coord(i, j, k), value);
+            }
+    if (leaf->isEmpty()) leaf.reset();
+    return leaf;
+}
+
+openvdb::FloatGrid::Ptr make_grid(const VdbOutputGrid& source) {
+    auto grid = openvdb::FloatGrid::create(0.0F);
+    grid->setName(source.name);
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    const auto transform = openvdb::math::Transform::createLinearTransform(source.voxel_size);
+    transform->postTranslate(openvdb::Vec3d(source.origin.x, source.origin.y, source.origin.z));
+    grid->setTransform(transform);
+    for (const auto& [key, value] : source.metadata)
+        grid->insertMeta(key, openvdb::StringMetadata(value));
+    for (int i = 0; i < source.size[0]; i += k_block)
+        for (int j = 0; j < source.size[1]; j += k_block)
+            for (int k = 0; k < source.size[2]; k += k_block)
+                if (auto leaf = make_block(source, {i, j, k}))
+                    grid->tree().addLeaf(leaf.release());  // the tree owns it
+    return grid;
+}
+
+/// Removes the unfinished file if writing it fails.
+class TemporaryFile {
+  public:
+    explicit TemporaryFile(const std::filesystem::path& target)
+        : path_(fmt::format("{}.{}.tmp", target.string(), getpid())) {}
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+    TemporaryFile(TemporaryFile&&) = delete;
+    TemporaryFile& operator=(TemporaryFile&&) = delete;
+    ~TemporaryFile() {
+        std::error_code ignored;
+        std::filesystem::remove(path_, ignored);
+    }
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+}  // namespace
+
+void write_vdb(const std::filesystem::path& file, const std::vector<VdbOutputGrid>& grids,
+               const std::vector<std::pair<std::string, std::string>>& metadata) {
+    openvdb::initialize();
+    const TemporaryFile temporary(file);
+    try {
+        openvdb::GridPtrVec output;
+        for (const VdbOutputGrid& grid : grids) output.push_back(make_grid(grid));
+        openvdb::MetaMap map;
+        for (const auto& [key, value] : metadata)
+            map.insertMeta(key, openvdb::StringMetadata(value));
+        openvdb::io::File(temporary.path().string()).write(output, map);
+        // OpenVDB does not notice a full disk; reading the header back does.
+        read_vdb_header(temporary.path(), "written file");
+        std::filesystem::rename(temporary.path(), file);
+    } catch (const std::bad_alloc&) {
+        throw IoError(fmt::format("cannot write '{}': not enough memory", file.string()));
+    } catch (const std::exception& error) {
+        throw IoError(fmt::format("cannot write '{}': {}", file.string(), error.what()));
+    }
+}
+
+}  // namespace uw
