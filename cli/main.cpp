@@ -1,0 +1,45 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "cli/arguments.h"
+#include "cli/exit_code.h"
+#include "cli/render_command.h"
+#include "cli/stop_signal.h"
+#include "core/error.h"
+
+namespace {
+
+int fail(uw::ExitCode code, const char* what) {
+    fmt::print(stderr, "uwvdb: {}\n", what);
+    return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const uw::Arguments arguments = uw::parse_arguments(argc, argv);
+        if (!arguments.message.empty()) {
+            fmt::print("{}", arguments.message);
+            return uw::k_exit_done;
+        }
+        uw::install_stop_signal();
+        uw::run_render(arguments.render);
+        return uw::k_exit_done;
+    } catch (const uw::UsageError& error) {
+        return fail(uw::k_exit_usage, error.what());
+    } catch (const uw::InputError& error) {
+        return fail(uw::k_exit_input, error.what());
+    } catch (const uw::IoError& error) {
+        return fail(uw::k_exit_io, error.what());
+    } catch (const uw::Interrupted&) {
+        return fail(uw::k_exit_interrupted, "interrupted; nothing was written");
+    } catch (const std::bad_alloc&) {
+        return fail(uw::k_exit_internal, "out of memory; try --crop, fewer --layers or a smaller --size");
+    } catch (const std::exception& error) {
+        return fail(uw::k_exit_internal, error.what());
+    }
+}
