@@ -1,0 +1,17 @@
+#pragma once
+
+namespace uw {
+
+/// CIE 1931 tristimulus values, or the colour matching functions' values.
+struct Xyz {
+    double x = 0;
+    double y = 0;
+    double z = 0;
+};
+
+/// The colour matching functions of the CIE 1931 2 degree standard observer, dimensionless, linear
+/// between the tabulated 5 nm; zero outside 360..830 nm.
+/// Source: CIE 015 tables as in colour-science/colour, colour/colorimetry/datasets/cmfs.py (BSD-3).
+Xyz cie1931_matching_functions(double wavelength_nm);
+
+}  // namespace uw

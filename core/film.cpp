@@ -1,0 +1,40 @@
+#include "core/film.h"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "core/error.h"
+
+namespace uw {
+
+Film::Film(int width, int height, const PixelWindow& window, std::vector<std::string> channel_names)
+    : width_(width), height_(height), window_(window), channel_names_(std::move(channel_names)) {
+    if (window.x0 < 0 || window.y0 < 0 || window.x0 >= window.x1 || window.y0 >= window.y1 ||
+        window.x1 > width || window.y1 > height) {
+        throw UsageError(fmt::format(
+            "--crop {},{},{},{}: not a part of the image; columns run from 0 to {}, rows from 0 "
+            "to {}, and x0 < x1, y0 < y1",
+            window.x0, window.y0, window.x1, window.y1, width, height));
+    }
+    const double bytes =
+        4.0 * window.width() * window.height() * static_cast<double>(channel_names_.size());
+    const auto no_memory = [&] {
+        return InputError(fmt::format(
+            "camera.resolution: {} x {} pixels of {} channels need {:.3g} GB, more than there is; "
+            "ask for fewer --layers, a --crop or a smaller --size",
+            window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9));
+    };
+    try {
+        values_.resize(static_cast<std::size_t>(window.width()) *
+                       static_cast<std::size_t>(window.height()) * channel_names_.size());
+    } catch (const std::bad_alloc&) {
+        throw no_memory();
+    } catch (const std::length_error&) {
+        throw no_memory();
+    }
+}
+
+}  // namespace uw

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace uw {
+
+/// A rectangle of pixels, columns x0 to x1 - 1 and rows y0 to y1 - 1, in the full image.
+struct PixelWindow {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+    int width() const { return x1 - x0; }
+    int height() const { return y1 - y0; }
+    friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
+};
+
+/// Where every film holds the colour and coverage that previews show.
+enum FilmChannel : std::size_t { k_red = 0, k_green = 1, k_blue = 2, k_alpha = 3 };
+
+/// An image of any number of 32-bit float channels, of which only a window is stored. All values
+/// start at 0. One allocation of 4 bytes * channels * pixels of the window, pixel by pixel.
+/// Different pixels may be written from different threads.
+class Film {
+  public:
+    /// `channel_names` begins with R, G, B, A. Throws UsageError if the window is empty or leaves
+    /// the image, InputError if there is not enough memory.
+    Film(int width, int height, const PixelWindow& window, std::vector<std::string> channel_names);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    const PixelWindow& window() const { return window_; }
+    const std::vector<std::string>& channel_names() const { return channel_names_; }
+
+    /// The channels of one pixel. x, y count in the full image and lie within the window.
+    std::span<float> pixel(int x, int y) {
+        return std::span(values_).subspan(offset(x, y), channel_names_.size());
+    }
+    std::span<const float> pixel(int x, int y) const {
+        return std::span(values_).subspan(offset(x, y), channel_names_.size());
+    }
+    /// All values of the window: row by row, pixel by pixel, channel by channel.
+    std::span<const float> values() const { return values_; }
+
+  private:
+    std::size_t offset(int x, int y) const {
+        const auto row = static_cast<std::size_t>(y - window_.y0);
+        const auto column = static_cast<std::size_t>(x - window_.x0);
+        return (row * static_cast<std::size_t>(window_.width()) + column) * channel_names_.size();
+    }
+
+    int width_;
+    int height_;
+    PixelWindow window_;
+    std::vector<std::string> channel_names_;
+    std::vector<float> values_;
+};
+
+}  // namespace uw
