@@ -23,9 +23,10 @@ std::string describe_depth(const VolumeReport& report, const Medium& medium, std
         const auto b = static_cast<std::size_t>(band);
         double tau = 0;
         for (const ConstituentReport& c : report.constituents)
-            tau += c.column[axis] * attenuation.constituents[static_cast<std::size_t>(c.constituent)][b];
-        text += fmt::format("{}{:.3g} ({:g} nm)", band == 0 ? "" : ", ", tau,
-                            medium.wavelengths_nm[b]);
+            tau += c.column[axis] *
+                   attenuation.constituents[static_cast<std::size_t>(c.constituent)][b];
+        text +=
+            fmt::format("{}{:.3g} ({:g} nm)", band == 0 ? "" : ", ", tau, medium.wavelengths_nm[b]);
     }
     return text;
 }
@@ -39,17 +40,18 @@ std::string describe_grid(const VolumeReport& report, const Medium& medium) {
         "{}: grid '{}': {:.4g} x {:.4g} x {:.4g} m per voxel, {} active voxels, {:.1f} MB\n",
         report.file.filename().string(), report.grid, h.x, h.y, h.z,
         report.statistics.active_voxels, static_cast<double>(report.bytes) / 1e6);
-    text += fmt::format("  centering {}{}, up {}{}\n",
-                        p.centering == Centering::cell ? "cell" : "node",
-                        p.automatic_centering ? " (from the file)" : "",
-                        p.up == UpAxis::z ? "z" : "y", p.automatic_up ? " (from the file)" : "");
+    text +=
+        fmt::format("  centering {}{}, up {}{}\n", p.centering == Centering::cell ? "cell" : "node",
+                    p.automatic_centering ? " (from the file)" : "", p.up == UpAxis::z ? "z" : "y",
+                    p.automatic_up ? " (from the file)" : "");
     if (report.bounds.empty()) return text + "  no values above 0\n";
     text += "  bounds " + describe_bounds(report.bounds) + "\n";
     for (const ConstituentReport& c : report.constituents) {
         const Constituent& constituent =
             medium.constituents[static_cast<std::size_t>(c.constituent)];
-        text += fmt::format("  {}: min {:.4g}, mean {:.4g}, max {:.4g}{}\n", constituent.name, c.min,
-                            c.mean, c.max, constituent.unit == "1" ? "" : " " + constituent.unit);
+        text +=
+            fmt::format("  {}: min {:.4g}, mean {:.4g}, max {:.4g}{}\n", constituent.name, c.min,
+                        c.mean, c.max, constituent.unit == "1" ? "" : " " + constituent.unit);
     }
     const char* const axes = "xyz";
     for (std::size_t axis = 0; axis < 3; ++axis)

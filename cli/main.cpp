@@ -38,7 +38,8 @@ int main(int argc, char** argv) {
     } catch (const uw::Interrupted&) {
         return fail(uw::k_exit_interrupted, "interrupted; nothing was written");
     } catch (const std::bad_alloc&) {
-        return fail(uw::k_exit_internal, "out of memory; try --crop, fewer --layers or a smaller --size");
+        return fail(uw::k_exit_internal,
+                    "out of memory; try --crop, fewer --layers or a smaller --size");
     } catch (const std::exception& error) {
         return fail(uw::k_exit_internal, error.what());
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "core/integrator.h"
 #include "core/lit_scene.h"
 #include "core/scene_desc.h"
 #include "media/grid_field.h"

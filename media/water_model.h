@@ -5,14 +5,9 @@
 
 #include "core/medium.h"
 #include "core/scene_desc.h"
+#include "media/grid_load.h"
 
 namespace uw {
-
-/// How one unit of a grid's value adds to a constituent.
-struct GridLoad {
-    int constituent;  // index into Medium::constituents
-    double per_unit;  // constituent's unit per unit of grid value
-};
 
 /// The water of a scene, ready to render, and what its grids add to it.
 struct WaterModel {

@@ -1,0 +1,102 @@
+#include "core/render_film.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "core/error.h"
+#include "core/parallel.h"
+
+namespace uw {
+
+namespace {
+
+constexpr int k_tile = 16;  // pixels along an edge
+
+/// Writes values one after another from a layer's first channel on, if the layer is wanted.
+class LayerWriter {
+  public:
+    LayerWriter(const LayerPlan& plan, int band_count, std::span<float> channels)
+        : plan_(plan), bands_(static_cast<std::size_t>(band_count)), channels_(channels) {}
+
+    void bands(int first_channel, const Spectrum& values) {
+        if (first_channel < 0) return;
+        for (std::size_t b = 0; b < bands_; ++b)
+            channels_[static_cast<std::size_t>(first_channel) + b] = static_cast<float>(values[b]);
+    }
+    void bands(Layer layer, const Spectrum& values) { bands(plan_.first_channel(layer), values); }
+    void scalar(Layer layer, double value) {
+        if (plan_.has(layer))
+            channels_[static_cast<std::size_t>(plan_.first_channel(layer))] =
+                static_cast<float>(value);
+    }
+    void vector(Layer layer, double x, double y, double z) {
+        if (!plan_.has(layer)) return;
+        const auto first = static_cast<std::size_t>(plan_.first_channel(layer));
+        channels_[first] = static_cast<float>(x);
+        channels_[first + 1] = static_cast<float>(y);
+        channels_[first + 2] = static_cast<float>(z);
+    }
+
+  private:
+    const LayerPlan& plan_;
+    std::size_t bands_;
+    std::span<float> channels_;
+};
+
+}  // namespace
+
+void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandColour& colour,
+                 int band_count, std::span<float> channels) {
+    // Components are rounded to float before they are added: their sum is the total to the bit.
+    Spectrum total{};
+    for (std::size_t b = 0; b < static_cast<std::size_t>(band_count); ++b)
+        total[b] = static_cast<double>(static_cast<float>(result.direct[b]) +
+                                       static_cast<float>(result.backscatter[b]));
+    const LinearRgb rgb = colour(total);
+    for (std::size_t i = 0; i < 3; ++i) channels[i] = static_cast<float>(rgb[i]);
+    channels[k_alpha] = static_cast<float>(result.alpha);
+
+    LayerWriter out(plan, band_count, channels);
+    out.bands(Layer::total, total);
+    out.bands(Layer::direct, result.direct);
+    out.bands(Layer::backscatter, result.backscatter);
+    out.bands(Layer::irradiance, result.irradiance);
+    out.scalar(Layer::lit, result.lit);
+    out.bands(Layer::clean, result.clean);
+    out.bands(Layer::transmittance, result.transmittance);
+    for (std::size_t j = 0; j < result.lamps.size(); ++j)
+        out.bands(plan.first_channel_of_lamp(j), result.lamps[j]);
+    if (!result.has_hit) return;
+    out.bands(Layer::albedo, result.hit.reflectance);
+    out.scalar(Layer::depth, result.depth_z);
+    out.scalar(Layer::range, result.range);
+    out.scalar(Layer::path, result.path);
+    out.vector(Layer::normal, result.hit.normal.x, result.hit.normal.y, result.hit.normal.z);
+    out.vector(Layer::position, result.hit.position.x, result.hit.position.y,
+               result.hit.position.z);
+    out.scalar(Layer::id, result.hit.object_id);
+}
+
+void render_film(const PixelRenderer& renderer, const LayerPlan& plan, const BandColour& colour,
+                 Film& film, const ProgressCallback& progress) {
+    const PixelWindow& window = film.window();
+    const int columns = (window.width() + k_tile - 1) / k_tile;
+    const int rows = (window.height() + k_tile - 1) / k_tile;
+    const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    std::atomic<std::size_t> done = 0;
+    parallel_for(tiles, [&](std::size_t tile) {
+        const int x0 = window.x0 + static_cast<int>(tile) % columns * k_tile;
+        const int y0 = window.y0 + static_cast<int>(tile) / columns * k_tile;
+        PixelResult result;
+        for (int y = y0; y < std::min(y0 + k_tile, window.y1); ++y) {
+            for (int x = x0; x < std::min(x0 + k_tile, window.x1); ++x) {
+                renderer.render(x, y, result);
+                store_pixel(result, plan, colour, renderer.band_count(), film.pixel(x, y));
+            }
+        }
+        if (!progress(static_cast<double>(++done) / static_cast<double>(tiles)))
+            throw Interrupted();
+    });
+}
+
+}  // namespace uw

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+
+#include "core/colour.h"
+#include "core/film.h"
+#include "core/layers.h"
+#include "core/pixel_renderer.h"
+
+namespace uw {
+
+/// Writes one pixel's result into the channels of `plan`. `film` was made with the plan's channels.
+void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandColour& colour,
+                 int band_count, std::span<float> channels);
+
+/// Told the share of the pixels that are done, from any thread; returns false to stop.
+using ProgressCallback = std::function<bool(double fraction)>;
+
+/// Renders every pixel of the film's window on all threads allowed. The result does not depend on
+/// their number. Throws Interrupted if `progress` returned false.
+void render_film(const PixelRenderer& renderer, const LayerPlan& plan, const BandColour& colour,
+                 Film& film, const ProgressCallback& progress);
+
+}  // namespace uw
