@@ -62,7 +62,7 @@ class TabulatedPhase : public PhaseFunction {
 TabulatedPhase read_phase_table(std::string_view text, const std::string& name);
 
 /// Petzold's average particle phase function (Mobley, Gentili and Stavn 1993, table 2), continued
-/// below 0.1 degrees as psi^-1.346. Its table integrates to 1.002; here it is 1.
+/// below 0.1 degrees as psi^-1.346. Joined log-log its table integrates to 0.9926; here it is 1.
 class PetzoldAverage final : public TabulatedPhase {
   public:
     PetzoldAverage();
