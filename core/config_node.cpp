@@ -105,9 +105,9 @@ std::string ConfigNode::description() const {
 }
 
 NumberText parse_number(std::string_view text, double& value) {
-    if (text.starts_with('+')) text.remove_prefix(1);
-    const bool signed_twice = text.starts_with("+") || text.starts_with("--");
-    if (text.empty() || signed_twice) return NumberText::no_number;
+    const bool plus = text.starts_with('+');
+    if (plus) text.remove_prefix(1);
+    if (text.empty() || (plus && text.starts_with('-'))) return NumberText::no_number;
     const std::string_view bare = text.starts_with('-') ? text.substr(1) : text;
     if (bare == ".inf" || bare == ".Inf" || bare == ".INF" || bare == ".nan" || bare == ".NaN" ||
         bare == ".NAN") {

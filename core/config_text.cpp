@@ -51,7 +51,9 @@ std::string_view nearest_word(std::string_view text, std::span<const std::string
     std::string_view best;
     std::size_t best_distance = 2 + text.size() / 4;  // one slip per four letters, and one more
     for (const std::string_view candidate : candidates) {
-        const std::size_t distance = edit_distance(text, candidate);
+        // "fov" stands for "fov_x", however much is missing
+        const bool shortened = text.size() > 1 && candidate.starts_with(text);
+        const std::size_t distance = shortened ? 1 : edit_distance(text, candidate);
         if (distance < best_distance && distance < std::max(text.size(), candidate.size())) {
             best = candidate;
             best_distance = distance;

@@ -12,7 +12,7 @@ namespace uw {
 std::string printable(std::string_view text, std::size_t max_bytes = 60);
 
 /// The candidate that `text` is most likely a slip of (optimal string alignment distance, letter
-/// case ignored); empty if none is near.
+/// case ignored, or a beginning of it); empty if none is near.
 std::string_view nearest_word(std::string_view text, std::span<const std::string_view> candidates);
 
 /// "did you mean 'x'?" where a candidate is near, else "use one of: a, b, c".

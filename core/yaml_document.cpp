@@ -30,11 +30,26 @@ std::size_t weight(const ConfigNode& node) {
     return sum;
 }
 
+/// What is parsed, for messages.
+struct Source {
+    std::shared_ptr<const std::string> origin;
+    bool has_lines = true;  // a file; the value of an override has none to speak of
+
+    /// Line and column count from 0, as the parser does.
+    ConfigPosition position(int line, int column) const {
+        return has_lines ? ConfigPosition{origin, std::max(line, 0) + 1, std::max(column, 0) + 1}
+                         : ConfigPosition{origin, 0, 0};
+    }
+    [[noreturn]] void fail(int line, int column, std::string_view what) const {
+        throw InputError(fmt::format("{}: {}", position(line, column).text(), what));
+    }
+};
+
 /// Builds the tree from the parser's events, so that a hostile document ends at its first excess.
 class TreeBuilder : public YAML::EventHandler {
   public:
-    TreeBuilder(std::shared_ptr<const std::string> origin, const YamlLimits& limits)
-        : origin_(std::move(origin)), limits_(limits) {}
+    TreeBuilder(Source source, const YamlLimits& limits)
+        : source_(std::move(source)), limits_(limits) {}
 
     std::optional<ConfigNode> take_root() { return std::move(root_); }
 
@@ -80,11 +95,8 @@ class TreeBuilder : public YAML::EventHandler {
         std::optional<ConfigNode> key;  // map: a key whose value has yet to come
     };
 
-    ConfigPosition position(const YAML::Mark& mark) const {
-        return {origin_, mark.line + 1, mark.column + 1};
-    }
     [[noreturn]] void fail(const YAML::Mark& mark, std::string_view what) const {
-        throw InputError(fmt::format("{}: {}", position(mark).text(), what));
+        source_.fail(mark.line, mark.column, what);
     }
     void check_tag(const YAML::Mark& mark, const std::string& tag) const {
         if (tag.empty() || tag == "?" || tag == "!") return;
@@ -101,7 +113,7 @@ class TreeBuilder : public YAML::EventHandler {
         count(mark, 1);
         ConfigNode node;
         node.kind = kind;
-        node.position = position(mark);
+        node.position = source_.position(mark.line, mark.column);
         return node;
     }
     void open(ConfigNode::Kind kind, const YAML::Mark& mark, const std::string& tag,
@@ -156,7 +168,7 @@ class TreeBuilder : public YAML::EventHandler {
         map.node.entries.push_back(std::move(entry));
     }
 
-    std::shared_ptr<const std::string> origin_;
+    Source source_;
     YamlLimits limits_;
     int documents_ = 0;
     std::size_t nodes_ = 0;
@@ -185,74 +197,75 @@ void check_keys_unique(const ConfigNode& node, const std::string& path) {
 }
 
 /// What the parser would need gigabytes or minutes for is turned away before it sees it.
-void check_text(std::string_view text, const std::string& origin, const YamlLimits& limits) {
+void check_text(std::string_view text, const Source& source, const YamlLimits& limits) {
     if (text.size() > limits.bytes) {
-        throw InputError(
-            fmt::format("{}: is larger than {} bytes; this is no scene", origin, limits.bytes));
+        source.fail(0, 0, fmt::format("larger than {} bytes; this is no scene", limits.bytes));
     }
     const std::size_t bad = first_non_text(text);
     if (bad != text.size()) {
-        const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(bad), '\n');
-        throw InputError(
-            fmt::format("{}:{}:1: is not UTF-8 text (byte {}); a scene is a YAML text "
-                        "file saved as UTF-8",
-                        origin, line, bad));
+        const auto line = std::count(text.begin(), text.begin() + static_cast<long>(bad), '\n');
+        source.fail(static_cast<int>(line), 0,
+                    fmt::format("not UTF-8 text (byte {}); a scene is a YAML text file saved as "
+                                "UTF-8",
+                                bad));
     }
     constexpr std::string_view k_indicators = "[]{},:&*!\"'?";
     const auto indicators = std::count_if(text.begin(), text.end(), [&](char c) {
         return k_indicators.find(c) != std::string_view::npos;
     });
     if (static_cast<std::size_t>(indicators) > limits.indicators) {
-        throw InputError(
-            fmt::format("{}: holds more than {} brackets, commas, colons and quotes; "
-                        "this is no scene",
-                        origin, limits.indicators));
+        source.fail(
+            0, 0,
+            fmt::format("more than {} brackets, commas, colons and quotes; this is no scene",
+                        limits.indicators));
     }
 }
 
-std::optional<ConfigNode> parse(std::string_view text, const std::string& origin,
+/// The parser's own words, but for those that do not lead to the fault.
+std::string syntax_error(const YAML::Exception& error) {
+    if (error.msg == YAML::ErrorMsg::DOC_IN_SCALAR || error.msg == YAML::ErrorMsg::EOF_IN_SCALAR) {
+        return "a text above this line has an opening quote and no closing one; close it";
+    }
+    return printable(error.msg, 200) + "; mend the YAML here or just above";
+}
+
+std::optional<ConfigNode> parse(std::string_view text, const Source& source,
                                 const YamlLimits& limits) {
-    check_text(text, origin, limits);
-    TreeBuilder builder(std::make_shared<const std::string>(origin), limits);
-    std::istringstream stream{std::string(text)};
+    check_text(text, source, limits);
+    TreeBuilder builder(source, limits);
+    // yaml-cpp 0.7 takes a quote that is never closed for text up to the end of the file; an
+    // explicit end of the document makes it an error
+    std::istringstream stream{std::string(text) + "\n...\n"};
     try {
         YAML::Parser parser(stream);
         while (parser.HandleNextDocument(builder)) {
         }
     } catch (const YAML::Exception& error) {
-        throw InputError(fmt::format("{}:{}:{}: {}; mend the YAML here or just above", origin,
-                                     std::max(error.mark.line, 0) + 1,
-                                     std::max(error.mark.column, 0) + 1,
-                                     printable(error.msg, 200)));
+        source.fail(error.mark.line, error.mark.column, syntax_error(error));
     }
     std::optional<ConfigNode> root = builder.take_root();
     if (root) check_keys_unique(*root, "");
     return root;
 }
 
-void set_positions(ConfigNode& node, const ConfigPosition& position) {
-    node.position = position;
-    for (ConfigNode& item : node.items) set_positions(item, position);
-    for (ConfigNode::Entry& entry : node.entries) {
-        entry.position = position;
-        set_positions(entry.value, position);
-    }
-}
-
 }  // namespace
 
 ConfigNode parse_yaml(std::string_view text, const std::string& origin, const YamlLimits& limits) {
-    std::optional<ConfigNode> root = parse(text, origin, limits);
+    const Source source{std::make_shared<const std::string>(origin), true};
+    std::optional<ConfigNode> root = parse(text, source, limits);
     if (!root || root->kind == ConfigNode::Kind::null) {
-        throw InputError(fmt::format("{}:1:1: is empty; a scene starts with 'uwvdb: 1'", origin));
+        source.fail(0, 0, "is empty; a scene starts with 'uwvdb: 1'");
     }
     return *std::move(root);
 }
 
 ConfigNode parse_yaml_value(std::string_view text, const std::string& origin) {
-    ConfigNode node = parse(text, origin, YamlLimits{}).value_or(ConfigNode{});
-    set_positions(node, {std::make_shared<const std::string>(origin), 0, 0});
-    return node;
+    const Source source{std::make_shared<const std::string>(origin), false};
+    std::optional<ConfigNode> root = parse(text, source, YamlLimits{});
+    if (root) return *std::move(root);
+    ConfigNode nothing;
+    nothing.position = source.position(0, 0);
+    return nothing;
 }
 
 }  // namespace uw
