@@ -22,11 +22,14 @@ namespace fs = std::filesystem;
 
 /// Refuses what a rename must not replace, and follows a symbolic link to the file it stands for.
 fs::path checked(const fs::path& target) {
-    std::error_code error;
     if (!target.has_filename()) fail(target, "not a file name; add one");
-    const fs::path resolved =
-        fs::is_symlink(target, error) ? fs::weakly_canonical(target, error) : target;
-    if (error) fail(target, error.message());
+    // What cannot be looked at is found out when the file is made, with a better message.
+    std::error_code error;
+    fs::path resolved = target;
+    if (fs::is_symlink(fs::symlink_status(target, error))) {
+        resolved = fs::weakly_canonical(target, error);
+        if (error) fail(target, error.message());
+    }
     const fs::file_status status = fs::status(resolved, error);
     if (fs::is_directory(status)) fail(target, "it is a folder; add a file name");
     if (fs::exists(status) && !fs::is_regular_file(status)) {

@@ -1,10 +1,13 @@
 #include "core/image_writer.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <memory>
+#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -17,18 +20,17 @@ namespace {
     throw IoError(fmt::format("{}: cannot write: {}; is the disk full?", file.string(), why));
 }
 
-/// Writes beside `file` and renames. `pixels` are those of the data window, without gaps.
-void write_whole(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec,
-                 const void* pixels) {
-    AtomicFile atomic(file);
+/// `pixels` are those of the data window, without gaps. `io` replaces the file system if given.
+void encode(const std::filesystem::path& file, const std::filesystem::path& target,
+            const char* format, const OIIO::ImageSpec& spec, const void* pixels,
+            OIIO::Filesystem::IOProxy* io) {
     const auto output = OIIO::ImageOutput::create(format);
     if (!output) fail(file, OIIO::geterror());
-    // Without close() its destructor would report failure a second time, to nobody.
-    const bool written = output->open(atomic.temporary_path().string(), spec) &&
-                         output->write_image(spec.format, pixels);
+    if (io != nullptr && !output->set_ioproxy(io)) fail(file, "no way to write into memory");
+    const bool written =
+        output->open(target.string(), spec) && output->write_image(spec.format, pixels);
     const bool closed = output->close();
     if (!written || !closed) fail(file, output->geterror());
-    atomic.commit();
 }
 
 }  // namespace
@@ -51,7 +53,9 @@ void write_exr(const std::filesystem::path& file, const Film& film, const ImageM
             spec.attribute(name, static_cast<float>(std::get<double>(value)));
         }
     }
-    write_whole(file, "openexr", spec, film.values().data());
+    AtomicFile atomic(file);
+    encode(file, atomic.temporary_path(), "openexr", spec, film.values().data(), nullptr);
+    atomic.commit();
 }
 
 void write_png(const std::filesystem::path& file, const Preview& image,
@@ -62,7 +66,17 @@ void write_png(const std::filesystem::path& file, const Preview& image,
         const auto* text = std::get_if<std::string>(&value);
         spec.attribute(name, text ? *text : fmt::format("{:.6g}", std::get<double>(value)));
     }
-    write_whole(file, "png", spec, image.rgb.data());
+    // The library's PNG writer does not notice when the disk is full: it writes into memory here.
+    AtomicFile atomic(file);
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    encode(file, file, "png", spec, image.rgb.data(), &memory);
+    std::ofstream stream(atomic.temporary_path(), std::ios::binary);
+    stream.write(reinterpret_cast<const char*>(bytes.data()),
+                 static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    if (!stream) fail(file, "the file system took only a part");
+    atomic.commit();
 }
 
 }  // namespace uw

@@ -1,0 +1,38 @@
+// ctest labels: unit
+#include "core/film.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace uw {
+namespace {
+
+TEST(Film, PixelsOfTheWindowInImageCoordinates) {
+    Film film(10, 8, {2, 3, 5, 7}, {"R", "G", "B", "A", "id.V"});
+    EXPECT_EQ(film.values().size(), 3u * 4u * 5u);
+    for (const float value : film.values()) EXPECT_EQ(value, 0);
+    film.pixel(2, 3)[0] = 1;
+    film.pixel(4, 6)[4] = 2;
+    film.pixel(3, 4)[k_alpha] = 3;
+    EXPECT_EQ(film.values().front(), 1);
+    EXPECT_EQ(film.values().back(), 2);
+    EXPECT_EQ(film.values()[(1 * 3 + 1) * 5 + 3], 3);  // row 1, column 1 of the window
+    EXPECT_EQ(film.pixel(3, 4).size(), 5u);
+}
+
+TEST(Film, RefusesWindowsOutsideTheImage) {
+    for (const PixelWindow& window :
+         {PixelWindow{0, 0, 11, 8}, {-1, 0, 5, 5}, {0, 0, 0, 5}, {3, 5, 6, 5}, {0, 0, 10, 9}}) {
+        EXPECT_THROW(Film(10, 8, window, {"R", "G", "B", "A"}), UsageError);
+    }
+}
+
+TEST(Film, RefusesWhatMemoryCannotHold) {
+    const std::vector<std::string> names(1000, "R");
+    const int side = 2147483647;
+    EXPECT_THROW(Film(side, side, {0, 0, side, side}, names), InputError);
+}
+
+}  // namespace
+}  // namespace uw
