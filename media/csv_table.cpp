@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -50,6 +51,10 @@ CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(na
         text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
         ++line_number;
         if (line.empty() || line.front() == '#') continue;
+        if (std::count(line.begin(), line.end(), ',') >= static_cast<std::ptrdiff_t>(k_max_columns))
+            throw InputError(
+                fmt::format("{}:{}: more than {} columns; give a table of a few columns", name_,
+                            line_number, k_max_columns));
         if (columns_.empty()) {
             columns_ = split(line);
             continue;

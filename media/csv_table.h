@@ -17,6 +17,8 @@ class CsvTable {
   public:
     /// Most rows a table may have; a file with more is no spectrum and no phase function.
     static constexpr std::size_t k_max_rows = 20000;
+    /// Most columns, for the same reason.
+    static constexpr std::size_t k_max_columns = 256;
 
     /// Reads `text`; `name` is what messages call the table (a file name).
     CsvTable(std::string_view text, std::string name);

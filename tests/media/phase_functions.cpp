@@ -228,6 +228,7 @@ TEST(TabulatedPhase, RefusesImpossibleTables) {
           "angle_deg,phase\n5,1\n5.0000000000001,1\n", "angle_deg,phase\n0,1,2\n180,1,2\n",
           "angle_deg,phase\n0,1x\n180,1\n", "angle_deg,phase\n0,1e-320\n180,1e-320\n"})
         EXPECT_THROW(read_phase_table(text, "user.csv"), InputError) << text;
+    EXPECT_THROW(read_phase_table(std::string(300, ','), "user.csv"), InputError);
 }
 
 TEST(CsvTable, SaysWhereAndWhat) {
