@@ -22,7 +22,8 @@ class Lamp {
 
     /// Intensity in the direction of `v` (from the lamp, any length), relative to the axis: 0..1.
     double relative_intensity(const Vector3& v) const;
-    bool isotropic() const { return profile_.type == LampProfileDesc::Type::isotropic; }
+    /// Power of the lamp for 1 W/sr on its axis: its relative intensity over the sphere [sr].
+    double beam_solid_angle() const;
 
     /// Appends the distances along `ray` where the profile is not smooth (edges of its cone).
     void append_profile_breaks(const Ray& ray, std::vector<double>& s) const;

@@ -178,8 +178,10 @@ class ShadowMap::Search {
 
     // A stretch of at most a texel that the map cannot decide.
     void resolve(double begin, double end) {
-        // Ends are looked at a little inside: the last one may lie on a surface.
-        const double inset = 1e-3 * (end - begin);
+        // Ends are looked at a little inside: one may lie on a surface, which hides nothing within
+        // 1e-5 of the distance (Surfaces::occluded).
+        const double distance_to_lamp = distance(map_.lamp_, ray_.at(end));
+        const double inset = std::min(0.25 * (end - begin), 3e-5 * distance_to_lamp);
         const bool lit_at_begin = visible(begin + inset);
         const bool lit_at_end = visible(end - inset);
         if (lit_at_begin == lit_at_end) {

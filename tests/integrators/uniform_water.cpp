@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(Lamps, UniformWater,
                                            Case{"beside_kopelevich", {1, -0.5, 0}, true},
                                            Case{"in_view_kopelevich", {0.31, 0.22, 2}, true},
                                            Case{"behind_kopelevich", {0.4, -0.3, -1.5}, true}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace uw::test
