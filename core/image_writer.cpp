@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <fstream>
-#include <memory>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -20,17 +20,46 @@ namespace {
     throw IoError(fmt::format("{}: cannot write: {}; is the disk full?", file.string(), why));
 }
 
-/// `pixels` are those of the data window, without gaps. `io` replaces the file system if given.
-void encode(const std::filesystem::path& file, const std::filesystem::path& target,
-            const char* format, const OIIO::ImageSpec& spec, const void* pixels,
-            OIIO::Filesystem::IOProxy* io) {
+/// A file that remembers whether all of it was taken. The library's own file reports success when
+/// the disk is full: always for PNG, for what is written last in EXR.
+class CheckedFile final : public OIIO::Filesystem::IOProxy {
+  public:
+    explicit CheckedFile(const std::filesystem::path& path)
+        : IOProxy(path.string(), Write), stream_(path, std::ios::binary) {}
+
+    const char* proxytype() const override { return "uwvdb"; }
+    std::int64_t tell() override { return stream_.tellp(); }
+    bool seek(std::int64_t offset) override { return bool(stream_.seekp(offset)); }
+    std::size_t write(const void* bytes, std::size_t size) override {
+        const auto count = static_cast<std::streamsize>(size);
+        return stream_.write(static_cast<const char*>(bytes), count) ? size : 0;
+    }
+    /// Closes the file; true if it is whole.
+    bool finish() {
+        stream_.close();
+        return stream_.good();
+    }
+
+  private:
+    std::ofstream stream_;
+};
+
+/// `pixels` are those of the data window, without gaps.
+void write_whole(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec,
+                 const void* pixels) {
+    AtomicFile atomic(file);
+    CheckedFile checked(atomic.temporary_path());
     const auto output = OIIO::ImageOutput::create(format);
     if (!output) fail(file, OIIO::geterror());
-    if (io != nullptr && !output->set_ioproxy(io)) fail(file, "no way to write into memory");
-    const bool written =
-        output->open(target.string(), spec) && output->write_image(spec.format, pixels);
+    const bool written = output->set_ioproxy(&checked) &&
+                         output->open(atomic.temporary_path().string(), spec) &&
+                         output->write_image(spec.format, pixels);
     const bool closed = output->close();
-    if (!written || !closed) fail(file, output->geterror());
+    const std::string error = output->geterror();
+    const bool whole = checked.finish();
+    if (!written || !closed) fail(file, error);
+    if (!whole) fail(file, "a part was not taken");
+    atomic.commit();
 }
 
 }  // namespace
@@ -46,6 +75,7 @@ void write_exr(const std::filesystem::path& file, const Film& film, const ImageM
     spec.full_width = film.width();
     spec.full_height = film.height();
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // not the clock's: the same scene gives the same bytes
     for (const auto& [name, value] : metadata) {
         if (const auto* text = std::get_if<std::string>(&value)) {
             spec.attribute(name, *text);
@@ -53,9 +83,7 @@ void write_exr(const std::filesystem::path& file, const Film& film, const ImageM
             spec.attribute(name, static_cast<float>(std::get<double>(value)));
         }
     }
-    AtomicFile atomic(file);
-    encode(file, atomic.temporary_path(), "openexr", spec, film.values().data(), nullptr);
-    atomic.commit();
+    write_whole(file, "openexr", spec, film.values().data());
 }
 
 void write_png(const std::filesystem::path& file, const Preview& image,
@@ -66,17 +94,7 @@ void write_png(const std::filesystem::path& file, const Preview& image,
         const auto* text = std::get_if<std::string>(&value);
         spec.attribute(name, text ? *text : fmt::format("{:.6g}", std::get<double>(value)));
     }
-    // The library's PNG writer does not notice when the disk is full: it writes into memory here.
-    AtomicFile atomic(file);
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    encode(file, file, "png", spec, image.rgb.data(), &memory);
-    std::ofstream stream(atomic.temporary_path(), std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(bytes.data()),
-                 static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    if (!stream) fail(file, "the file system took only a part");
-    atomic.commit();
+    write_whole(file, "png", spec, image.rgb.data());
 }
 
 }  // namespace uw

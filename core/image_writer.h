@@ -15,7 +15,8 @@ using ImageMetadata = std::map<std::string, std::variant<std::string, double>>;
 
 /// Writes the film as one OpenEXR part: every channel 32-bit float, scanlines, zip compression.
 /// The film's window is the data window, the whole image the display window. The file appears
-/// under its name when it is whole. Throws IoError.
+/// under its name when it is whole; the same film and metadata give the same bytes, so that no date
+/// is stored. Throws IoError.
 void write_exr(const std::filesystem::path& file, const Film& film, const ImageMetadata& metadata);
 
 /// Writes an 8-bit sRGB PNG; metadata as text chunks. The file appears under its name when it is

@@ -69,9 +69,12 @@ std::optional<std::size_t> find_layer(std::string_view name) {
 }
 
 std::string layer_list() {
-    std::vector<std::string_view> names;
-    for (const LayerKind& layer : k_layers) names.push_back(layer.name);
-    return fmt::format("{}", fmt::join(names, ", "));
+    std::string list;
+    for (const LayerKind& layer : k_layers) {
+        if (!list.empty()) list += ", ";
+        list += layer.name;
+    }
+    return list;
 }
 
 /// A lamp becomes part of a channel's name: readers end it at NUL, terminals break at controls.
@@ -165,7 +168,8 @@ LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
 }
 
 void LayerPlan::add_channels(const std::string& layer, std::span<const std::string> suffixes) {
-    for (const std::string& suffix : suffixes) channel_names_.push_back(layer + "." + suffix);
+    for (const std::string& suffix : suffixes)
+        channel_names_.push_back(fmt::format("{}.{}", layer, suffix));
 }
 
 }  // namespace uw

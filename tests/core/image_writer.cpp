@@ -41,26 +41,22 @@ Film filled_film(int width, int height, const PixelWindow& window,
     return film;
 }
 
-/// Fails every write beyond `bytes` into a file while it lives, as a full disk does.
-class FullDisk {
-  public:
-    explicit FullDisk(rlim_t bytes) {
-        previous_handler_ = std::signal(SIGXFSZ, SIG_IGN);
-        ::getrlimit(RLIMIT_FSIZE, &previous_);
-        const rlimit limit{bytes, previous_.rlim_max};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FullDisk() {
-        ::setrlimit(RLIMIT_FSIZE, &previous_);
-        std::signal(SIGXFSZ, previous_handler_);
-    }
-    FullDisk(const FullDisk&) = delete;
-    FullDisk& operator=(const FullDisk&) = delete;
-
-  private:
-    rlimit previous_{};
-    void (*previous_handler_)(int) = nullptr;
-};
+/// Runs `work` while every write beyond `bytes` into a file fails, as on a full disk.
+template <typename Work>
+void limited(rlim_t bytes, const Work& work) {
+    struct Restore {
+        rlimit limit{};
+        void (*handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
+        Restore() { ::getrlimit(RLIMIT_FSIZE, &limit); }
+        ~Restore() {
+            ::setrlimit(RLIMIT_FSIZE, &limit);
+            std::signal(SIGXFSZ, handler);
+        }
+    } const restore;
+    const rlimit full{bytes, restore.limit.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &full);
+    work();
+}
 
 class ImageWriterTest : public testing::Test {
   protected:
@@ -155,6 +151,10 @@ TEST_F(ImageWriterTest, TheSameFilmGivesTheSameBytes) {
     write_exr(exr_, film, {{"uwvdb:seed", 1.0}});
     write_exr(again, film, {{"uwvdb:seed", 1.0}});
     EXPECT_EQ(read_bytes(exr_), read_bytes(again));
+    // Written within the same second they would agree on the clock, too.
+    const auto input = OIIO::ImageInput::open(exr_.string());
+    ASSERT_TRUE(input) << OIIO::geterror();
+    EXPECT_EQ(input->spec().get_string_attribute("DateTime"), "");
 }
 
 TEST_F(ImageWriterTest, AFullDiskLeavesTheOldFile) {
@@ -165,11 +165,18 @@ TEST_F(ImageWriterTest, AFullDiskLeavesTheOldFile) {
     for (std::size_t i = 0; i < noise.rgb.size(); ++i) {
         noise.rgb[i] = static_cast<std::uint8_t>(i * i * 2654435761u >> 13);
     }
-    for (const rlim_t bytes : {0, 100, 4096}) {
-        const FullDisk full(bytes);
-        EXPECT_THROW(write_exr(exr_, film, {}), IoError) << bytes;
-        EXPECT_THROW(write_png(png_, noise, {}), IoError) << bytes;
+    const fs::path whole = directory_.path() / "whole";
+    write_exr(whole, film, {});
+    const rlim_t exr_size = fs::file_size(whole);
+    write_png(whole, noise, {});
+    const rlim_t png_size = fs::file_size(whole);
+    fs::remove(whole);
+    for (const rlim_t missing : {1, 100, 5000}) {
+        EXPECT_THROW(limited(exr_size - missing, [&] { write_exr(exr_, film, {}); }), IoError);
+        EXPECT_THROW(limited(png_size - missing, [&] { write_png(png_, noise, {}); }), IoError);
     }
+    EXPECT_THROW(limited(0, [&] { write_exr(exr_, film, {}); }), IoError);
+    EXPECT_THROW(limited(0, [&] { write_png(png_, noise, {}); }), IoError);
     EXPECT_EQ(read_bytes(exr_), "old");
     EXPECT_EQ(read_bytes(png_), "old");
     EXPECT_EQ(std::distance(fs::directory_iterator(directory_.path()), fs::directory_iterator()),
