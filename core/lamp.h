@@ -33,8 +33,8 @@ class Lamp {
     Point3 position_;
     Vector3 axis_;
     LampProfileDesc profile_;
-    double cos_full_ = -1;  // inside this angle a spot shines fully
-    double cos_dark_ = -1;  // outside this angle it is dark
+    double full_angle_ = 0, cos_full_ = 1;   // a spot shines fully inside this angle [rad]
+    double dark_angle_ = 0, cos_dark_ = -1;  // and is dark outside this one
     double exponent_ = 0;   // of cos^m
     Spectrum axis_intensity_{};
 };
