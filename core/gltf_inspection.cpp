@@ -1,0 +1,230 @@
+#include "core/gltf_inspection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <set>
+
+#include "core/error.h"
+#include "core/gltf_json.h"
+#include "core/gltf_uri.h"
+
+namespace uw {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int k_float = 5126;
+constexpr std::size_t k_max_node_depth = 256;
+
+class Inspection {
+  public:
+    explicit Inspection(const std::filesystem::path& file)
+        : file_(file), name_(file.string()), document_(load_gltf_json(file)) {}
+
+    std::vector<std::string> run() {
+        check_extensions();
+        check_nodes();
+        check_sizes();
+        for (const Json& mesh : list(document_, "meshes")) {
+            for (const Json& primitive : list(mesh, "primitives")) check_primitive(primitive);
+        }
+        for (const Json& material : list(document_, "materials")) inspect_material(material);
+        for (const char* ignored : {"cameras", "animations", "skins"}) {
+            if (!list(document_, ignored).empty()) ignored_.insert(ignored);
+        }
+        return {ignored_.begin(), ignored_.end()};
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const {
+        throw InputError(fmt::format("{}: {}", name_, what));
+    }
+
+    /// The array under `key`; empty if there is none.
+    const Json& list(const Json& parent, const char* key) const {
+        static const Json none = Json::array();
+        const auto found = parent.is_object() ? parent.find(key) : parent.end();
+        if (!parent.is_object() || found == parent.end()) return none;
+        if (!found->is_array()) fail(fmt::format("glTF '{}' is not a list", key));
+        return *found;
+    }
+
+    std::uint64_t whole_number(const Json& parent, const char* key, std::uint64_t otherwise) const {
+        const auto found = parent.find(key);
+        if (found == parent.end()) return otherwise;
+        if (!found->is_number_unsigned()) {
+            fail(fmt::format("glTF '{}' is not a whole number", key));
+        }
+        return found->get<std::uint64_t>();
+    }
+
+    const Json& accessor(const Json& index) const {
+        const Json& accessors = list(document_, "accessors");
+        if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size()) {
+            fail("glTF names an accessor that is not there");
+        }
+        return accessors[index.get<std::size_t>()];
+    }
+
+    void check_extensions() {
+        // Extensions that say how to read the geometry change it when left out; those that only
+        // add lights or looks do not.
+        for (const Json& required : list(document_, "extensionsRequired")) {
+            const std::string extension = required.get<std::string>();
+            if (extension != "KHR_lights_punctual" && !extension.starts_with("KHR_materials_")) {
+                fail(
+                    fmt::format("needs the glTF extension {}, which is not supported; export "
+                                "without it",
+                                extension));
+            }
+        }
+        for (const Json& used : list(document_, "extensionsUsed")) {
+            const std::string extension = used.get<std::string>();
+            ignored_.insert(extension == "KHR_lights_punctual" ? "lights" : extension);
+        }
+    }
+
+    void check_nodes() {
+        const Json& nodes = list(document_, "nodes");
+        constexpr std::size_t no_parent = SIZE_MAX;
+        std::vector<std::size_t> parent(nodes.size(), no_parent);
+        for (std::size_t node = 0; node < nodes.size(); ++node) {
+            for (const Json& child : list(nodes[node], "children")) {
+                const auto index = child.is_number_unsigned() ? child.get<std::size_t>() : SIZE_MAX;
+                if (index >= nodes.size()) fail("glTF names a node that is not there");
+                if (parent[index] != no_parent) fail("a glTF node has two parents");
+                parent[index] = node;
+            }
+        }
+        for (std::size_t node = 0; node < nodes.size(); ++node) {
+            std::size_t depth = 0;
+            for (std::size_t at = node; parent[at] != no_parent; at = parent[at]) {
+                if (++depth > k_max_node_depth) {
+                    fail("the glTF nodes are in a circle or nested more than 256 deep");
+                }
+            }
+        }
+    }
+
+    /// Bytes that a buffer can be made of: its own file's, or those of the glTF file.
+    std::uint64_t source_size(const Json& buffer, std::uint64_t own_size) const {
+        const std::string uri = buffer.value("uri", "");
+        if (uri.empty() || uri.starts_with("data:")) return own_size;
+        const std::filesystem::path source = gltf_uri_path(file_, uri);
+        std::error_code status;
+        if (!std::filesystem::is_regular_file(source, status)) {
+            throw IoError(fmt::format("{}: its buffer {} is missing; put it beside the glTF file",
+                                      name_, uri));
+        }
+        return std::filesystem::file_size(source);
+    }
+
+    void check_sizes() {
+        const std::uint64_t own_size = std::filesystem::file_size(file_);
+        std::uint64_t total = own_size;
+        for (const Json& buffer : list(document_, "buffers")) {
+            const std::uint64_t size = source_size(buffer, own_size);
+            if (whole_number(buffer, "byteLength", 0) > size) {
+                fail("a glTF buffer is longer than its file; the file is cut off");
+            }
+            total += size;
+        }
+        for (const Json& entry : list(document_, "accessors")) {
+            if (whole_number(entry, "count", 0) > total) {
+                fail("a glTF accessor counts more than its file can hold");
+            }
+        }
+    }
+
+    void check_attribute(const std::string& semantic, const Json& entry) const {
+        const std::string type = entry.value("type", "");
+        const bool is_float = whole_number(entry, "componentType", 0) == k_float;
+        const bool is_vector = semantic == "POSITION" || semantic == "NORMAL";
+        const bool is_uv = semantic.starts_with("TEXCOORD_");
+        const bool is_color = semantic.starts_with("COLOR_");
+        if ((is_vector || is_uv) && !is_float) {
+            fail(fmt::format("glTF {} is quantised; export it as 32-bit floats", semantic));
+        }
+        if ((is_vector && type != "VEC3") || (is_uv && type != "VEC2") ||
+            (is_color && type != "VEC3" && type != "VEC4") ||
+            (semantic.starts_with("JOINTS_") && type != "VEC4") ||
+            (semantic.starts_with("WEIGHTS_") && type != "VEC4")) {
+            fail(fmt::format("glTF {} has the impossible type '{}'", semantic, type));
+        }
+    }
+
+    void check_primitive(const Json& primitive) {
+        if (!primitive.contains("attributes") || !primitive["attributes"].contains("POSITION")) {
+            fail("a glTF mesh has no POSITION");
+        }
+        const Json& attributes = primitive["attributes"];
+        const std::uint64_t count = whole_number(accessor(attributes["POSITION"]), "count", 0);
+        const auto check_set = [&](const Json& set) {
+            for (const auto& [semantic, index] : set.items()) {
+                const Json& entry = accessor(index);
+                check_attribute(semantic, entry);
+                if (whole_number(entry, "count", 0) != count) {
+                    fail(fmt::format("glTF {} has another count than POSITION", semantic));
+                }
+            }
+        };
+        check_set(attributes);
+        for (const Json& target : list(primitive, "targets")) {
+            check_set(target);
+            ignored_.insert("morph targets");
+        }
+        if (primitive.contains("indices")) {
+            const Json& entry = accessor(primitive["indices"]);
+            const std::uint64_t type = whole_number(entry, "componentType", 0);
+            if (entry.value("type", "") != "SCALAR" ||
+                (type != 5121 && type != 5123 && type != 5125)) {
+                fail("glTF indices are not whole numbers");
+            }
+        }
+        if (whole_number(primitive, "mode", 4) < 4) ignored_.insert("points and lines");
+    }
+
+    void inspect_material(const Json& material) {
+        static const Json none = Json::object();
+        const auto found = material.find("pbrMetallicRoughness");
+        const Json& surface = found == material.end() ? none : *found;
+        if (surface.value("metallicFactor", 1.0) > 0) ignored_.insert("metallic");
+        if (surface.contains("metallicRoughnessTexture")) ignored_.insert("metallic");
+        if (material.contains("normalTexture")) ignored_.insert("normal maps");
+        if (material.contains("occlusionTexture")) ignored_.insert("occlusion maps");
+        if (material.contains("emissiveTexture")) ignored_.insert("emission");
+        for (const Json& factor : list(material, "emissiveFactor")) {
+            if (factor.get<double>() > 0) ignored_.insert("emission");
+        }
+        if (material.value("alphaMode", "OPAQUE") != "OPAQUE") ignored_.insert("alpha");
+        if (!surface.contains("baseColorTexture")) return;
+        const std::uint64_t index = whole_number(surface["baseColorTexture"], "index", UINT64_MAX);
+        const Json& textures = list(document_, "textures");
+        if (index >= textures.size()) fail("a glTF material names a texture that is not there");
+        if (whole_number(textures[index], "source", UINT64_MAX) >=
+            list(document_, "images").size()) {
+            fail("a glTF base colour texture has no PNG or JPEG source; export it as PNG");
+        }
+    }
+
+    std::filesystem::path file_;
+    std::string name_;
+    Json document_;
+    std::set<std::string> ignored_;
+};
+
+}  // namespace
+
+std::vector<std::string> inspect_gltf(const std::filesystem::path& file) {
+    try {
+        return Inspection(file).run();
+    } catch (const Json::exception& error) {
+        throw InputError(
+            fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));
+    }
+}
+
+}  // namespace uw

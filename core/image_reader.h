@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace uw {
+
+/// A decoded picture: row-major, top row first, channels interleaved. 8 and 16 bit values are
+/// scaled to 0..1; no transfer curve is undone and alpha is not multiplied in.
+struct PixelImage {
+    int width = 0, height = 0, channels = 0;
+    std::vector<float> pixels;  // width * height * channels
+};
+
+/// Reads any picture that OpenImageIO knows. Throws IoError if the file cannot be opened,
+/// InputError if it is no picture, is cut off, or is larger than 2^28 pixels.
+PixelImage read_image(const std::filesystem::path& file);
+
+/// The same for a PNG or JPEG in memory; `name` stands in messages. Throws InputError.
+PixelImage read_image(std::span<const std::byte> encoded, const std::string& name);
+
+}  // namespace uw

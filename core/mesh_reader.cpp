@@ -1,0 +1,72 @@
+#include "core/mesh_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/assimp_reader.h"
+#include "core/error.h"
+#include "core/gltf_inspection.h"
+#include "core/mesh_cleanup.h"
+#include "core/ply_reader.h"
+
+namespace uw {
+namespace {
+
+std::string lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+TriangleMesh read_any(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+    const std::string extension = lower_extension(file);
+    if (extension == ".ply") return read_ply(file);
+    if (extension == ".obj") return read_with_assimp(file, {}, warnings);
+    // STL repeats the face's normal at each corner.
+    if (extension == ".stl") return read_with_assimp(file, {.normals = false}, warnings);
+    const std::vector<std::string> ignored = inspect_gltf(file);
+    if (!ignored.empty()) {
+        warnings.push_back(fmt::format("{}: ignored: {}", file.string(), fmt::join(ignored, ", ")));
+    }
+    return read_with_assimp(file, {.materials = true}, warnings);
+}
+
+void check_file(const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    const bool known = extension == ".gltf" || extension == ".glb" || extension == ".obj" ||
+                       extension == ".ply" || extension == ".stl";
+    if (!known) {
+        throw InputError(
+            fmt::format("{}: unknown kind of mesh '{}'; supported are .gltf, .glb, "
+                        ".obj, .ply and .stl",
+                        file.string(), extension));
+    }
+    std::error_code status;
+    // A pipe or device under a mesh's name would block the reader.
+    if (!std::filesystem::is_regular_file(file, status)) {
+        throw IoError(file.string() + ": no such mesh file; check the name");
+    }
+    if (std::filesystem::file_size(file) == 0) {
+        throw InputError(file.string() + ": the mesh file is empty; export it again");
+    }
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+    check_file(file);
+    TriangleMesh mesh = read_any(file, warnings);
+    DroppedTriangles dropped;
+    drop_bad_triangles(mesh, dropped);
+    dropped.report(file.string(), warnings);
+    if (mesh.triangles.empty()) {
+        throw InputError(file.string() + ": the mesh has no triangles; check what was exported");
+    }
+    return mesh;
+}
+
+}  // namespace uw

@@ -1,0 +1,155 @@
+#include "core/scene_objects.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uw {
+namespace {
+
+/// How far outside, in barycentric units, a crossing still counts as rounding of Embree's floats.
+constexpr double k_outside = 1e-3;
+
+Vector3 toward_viewer(const Vector3& normal, const Vector3& direction) {
+    return glm::dot(normal, direction) > 0 ? -normal : normal;
+}
+
+std::array<double, 3> weights_of(const TriangleCrossing& crossing) {
+    const double u = std::clamp(crossing.u, 0.0, 1.0);
+    const double v = std::clamp(crossing.v, 0.0, 1.0 - u);
+    return {1 - u - v, u, v};
+}
+
+/// The interpolated normal of the file, or the flat one if a corner has none. The side is that of
+/// the flat normal: on a grazing view an interpolated one may lean past the viewer's horizon.
+Vector3 shading_normal(const TriangleMesh& mesh, const std::uint32_t* corners,
+                       const std::array<double, 3>& weights, const Vector3& flat) {
+    if (mesh.normals.empty()) return flat;
+    Vector3 sum(0.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const float* n = &mesh.normals[3 * std::size_t{corners[k]}];
+        const Vector3 normal(n[0], n[1], n[2]);
+        if (normal == Vector3(0.0)) return flat;
+        sum += weights[k] * normal;
+    }
+    const double length = glm::length(sum);
+    if (!(length > 1e-6)) return flat;
+    return (glm::dot(sum, flat) < 0 ? -sum : sum) / length;
+}
+
+Rgb mesh_color(const TriangleMesh& mesh, std::uint32_t triangle, const std::uint32_t* corners,
+               const std::array<double, 3>& weights) {
+    const std::uint32_t material_index =
+        mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[triangle];
+    const MeshMaterial& material = mesh.materials[material_index];
+    Rgb color = material.base_color;
+    if (material.texture) {
+        double u = 0, v = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            u += weights[k] * mesh.uvs[2 * std::size_t{corners[k]}];
+            v += weights[k] * mesh.uvs[2 * std::size_t{corners[k]} + 1];
+        }
+        const Rgb texel = material.texture->sample(u, v, material.lookup);
+        for (std::size_t i = 0; i < 3; ++i) color[i] *= texel[i];
+    }
+    if (!mesh.colors.empty()) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            double factor = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                factor += weights[k] * mesh.colors[3 * std::size_t{corners[k]} + i];
+            }
+            color[i] *= factor;
+        }
+    }
+    return color;
+}
+
+}  // namespace
+
+Point3 MeshObject::corner(std::uint32_t triangle, int k) const {
+    const std::uint32_t vertex = mesh.triangles[3 * std::size_t{triangle} + std::size_t(k)];
+    const float* p = &mesh.positions[3 * std::size_t{vertex}];
+    return {p[0], p[1], p[2]};
+}
+
+Bounds SphereObject::world_bounds() const {
+    const Point3 middle = world_from_object * center;
+    const Matrix3 rows = glm::transpose(world_from_object.linear());
+    Bounds bounds;
+    const Vector3 reach(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2]));
+    bounds.extend(middle - radius * reach);
+    bounds.extend(middle + radius * reach);
+    return bounds;
+}
+
+std::optional<TriangleCrossing> cross_triangle(const MeshObject& object, std::uint32_t triangle,
+                                               const Point3& origin, const Vector3& direction) {
+    const Point3 a = object.corner(triangle, 0);
+    const Vector3 ab = object.corner(triangle, 1) - a, ac = object.corner(triangle, 2) - a;
+    const Vector3 p = glm::cross(direction, ac);
+    const double determinant = glm::dot(ab, p);
+    if (determinant == 0) return std::nullopt;
+    const Vector3 s = origin - a;
+    const Vector3 q = glm::cross(s, ab);
+    const TriangleCrossing crossing{glm::dot(ac, q) / determinant, glm::dot(s, p) / determinant,
+                                    glm::dot(direction, q) / determinant};
+    const bool inside = crossing.u >= -k_outside && crossing.v >= -k_outside &&
+                        crossing.u + crossing.v <= 1 + k_outside;
+    return inside ? std::optional(crossing) : std::nullopt;
+}
+
+std::optional<SphereCrossings> cross_sphere(const SphereObject& sphere, const Point3& origin,
+                                            const Vector3& direction) {
+    const Vector3 along = sphere.object_from_world.apply_to_vector(direction);
+    const double length = glm::length(along);
+    const Vector3 unit = along / length;
+    const Vector3 to_center = sphere.center - sphere.object_from_world * origin;
+    const double middle = glm::dot(to_center, unit);
+    // The distance of the center from the line, from the perpendicular itself: the textbook
+    // difference of squares loses half the digits for small or far spheres.
+    const Vector3 off = to_center - middle * unit;
+    const double half_squared = sphere.radius * sphere.radius - glm::dot(off, off);
+    if (!(half_squared >= 0)) return std::nullopt;
+    const double half = std::sqrt(half_squared);
+    return SphereCrossings{(middle - half) / length, (middle + half) / length};
+}
+
+std::optional<double> cross_plane(const PlaneObject& plane, const Point3& origin,
+                                  const Vector3& direction) {
+    const double slope = glm::dot(direction, plane.normal);
+    if (slope == 0) return std::nullopt;
+    return glm::dot(plane.point - origin, plane.normal) / slope;
+}
+
+void shade_mesh(const MeshObject& object, std::uint32_t triangle, const TriangleCrossing& crossing,
+                const ReflectanceBands& bands, const Vector3& direction, SurfaceHit& hit) {
+    const Point3 a = object.corner(triangle, 0);
+    const Vector3 area = glm::cross(object.corner(triangle, 1) - a, object.corner(triangle, 2) - a);
+    const double size = glm::length(area);
+    const Vector3 flat = size > 0 ? area / size : -direction;
+    const std::uint32_t* corners = &object.mesh.triangles[3 * std::size_t{triangle}];
+    const std::array<double, 3> weights = weights_of(crossing);
+    hit.geometric_normal = toward_viewer(flat, direction);
+    hit.normal = shading_normal(object.mesh, corners, weights, hit.geometric_normal);
+    hit.reflectance = object.reflectance
+                          ? *object.reflectance
+                          : bands.from_rgb(mesh_color(object.mesh, triangle, corners, weights));
+    hit.object_id = object.object_id;
+}
+
+void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceHit& hit) {
+    const Vector3 outward = sphere.object_from_world * hit.position - sphere.center;
+    // Normals map by the inverse transpose; the inverse is at hand.
+    const Vector3 normal =
+        glm::normalize(glm::transpose(sphere.object_from_world.linear()) * outward);
+    hit.geometric_normal = hit.normal = toward_viewer(normal, direction);
+    hit.reflectance = sphere.reflectance;
+    hit.object_id = sphere.object_id;
+}
+
+void shade_plane(const PlaneObject& plane, const Vector3& direction, SurfaceHit& hit) {
+    hit.geometric_normal = hit.normal = toward_viewer(plane.normal, direction);
+    hit.reflectance = plane.reflectance;
+    hit.object_id = plane.object_id;
+}
+
+}  // namespace uw
