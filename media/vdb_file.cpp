@@ -33,13 +33,12 @@ class GridStream {
     GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels)
         : grid_(grid), voxels_(voxels), stream_(header.file, std::ios::binary) {
         stream_.exceptions(std::ios::failbit | std::ios::badbit);
-        openvdb::io::StreamMetadata::Ptr metadata(new openvdb::io::StreamMetadata);
-        metadata->setFileVersion(header.version);
-        metadata->setLibraryVersion({header.library_major, header.library_minor});
-        metadata->setCompression(voxels.compression);
-        metadata->setHalfFloat(voxels.half);
-        metadata->setSeekable(true);
-        openvdb::io::setStreamMetadataPtr(stream_, metadata, /*transfer=*/false);
+        metadata_->setFileVersion(header.version);
+        metadata_->setLibraryVersion({header.library_major, header.library_minor});
+        metadata_->setCompression(voxels.compression);
+        metadata_->setHalfFloat(voxels.half);
+        metadata_->setSeekable(true);
+        openvdb::io::setStreamMetadataPtr(stream_, metadata_, /*transfer=*/true);
     }
 
     /// A grid with its transform and tree, but no voxel values yet.
@@ -49,6 +48,8 @@ class GridStream {
         grid->setSaveFloatAsHalf(voxels_.half);
         stream_.seekg(voxels_.transform_offset);
         grid->readTransform(stream_);
+        check_buffer_count();
+        metadata_->setLeaf(0);
         grid->readTopology(stream_);
         const auto blocks = stream_.tellg();
         if (&grid_ != &voxels_) {
@@ -69,9 +70,20 @@ class GridStream {
     }
 
   private:
+    /// A tree begins with a count that is 1 since OpenVDB 1.0; the library prints when it is not.
+    void check_buffer_count() {
+        const auto position = stream_.tellg();
+        std::int32_t count = 0;
+        stream_.read(reinterpret_cast<char*>(&count), sizeof count);
+        if (count != 1) throw std::runtime_error("the file is damaged");
+        stream_.seekg(position);
+    }
+
     const GridSummary& grid_;
     const GridSummary& voxels_;
     std::ifstream stream_;
+    // The stream keeps a pointer to this very member.
+    openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
 };
 
 Affine to_affine(const openvdb::math::Transform& transform) {

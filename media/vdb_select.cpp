@@ -36,7 +36,7 @@ std::string did_you_mean(const VdbHeader& header, const std::string& name) {
             best_distance = distance;
         }
     }
-    return best != nullptr ? fmt::format("did you mean '{}'? ", best->name) : "";
+    return best != nullptr ? fmt::format("; did you mean '{}'?", best->name) : "";
 }
 
 /// Why the grid is no concentration, or "".
@@ -61,7 +61,7 @@ std::string unusable_because(const GridSummary& grid) {
 const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
                                const SourceLocation& where) {
     const auto refuse = [&](const std::string& why) {
-        throw InputError(fmt::format("{}: {}; '{}' has {}", where, why, header.file.string(),
+        throw InputError(fmt::format("{}: {} ('{}' has {})", where, why, header.file.string(),
                                      header.describe_grids()));
     };
     const GridSummary* found = nullptr;
@@ -70,7 +70,7 @@ const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
         if (grid.name == name || grid.base_name == name) {
             if (namesakes++ == 0) found = &grid;
         }
-    if (namesakes == 0) refuse(fmt::format("no grid '{}' {}", name, did_you_mean(header, name)));
+    if (namesakes == 0) refuse(fmt::format("no grid '{}'{}", name, did_you_mean(header, name)));
     if (namesakes > 1)
         refuse(fmt::format("{} grids are called '{}': say '{}'", namesakes, name, found->name));
     const std::string why = unusable_because(*found);
