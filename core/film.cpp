@@ -26,8 +26,8 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
             "ask for fewer --layers, a --crop or a smaller --size",
             window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9));
     };
-    // Above this the count of values itself may overflow.
-    constexpr double k_most_bytes = 1e15;
+    // No machine we know holds more, and far above it the count of values overflows.
+    constexpr double k_most_bytes = 1e12;
     if (bytes > k_most_bytes) throw no_memory();
     try {
         values_.resize(static_cast<std::size_t>(window.width()) *
