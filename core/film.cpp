@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <new>
-#include <stdexcept>
 #include <utility>
 
 #include "core/error.h"
@@ -27,12 +26,13 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
             "ask for fewer --layers, a --crop or a smaller --size",
             window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9));
     };
+    // No machine we know holds more, and far above it the count of values overflows.
+    constexpr double k_most_bytes = 1e12;
+    if (bytes > k_most_bytes) throw no_memory();
     try {
         values_.resize(static_cast<std::size_t>(window.width()) *
                        static_cast<std::size_t>(window.height()) * channel_names_.size());
     } catch (const std::bad_alloc&) {
-        throw no_memory();
-    } catch (const std::length_error&) {
         throw no_memory();
     }
 }

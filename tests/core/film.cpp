@@ -29,9 +29,11 @@ TEST(Film, RefusesWindowsOutsideTheImage) {
 }
 
 TEST(Film, RefusesWhatMemoryCannotHold) {
-    const std::vector<std::string> names(1000, "R");
-    const int side = 2147483647;
+    const int side = 1 << 30;  // with 16 channels the count of values is 0 modulo 2^64
+    const std::vector<std::string> names(16, "R");
     EXPECT_THROW(Film(side, side, {0, 0, side, side}, names), InputError);
+    const int large = 1 << 21;  // 281 TB
+    EXPECT_THROW(Film(large, large, {0, 0, large, large}, names), InputError);
 }
 
 }  // namespace
