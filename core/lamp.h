@@ -35,7 +35,7 @@ class Lamp {
     LampProfileDesc profile_;
     double full_angle_ = 0, cos_full_ = 1;   // a spot shines fully inside this angle [rad]
     double dark_angle_ = 0, cos_dark_ = -1;  // and is dark outside this one
-    double exponent_ = 0;   // of cos^m
+    double exponent_ = 0;                    // of cos^m
     Spectrum axis_intensity_{};
 };
 
