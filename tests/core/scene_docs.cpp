@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/scene_reader.h"
-#include "support/scene_folder.h"
+#include "tests/support/scene_folder.h"
 
 namespace uw {
 namespace {
@@ -26,9 +26,9 @@ TEST(SceneDocs, theDocumentedSceneIsRead) {
     folder.write("plume.vdb", "x");
     folder.write("seabed.glb", "x");
     const auto file = folder.write("scene.yaml", documented_scene());
-    const SceneDesc scene = read_scene(
-        file, {"lamps[0].intensity=80", "lamps.left.intensity=[80, 70, 60]",
-               "camera.pose.position=[0, 0, 1]", "camera.intrinsics={fov_x: 75}"});
+    const SceneDesc scene =
+        read_scene(file, {"lamps[0].intensity=80", "lamps.left.intensity=[80, 70, 60]",
+                          "camera.pose.position=[0, 0, 1]", "camera.intrinsics={fov_x: 75}"});
     EXPECT_EQ(scene.lamps.at(0).intensity, (PerBand{80, 70, 60}));
     EXPECT_EQ(scene.volumes.size(), 1U);
     EXPECT_EQ(scene.geometry.size(), 1U);
