@@ -12,6 +12,8 @@ namespace {
 
 /// Directions shorter than this cannot be told from zero.
 constexpr double k_shortest_direction = 1e-12;
+/// Beyond this no key has a meaning, and squares and products would overflow later on.
+constexpr double k_largest_number = 1e12;
 
 bool is_digit(char c) {
     return c >= '0' && c <= '9';
@@ -72,6 +74,9 @@ double ConfigValue::number(std::string_view mend) const {
     double value = 0;
     const NumberText outcome = parse_number(node_->scalar, value);
     if (outcome != NumberText::number) fail_number(outcome, mend);
+    if (std::abs(value) > k_largest_number) {
+        fail(fmt::format("{} is larger than anything in a scene; {}", value, mend));
+    }
     return value;
 }
 

@@ -28,7 +28,7 @@ class ConfigValue {
     /// Throws the InputError "<location>: <what>"; `what` includes the mend.
     [[noreturn]] void fail(std::string_view what) const;
 
-    /// A finite number. `mend` says what to give ("give the distance in metres").
+    /// A finite number of at most 1e12. `mend` says what to give ("give the distance in metres").
     double number(std::string_view mend) const;
     double positive(std::string_view mend) const;
     double non_negative(std::string_view mend) const;

@@ -22,7 +22,7 @@ std::filesystem::path read_existing_file(const ConfigValue& value, const SceneCo
     constexpr std::size_t k_longest_name = 4096;
     const std::string name = value.text("give the name of a file");
     if (name.size() > k_longest_name) value.fail("is too long for a file name; shorten it");
-    const fs::path file = context.folder / name;
+    fs::path file = context.folder / name;
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
     if (status.type() == fs::file_type::not_found) {

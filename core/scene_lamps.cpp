@@ -16,7 +16,7 @@ constexpr std::size_t k_longest_name = 64;
 std::string read_name(const ConfigValue& value) {
     constexpr std::string_view k_allowed =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    const std::string name = value.text("name the lamp, such as left");
+    std::string name = value.text("name the lamp, such as left");
     if (name.find_first_not_of(k_allowed) != std::string::npos || name.size() > k_longest_name) {
         value.fail(
             fmt::format("'{}' cannot be part of a layer's name; use only letters, digits, _ "

@@ -18,6 +18,7 @@ namespace uw {
 namespace {
 
 constexpr std::size_t k_longest_origin = 80;
+constexpr std::size_t k_most_steps = 32;  // deeper than any key; the tree is walked recursively
 
 /// One step of a path: a key of a map (or name of a list's entry), or an index into a list.
 struct Step {
@@ -60,6 +61,7 @@ std::vector<Step> parse_path(std::string_view path, const std::string& origin) {
         append_indices(segment.substr(bracket), origin, steps);
         start = dot + 1;
     }
+    if (steps.size() > k_most_steps) fail_path(origin);
     return steps;
 }
 

@@ -9,6 +9,7 @@ namespace uw {
 namespace {
 
 constexpr double k_rigid_tolerance = 1e-6;
+constexpr double k_smallest_scale = 1e-9;
 /// Closer to the view direction than this angle [rad], `up` leaves the roll undefined.
 constexpr double k_smallest_up_angle = 1e-6;
 
@@ -100,8 +101,10 @@ Affine read_transform(const ConfigValue& value) {
         constexpr auto k_mend = "give one factor, or one per axis, none of them 0";
         scale = entry->node().kind == ConfigNode::Kind::sequence ? entry->vector(k_mend)
                                                                  : Vector3(entry->number(k_mend));
-        if (scale.x == 0 || scale.y == 0 || scale.z == 0) {
-            entry->fail("must not be 0; give one factor, or one per axis");
+        // smaller factors would make the map's determinant vanish
+        if (glm::any(glm::lessThan(glm::abs(scale), Vector3(k_smallest_scale)))) {
+            entry->fail(
+                "must not be 0, nor nearer to it than 1e-9; give one factor, or one per axis");
         }
     }
     Vector3 degrees(0.0);

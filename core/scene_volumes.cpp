@@ -1,6 +1,7 @@
 #include <array>
 
 #include "core/config_map.h"
+#include "core/config_text.h"
 #include "core/scene_sections.h"
 
 namespace uw {
@@ -64,7 +65,7 @@ std::vector<GridMappingDesc> read_grids(const ConfigValue& value, const SceneCon
     std::vector<GridMappingDesc> grids;
     grids.reserve(node.entries.size());
     for (const ConfigNode::Entry& entry : node.entries) {
-        const ConfigValue mapping(entry.value, value.path() + "." + entry.key);
+        const ConfigValue mapping(entry.value, value.path() + "." + printable(entry.key));
         grids.push_back(read_mapping(mapping, entry.key, context));
     }
     return grids;

@@ -55,7 +55,9 @@ class TreeBuilder : public YAML::EventHandler {
 
     void OnDocumentStart(const YAML::Mark& mark) override {
         if (++documents_ > 1) {
-            fail(mark, "a second document starts here; a scene is one document: remove the '---'");
+            fail(mark,
+                 "a second document starts here; a scene is one document: remove this, or the "
+                 "'---' above it");
         }
     }
     void OnDocumentEnd() override {}

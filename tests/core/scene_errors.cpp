@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "support/scene_errors.h"
+#include "tests/support/scene_errors.h"
 
 namespace uw {
 namespace {
@@ -48,7 +48,8 @@ TEST_F(SceneErrors, resolutionAndIntrinsics) {
               {"  resolution: [64, 48.5]\n",
                "scene.yaml:3:20: camera.resolution[1]: expected a whole "
                "number, found 48.5"},
-              {"  resolution: [64, 1e30]\n", "must be from 1 to 32768, found 1e+30"},
+              {"  resolution: [64, 1e30]\n",
+               "camera.resolution[1]: 1e+30 is larger than anything in a scene"},
               {"  resolution: [32768, 32768]\n",
                "scene.yaml:3:15: camera.resolution: 32768 x 32768 are "
                "more than 268435456 pixels"},
@@ -116,7 +117,7 @@ TEST_F(SceneErrors, cameraParts) {
              "camera.pose.matrix: mirrors the world (determinant -1)"},
             {"  pose: {matrix: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 1]]}\n",
              "camera.pose.matrix[3]: the last row must be [0, 0, 0, 1]"},
-            {"  pose: {matrix: [[1e200, 0, 0, 0], [0, 1e200, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}\n",
+            {"  pose: {matrix: [[1e9, 0, 0, 0], [0, 1e9, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}\n",
              "camera.pose.matrix: is not rigid"},
             {"  pose: {matrix: [1, 0, 0, 0]}\n",
              "camera.pose.matrix[0]: expected a list of 4, found "

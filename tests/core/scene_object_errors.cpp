@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "support/scene_errors.h"
+#include "tests/support/scene_errors.h"
 
 namespace uw {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/scene_reader.h"
-#include "support/scene_folder.h"
+#include "tests/support/scene_folder.h"
 
 namespace uw {
 namespace {
@@ -65,6 +65,9 @@ TEST(SceneOverride, reachesGridsWithBracketsInTheirName) {
 }
 
 TEST(SceneOverride, wrongFormIsWrongUsage) {
+    std::string deep = "a";
+    for (int i = 0; i < 100000; ++i) deep += ".a";
+    EXPECT_THROW(read_with({deep + "=1"}), UsageError);
     for (const char* const text : {"render.samples", "=3", "a..b=3", "a.=3", "[0].x=3", "a[=3",
                                    "a[x]=3", "a[1]b=3", "a[-1]=3", ".a=3", ""}) {
         EXPECT_THROW(read_with({text}), UsageError) << text;

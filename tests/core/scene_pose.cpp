@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/scene_reader.h"
-#include "support/scene_folder.h"
+#include "tests/support/scene_folder.h"
 
 namespace uw {
 namespace {

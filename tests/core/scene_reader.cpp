@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "support/scene_folder.h"
+#include "tests/support/scene_folder.h"
 
 namespace uw {
 namespace {

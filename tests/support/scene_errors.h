@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/scene_reader.h"
-#include "support/scene_folder.h"
+#include "tests/support/scene_folder.h"
 
 namespace uw::test {
 
