@@ -1,6 +1,7 @@
 #include "core/pixel_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace uw {
@@ -55,6 +56,7 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
     result.lamps.assign(scene_.lamps->size(), Spectrum{});
 
     std::optional<Ray> water = rays_.water_ray(x + 0.5, y + 0.5);
+    if (water) record_ground_truth(*water, result);
     for (int i = 0; i < samples_; ++i) {
         const ImageOffset offset = sample_offset(i, samples_);
         const std::optional<Ray> ray = rays_.water_ray(x + offset.x, y + offset.y);
@@ -72,7 +74,6 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
     if (w.hits > 0)
         for (double& t : result.transmittance) t /= w.hits;
     if (water && !w.distances.empty()) add_water(*water, w, result);
-    record_ground_truth(x, y, result);
 }
 
 void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
@@ -101,6 +102,7 @@ void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result)
     std::sort(w.distances.begin(), w.distances.end());
     w.ends.clear();
     w.shares.clear();
+    bool has_center_end = false;
     for (std::size_t first = 0; first < w.distances.size();) {
         std::size_t last = first;
         double sum = 0;
@@ -109,6 +111,12 @@ void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result)
             sum += w.distances[last++];
         const auto count = static_cast<double>(last - first);
         w.ends.push_back(sum / count);
+        // The water ray must not reach behind the surface that it meets itself.
+        if (result.has_hit && !has_center_end &&
+            std::abs(result.path / w.ends.back() - 1) < k_same_distance) {
+            w.ends.back() = result.path;
+            has_center_end = true;
+        }
         w.shares.push_back(count / samples_);
         first = last;
     }
@@ -124,10 +132,8 @@ void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result)
     }
 }
 
-void PixelRenderer::record_ground_truth(int x, int y, PixelResult& result) const {
-    const std::optional<Ray> ray = rays_.water_ray(x + 0.5, y + 0.5);
-    if (!ray) return;
-    result.has_hit = scene_.surfaces->closest_hit(*ray, k_far, result.hit);
+void PixelRenderer::record_ground_truth(const Ray& center, PixelResult& result) const {
+    result.has_hit = scene_.surfaces->closest_hit(center, k_far, result.hit);
     if (!result.has_hit) return;
     const Affine camera_from_world = rays_.world_from_camera().inverse();
     const Point3 in_camera = camera_from_world * result.hit.position;

@@ -45,7 +45,7 @@ class PixelRenderer {
     void add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
                             PixelResult& result) const;
     void add_water(const Ray& ray, Workspace& w, PixelResult& result) const;
-    void record_ground_truth(int x, int y, PixelResult& result) const;
+    void record_ground_truth(const Ray& center, PixelResult& result) const;
 
     const RaySource& rays_;
     LitScene scene_;

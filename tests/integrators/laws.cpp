@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "core/parallel.h"
-#include "support/test_scene.h"
+#include "tests/support/test_scene.h"
 
 namespace uw::test {
 namespace {

@@ -3,9 +3,9 @@
 // against the reference integrator.
 #include <gtest/gtest.h>
 
-#include "support/temp_dir.h"
-#include "support/test_scene.h"
-#include "support/vdb_fixtures.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/test_scene.h"
+#include "tests/support/vdb_fixtures.h"
 
 namespace uw::test {
 namespace {

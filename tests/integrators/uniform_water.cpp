@@ -5,8 +5,8 @@
 
 #include <numbers>
 
-#include "support/adaptive_quadrature.h"
-#include "support/test_scene.h"
+#include "tests/support/adaptive_quadrature.h"
+#include "tests/support/test_scene.h"
 
 namespace uw::test {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "support/gaussian_field.h"
-#include "support/sphere_surface.h"
+#include "tests/support/gaussian_field.h"
+#include "tests/support/sphere_surface.h"
 
 namespace uw::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "support/gaussian_field.h"
+#include "tests/support/gaussian_field.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "support/test_scene.h"
+#include "tests/support/test_scene.h"
 
 #include <cmath>
 
