@@ -11,6 +11,9 @@ namespace {
 // Surface samples whose distances agree this well share one integral through the water: the
 // radiance between them differs by less than 1 % of that of the last centimetres.
 constexpr double k_same_distance = 0.01;
+// Samples on the surface that the pixel's centre sees count as this near: to first order a slanted
+// surface's mean is its centre, and the water ray does not reach behind what it meets itself.
+constexpr double k_same_surface = 0.25;
 
 // Base-2 radical inverse: 0, 1/2, 1/4, 3/4, ...
 double radical_inverse(unsigned i) {
@@ -68,7 +71,9 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
             w.distances.push_back(k_far);
             continue;
         }
-        w.distances.push_back(hit.distance);
+        const bool at_center = result.has_hit && hit.object_id == result.hit.object_id &&
+                               std::abs(hit.distance / result.path - 1) < k_same_surface;
+        w.distances.push_back(at_center ? result.path : hit.distance);
         add_surface_sample(*ray, hit, w, result);
     }
     if (w.hits > 0)
@@ -102,7 +107,6 @@ void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result)
     std::sort(w.distances.begin(), w.distances.end());
     w.ends.clear();
     w.shares.clear();
-    bool has_center_end = false;
     for (std::size_t first = 0; first < w.distances.size();) {
         std::size_t last = first;
         double sum = 0;
@@ -110,13 +114,9 @@ void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result)
                w.distances[last] <= w.distances[first] * (1 + k_same_distance))
             sum += w.distances[last++];
         const auto count = static_cast<double>(last - first);
-        w.ends.push_back(sum / count);
-        // The water ray must not reach behind the surface that it meets itself.
-        if (result.has_hit && !has_center_end &&
-            std::abs(result.path / w.ends.back() - 1) < k_same_distance) {
-            w.ends.back() = result.path;
-            has_center_end = true;
-        }
+        const bool at_center = result.has_hit && w.distances[first] <= result.path &&
+                               result.path <= w.distances[last - 1];
+        w.ends.push_back(at_center ? result.path : sum / count);
         w.shares.push_back(count / samples_);
         first = last;
     }
