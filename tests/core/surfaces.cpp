@@ -113,7 +113,7 @@ TEST(Surfaces, ClosestHitOnTheSeabedEqualsBruteForce) {
     EXPECT_EQ(surfaces->triangle_count(), mesh.triangle_count());
     Random random;
     int hits = 0, compared = 0;
-    for (int k = 0; k < 400; ++k) {
+    for (int k = 0; k < 600; ++k) {
         const Ray ray{Point3{random.uniform(-5, 5), random.uniform(0.3, 2), random.uniform(-5, 5)},
                       random.direction()};
         const Nearest expected = brute_force(mesh, ray);
@@ -139,7 +139,7 @@ TEST(Surfaces, ClosestHitOnTheSeabedEqualsBruteForce) {
         }
     }
     EXPECT_GT(hits, 150);
-    EXPECT_GT(compared, 350);
+    EXPECT_GT(compared, 500);
 }
 
 TEST(Surfaces, OcclusionOnTheSeabedEqualsBruteForceAndIsSymmetric) {
@@ -243,7 +243,7 @@ TEST(Surfaces, BoxFollowsTheSlabTest) {
         normal[axis] = ray.direction[axis] > 0 ? -1 : 1;
         EXPECT_NEAR(glm::length(hit.normal - normal), 0.0, 1e-12);
     }
-    EXPECT_GT(hits, 200);
+    EXPECT_GT(hits, 100);
 }
 
 TEST(Surfaces, PlanesAreInfiniteAndTwoSided) {
@@ -282,12 +282,12 @@ TEST(Surfaces, ShadowEndsAreExcludedAndNothingElse) {
 }
 
 TEST(Surfaces, NumbersObjectsInSceneOrderAndGivesTheirReflectance) {
-    GeometryDesc red = sphere({0, 0, 2}, 0.5);
+    GeometryDesc red = sphere({0, 3, 2}, 0.5);
     red.reflectance = PerBand{0.9, 0.1, 0.2};
     const auto surfaces =
         build({plane({0, 0, 9}, {0, 0, -1}), box({-4, -1, 1}, {-3, 1, 2}), red, seabed()});
     SurfaceHit hit;
-    ASSERT_TRUE(surfaces->closest_hit({Point3{}, Vector3(0, 0, 1)}, k_far, hit));
+    ASSERT_TRUE(surfaces->closest_hit({Point3{0, 3, 0}, Vector3(0, 0, 1)}, k_far, hit));
     EXPECT_EQ(hit.object_id, 3U);
     EXPECT_EQ(hit.reflectance[0], 0.9);
     EXPECT_EQ(hit.reflectance[2], 0.2);
