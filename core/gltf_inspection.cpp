@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <cstring>
+#include <map>
 #include <set>
 
 #include "core/error.h"
@@ -18,6 +17,10 @@ using Json = nlohmann::json;
 
 constexpr int k_float = 5126;
 constexpr std::size_t k_max_node_depth = 256;
+
+// Numbers per element of an accessor.
+const std::map<std::string, std::uint64_t> k_components = {
+    {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
 
 class Inspection {
   public:
@@ -132,10 +135,71 @@ class Inspection {
             }
             total += size;
         }
-        for (const Json& entry : list(document_, "accessors")) {
-            if (whole_number(entry, "count", 0) > total) {
-                fail("a glTF accessor counts more than its file can hold");
-            }
+        for (const Json& view : list(document_, "bufferViews")) check_view(view);
+        for (const Json& entry : list(document_, "accessors")) check_accessor(entry, total);
+    }
+
+    const Json& element(const char* key, const Json& parent, const char* index_key) const {
+        const Json& all = list(document_, key);
+        const std::uint64_t index = whole_number(parent, index_key, UINT64_MAX);
+        if (index >= all.size()) fail(fmt::format("glTF '{}' names what is not there", index_key));
+        return all[index];
+    }
+
+    void check_view(const Json& view) const {
+        const Json& buffer = element("buffers", view, "buffer");
+        const std::uint64_t size = whole_number(buffer, "byteLength", 0);
+        const std::uint64_t length = whole_number(view, "byteLength", 0);
+        if (length > size || whole_number(view, "byteOffset", 0) > size - length) {
+            fail("a glTF bufferView reaches past its buffer; the file is cut off");
+        }
+    }
+
+    /// `source` names a bufferView and an offset in it; `count` elements must lie inside.
+    void check_range(const Json& source, std::uint64_t count, std::uint64_t element_size) const {
+        const Json& view = element("bufferViews", source, "bufferView");
+        const std::uint64_t length = whole_number(view, "byteLength", 0);
+        const std::uint64_t offset = whole_number(source, "byteOffset", 0);
+        const std::uint64_t stride = whole_number(view, "byteStride", element_size);
+        // glTF 2.0, 3.6.2.1: a stride is at most 252. It is below element_size for interleaved
+        // matrices only, which no mesh uses.
+        const bool sane = count == 0 || (offset <= length && stride <= 252 &&
+                                         stride >= element_size && element_size <= length - offset);
+        if (!sane || (count > 0 && (count - 1) * stride > length - offset - element_size)) {
+            fail("a glTF accessor reaches past its bufferView; the file is cut off");
+        }
+    }
+
+    void check_accessor(const Json& entry, std::uint64_t total) const {
+        const std::uint64_t count = whole_number(entry, "count", 0);
+        if (count > total) fail("a glTF accessor counts more than its file can hold");
+        const std::uint64_t size =
+            k_components.contains(entry.value("type", ""))
+                ? k_components.at(entry.value("type", "")) * component_size(entry)
+                : 0;
+        if (size == 0) fail("a glTF accessor has an impossible type");
+        if (entry.contains("bufferView")) check_range(entry, count, size);
+        if (!entry.contains("sparse")) return;
+        const Json& sparse = entry.at("sparse");
+        const std::uint64_t patches = whole_number(sparse, "count", 0);
+        if (patches > count) fail("a glTF accessor has more sparse values than values");
+        check_range(sparse.at("indices"), patches, component_size(sparse.at("indices")));
+        check_range(sparse.at("values"), patches, size);
+    }
+
+    std::uint64_t component_size(const Json& entry) const {
+        switch (whole_number(entry, "componentType", 0)) {
+            case 5120:
+            case 5121:
+                return 1;
+            case 5122:
+            case 5123:
+                return 2;
+            case 5125:
+            case k_float:
+                return 4;
+            default:
+                return 0;
         }
     }
 

@@ -91,8 +91,11 @@ PixelImage read_image(std::span<const std::byte> encoded, const std::string& nam
         throw InputError(name + ": neither PNG nor JPEG; save the image in one of these");
     }
     OIIO::Filesystem::IOMemReader memory(encoded.data(), encoded.size());
-    const OIIO::ImageSpec options = reading_options();
-    const auto input = OIIO::ImageInput::open(hint, &options, &memory);
+    OIIO::ImageSpec options = reading_options();
+    // Through the options: given both, OpenImageIO 2.4 forgets a reader passed as an argument.
+    OIIO::Filesystem::IOProxy* proxy = &memory;
+    options.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    const auto input = OIIO::ImageInput::open(hint, &options);
     if (!input) {
         throw InputError(
             fmt::format("{}: cannot read the image: {}", name, first_line(OIIO::geterror())));
