@@ -62,12 +62,28 @@ bool contains(const Bounds& box, const Point3& p) {
            p.z >= box.min.z && p.z <= box.max.z;
 }
 
-double sample_at(const Accessor& accessor, const Bounds& support, const Point3& p) {
-    if (!contains(support, p)) return 0;  // also where p is not a number
-    const Coord cell = floor_of(p);
-    const Corners corners = corners_of(accessor, accessor.probeLeaf(cell), cell);
-    return corners.interpolate(p.x - cell[0], p.y - cell[1], p.z - cell[2]);
-}
+/// Samples points that follow each other: neighbours in the same cell share its corners.
+class Sampler {
+  public:
+    Sampler(const void* grid, const Bounds& support)
+        : accessor_(*static_cast<const Grid*>(grid)), support_(support) {}
+
+    double operator()(const Point3& p) {
+        if (!contains(support_, p)) return 0;  // also where p is not a number
+        const Coord cell = floor_of(p);
+        if (cell != cell_) {
+            corners_ = corners_of(accessor_, accessor_.probeLeaf(cell), cell);
+            cell_ = cell;
+        }
+        return corners_.interpolate(p.x - cell[0], p.y - cell[1], p.z - cell[2]);
+    }
+
+  private:
+    Accessor accessor_;
+    const Bounds& support_;
+    Coord cell_{std::numeric_limits<int>::max()};
+    Corners corners_{};
+};
 
 /// What the grid holds around a cell, and the box of cells for which that is all there is to say.
 struct Region {
@@ -221,14 +237,14 @@ NanoGrid::NanoGrid(std::shared_ptr<const void> storage, const void* grid, std::s
 }
 
 double NanoGrid::sample(const Point3& p) const {
-    return sample_at(Accessor(*static_cast<const Grid*>(grid_)), support_, p);
+    return Sampler(grid_, support_)(p);
 }
 
 void NanoGrid::add_samples(const LatticeLine& line, std::span<const double> t,
                            std::span<double> values) const {
-    const Accessor accessor(*static_cast<const Grid*>(grid_));
+    Sampler sampler(grid_, support_);
     for (std::size_t n = 0; n < t.size(); ++n)
-        values[n] += sample_at(accessor, support_, line.origin + t[n] * line.direction);
+        values[n] += sampler(line.origin + t[n] * line.direction);
 }
 
 double NanoGrid::integrate(const LatticeLine& line) const {

@@ -11,10 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <map>
 
 #include "core/error.h"
+#include "media/vdb_layout.h"
 
 namespace uw {
 namespace {
@@ -30,8 +30,13 @@ void initialize_once() {
 /// would refuse the whole file for one grid of a type it does not know, and clips in world space.
 class GridStream {
   public:
-    GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels)
-        : grid_(grid), voxels_(voxels), stream_(header.file, std::ios::binary) {
+    GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
+               const SourceLocation& where)
+        : header_(header),
+          grid_(grid),
+          voxels_(voxels),
+          where_(where),
+          stream_(header.file, std::ios::binary) {
         stream_.exceptions(std::ios::failbit | std::ios::badbit);
         metadata_->setFileVersion(header.version);
         metadata_->setLibraryVersion({header.library_major, header.library_minor});
@@ -48,7 +53,8 @@ class GridStream {
         grid->setSaveFloatAsHalf(voxels_.half);
         stream_.seekg(voxels_.transform_offset);
         grid->readTransform(stream_);
-        check_buffer_count();
+        if (!layout_checked_) check_layout(header_, voxels_, stream_.tellg(), where_);
+        layout_checked_ = true;
         metadata_->setLeaf(0);
         grid->readTopology(stream_);
         const auto blocks = stream_.tellg();
@@ -70,17 +76,11 @@ class GridStream {
     }
 
   private:
-    /// A tree begins with a count that is 1 since OpenVDB 1.0; the library prints when it is not.
-    void check_buffer_count() {
-        const auto position = stream_.tellg();
-        std::int32_t count = 0;
-        stream_.read(reinterpret_cast<char*>(&count), sizeof count);
-        if (count != 1) throw std::runtime_error("the file is damaged");
-        stream_.seekg(position);
-    }
-
+    const VdbHeader& header_;
     const GridSummary& grid_;
     const GridSummary& voxels_;
+    const SourceLocation& where_;
+    bool layout_checked_ = false;
     std::ifstream stream_;
     // The stream keeps a pointer to this very member.
     openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
@@ -126,43 +126,11 @@ std::vector<openvdb::CoordBBox> cut_into_slabs(const TreeT& tree, std::size_t sl
     return slabs;
 }
 
-/// Sums and counts of active values; also makes each value fit for use.
-struct Intake {
-    std::int64_t active = 0, nan = 0, infinite = 0, negative = 0;
-    double sum = 0;
-    float min = std::numeric_limits<float>::infinity(), max = -min;
-
-    /// `value` as it is used, counted for `voxels` voxels.
-    float take(float value, std::int64_t voxels) {
-        active += voxels;
-        if (!std::isfinite(value)) {
-            (std::isnan(value) ? nan : infinite) += voxels;
-            value = 0;
-        } else if (value < 0) {
-            negative += voxels;
-            value = 0;
-        }
-        sum += static_cast<double>(value) * static_cast<double>(voxels);
-        min = std::min(min, value);
-        max = std::max(max, value);
-        return value;
-    }
-    void add(const Intake& other) {
-        active += other.active;
-        nan += other.nan;
-        infinite += other.infinite;
-        negative += other.negative;
-        sum += other.sum;
-        min = std::min(min, other.min);
-        max = std::max(max, other.max);
-    }
-};
-
 /// Makes every value finite and >= 0, zero voxels inactive, inactive ones zero, and prunes.
-Intake sanitize(openvdb::FloatTree& tree) {
+GridIntake sanitize(openvdb::FloatTree& tree) {
     using Tree = openvdb::FloatTree;
     tree.root().setBackground(0.0F, /*updateChildNodes=*/false);
-    Intake total;
+    GridIntake total;
     auto tiles = tree.beginValueAll();
     tiles.setMaxDepth(Tree::ValueAllIter::LEAF_DEPTH - 1);
     for (; tiles; ++tiles) {
@@ -172,7 +140,7 @@ Intake sanitize(openvdb::FloatTree& tree) {
         tiles.setActiveState(value > 0);
     }
     openvdb::tree::LeafManager<Tree> leaves(tree);
-    std::vector<Intake> parts(leaves.leafCount());  // summed in order: the same for any threads
+    std::vector<GridIntake> parts(leaves.leafCount());  // summed in order: the same for any threads
     leaves.foreach ([&parts](Tree::LeafNodeType& leaf, std::size_t index) {
         float* values = leaf.buffer().data();
         for (openvdb::Index n = 0; n < Tree::LeafNodeType::SIZE; ++n) {
@@ -180,7 +148,7 @@ Intake sanitize(openvdb::FloatTree& tree) {
             leaf.setActiveState(n, values[n] > 0);
         }
     });
-    for (const Intake& part : parts) total.add(part);
+    for (const GridIntake& part : parts) total.add(part);
     openvdb::tools::prune(tree);  // blocks of one value become tiles, which cost nothing
     return total;
 }
@@ -203,23 +171,23 @@ void append_brick(const openvdb::FloatGrid& grid, std::vector<NanoGrid>& bricks)
 }
 
 /// The slab's values as a float grid without transform (bricks work in index space).
-Intake take_slab(openvdb::FloatGrid::Ptr grid, std::vector<NanoGrid>& bricks) {
-    const Intake intake = sanitize(grid->tree());
+GridIntake take_slab(openvdb::FloatGrid::Ptr grid, std::vector<NanoGrid>& bricks) {
+    const GridIntake intake = sanitize(grid->tree());
     grid->setTransform(openvdb::math::Transform::createLinearTransform());
     append_brick(*grid, bricks);
     return intake;
 }
 
-Intake take_slab(openvdb::DoubleGrid::Ptr grid, std::vector<NanoGrid>& bricks) {
+GridIntake take_slab(openvdb::DoubleGrid::Ptr grid, std::vector<NanoGrid>& bricks) {
     auto tree = std::make_shared<openvdb::FloatTree>(grid->tree());
     grid.reset();
     return take_slab(openvdb::FloatGrid::create(tree), bricks);
 }
 
 template <class GridT>
-Intake read_grid(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
-                 std::size_t slab_bytes, LoadedGrid& loaded) {
-    GridStream stream(header, grid, voxels);
+GridIntake read_grid(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
+                     std::size_t slab_bytes, const SourceLocation& where, LoadedGrid& loaded) {
+    GridStream stream(header, grid, voxels, where);
     typename GridT::Ptr first = stream.template read_topology<GridT>();
     loaded.file_from_index = to_affine(first->transform());
     loaded.statistics.background = static_cast<double>(first->background());
@@ -229,7 +197,7 @@ Intake read_grid(const VdbHeader& header, const GridSummary& grid, const GridSum
         return take_slab(std::move(first), loaded.bricks);
     }
     first.reset();
-    Intake total;
+    GridIntake total;
     for (const openvdb::CoordBBox& slab : slabs) {
         typename GridT::Ptr part = stream.template read_topology<GridT>();
         stream.read_values(*part, slab);
@@ -247,37 +215,6 @@ const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& 
     throw std::runtime_error("the grid it shares its voxels with is missing");
 }
 
-void set_statistics(const Intake& intake, GridStatistics& statistics) {
-    statistics.active_voxels = intake.active;
-    statistics.nan_voxels = intake.nan;
-    statistics.infinite_voxels = intake.infinite;
-    statistics.negative_voxels = intake.negative;
-    if (intake.active == 0) return;
-    statistics.min = static_cast<double>(intake.min);
-    statistics.max = static_cast<double>(intake.max);
-    statistics.mean = intake.sum / static_cast<double>(intake.active);
-}
-
-void add_warnings(const std::string& prefix, LoadedGrid& loaded) {
-    const GridStatistics& s = loaded.statistics;
-    const auto warn = [&](const std::string& what) { loaded.warnings.push_back(prefix + what); };
-    const auto count = [&](std::int64_t voxels, const char* what) {
-        if (voxels > 0)
-            warn(fmt::format("{} of {} active voxels are {}: treated as 0", voxels, s.active_voxels,
-                             what));
-    };
-    count(s.nan_voxels, "NaN");
-    count(s.infinite_voxels, "infinite");
-    count(s.negative_voxels, "negative");
-    if (s.background != 0)
-        warn(fmt::format("its background is {:g}: treated as 0 outside the active voxels",
-                         s.background));
-    if (s.active_voxels == 0)
-        warn("it has no active voxels and contributes nothing");
-    else if (loaded.bricks.empty())
-        warn("all its active voxels are 0 and it contributes nothing");
-}
-
 }  // namespace
 
 LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,
@@ -288,12 +225,15 @@ LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const Sou
         fmt::format("{}: grid '{}' of '{}': ", where, grid.name, header.file.string());
     LoadedGrid loaded;
     loaded.name = grid.name;
-    Intake intake;
+    GridIntake intake;
     try {
         const GridSummary& voxels = holder_of_voxels(header, grid);
-        intake = grid.value_type == "double"
-                     ? read_grid<openvdb::DoubleGrid>(header, grid, voxels, slab_bytes, loaded)
-                     : read_grid<openvdb::FloatGrid>(header, grid, voxels, slab_bytes, loaded);
+        intake =
+            grid.value_type == "double"
+                ? read_grid<openvdb::DoubleGrid>(header, grid, voxels, slab_bytes, where, loaded)
+                : read_grid<openvdb::FloatGrid>(header, grid, voxels, slab_bytes, where, loaded);
+    } catch (const InputError&) {
+        throw;
     } catch (const std::ios_base::failure&) {
         throw InputError(prefix + "the file is cut short or damaged; copy or export it again");
     } catch (const std::bad_alloc&) {
@@ -301,7 +241,7 @@ LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const Sou
     } catch (const std::exception& error) {
         throw InputError(prefix + "cannot be read: " + error.what());
     }
-    set_statistics(intake, loaded.statistics);
+    loaded.statistics = intake.statistics(loaded.statistics.background);
     const bool classless = grid.grid_class != "fog volume";
     if (classless && loaded.statistics.background > 0 && intake.negative > 0)
         throw InputError(fmt::format(
@@ -312,7 +252,7 @@ LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const Sou
     const double determinant = loaded.file_from_index.determinant();
     if (!std::isfinite(determinant) || determinant == 0)
         throw InputError(prefix + "its transform is singular (voxels without volume)");
-    add_warnings(prefix, loaded);
+    loaded.warnings = intake_warnings(loaded.statistics, prefix);
     return loaded;
 }
 

@@ -1,24 +1,15 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "core/affine.h"
+#include "media/grid_statistics.h"
 #include "media/nano_grid.h"
 #include "media/vdb_header.h"
 
 namespace uw {
-
-/// What was found in a grid's active voxels (tiles count with all their voxels). Inactive voxels
-/// are no data by OpenVDB's convention, whatever value a writer left in them.
-struct GridStatistics {
-    std::int64_t active_voxels = 0;
-    std::int64_t nan_voxels = 0, infinite_voxels = 0, negative_voxels = 0;  // treated as 0
-    double background = 0;                                                  // treated as 0
-    double min = 0, mean = 0, max = 0;  // over active voxels, after the bad ones became 0
-};
 
 /// A grid ready to be sampled. Large grids come in several bricks whose values add: each holds a
 /// slab of whole 8^3 blocks, and interpolation with zeros outside is linear.
