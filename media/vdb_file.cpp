@@ -14,6 +14,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "media/vdb_layout.h"
 
 namespace uw {
 namespace {
@@ -29,8 +30,13 @@ void initialize_once() {
 /// would refuse the whole file for one grid of a type it does not know, and clips in world space.
 class GridStream {
   public:
-    GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels)
-        : grid_(grid), voxels_(voxels), stream_(header.file, std::ios::binary) {
+    GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
+               const SourceLocation& where)
+        : header_(header),
+          grid_(grid),
+          voxels_(voxels),
+          where_(where),
+          stream_(header.file, std::ios::binary) {
         stream_.exceptions(std::ios::failbit | std::ios::badbit);
         metadata_->setFileVersion(header.version);
         metadata_->setLibraryVersion({header.library_major, header.library_minor});
@@ -47,7 +53,8 @@ class GridStream {
         grid->setSaveFloatAsHalf(voxels_.half);
         stream_.seekg(voxels_.transform_offset);
         grid->readTransform(stream_);
-        check_buffer_count();
+        if (!layout_checked_) check_layout(header_, voxels_, stream_.tellg(), where_);
+        layout_checked_ = true;
         metadata_->setLeaf(0);
         grid->readTopology(stream_);
         const auto blocks = stream_.tellg();
@@ -69,17 +76,11 @@ class GridStream {
     }
 
   private:
-    /// A tree begins with a count that is 1 since OpenVDB 1.0; the library prints when it is not.
-    void check_buffer_count() {
-        const auto position = stream_.tellg();
-        std::int32_t count = 0;
-        stream_.read(reinterpret_cast<char*>(&count), sizeof count);
-        if (count != 1) throw std::runtime_error("the file is damaged");
-        stream_.seekg(position);
-    }
-
+    const VdbHeader& header_;
     const GridSummary& grid_;
     const GridSummary& voxels_;
+    const SourceLocation& where_;
+    bool layout_checked_ = false;
     std::ifstream stream_;
     // The stream keeps a pointer to this very member.
     openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
@@ -185,8 +186,8 @@ GridIntake take_slab(openvdb::DoubleGrid::Ptr grid, std::vector<NanoGrid>& brick
 
 template <class GridT>
 GridIntake read_grid(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
-                     std::size_t slab_bytes, LoadedGrid& loaded) {
-    GridStream stream(header, grid, voxels);
+                     std::size_t slab_bytes, const SourceLocation& where, LoadedGrid& loaded) {
+    GridStream stream(header, grid, voxels, where);
     typename GridT::Ptr first = stream.template read_topology<GridT>();
     loaded.file_from_index = to_affine(first->transform());
     loaded.statistics.background = static_cast<double>(first->background());
@@ -227,9 +228,12 @@ LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const Sou
     GridIntake intake;
     try {
         const GridSummary& voxels = holder_of_voxels(header, grid);
-        intake = grid.value_type == "double"
-                     ? read_grid<openvdb::DoubleGrid>(header, grid, voxels, slab_bytes, loaded)
-                     : read_grid<openvdb::FloatGrid>(header, grid, voxels, slab_bytes, loaded);
+        intake =
+            grid.value_type == "double"
+                ? read_grid<openvdb::DoubleGrid>(header, grid, voxels, slab_bytes, where, loaded)
+                : read_grid<openvdb::FloatGrid>(header, grid, voxels, slab_bytes, where, loaded);
+    } catch (const InputError&) {
+        throw;
     } catch (const std::ios_base::failure&) {
         throw InputError(prefix + "the file is cut short or damaged; copy or export it again");
     } catch (const std::bad_alloc&) {

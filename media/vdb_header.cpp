@@ -4,19 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <map>
-#include <system_error>
 
-#include "core/error.h"
+#include "media/byte_reader.h"
 
 namespace uw {
 namespace {
 
 constexpr std::int64_t k_magic = 0x56444220;
-constexpr std::size_t k_longest_name = 4096;
 
 /// Names come from the file and go into one-line messages.
 std::string printable(std::string text) {
@@ -24,62 +19,6 @@ std::string printable(std::string text) {
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
     return text;
 }
-
-/// A little-endian reader that never believes a size the file cannot hold.
-class ByteReader {
-  public:
-    ByteReader(const std::filesystem::path& file, const SourceLocation& where)
-        : file_(file), where_(where), stream_(file, std::ios::binary) {
-        std::error_code error;
-        if (!stream_ || !std::filesystem::is_regular_file(file, error))
-            throw IoError(fmt::format("{}: cannot open '{}': {}", where, file.string(),
-                                      errno != 0 ? std::strerror(errno) : "not a file"));
-        size_ = static_cast<std::int64_t>(std::filesystem::file_size(file));
-    }
-
-    std::int64_t size() const { return size_; }
-    std::int64_t position() const { return position_; }
-
-    [[noreturn]] void fail(const std::string& what) const {
-        throw InputError(fmt::format("{}: '{}' {}", where_, file_.string(), what));
-    }
-    void seek(std::int64_t position) {
-        if (position < 0 || position > size_) fail_short();
-        stream_.seekg(position);
-        position_ = position;
-    }
-    void skip(std::uint32_t bytes) { seek(position_ + bytes); }
-
-    template <class T>
-    T get() {
-        T value{};
-        read(reinterpret_cast<char*>(&value), sizeof value);
-        return value;
-    }
-    std::string text(std::size_t size) {
-        if (size > k_longest_name) fail("is damaged: a name in it is absurdly long");
-        std::string value(size, '\0');
-        read(value.data(), size);
-        return value;
-    }
-    std::string text() { return text(get<std::uint32_t>()); }
-
-  private:
-    [[noreturn]] void fail_short() const {
-        fail("is cut short or damaged; copy or export it again");
-    }
-    void read(char* to, std::size_t bytes) {
-        if (static_cast<std::int64_t>(bytes) > size_ - position_) fail_short();
-        stream_.read(to, static_cast<std::streamsize>(bytes));
-        if (!stream_) fail_short();
-        position_ += static_cast<std::int64_t>(bytes);
-    }
-
-    const std::filesystem::path& file_;
-    const SourceLocation& where_;
-    std::ifstream stream_;
-    std::int64_t size_ = 0, position_ = 0;
-};
 
 /// A metadata map: the strings and 64-bit integers by name; of other types the name alone.
 struct Metadata {
@@ -95,7 +34,7 @@ Metadata read_metadata(ByteReader& in) {
         const std::string name = in.text();
         const std::string type = in.text();
         const auto size = in.get<std::uint32_t>();
-        if (type == "string" && size <= k_longest_name) {
+        if (type == "string" && size <= ByteReader::k_longest_text) {
             metadata.strings[name] = in.text(size);
         } else if (type == "int64" && size == sizeof(std::int64_t)) {
             metadata.integers[name] = in.get<std::int64_t>();
