@@ -171,7 +171,7 @@ void append_brick(const openvdb::FloatGrid& grid, std::vector<NanoGrid>& bricks)
 }
 
 /// The slab's values as a float grid without transform (bricks work in index space).
-GridIntake take_slab(openvdb::FloatGrid::Ptr grid, std::vector<NanoGrid>& bricks) {
+GridIntake take_slab(const openvdb::FloatGrid::Ptr& grid, std::vector<NanoGrid>& bricks) {
     const GridIntake intake = sanitize(grid->tree());
     grid->setTransform(openvdb::math::Transform::createLinearTransform());
     append_brick(*grid, bricks);
