@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cli/stop_signal.h"
 #include "cli/version.h"
 #include "core/error.h"
 #include "core/optical_depth.h"
@@ -15,6 +16,8 @@ namespace uw {
 namespace {
 
 constexpr int k_longest_side = 256;
+// Of all grids together: 1 GiB here, and as much again in OpenVDB's hands.
+constexpr double k_most_values = 1 << 28;
 
 struct Lattice {
     std::array<int, 3> size{};
@@ -51,10 +54,13 @@ Lattice lattice_over(const AssembledScene& scene) {
     Lattice lattice;
     lattice.voxel = std::max(voxel, longest / k_longest_side);
     lattice.origin = bounds.min;
-    for (int axis = 0; axis < 3; ++axis)
-        lattice.size[static_cast<std::size_t>(axis)] =
-            static_cast<int>(extent[axis] / lattice.voxel) + 1;
-    return lattice;
+    const auto grids = static_cast<double>(scene.lamps.size()) * scene.water.medium.band_count();
+    for (;; lattice.voxel *= 1.1) {
+        for (int axis = 0; axis < 3; ++axis)
+            lattice.size[static_cast<std::size_t>(axis)] =
+                static_cast<int>(extent[axis] / lattice.voxel) + 1;
+        if (static_cast<double>(lattice.count()) * grids <= k_most_values) return lattice;
+    }
 }
 
 // Irradiance of one lamp at every lattice point, [band][point].
@@ -65,6 +71,7 @@ std::vector<std::vector<float>> sample_lamp(const AssembledScene& scene, std::si
     const auto bands = static_cast<std::size_t>(attenuation.band_count);
     std::vector<std::vector<float>> result(bands, std::vector<float>(lattice.count()));
     parallel_for(static_cast<std::size_t>(lattice.size[2]), [&](std::size_t slice) {
+        if (stop_requested()) throw Interrupted();
         const int k = static_cast<int>(slice);
         std::vector<double> column(static_cast<std::size_t>(scene.field->constituent_count()));
         for (int j = 0; j < lattice.size[1]; ++j) {
@@ -88,6 +95,10 @@ std::vector<std::vector<float>> sample_lamp(const AssembledScene& scene, std::si
 }
 
 }  // namespace
+
+void check_irradiance_vdb(const AssembledScene& scene) {
+    lattice_over(scene);
+}
 
 void write_irradiance_vdb(const std::filesystem::path& file, const AssembledScene& scene,
                           const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {

@@ -8,12 +8,15 @@
 #include "cli/exit_code.h"
 #include "cli/render_command.h"
 #include "cli/stop_signal.h"
+#include "core/config_text.h"
 #include "core/error.h"
 
 namespace {
 
+// One line, whatever the user's files and names brought into it.
 int fail(uw::ExitCode code, const char* what) {
-    fmt::print(stderr, "uwvdb: {}\n", what);
+    constexpr std::size_t k_longest_message = 4000;
+    fmt::print(stderr, "uwvdb: {}\n", uw::printable(what, k_longest_message));
     return code;
 }
 

@@ -1,14 +1,26 @@
 #include "cli/stop_signal.h"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <cstring>
+
+#include "cli/exit_code.h"
 
 namespace uw {
 
 namespace {
 
+volatile std::sig_atomic_t g_orderly = 0;
 volatile std::sig_atomic_t g_stop = 0;
 
+// Only what may be done inside a signal handler: write(2), _exit(2).
 void on_signal(int signal) {
+    if (g_orderly == 0) {
+        const char* const line = "uwvdb: interrupted; nothing was written\n";
+        if (write(STDERR_FILENO, line, std::strlen(line)) < 0) _exit(k_exit_interrupted);
+        _exit(k_exit_interrupted);
+    }
     g_stop = 1;
     std::signal(signal, SIG_DFL);
 }
@@ -18,6 +30,10 @@ void on_signal(int signal) {
 void install_stop_signal() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+}
+
+void begin_orderly_stop() {
+    g_orderly = 1;
 }
 
 bool stop_requested() {
