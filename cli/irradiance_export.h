@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/scene_assembly.h"
+#include "core/render_film.h"
 
 namespace uw {
 
@@ -15,9 +16,10 @@ void check_irradiance_vdb(const AssembledScene& scene);
 /// shadows and attenuation, as float grids "irradiance.<lamp>.<band>nm" on a lattice over the
 /// volumes' bounds (over all surfaces and lamps if there are no volumes). Voxels are the finest
 /// grid's, or as large as keeps the longest side at 256 and all grids together at 2^28 values.
-/// World space, y up as the scene's world. Throws IoError; Interrupted if a stop is asked for
-/// before the file is written.
+/// World space, y up as the scene's world. Throws IoError; Interrupted if `progress`, called from
+/// any thread, returns false: then nothing has been written.
 void write_irradiance_vdb(const std::filesystem::path& file, const AssembledScene& scene,
-                          const std::vector<std::shared_ptr<const LampLightField>>& light_fields);
+                          const std::vector<std::shared_ptr<const LampLightField>>& light_fields,
+                          const ProgressCallback& progress);
 
 }  // namespace uw

@@ -115,6 +115,15 @@ void render(const AssembledScene& scene, const LightFields& light_fields, const 
     });
 }
 
+void write_irradiance(const std::filesystem::path& file, const AssembledScene& scene,
+                      const LightFields& light_fields, bool quiet) {
+    Progress progress("irradiance", "lamps", static_cast<double>(scene.lamps.size()), quiet);
+    write_irradiance_vdb(file, scene, light_fields, [&](double share) {
+        progress.update(share);
+        return !stop_requested();
+    });
+}
+
 void count_work(const AssembledScene& scene, const LightFields& light_fields, const Film& film,
                 RunStats& stats) {
     const auto pixels = static_cast<std::uint64_t>(film.window().width()) *
@@ -209,14 +218,18 @@ void run_render(const RenderArguments& a) {
     stats.begin_stage("splat");
     LightFields light_fields;
     const bool volume = desc.render.integrator == RenderDesc::Integrator::volume;
-    if (volume || !a.irradiance_vdb.empty()) light_fields = splat_lamps(scene, LightFieldOptions{});
+    if (volume || !files.irradiance_vdb.empty()) {
+        Progress progress("splat", "lamps", static_cast<double>(scene.lamps.size()), a.quiet);
+        light_fields =
+            splat_lamps(scene, LightFieldOptions{}, [&](double share) { progress.update(share); });
+    }
 
     stats.begin_stage("render");
     begin_orderly_stop();
     render(scene, light_fields, plan, colour, a.quiet, film);
     if (!files.irradiance_vdb.empty()) {
         stats.begin_stage("irradiance");
-        write_irradiance_vdb(files.irradiance_vdb, scene, light_fields);
+        write_irradiance(files.irradiance_vdb, scene, light_fields, a.quiet);
         say(fmt::format("wrote {}\n", files.irradiance_vdb.string()));
     }
     stats.begin_stage("write");
