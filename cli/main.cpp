@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <exception>
 #include <new>
 
 #include "cli/arguments.h"
+#include "cli/console.h"
 #include "cli/exit_code.h"
 #include "cli/render_command.h"
 #include "cli/stop_signal.h"
@@ -16,17 +16,18 @@ namespace {
 // One line, whatever the user's files and names brought into it.
 int fail(uw::ExitCode code, const char* what) {
     constexpr std::size_t k_longest_message = 4000;
-    fmt::print(stderr, "uwvdb: {}\n", uw::printable(what, k_longest_message));
+    uw::print_message(fmt::format("uwvdb: {}\n", uw::printable(what, k_longest_message)));
     return code;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+    uw::prepare_streams();
     try {
         const uw::Arguments arguments = uw::parse_arguments(argc, argv);
         if (!arguments.message.empty()) {
-            fmt::print("{}", arguments.message);
+            uw::print_output(arguments.message);
             return uw::k_exit_done;
         }
         uw::install_stop_signal();
