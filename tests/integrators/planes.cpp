@@ -1,41 +1,15 @@
 // ctest labels: analytic
 // McGlamery's planes in uniform water: the midpoint rule by hand, and its convergence to the volume
 // integrator, which shares no integration code with it.
-#include "core/planes_integrator.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
-#include "tests/support/test_scene.h"
+#include "tests/support/planes_scene.h"
 
 namespace uw::test {
 namespace {
-
-constexpr double k_plane_z = 4;
-
-SceneDesc uniform_scene(const Point3& lamp) {
-    SceneDesc desc = pinhole_scene(16, 12);
-    desc.geometry = {plane_at_z(k_plane_z)};
-    desc.lamps = {isotropic_lamp(lamp, 50)};
-    return desc;
-}
-
-void use_kopelevich(SceneDesc& desc) {
-    desc.water.scattering.reset();
-    desc.water.small_ppm = 0.05;
-    desc.water.large_ppm = 0.6;
-}
-
-SceneDesc with_planes(SceneDesc desc, int count, double near, double far) {
-    desc.render.integrator = RenderDesc::Integrator::planes;
-    desc.render.planes.count = count;
-    desc.render.planes.near = near;
-    desc.render.planes.far = far;
-    return desc;
-}
 
 // Henyey-Greenstein with g = 0.9, written again.
 double hg(double cos_psi) {
@@ -128,84 +102,138 @@ TEST(Planes, EveryEndGetsTheWaterBeforeIt) {
 struct Case {
     std::string name;
     SceneDesc desc;
-    // Lowest and highest order of convergence; 2 for the midpoint rule.
-    double least_order = 1.9, greatest_order = 2.1;
+    bool smooth = true;  // the phase function
+    int finest = 512;    // number of slabs over 5 m
+    bool spot = false;
 };
-
-struct Difference {
-    double rms = 0, worst = 0;  // relative per pixel and band
-};
-
-// Between images of planes and volume, at the pixels that `wanted` marks.
-Difference difference(const std::vector<PixelResult>& planes,
-                      const std::vector<PixelResult>& volume, const std::vector<bool>& wanted) {
-    Difference d;
-    int count = 0;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-        if (!wanted[i]) continue;
-        for (std::size_t band = 0; band < 3; ++band) {
-            const double relative = planes[i].backscatter[band] / volume[i].backscatter[band] - 1;
-            d.worst = std::max(d.worst, std::abs(relative));
-            d.rms += relative * relative;
-            ++count;
-        }
-    }
-    d.rms = std::sqrt(d.rms / count);
-    return d;
-}
 
 class PlanesConverge : public ::testing::TestWithParam<Case> {};
 
 TEST_P(PlanesConverge, ToTheVolumeIntegratorWithTheSquareOfTheThickness) {
-    const std::vector<PixelResult> volume = TestScene(GetParam().desc).image();
+    const Case& c = GetParam();
+    const std::vector<PixelResult> volume = TestScene(c.desc).image();
     std::vector<std::vector<PixelResult>> planes;
     std::vector<Difference> differences;
-    const std::vector<bool> all(volume.size(), true);
-    for (const int count : {64, 128, 256, 512}) {
-        planes.push_back(TestScene(with_planes(GetParam().desc, count, 0, 5)).image());
-        differences.push_back(difference(planes.back(), volume, all));
+    for (const int part : {8, 4, 2, 1}) {
+        const int count = c.finest / part;
+        planes.push_back(TestScene(with_planes(c.desc, count, 0, 5)).image());
+        differences.push_back(difference(planes.back(), volume));
         std::cout << "N " << count << ": max " << differences.back().worst << ", RMS "
                   << differences.back().rms;
-        // Against the next one rather than the volume integrator: free of that one's own error.
-        if (planes.size() > 2) {
-            const std::size_t n = planes.size();
-            const double before = difference(planes[n - 3], planes[n - 2], all).rms;
-            const double after = difference(planes[n - 2], planes[n - 1], all).rms;
-            const double order = std::log2(before / after);
-            std::cout << ", order " << order;
-            EXPECT_GE(order, GetParam().least_order);
-            EXPECT_LE(order, GetParam().greatest_order);
-        }
+        if (planes.size() > 1)
+            std::cout << ", order "
+                      << std::log2(differences[planes.size() - 2].rms / differences.back().rms);
         std::cout << "\n";
     }
-    EXPECT_LE(differences.back().worst, 1e-3);
+    // Mean order over three doublings. Corners of tabulated phase functions and slabs cut by the
+    // surface fall at other places of the slabs with every N, so that single steps scatter about 2.
+    if (!c.spot) {
+        EXPECT_NEAR(std::log2(differences[0].rms / differences[3].rms) / 3, 2, 0.1);
+    }
+    // Between images of planes alone, free of the volume integrator's own error: about 1e-6, and up
+    // to 2e-4 where a ray passes a spot's soft edge.
+    const double before = difference(planes[1], planes[2]).rms;
+    const double after = difference(planes[2], planes[3]).rms;
+    std::cout << "order of the planes alone " << std::log2(before / after) << "\n";
+    if (c.smooth) {
+        EXPECT_NEAR(std::log2(before / after), 2, 0.1);
+    }
+    EXPECT_LE(differences.back().worst, 1e-3);  // the project's bound
 }
 
-SceneDesc ported(SceneDesc desc) {
-    desc.camera.port =
-        FlatPortDesc{glm::normalize(Vector3(0.05, -0.1, 1)), 0.02, 0.04, 1.0, 1.49, 1.334};
-    desc.camera.world_from_camera =
-        Affine::translation({0.3, 0.2, -0.1}) * Affine::rotation_xyz_degrees({3, -5, 10});
-    return desc;
-}
-
-SceneDesc kopelevich(SceneDesc desc) {
-    use_kopelevich(desc);
+// The second a spot whose soft edge crosses the view.
+SceneDesc two_lamps() {
+    SceneDesc desc = uniform_scene({1, -0.5, 0});
+    desc.lamps.push_back(isotropic_lamp({-1.2, 0.3, 0.4}, 80));
+    desc.lamps[1].name = "spot";
+    desc.lamps[1].direction = glm::normalize(Vector3(0.8, -0.2, 1));
+    desc.lamps[1].profile = {LampProfileDesc::Type::spot, 60, 30, 0};
     return desc;
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Lamps, PlanesConverge,
-    ::testing::Values(Case{"beside_hg", uniform_scene({1, -0.5, 0})},
-                      Case{"far_hg", uniform_scene({3, -2, 0.5})},
-                      Case{"behind_hg", uniform_scene({0.4, -0.3, -1.5})},
-                      Case{"close_hg", uniform_scene({0.3, 0, 0})},
-                      Case{"port_hg", ported(uniform_scene({1, -0.5, 0}))},
-                      Case{"beside_kopelevich", kopelevich(uniform_scene({1, -0.5, 0}))},
-                      Case{"far_kopelevich", kopelevich(uniform_scene({3, -2, 0.5}))},
-                      Case{"behind_kopelevich", kopelevich(uniform_scene({0.4, -0.3, -1.5}))},
-                      Case{"port_kopelevich", ported(kopelevich(uniform_scene({1, -0.5, 0})))}),
+    ::testing::Values(
+        Case{"beside_hg", uniform_scene({1, -0.5, 0})}, Case{"far_hg", uniform_scene({3, -2, 0.5})},
+        Case{"behind_hg", uniform_scene({0.4, -0.3, -1.5})},
+        Case{"in_view_hg", uniform_scene({0.31, 0.22, 2})},
+        Case{"port_hg", ported(uniform_scene({1, -0.5, 0}))},
+        Case{"spot_hg", two_lamps(), true, 512, true},
+        Case{"beside_kopelevich", kopelevich(uniform_scene({1, -0.5, 0})), false},
+        Case{"far_kopelevich", kopelevich(uniform_scene({3, -2, 0.5})), false},
+        Case{"behind_kopelevich", kopelevich(uniform_scene({0.4, -0.3, -1.5})), false},
+        Case{"port_kopelevich", ported(kopelevich(uniform_scene({1, -0.5, 0}))), false},
+        // The nearer the lamp, the thinner the slabs: about 1/12 of its distance.
+        Case{"at_30_cm_hg", uniform_scene({0.3, 0, 0})},
+        Case{"at_30_cm_kopelevich", kopelevich(uniform_scene({0.3, 0, 0})), false},
+        Case{"at_10_cm_hg", uniform_scene({0.1, 0, 0}), true, 1024},
+        Case{"at_3_cm_hg", uniform_scene({0.03, 0, 0}), true, 2048}),
     [](const auto& test) { return test.param.name; });
+
+// Whether the lamp lights some points of the pixel's water ray and others not, looked at 20 times
+// as finely as the slabs.
+bool has_shadow_edge(const TestScene& scene, int x, int y) {
+    const AssembledScene& parts = scene.assembled();
+    const std::optional<Ray> ray = parts.camera->water_ray(x + 0.5, y + 0.5);
+    const double end = parts.surfaces->hit_distance(*ray);
+    constexpr int k_points = 10000;
+    int dark = 0;
+    for (int i = 0; i < k_points; ++i)
+        dark +=
+            parts.surfaces->occluded(parts.lamps[0].position(), ray->at(end * (i + 0.5) / k_points))
+                ? 1
+                : 0;
+    return dark != 0 && dark != k_points;
+}
+
+struct ShadowDifference {
+    int lit = 0, dark = 0, edges = 0;  // pixels
+    double worst_lit = 0, worst_at_edges = 0;
+};
+
+ShadowDifference shadow_difference(const SceneDesc& desc) {
+    const TestScene volume(desc);
+    const TestScene planes(with_planes(desc, 512, 0, 5));
+    ShadowDifference d;
+    for (int y = 0; y < desc.camera.height; ++y) {
+        for (int x = 0; x < desc.camera.width; ++x) {
+            const Spectrum p = planes.pixel(x, y).backscatter, v = volume.pixel(x, y).backscatter;
+            if (v[1] == 0) {
+                EXPECT_EQ(p[1], 0);
+                ++d.dark;
+                continue;
+            }
+            const bool edge = has_shadow_edge(volume, x, y);
+            double& worst = edge ? d.worst_at_edges : d.worst_lit;
+            for (std::size_t band = 0; band < 3; ++band)
+                worst = std::max(worst, std::abs(p[band] / v[band] - 1));
+            ++(edge ? d.edges : d.lit);
+        }
+    }
+    std::cout << d.lit << " pixels lit, max " << d.worst_lit << "; " << d.dark << " dark; "
+              << d.edges << " with shadow edges, max " << d.worst_at_edges << "\n";
+    return d;
+}
+
+TEST(PlanesShadows, AgreeWithTheVolumeIntegratorAwayFromTheEdges) {
+    SceneDesc desc = ported(uniform_scene({1, -0.5, 0}));
+    desc.geometry.push_back(box({0.3, -0.2, 1.5}, {0.6, 0.1, 1.8}));
+    const ShadowDifference d = shadow_difference(desc);
+    EXPECT_GT(d.lit, 50);
+    EXPECT_GT(d.edges, 20);
+    EXPECT_LT(d.worst_lit, 1e-3);
+    // Each edge is off by up to half a slab, 5 mm of a ray of 4 m.
+    EXPECT_LT(d.worst_at_edges, 1e-2);
+}
+
+TEST(PlanesShadows, AreDarkWhereNoLightComes) {
+    SceneDesc desc = uniform_scene({1, -0.5, 0});
+    desc.geometry.push_back(box({0.75, -3, -0.5}, {0.8, 3, 1.2}));  // between lamp and camera
+    const ShadowDifference d = shadow_difference(desc);
+    EXPECT_EQ(d.lit, 0);
+    EXPECT_GT(d.dark, 50);
+    EXPECT_GT(d.edges, 20);
+}
 
 }  // namespace
 }  // namespace uw::test
