@@ -49,7 +49,7 @@ void add_render_options(CLI::App& render, RenderArguments& a, std::string& size,
         ->allow_extra_args(false);
     render.add_option("--size", size, "WxH: render at this size, intrinsics scaled with it");
     render.add_option("--crop", crop, "x0,y0,x1,y1: render these pixels only (x1, y1 excluded)");
-    render.add_option("--integrator", a.integrator, "volume | reference");
+    render.add_option("--integrator", a.integrator, "volume | planes | reference");
     render.add_option("--layers", a.layers, "all, or names separated by commas");
     render.add_option("--samples", a.samples, "surface samples per pixel")
         ->check(CLI::Range(1, 4096));

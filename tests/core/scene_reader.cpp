@@ -201,9 +201,12 @@ TEST_F(SceneReader, readsLampsAndRender) {
     EXPECT_TRUE(second.fixed_to_camera);
     EXPECT_EQ(scene.render.integrator, RenderDesc::Integrator::reference);
     EXPECT_EQ(scene.render.samples, 9);
-    ASSERT_EQ(scene.warnings.size(), 1U);
-    EXPECT_NE(scene.warnings[0].find("render.planes: only the planes integrator"),
-              std::string::npos);
+    EXPECT_EQ(scene.render.planes.count, 64);
+    EXPECT_EQ(scene.render.planes.near, 0.1);
+    EXPECT_EQ(scene.render.planes.far, 12);
+    EXPECT_NE(scene.render.planes.where.find("scene.yaml:39:11: render.planes"), std::string::npos)
+        << scene.render.planes.where;
+    EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST_F(SceneReader, fillsInDefaults) {
