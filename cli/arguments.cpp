@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <string_view>
 
 #include "cli/version.h"
 #include "core/error.h"
@@ -39,14 +42,18 @@ std::array<int, N> parse_integers(const std::string& text, char separator, const
     return values;
 }
 
+void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
+    command.add_option("--set", overrides, "key.path=value: replace a value of the scene file")
+        ->take_all()
+        ->type_size(1)
+        ->allow_extra_args(false);
+}
+
 void add_render_options(CLI::App& render, RenderArguments& a, std::string& size,
                         std::string& crop) {
     render.add_option("SCENE", a.scene, "scene file (docs/scene-file.md)")->required();
     render.add_option("-o,--output", a.output, "EXR to write; the preview goes beside it as PNG");
-    render.add_option("--set", a.overrides, "key.path=value: replace a value of the scene file")
-        ->take_all()
-        ->type_size(1)
-        ->allow_extra_args(false);
+    add_set_option(render, a.overrides);
     render.add_option("--size", size, "WxH: render at this size, intrinsics scaled with it");
     render.add_option("--crop", crop, "x0,y0,x1,y1: render these pixels only (x1, y1 excluded)");
     render.add_option("--integrator", a.integrator, "volume | planes | reference");
@@ -61,38 +68,139 @@ void add_render_options(CLI::App& render, RenderArguments& a, std::string& size,
     render.footer(k_render_examples);
 }
 
+constexpr const char* k_water_examples = R"(Examples:
+  uwvdb water                                    pure sea water
+  uwvdb water jerlov-II --bands 400:700:10 --csv out/jerlov-II
+  uwvdb water --set water.particles='{small: 1, large: 1}' --band 540 --svg vsf.svg
+  uwvdb water plume.yaml --set water.preset=jerlov-3C --json
+
+Prints a, b, c and what follows from them per band [1/m], then the volume scattering function by
+component. --set water.* needs no scene. docs/water.md explains the tables and names their sources.
+Presets: jerlov-IB, jerlov-II, jerlov-III, jerlov-1C, jerlov-3C, jerlov-5C.
+Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
+
+constexpr std::size_t k_most_bands = 2000;
+
+double parse_wavelength(std::string_view text, const std::string& whole) {
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || stop != end || !(value >= 10 && value <= 1e5))
+        throw UsageError(
+            fmt::format("--bands: expected nanometres as in 620,540,450 or "
+                        "400:700:10, found '{}'",
+                        whole));
+    return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (std::size_t start = 0; start <= text.size();) {
+        const std::size_t end = std::min(text.find(separator, start), text.size());
+        parts.push_back(text.substr(start, end - start));
+        start = end + 1;
+    }
+    return parts;
+}
+
+/// "620,540,450" or "first:last:step".
+std::vector<double> parse_bands(const std::string& text) {
+    std::vector<double> bands;
+    const std::vector<std::string_view> range = split(text, ':');
+    if (range.size() == 1) {
+        for (const std::string_view part : split(text, ','))
+            bands.push_back(parse_wavelength(part, text));
+    } else {
+        double step = 0;
+        if (range.size() == 3) {
+            const char* const end = range[2].data() + range[2].size();
+            if (const auto [stop, error] = std::from_chars(range[2].data(), end, step);
+                error != std::errc() || stop != end)
+                step = 0;
+        }
+        if (!(step > 0))
+            throw UsageError(
+                fmt::format("--bands: a range is first:last:step in nm, such as "
+                            "400:700:10, not '{}'",
+                            text));
+        const double first = parse_wavelength(range[0], text);
+        const double last = parse_wavelength(range[1], text);
+        const double count = std::floor((last - first) / step + 1e-9) + 1;
+        if (!(count >= 1 && count <= static_cast<double>(k_most_bands)))
+            throw UsageError(fmt::format("--bands {}: gives no or more than {} wavelengths", text,
+                                         k_most_bands));
+        for (int i = 0; i < static_cast<int>(count); ++i) bands.push_back(first + i * step);
+    }
+    std::vector<double> sorted = bands;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+        throw UsageError(fmt::format("--bands {}: a wavelength is given twice", text));
+    if (bands.size() > k_most_bands)
+        throw UsageError(fmt::format("--bands: more than {} wavelengths", k_most_bands));
+    return bands;
+}
+
+void add_water_options(CLI::App& water, WaterArguments& a, std::string& bands) {
+    water.add_option("PRESET|SCENE", a.subject,
+                     "jerlov-II, or a scene file; pure sea water if left out");
+    add_set_option(water, a.overrides);
+    water.add_option("--bands", bands, "nm: 620,540,450 or first:last:step; replaces the water's");
+    water.add_option("--band", a.band_nm, "nm: the scattering function at this band only");
+    water
+        .add_option("--csv", a.csv,
+                    "write PREFIX-coefficients.csv and PREFIX-vsf.csv, with finer angles")
+        ->type_name("PREFIX");
+    water.add_option("--svg", a.svg,
+                     "plot coefficients over wavelength, and scattering over angle");
+    water.add_flag("--json", a.json, "print everything as JSON instead of tables");
+    water.footer(k_water_examples);
+}
+
 }  // namespace
 
 Arguments parse_arguments(int argc, const char* const* argv) {
-    Arguments arguments;
-    std::string size, crop;
+    RenderArguments render;
+    WaterArguments water;
+    std::string size, crop, bands;
     bool version = false;
     CLI::App app("uwvdb: physically exact images of lamp-lit water, plumes and what is in them",
                  "uwvdb");
     app.add_flag("--version", version, "print the version and stop");
     app.footer(
         "Example:\n  uwvdb render assets/scenes/plume.yaml -o plume.exr\n\n"
-        "`uwvdb render --help` tells more.");
-    CLI::App* render = app.add_subcommand("render", "render a scene to a multi-layer EXR");
-    add_render_options(*render, arguments.render, size, crop);
+        "`uwvdb render --help` and `uwvdb water --help` tell more.");
+    CLI::App* const render_app =
+        app.add_subcommand("render", "render a scene to a multi-layer EXR");
+    add_render_options(*render_app, render, size, crop);
+    CLI::App* const water_app =
+        app.add_subcommand("water", "tables and plots of a water's optical properties");
+    add_water_options(*water_app, water, bands);
+    app.require_subcommand(0, 1);
+    const auto chosen = [&]() -> CLI::App* {
+        const std::vector<CLI::App*> parsed = app.get_subcommands();
+        return parsed.empty() ? nullptr : parsed.front();
+    };
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
-        arguments.message = render->parsed() ? render->help("uwvdb render") : app.help();
-        return arguments;
+        CLI::App* const command = chosen();
+        return MessageArguments{command ? command->help("uwvdb " + command->get_name())
+                                        : app.help()};
     } catch (const CLI::ParseError& error) {
-        throw UsageError(fmt::format("{}; see 'uwvdb render --help'", error.what()));
+        const CLI::App* const command = chosen();
+        throw UsageError(fmt::format("{}; see 'uwvdb {}--help'", error.what(),
+                                     command ? command->get_name() + " " : ""));
     }
-    if (version) {
-        arguments.message = "uwvdb " + program_version() + "\n";
-        return arguments;
+    if (version) return MessageArguments{"uwvdb " + program_version() + "\n"};
+    if (chosen() == water_app) {
+        if (!bands.empty()) water.bands_nm = parse_bands(bands);
+        return water;
     }
-    if (!render->parsed()) throw UsageError("which command? 'uwvdb render SCENE', or --help");
-    if (!size.empty())
-        arguments.render.size = parse_integers<2>(size, 'x', "--size", "WxH such as 640x360");
-    if (!crop.empty())
-        arguments.render.crop = parse_integers<4>(crop, ',', "--crop", "x0,y0,x1,y1");
-    return arguments;
+    if (chosen() != render_app)
+        throw UsageError("which command? 'uwvdb render SCENE', 'uwvdb water', or --help");
+    if (!size.empty()) render.size = parse_integers<2>(size, 'x', "--size", "WxH such as 640x360");
+    if (!crop.empty()) render.crop = parse_integers<4>(crop, ',', "--crop", "x0,y0,x1,y1");
+    return render;
 }
 
 }  // namespace uw

@@ -2,12 +2,15 @@
 
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
+#include <variant>
 
 #include "cli/arguments.h"
 #include "cli/exit_code.h"
 #include "cli/render_command.h"
 #include "cli/stop_signal.h"
+#include "cli/water_command.h"
 #include "core/error.h"
 
 namespace {
@@ -17,17 +20,25 @@ int fail(uw::ExitCode code, const char* what) {
     return code;
 }
 
+void run(const uw::MessageArguments& arguments) {
+    fmt::print("{}", arguments.text);
+}
+
+void run(const uw::RenderArguments& arguments) {
+    uw::install_stop_signal();
+    uw::run_render(arguments);
+}
+
+void run(const uw::WaterArguments& arguments) {
+    uw::run_water(arguments, std::cout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     try {
-        const uw::Arguments arguments = uw::parse_arguments(argc, argv);
-        if (!arguments.message.empty()) {
-            fmt::print("{}", arguments.message);
-            return uw::k_exit_done;
-        }
-        uw::install_stop_signal();
-        uw::run_render(arguments.render);
+        const uw::Arguments parsed = uw::parse_arguments(argc, argv);
+        std::visit([](const auto& arguments) { run(arguments); }, parsed);
         return uw::k_exit_done;
     } catch (const uw::UsageError& error) {
         return fail(uw::k_exit_usage, error.what());

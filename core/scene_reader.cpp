@@ -113,4 +113,15 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
     return desc;
 }
 
+WaterDesc read_water_overrides(const std::vector<std::string>& overrides) {
+    ConfigNode root = parse_yaml("water: {}", "water");
+    for (const std::string& text : overrides) apply_override(root, text);
+    ConfigMap map(ConfigValue(root, ""), {"water"}, "without a scene only water can be set");
+    std::vector<std::string> warnings;
+    SceneContext context{{}, 0, &warnings};
+    WaterDesc water = read_water(map.require("water", "give water.bands"), context);
+    water.where = "water";  // no file to point into
+    return water;
+}
+
 }  // namespace uw
