@@ -46,14 +46,6 @@ GeometryDesc plane_at_z(double z) {
     return plane;
 }
 
-GeometryDesc box(const Point3& min, const Point3& max) {
-    GeometryDesc desc;
-    desc.type = GeometryDesc::Type::box;
-    desc.min = min;
-    desc.max = max;
-    return desc;
-}
-
 TestScene::TestScene(const SceneDesc& desc, const LightFieldOptions& options)
     : scene_(assemble_scene(desc, [](const std::string&) {})) {
     if (desc.render.integrator == RenderDesc::Integrator::volume)
