@@ -156,11 +156,38 @@ void add_water_options(CLI::App& water, WaterArguments& a, std::string& bands) {
     water.footer(k_water_examples);
 }
 
+constexpr const char* k_validate_examples = R"(Examples:
+  uwvdb validate
+  uwvdb validate plume.yaml --report plume.html
+  uwvdb validate uniform.yaml --set water.absorption=0.1 --tolerance 0.002
+
+Computes a scene in every way there is and compares them, per component and band: McGlamery's
+planes and their limit, adaptive quadrature, the reference integrator and a VDB of constant value
+against the volume integrator in uniform water (grids replaced by their mean), and on the scene's
+own grids the volume against the reference integrator. Without a scene: a built-in suite.
+Exit codes: 0 all within the tolerance, 5 not; 1 internal fault, 2 wrong usage, 3 bad input,
+4 cannot read or write, 130 interrupted.)";
+
+void add_validate_options(CLI::App& validate, ValidateArguments& a) {
+    validate.add_option("SCENE", a.scene, "scene file; the built-in suite if left out");
+    add_set_option(validate, a.overrides);
+    validate.add_option("--report", a.report, "write one HTML page with pictures and plots");
+    validate
+        .add_option("--tolerance", a.tolerance,
+                    "largest relative difference allowed at a pixel; 0.001 if left out")
+        ->check(CLI::Range(1e-9, 1.0));
+    validate.add_option("--threads", a.threads, "threads to use; 0: all")
+        ->check(CLI::Range(0, 1024));
+    validate.add_flag("--quiet", a.quiet, "print failed checks and errors only");
+    validate.footer(k_validate_examples);
+}
+
 }  // namespace
 
 Arguments parse_arguments(int argc, const char* const* argv) {
     RenderArguments render;
     WaterArguments water;
+    ValidateArguments validate;
     std::string size, crop, bands;
     bool version = false;
     CLI::App app("uwvdb: physically exact images of lamp-lit water, plumes and what is in them",
@@ -168,13 +195,16 @@ Arguments parse_arguments(int argc, const char* const* argv) {
     app.add_flag("--version", version, "print the version and stop");
     app.footer(
         "Example:\n  uwvdb render assets/scenes/plume.yaml -o plume.exr\n\n"
-        "`uwvdb render --help` and `uwvdb water --help` tell more.");
+        "`uwvdb render --help`, `uwvdb water --help` and `uwvdb validate --help` tell more.");
     CLI::App* const render_app =
         app.add_subcommand("render", "render a scene to a multi-layer EXR");
     add_render_options(*render_app, render, size, crop);
     CLI::App* const water_app =
         app.add_subcommand("water", "tables and plots of a water's optical properties");
     add_water_options(*water_app, water, bands);
+    CLI::App* const validate_app =
+        app.add_subcommand("validate", "compare every way of computing a scene with the others");
+    add_validate_options(*validate_app, validate);
     app.require_subcommand(0, 1);
     const auto chosen = [&]() -> CLI::App* {
         const std::vector<CLI::App*> parsed = app.get_subcommands();
@@ -196,8 +226,10 @@ Arguments parse_arguments(int argc, const char* const* argv) {
         if (!bands.empty()) water.bands_nm = parse_bands(bands);
         return water;
     }
+    if (chosen() == validate_app) return validate;
     if (chosen() != render_app)
-        throw UsageError("which command? 'uwvdb render SCENE', 'uwvdb water', or --help");
+        throw UsageError(
+            "which command? 'uwvdb render SCENE', 'uwvdb water', 'uwvdb validate', or --help");
     if (!size.empty()) render.size = parse_integers<2>(size, 'x', "--size", "WxH such as 640x360");
     if (!crop.empty()) render.crop = parse_integers<4>(crop, ',', "--crop", "x0,y0,x1,y1");
     return render;
