@@ -27,7 +27,7 @@ constexpr const char* k_style =
     "border-bottom:1px solid #ddd;text-align:left}td.n{text-align:right;font-variant-numeric:"
     "tabular-nums}.failed{color:#c00;font-weight:bold}.passed{color:#070}figure{display:"
     "inline-block;margin:0 1em 1em 0;vertical-align:top}figcaption{font-size:13px}img{image-"
-    "rendering:pixelated;display:block;background:#000}";
+    "rendering:pixelated;display:block;border:1px solid #ccc}";
 
 std::string base64(const std::string& bytes) {
     static constexpr const char* k_digits =
