@@ -184,8 +184,7 @@ Arguments parse_arguments(int argc, const char* const* argv) {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
         CLI::App* const command = chosen();
-        return MessageArguments{command ? command->help("uwvdb " + command->get_name())
-                                        : app.help()};
+        return MessageArguments{command ? command->help("uwvdb") : app.help()};
     } catch (const CLI::ParseError& error) {
         const CLI::App* const command = chosen();
         throw UsageError(fmt::format("{}; see 'uwvdb {}--help'", error.what(),

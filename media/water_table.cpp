@@ -79,7 +79,10 @@ double backscatter_fraction(const PhaseFunction& phase) {
 }
 
 double mean_cosine(const PhaseFunction& phase) {
-    return moment(phase, 0, [](double psi) { return std::cos(psi); });
+    // What is left of symmetric scattering is the rounding of the sum, and means 0.
+    constexpr double k_rounding = 1e-13;
+    const double mean = moment(phase, 0, [](double psi) { return std::cos(psi); });
+    return std::abs(mean) < k_rounding ? 0 : mean;
 }
 
 double CoefficientTable::scattering(std::size_t i) const {
