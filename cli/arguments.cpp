@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <string_view>
 
+#include "cli/band_list.h"
 #include "cli/version.h"
 #include "core/error.h"
 
@@ -79,68 +77,7 @@ component. --set water.* needs no scene. docs/water.md explains the tables and n
 Presets: jerlov-IB, jerlov-II, jerlov-III, jerlov-1C, jerlov-3C, jerlov-5C.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
 
-constexpr std::size_t k_most_bands = 2000;
-
-double parse_wavelength(std::string_view text, const std::string& whole) {
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || stop != end || !(value >= 10 && value <= 1e5))
-        throw UsageError(
-            fmt::format("--bands: expected nanometres as in 620,540,450 or "
-                        "400:700:10, found '{}'",
-                        whole));
-    return value;
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-    std::vector<std::string_view> parts;
-    for (std::size_t start = 0; start <= text.size();) {
-        const std::size_t end = std::min(text.find(separator, start), text.size());
-        parts.push_back(text.substr(start, end - start));
-        start = end + 1;
-    }
-    return parts;
-}
-
-/// "620,540,450" or "first:last:step".
-std::vector<double> parse_bands(const std::string& text) {
-    std::vector<double> bands;
-    const std::vector<std::string_view> range = split(text, ':');
-    if (range.size() == 1) {
-        for (const std::string_view part : split(text, ','))
-            bands.push_back(parse_wavelength(part, text));
-    } else {
-        double step = 0;
-        if (range.size() == 3) {
-            const char* const end = range[2].data() + range[2].size();
-            if (const auto [stop, error] = std::from_chars(range[2].data(), end, step);
-                error != std::errc() || stop != end)
-                step = 0;
-        }
-        if (!(step > 0))
-            throw UsageError(
-                fmt::format("--bands: a range is first:last:step in nm, such as "
-                            "400:700:10, not '{}'",
-                            text));
-        const double first = parse_wavelength(range[0], text);
-        const double last = parse_wavelength(range[1], text);
-        const double count = std::floor((last - first) / step + 1e-9) + 1;
-        if (!(count >= 1 && count <= static_cast<double>(k_most_bands)))
-            throw UsageError(fmt::format("--bands {}: gives no or more than {} wavelengths", text,
-                                         k_most_bands));
-        for (int i = 0; i < static_cast<int>(count); ++i) bands.push_back(first + i * step);
-    }
-    std::vector<double> sorted = bands;
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-        throw UsageError(fmt::format("--bands {}: a wavelength is given twice", text));
-    if (bands.size() > k_most_bands)
-        throw UsageError(fmt::format("--bands: more than {} wavelengths", k_most_bands));
-    return bands;
-}
-
-void add_water_options(CLI::App& water, WaterArguments& a, std::string& bands) {
+void add_water_options(CLI::App& water, WaterArguments& a, std::optional<std::string>& bands) {
     water.add_option("PRESET|SCENE", a.subject,
                      "jerlov-II, or a scene file; pure sea water if left out");
     add_set_option(water, a.overrides);
@@ -161,7 +98,8 @@ void add_water_options(CLI::App& water, WaterArguments& a, std::string& bands) {
 Arguments parse_arguments(int argc, const char* const* argv) {
     RenderArguments render;
     WaterArguments water;
-    std::string size, crop, bands;
+    std::string size, crop;
+    std::optional<std::string> bands;
     bool version = false;
     CLI::App app("uwvdb: physically exact images of lamp-lit water, plumes and what is in them",
                  "uwvdb");
@@ -192,7 +130,7 @@ Arguments parse_arguments(int argc, const char* const* argv) {
     }
     if (version) return MessageArguments{"uwvdb " + program_version() + "\n"};
     if (chosen() == water_app) {
-        if (!bands.empty()) water.bands_nm = parse_bands(bands);
+        if (bands) water.bands_nm = parse_bands(*bands);
         return water;
     }
     if (chosen() != render_app)

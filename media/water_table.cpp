@@ -17,10 +17,10 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 
 /// 2 pi int p f sin over [from, pi]: Gauss-Legendre on panels between the phase function's
-/// breakpoints, each cut into eight.
+/// breakpoints, each cut into 32.
 template <class F>
 double moment(const PhaseFunction& phase, double from, F f) {
-    constexpr int k_panels = 8;
+    constexpr int k_panels = 32;
     std::vector<double> edges{from};
     for (const double at : phase.breakpoints())
         if (at > from) edges.push_back(at);
