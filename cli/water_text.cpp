@@ -20,7 +20,10 @@ class TextTable {
         columns_.push_back({std::move(name), std::move(unit)});
     }
     void add(std::size_t column, double value) {
-        columns_[column].push_back(std::isfinite(value) ? fmt::format("{:.4g}", value) : "-");
+        // Column 0 is the wavelength or angle, which has the digits it was given with.
+        const int digits = column == 0 ? 8 : 4;
+        columns_[column].push_back(std::isfinite(value) ? fmt::format("{:.{}g}", value, digits)
+                                                        : "-");
     }
     std::string text() const {
         std::string out;
