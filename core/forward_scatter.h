@@ -17,8 +17,10 @@ void check_forward_scatter(const ForwardScatterDesc& desc, std::span<const doubl
 
 /// The image plane the blur is seen on.
 struct ScatterPlane {
-    int width = 0, height = 0;        // pixels
-    double focal_x = 0, focal_y = 0;  // pixels per radian about the optical axis
+    int width = 0, height = 0;  // pixels
+    /// Pixels per radian between rays in the water, about the optical axis: the focal length, times
+    /// n_water / n_air behind a flat port.
+    double focal_x = 0, focal_y = 0;
 };
 
 /// Light of one band, and the water between it and the image plane, pixel by pixel and row by row.

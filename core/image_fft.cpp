@@ -17,48 +17,43 @@ std::mutex& planner_mutex() {
     return mutex;
 }
 
-fftw_plan plan_line(std::vector<double>& line, fftw_r2r_kind kind) {
+struct DestroyPlan {
+    void operator()(fftw_plan_s* plan) const {
+        const std::lock_guard lock(planner_mutex());
+        fftw_destroy_plan(plan);
+    }
+};
+using Plan = std::unique_ptr<fftw_plan_s, DestroyPlan>;
+
+Plan plan_line(int length, fftw_r2r_kind kind) {
+    std::vector<double> line(static_cast<std::size_t>(length));
+    const std::lock_guard lock(planner_mutex());
     // Estimated, not measured: the plan, and so the rounding, is the same in every run. Lines of an
     // image are not aligned alike.
-    fftw_plan plan = fftw_plan_r2r_1d(static_cast<int>(line.size()), line.data(), line.data(), kind,
-                                      FFTW_ESTIMATE | FFTW_UNALIGNED);
-    if (plan == nullptr) throw std::bad_alloc();
+    Plan plan(
+        fftw_plan_r2r_1d(length, line.data(), line.data(), kind, FFTW_ESTIMATE | FFTW_UNALIGNED));
+    if (!plan) throw std::bad_alloc();
     return plan;
 }
 
 }  // namespace
 
 struct CosineTransform::Plans {
-    fftw_plan forward = nullptr;
-    fftw_plan inverse = nullptr;
-
-    Plans() = default;
-    Plans(const Plans&) = delete;
-    Plans& operator=(const Plans&) = delete;
-    ~Plans() {
-        const std::lock_guard lock(planner_mutex());
-        fftw_destroy_plan(forward);
-        fftw_destroy_plan(inverse);
-    }
+    Plan forward, inverse;
 };
 
 CosineTransform::CosineTransform(int length) : length_(length) {
     if (length < 1) throw std::invalid_argument("a cosine transform needs at least one value");
-    plans_ = std::make_unique<Plans>();
-    std::vector<double> line(static_cast<std::size_t>(length));
-    const std::lock_guard lock(planner_mutex());
-    plans_->forward = plan_line(line, FFTW_REDFT10);
-    plans_->inverse = plan_line(line, FFTW_REDFT01);
+    plans_ = std::make_shared<Plans>(
+        Plans{plan_line(length, FFTW_REDFT10), plan_line(length, FFTW_REDFT01)});
 }
 
-CosineTransform::~CosineTransform() = default;
-
 void CosineTransform::forward(double* line) const {
-    fftw_execute_r2r(plans_->forward, line, line);
+    fftw_execute_r2r(plans_->forward.get(), line, line);
 }
 
 void CosineTransform::inverse(double* line) const {
-    fftw_execute_r2r(plans_->inverse, line, line);
+    fftw_execute_r2r(plans_->inverse.get(), line, line);
 }
 
 }  // namespace uw

@@ -12,9 +12,6 @@ class CosineTransform {
   public:
     /// Plans lines of `length` >= 1 values.
     explicit CosineTransform(int length);
-    ~CosineTransform();
-    CosineTransform(const CosineTransform&) = delete;
-    CosineTransform& operator=(const CosineTransform&) = delete;
 
     int length() const { return length_; }
 
@@ -28,7 +25,7 @@ class CosineTransform {
   private:
     struct Plans;
     int length_;
-    std::unique_ptr<Plans> plans_;
+    std::shared_ptr<const Plans> plans_;
 };
 
 }  // namespace uw

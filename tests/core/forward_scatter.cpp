@@ -5,67 +5,17 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <random>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "tests/support/blur_shares.h"
+#include "tests/support/forward_scatter_cases.h"
 
 namespace uw {
 namespace {
 
 using Shape = ForwardScatterDesc::Shape;
-using Image = std::vector<float>;
-
-constexpr double k_c = 0.4;      // 1/m
-constexpr double k_focal = 400;  // pixels
-const ForwardScatterDesc k_desc{.K = 1.5, .G = 0.1, .B = 0.01, .shape = Shape::exponential};
-
-ForwardScatterDesc with_shape(Shape shape) {
-    ForwardScatterDesc desc = k_desc;
-    desc.shape = shape;
-    return desc;
-}
-
-// s of the kernel in pixels for a range of 1 m.
-double width_per_metre(const ForwardScatterDesc& desc) {
-    return k_focal * desc.B / (2 * std::numbers::pi);
-}
-
-double energy(const ForwardScatterDesc& desc, double range) {
-    return desc.K * (std::exp(-desc.G * range) - std::exp(-k_c * range));
-}
-
-std::size_t pixels(const ScatterPlane& plane) {
-    return static_cast<std::size_t>(plane.width) * static_cast<std::size_t>(plane.height);
-}
-
-double sum(const Image& image) {
-    double total = 0;
-    for (const float value : image) total += static_cast<double>(value);
-    return total;
-}
-
-// A dark scene with lights of many strengths at ranges between two bounds, or 0.
-Image random_image(std::size_t size, double low, double high, unsigned seed) {
-    std::mt19937 generator(seed);
-    Image image(size);
-    for (float& value : image) {
-        const double unit = static_cast<double>(generator()) / 4294967296.0;
-        value = static_cast<float>(low + (high - low) * unit * unit * unit);
-    }
-    return image;
-}
-
-Image scattered(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Image& light,
-                const Image& range) {
-    ForwardScatter scatter(desc, plane);
-    scatter.add({light, range, {}, k_c});
-    Image added(pixels(plane), -1.0F);
-    scatter.finish(added);
-    return added;
-}
+using namespace test::forward_scatter;
 
 class ForwardScatterShapes : public testing::TestWithParam<Shape> {};
 
@@ -75,43 +25,6 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ForwardScatterShapes,
                              return instance.param == Shape::exponential ? "exponential"
                                                                          : "gaussian";
                          });
-
-// The sum over source pixels of their own kernels, taken directly: a depth edge between a near
-// slope and a far one. The ladder of widths moves 0.25 % of the light at most, which shows most in
-// dark pixels beside bright ones; over the image it averages out.
-TEST_P(ForwardScatterShapes, DepthEdgeIsTheDirectSum) {
-    const ForwardScatterDesc desc = with_shape(GetParam());
-    const ScatterPlane plane{48, 48, k_focal, k_focal};
-    const Image light = random_image(pixels(plane), 0, 10, 1);
-    Image range(pixels(plane));
-    std::vector<double> truth(pixels(plane));
-    for (int x0 = 0; x0 < 48; ++x0) {
-        const float metres =
-            x0 < 24 ? 0.5F + 0.03F * static_cast<float>(x0) : 3.0F + 0.1F * static_cast<float>(x0);
-        const double s = width_per_metre(desc) * static_cast<double>(metres);
-        const test::BlurShares shares(GetParam(), s, 300);
-        for (int y0 = 0; y0 < 48; ++y0) {
-            const auto from = static_cast<std::size_t>(y0 * 48 + x0);
-            range[from] = metres;
-            const double given =
-                energy(desc, static_cast<double>(metres)) * static_cast<double>(light[from]);
-            for (int y = 0; y < 48; ++y)
-                for (int x = 0; x < 48; ++x)
-                    truth[static_cast<std::size_t>(y * 48 + x)] +=
-                        given * shares.mirrored(x0, y0, x, y, 48, 48);
-        }
-    }
-    const Image added = scattered(desc, plane, light, range);
-    double squares = 0, difference = 0, worst = 0;
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-        const double off = static_cast<double>(added[i]) - truth[i];
-        squares += truth[i] * truth[i];
-        difference += off * off;
-        worst = std::max(worst, std::abs(off) / truth[i]);
-    }
-    EXPECT_LT(std::sqrt(difference / squares), 1e-3);
-    EXPECT_LT(worst, 5e-3);
-}
 
 TEST_P(ForwardScatterShapes, EnergyIsTheSourcesTimesTheirFactors) {
     const ScatterPlane plane{97, 60, k_focal, k_focal};
