@@ -133,8 +133,16 @@ class SceneTrial {
             {"direct", &MethodImage::direct}, {"backscatter", &MethodImage::backscatter}};
         for (const auto& [name, component] : components) {
             for (std::size_t band = 0; band < result_.bands_nm.size(); ++band) {
-                Check check{
-                    left, right, name, band, where == k_all, count, 0, 0, share * options_.tolerance};
+                Check check{left,
+                            right,
+                            name,
+                            band,
+                            where == k_all,
+                            count,
+                            0,
+                            0,
+                            share * options_.tolerance,
+                            3 * options_.tolerance};
                 check.largest = largest_difference(a.*component, b.*component, counted, band);
                 check.rms = rms_difference(a.*component, b.*component, band);
                 result_.checks.push_back(check);
