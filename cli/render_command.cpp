@@ -80,12 +80,17 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
         {"uwvdb/integrator", std::string(reference ? "reference" : "volume")},
         {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
         {"uwvdb/seed", std::string("none: deterministic")},
+        {"uwvdb/rgb_quantity", SensorModel(scene.desc).description()},
         {"uwvdb/units", std::string("radiance W m^-2 sr^-1, irradiance W m^-2, metres")},
         {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
         {"uwvdb/water_absorption_per_m", band_list(a)},
         {"uwvdb/water_scattering_per_m", band_list(b)},
         {"uwvdb/water_attenuation_per_m", band_list(c)},
         {"uwvdb/phase_functions", phases}};
+    if (const auto& port = scene.desc.camera.port) {
+        m["uwvdb/port_fresnel"] = std::string(port->fresnel ? "on" : "off");
+        m["uwvdb/port_radiance_in"] = std::string(port->radiance_in_air ? "air" : "water");
+    }
     if (const auto& lens = scene.desc.camera.lens) {
         m["uwvdb/lens_f_number"] = lens->f_number;
         m["uwvdb/lens_focal_length_m"] = lens->focal_length;
@@ -113,8 +118,8 @@ PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
 void render(const AssembledScene& scene, const LightFields& light_fields, const LayerPlan& plan,
             const BandColour& colour, bool quiet, Film& film) {
     const auto integrator = make_integrator(scene, light_fields);
-    const PixelRenderer renderer(*scene.camera, scene.lit(), *integrator,
-                                 scene.desc.render.samples);
+    const PixelRenderer renderer(*scene.camera, scene.lit(), *integrator, scene.desc.render.samples,
+                                 SensorModel(scene.desc));
     const double megapixels = 1e-6 * film.window().width() * film.window().height();
     Progress progress("render", "Mpx", megapixels, quiet);
     render_film(renderer, plan, colour, film, [&](double fraction) {
@@ -165,7 +170,7 @@ void write_images(const std::filesystem::path& output, const Film& film, ImageMe
     if (quiet) return;
     fmt::print(stderr, "wrote {}\n", output.string());
     if (exposure)
-        fmt::print(stderr, "wrote {} (preview, radiance x {:.4g})\n", preview.string(), *exposure);
+        fmt::print(stderr, "wrote {} (preview, R G B x {:.4g})\n", preview.string(), *exposure);
     else
         fmt::print(stderr, "wrote {} (preview, black)\n", preview.string());
 }

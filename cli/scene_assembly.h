@@ -40,7 +40,7 @@ std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledSc
                                                                const LightFieldOptions& options);
 
 /// The integrator that the scene asks for, on light splatted before; `light_fields` may be empty
-/// for the reference integrator.
+/// for the reference integrator. Weighted by distance where the output is the paper's.
 std::unique_ptr<Integrator> make_integrator(
     const AssembledScene& scene,
     const std::vector<std::shared_ptr<const LampLightField>>& light_fields);

@@ -4,12 +4,14 @@
 
 #include "core/integrator.h"
 #include "core/lit_scene.h"
+#include "core/sensor.h"
 #include "core/water_ray.h"
 
 namespace uw {
 
 /// Everything one pixel holds. Radiometric values are means over the pixel's samples; ground truth
-/// (`hit` and the depths) belongs to the pixel's centre. W m^-2 sr^-1, W m^-2, metres, world space.
+/// (`hit` and the depths) belongs to the pixel's centre. W m^-2, metres, world space. Radiance
+/// (direct, backscatter, clean, lamps) is in W m^-2 sr^-1, or what the sensor model makes of it.
 struct PixelResult {
     double alpha = 0;  // share of samples whose ray enters the water
     Spectrum direct{};
@@ -30,8 +32,10 @@ struct PixelResult {
 class PixelRenderer {
   public:
     /// All references outlive the renderer. `samples` >= 1 per pixel; one lies at the centre.
+    /// `sensor` says what the image holds; a pixel's light all has the same factor but for what
+    /// its description states.
     PixelRenderer(const RaySource& rays, const LitScene& scene, const Integrator& integrator,
-                  int samples);
+                  int samples, const SensorModel& sensor = {});
 
     int lamp_count() const { return static_cast<int>(scene_.lamps->size()); }
     int band_count() const { return scene_.medium->band_count(); }
@@ -45,12 +49,15 @@ class PixelRenderer {
     void add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
                             PixelResult& result) const;
     void add_water(const Ray& ray, Workspace& w, PixelResult& result) const;
+    // Turns the pixel's radiance into what the sensor model says; its ray is that at (x, y).
+    void expose(double x, double y, PixelResult& result) const;
     void record_ground_truth(const Ray& center, PixelResult& result) const;
 
     const RaySource& rays_;
     LitScene scene_;
     const Integrator& integrator_;
     int samples_;
+    SensorModel sensor_;
 };
 
 }  // namespace uw

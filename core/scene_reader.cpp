@@ -53,7 +53,7 @@ void check_version(const ConfigValue& scene) {
 }  // namespace
 
 RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value, {"integrator", "planes", "samples"}, "write {samples: 4}");
+    ConfigMap map(value, {"integrator", "output", "planes", "samples"}, "write {samples: 4}");
     RenderDesc render;
     if (const auto entry = map.find("integrator")) {
         constexpr std::array<std::string_view, 3> k_words{"volume", "reference", "planes"};
@@ -61,6 +61,14 @@ RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
         if (index == 2) entry->fail("'planes' is not supported yet; use volume or reference");
         render.integrator =
             index == 0 ? RenderDesc::Integrator::volume : RenderDesc::Integrator::reference;
+    }
+    if (const auto entry = map.find("output")) {
+        constexpr std::array<std::pair<std::string_view, RenderDesc::Output>, 3> k_outputs{
+            {{"radiance", RenderDesc::Output::radiance},
+             {"sensor_irradiance", RenderDesc::Output::sensor_irradiance},
+             {"paper", RenderDesc::Output::paper}}};
+        render.output = entry->choice(k_outputs);
+        render.output_where = entry->location();
     }
     if (const auto entry = map.find("planes")) {
         constexpr auto k_example = "write {count: 64, near: 0.1, far: 12}";
@@ -103,6 +111,11 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
     if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
+    if (desc.render.output != RenderDesc::Output::radiance && !desc.camera.lens) {
+        throw InputError(desc.render.output_where +
+                         ": needs the camera's lens; give camera.lens: {f_number: 2.8, "
+                         "focal_length: 0.0085}, or write output: radiance");
+    }
     if (desc.lamps.empty()) {
         context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
     }

@@ -60,7 +60,7 @@ TestScene::TestScene(const SceneDesc& desc, const LightFieldOptions& options)
         light_fields_ = splat_lamps(scene_, options);
     integrator_ = make_integrator(scene_, light_fields_);
     renderer_ = std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
-                                                desc.render.samples);
+                                                desc.render.samples, SensorModel(desc));
 }
 
 PixelResult TestScene::pixel(int x, int y) const {
