@@ -73,20 +73,20 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
     for (const auto& phase : medium.phase_functions)
         phases += (phases.empty() ? "" : "; ") + phase->description();
     const bool reference = scene.desc.render.integrator == RenderDesc::Integrator::reference;
-    ImageMetadata m{
-        {"software", "uwvdb " + program_version()},
-        {"uwvdb/scene", scene.desc.file.filename().string()},
-        {"uwvdb/scene_hash", scene.desc.hash},
-        {"uwvdb/integrator", std::string(reference ? "reference" : "volume")},
-        {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
-        {"uwvdb/seed", std::string("none: deterministic")},
-        {"uwvdb/rgb_quantity", SensorModel(scene.desc).description()},
-        {"uwvdb/units", std::string("radiance W m^-2 sr^-1, irradiance W m^-2, metres")},
-        {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
-        {"uwvdb/water_absorption_per_m", band_list(a)},
-        {"uwvdb/water_scattering_per_m", band_list(b)},
-        {"uwvdb/water_attenuation_per_m", band_list(c)},
-        {"uwvdb/phase_functions", phases}};
+    const std::string quantity = SensorModel(scene.desc).description();
+    ImageMetadata m{{"software", "uwvdb " + program_version()},
+                    {"uwvdb/scene", scene.desc.file.filename().string()},
+                    {"uwvdb/scene_hash", scene.desc.hash},
+                    {"uwvdb/integrator", std::string(reference ? "reference" : "volume")},
+                    {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
+                    {"uwvdb/seed", std::string("none: deterministic")},
+                    {"uwvdb/rgb_quantity", quantity},
+                    {"uwvdb/units", quantity + ", irradiance W m^-2, metres"},
+                    {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
+                    {"uwvdb/water_absorption_per_m", band_list(a)},
+                    {"uwvdb/water_scattering_per_m", band_list(b)},
+                    {"uwvdb/water_attenuation_per_m", band_list(c)},
+                    {"uwvdb/phase_functions", phases}};
     if (const auto& port = scene.desc.camera.port) {
         m["uwvdb/port_fresnel"] = std::string(port->fresnel ? "on" : "off");
         m["uwvdb/port_radiance_in"] = std::string(port->radiance_in_air ? "air" : "water");

@@ -1,7 +1,6 @@
 #include "core/focus_weighted_integrator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/sensor.h"
@@ -10,18 +9,19 @@ namespace uw {
 
 namespace {
 
-constexpr int k_slices_per_octave = 4;
-// Behind this many focal lengths the weight is 1 to 1e-3; what changes there is left to one slice.
-constexpr double k_last_face = 2000;
+// Slices between F and where the weight is 1 to 1e-3. Equal steps of sqrt(F / Z) are fine near F,
+// where the weight is steep, and coarse where it hardly changes.
+constexpr int k_slices = 64;
 
 }  // namespace
 
 FocusWeightedIntegrator::FocusWeightedIntegrator(std::unique_ptr<Integrator> integrator,
                                                  double focal_length)
     : integrator_(std::move(integrator)), focal_length_(focal_length) {
-    const int count = static_cast<int>(k_slices_per_octave * std::log2(k_last_face));
-    for (int i = 0; i <= count; ++i)
-        faces_.push_back(focal_length * std::exp2(static_cast<double>(i) / k_slices_per_octave));
+    for (int i = k_slices; i > 0; --i) {
+        const double ratio = static_cast<double>(k_slices) / i;
+        faces_.push_back(focal_length * ratio * ratio);
+    }
 }
 
 void FocusWeightedIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,

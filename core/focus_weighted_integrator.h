@@ -8,8 +8,8 @@ namespace uw {
 
 /// Another integrator's in-scatter with each stretch of water weighted by ((Z - F)/Z)^2, Z its
 /// distance along the ray: the camera's part of equation (18) of Sedlazeck and Koch 2011 that
-/// depends on the slab. It asks the other for its in-scatter in slices that grow by a quarter of an
-/// octave from F on, whatever slabs it sums itself, and weights each by its middle: exact to 0.1 %.
+/// depends on the slab. It asks the other for its in-scatter in slices that grow from F on,
+/// whatever slabs it sums itself, and weights each by its middle: exact to 0.1 %.
 class FocusWeightedIntegrator final : public Integrator {
   public:
     /// `focal_length` F [m], > 0.

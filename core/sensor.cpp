@@ -32,12 +32,11 @@ std::string SensorModel::description() const {
         case RenderDesc::Output::radiance:
             break;
         case RenderDesc::Output::sensor_irradiance:
-            return "sensor irradiance, W m^-2";
+            return "sensor irradiance W m^-2";
         case RenderDesc::Output::paper:
-            return "sensor irradiance as printed by Sedlazeck and Koch 2011 (4 N for 4 N^2), "
-                   "W m^-2";
+            return "sensor irradiance as in Sedlazeck and Koch 2011, 4 N for 4 N^2, W m^-2";
     }
-    return "radiance, W m^-2 sr^-1";
+    return "radiance W m^-2 sr^-1";
 }
 
 }  // namespace uw

@@ -38,7 +38,7 @@ class SensorModel {
     /// has the same factor by its own distance from FocusWeightedIntegrator.
     double surface_factor(double path) const;
 
-    /// The quantity and its unit, for image headers: "radiance, W m^-2 sr^-1".
+    /// The quantity and its unit, for image headers: "radiance W m^-2 sr^-1".
     std::string description() const;
 
   private:
