@@ -9,6 +9,10 @@
 
 namespace uw {
 
+/// A lamp counts as a sphere this large: no in-scatter is gathered inside, where 1/r^2 of a point
+/// would grow without bound [m].
+inline constexpr double k_lamp_radius = 1e-3;
+
 /// A point-like lamp in the world: radiant intensity I(w, lambda) = intensity * profile(w) [W/sr].
 class Lamp {
   public:

@@ -1,12 +1,12 @@
 #include "core/layers.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
 #include <set>
 
+#include "core/config_text.h"
 #include "core/error.h"
 
 namespace uw {
@@ -21,6 +21,7 @@ constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {"total", ""},
     {"direct", ""},
     {"backscatter", ""},
+    {"backscatter_first", ""},
     {"irradiance", ""},
     {"lit", "V"},
     {"clean", ""},
@@ -34,8 +35,8 @@ constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {"id", "V"},
 }};
 
-constexpr std::array<std::string_view, 5> k_not_supported{"forward", "backscatter_first", "flow",
-                                                          "flow_back", "flow_occluded"};
+constexpr std::array<std::string_view, 4> k_not_supported{"forward", "flow", "flow_back",
+                                                          "flow_occluded"};
 
 constexpr std::string_view k_lamp_prefix = "lamp.";
 /// EXR allows 255 bytes for "lamp.<name>.<band>nm".
@@ -68,13 +69,11 @@ std::optional<std::size_t> find_layer(std::string_view name) {
     return static_cast<std::size_t>(found - k_layers.begin());
 }
 
-std::string layer_list() {
-    std::string list;
-    for (const LayerKind& layer : k_layers) {
-        if (!list.empty()) list += ", ";
-        list += layer.name;
-    }
-    return list;
+/// Every word that --layers takes, for the message about one that it does not.
+std::string mend_of(std::string_view item) {
+    std::vector<std::string_view> words{"all", "default", "lamps", "lamp.<name>"};
+    for (const LayerKind& layer : k_layers) words.push_back(layer.name);
+    return suggestion(item, words);
 }
 
 /// A lamp becomes part of a channel's name: readers end it at NUL, terminals break at controls.
@@ -113,9 +112,8 @@ void LayerPlan::Selection::add(std::string_view item, std::span<const std::strin
     } else if (std::ranges::find(k_not_supported, item) != k_not_supported.end()) {
         throw UsageError(fmt::format("--layers: {}: not supported yet; leave it out", item));
     } else {
-        throw UsageError(fmt::format(
-            "--layers: '{}': unknown layer; use all, default, lamps, lamp.<name> or any of: {}",
-            item, layer_list()));
+        throw UsageError(
+            fmt::format("--layers: '{}': unknown layer; {}", printable(item), mend_of(item)));
     }
 }
 
@@ -123,10 +121,10 @@ void LayerPlan::Selection::add_lamp(std::string_view name,
                                     std::span<const std::string> lamp_names) {
     const auto found = std::ranges::find(lamp_names, name);
     if (found == lamp_names.end()) {
-        throw UsageError(fmt::format(
-            "--layers: lamp.{}: the scene has no lamp of that name; {}", name,
-            lamp_names.empty() ? "it has no lamps"
-                               : fmt::format("use one of: {}", fmt::join(lamp_names, ", "))));
+        const std::vector<std::string_view> names(lamp_names.begin(), lamp_names.end());
+        throw UsageError(fmt::format("--layers: lamp.{}: the scene has no lamp of that name; {}",
+                                     printable(name),
+                                     names.empty() ? "it has no lamps" : suggestion(name, names)));
     }
     lamps[static_cast<std::size_t>(found - lamp_names.begin())] = true;
 }

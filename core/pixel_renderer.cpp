@@ -39,15 +39,37 @@ ImageOffset sample_offset(int i, int count) {
 struct PixelRenderer::Workspace {
     std::vector<double> distances;  // to the surface, of each sample that entered the water
     std::vector<double> ends;
-    std::vector<double> shares;  // of the samples that end there
+    std::vector<double> shares;  // of the samples that end there; 0 at faces of the first slab
     SurfaceLight light;
     InScatter in_scatter;
     int hits = 0;
+
+    // Makes `distance` one of the ends unless it lies behind them all.
+    void add_end(double distance) {
+        const auto at = std::lower_bound(ends.begin(), ends.end(), distance);
+        if (at == ends.end() || *at == distance) return;
+        shares.insert(shares.begin() + (at - ends.begin()), 0.0);
+        ends.insert(at, distance);
+    }
+    // In-scatter by lamp `lamp` up to `distance`, one of the ends, or to end `last` if it is
+    // nearer.
+    Spectrum in_scatter_up_to(double distance, std::size_t last, std::size_t lamp) const {
+        if (distance <= 0) return {};
+        const auto at = std::lower_bound(ends.begin(), ends.end(), distance) - ends.begin();
+        return in_scatter.at(std::min(last, static_cast<std::size_t>(at)), lamp);
+    }
 };
 
 PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
-                             const Integrator& integrator, int samples, const SensorModel& sensor)
-    : rays_(rays), scene_(scene), integrator_(integrator), samples_(samples), sensor_(sensor) {}
+                             const Integrator& integrator, int samples, const Slabs& slabs,
+                             const SensorModel& sensor)
+    : rays_(rays),
+      scene_(scene),
+      integrator_(integrator),
+      samples_(samples),
+      slabs_(slabs),
+      sensor_(sensor),
+      camera_from_world_(rays.world_from_camera().inverse()) {}
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {
     thread_local Workspace w;
@@ -126,13 +148,19 @@ void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result)
         w.shares.push_back(count / samples_);
         first = last;
     }
+    const Interval first = first_slab(ray);
+    for (const double face : {first.begin, first.end})
+        if (face > 0) w.add_end(face);
     integrator_.in_scatter(ray, w.ends, w.in_scatter);
     for (std::size_t end = 0; end < w.ends.size(); ++end) {
         for (std::size_t j = 0; j < result.lamps.size(); ++j) {
+            const Spectrum before = w.in_scatter_up_to(first.begin, end, j);
+            const Spectrum behind = w.in_scatter_up_to(first.end, end, j);
             for (std::size_t b = 0; b < static_cast<std::size_t>(band_count()); ++b) {
                 const double radiance = w.shares[end] * w.in_scatter.at(end, j)[b];
                 result.backscatter[b] += radiance;
                 result.lamps[j][b] += radiance;
+                result.backscatter_first[b] += w.shares[end] * (behind[b] - before[b]);
             }
         }
     }
@@ -146,15 +174,21 @@ void PixelRenderer::expose(double x, double y, PixelResult& result) const {
     };
     scale(result.direct);
     scale(result.backscatter);
+    scale(result.backscatter_first);
     scale(result.clean);
     for (Spectrum& lamp : result.lamps) scale(lamp);
+}
+
+Interval PixelRenderer::first_slab(const Ray& ray) const {
+    const RayDepth depth(camera_from_world_, ray);
+    if (depth.cosine() <= 0) return {};
+    return {depth.distance(slabs_.boundary(0)), depth.distance(slabs_.boundary(1))};
 }
 
 void PixelRenderer::record_ground_truth(const Ray& center, PixelResult& result) const {
     result.has_hit = scene_.surfaces->closest_hit(center, k_far, result.hit);
     if (!result.has_hit) return;
-    const Affine camera_from_world = rays_.world_from_camera().inverse();
-    const Point3 in_camera = camera_from_world * result.hit.position;
+    const Point3 in_camera = camera_from_world_ * result.hit.position;
     result.depth_z = in_camera.z;
     result.range = glm::length(from_origin(in_camera));
     result.path = result.hit.distance;

@@ -5,6 +5,7 @@
 #include "core/integrator.h"
 #include "core/lit_scene.h"
 #include "core/sensor.h"
+#include "core/slabs.h"
 #include "core/water_ray.h"
 
 namespace uw {
@@ -16,12 +17,13 @@ struct PixelResult {
     double alpha = 0;  // share of samples whose ray enters the water
     Spectrum direct{};
     Spectrum backscatter{};
-    Spectrum irradiance{};        // on the surface, 0 where there is none
-    Spectrum clean{};             // radiance of the surface without water
-    Spectrum transmittance{};     // surface to port, mean over samples that meet a surface
-    double lit = 0;               // mean fraction of lamps that see the surface
-    std::vector<Spectrum> lamps;  // radiance due to each lamp: direct + backscatter
-    bool has_hit = false;         // whether the centre's ray meets a surface
+    Spectrum backscatter_first{};  // of the first slab
+    Spectrum irradiance{};         // on the surface, 0 where there is none
+    Spectrum clean{};              // radiance of the surface without water
+    Spectrum transmittance{};      // surface to port, mean over samples that meet a surface
+    double lit = 0;                // mean fraction of lamps that see the surface
+    std::vector<Spectrum> lamps;   // radiance due to each lamp: direct + backscatter
+    bool has_hit = false;          // whether the centre's ray meets a surface
     SurfaceHit hit;
     double depth_z = 0;  // camera-frame z of the hit
     double range = 0;    // from the camera's centre to the hit
@@ -31,11 +33,11 @@ struct PixelResult {
 /// Turns integrators into pixels: many samples for the edges of surfaces, one ray for the water.
 class PixelRenderer {
   public:
-    /// All references outlive the renderer. `samples` >= 1 per pixel; one lies at the centre.
-    /// `sensor` says what the image holds; a pixel's light all has the same factor but for what
-    /// its description states.
+    /// All references outlive the renderer. `samples` >= 1 per pixel; one lies at the centre. The
+    /// first of `slabs` is the water of `backscatter_first`. `sensor` says what the image holds:
+    /// the radiance itself if left out.
     PixelRenderer(const RaySource& rays, const LitScene& scene, const Integrator& integrator,
-                  int samples, const SensorModel& sensor = {});
+                  int samples, const Slabs& slabs, const SensorModel& sensor = {});
 
     int lamp_count() const { return static_cast<int>(scene_.lamps->size()); }
     int band_count() const { return scene_.medium->band_count(); }
@@ -49,6 +51,8 @@ class PixelRenderer {
     void add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
                             PixelResult& result) const;
     void add_water(const Ray& ray, Workspace& w, PixelResult& result) const;
+    // The first slab's stretch of `ray`; it may begin before the ray does.
+    Interval first_slab(const Ray& ray) const;
     // Turns the pixel's radiance into what the sensor model says; its ray is that at (x, y).
     void expose(double x, double y, PixelResult& result) const;
     void record_ground_truth(const Ray& center, PixelResult& result) const;
@@ -57,7 +61,9 @@ class PixelRenderer {
     LitScene scene_;
     const Integrator& integrator_;
     int samples_;
+    Slabs slabs_;
     SensorModel sensor_;
+    Affine camera_from_world_;
 };
 
 }  // namespace uw

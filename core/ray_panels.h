@@ -22,10 +22,6 @@ struct LampPassage {
     double scattering_angle(double s) const;
 };
 
-/// A lamp counts as a sphere this large: no in-scatter is gathered inside, where 1/r^2 of a point
-/// would grow without bound [m].
-inline constexpr double k_lamp_radius = 1e-3;
-
 /// Appends the distances in (begin, end) at which the integrand of single scattering changes its
 /// scale, so that a Gauss rule of few nodes is exact to 1e-5 between neighbours: octaves of the
 /// distance from the foot (1/r^2 and the forward peak are power laws there), and the phase

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/affine.h"
@@ -135,14 +137,29 @@ struct LampDesc {
     SourceLocation where;
 };
 
+/// Slabs of water parallel to the image plane, in camera z [m]: what the planes integrator sums
+/// over, and the first of them is the layer `backscatter_first`.
+struct PlanesDesc {
+    int count = 64;
+    std::optional<double> near, far;  // chosen by what the image sees if left out (core/slabs.h)
+    SourceLocation where;
+};
+
 struct RenderDesc {
-    enum class Integrator { volume, reference };
+    enum class Integrator { volume, planes, reference };
     Integrator integrator = Integrator::volume;
+    PlanesDesc planes;
     enum class Output { radiance, sensor_irradiance, paper };
     Output output = Output::radiance;  // all but radiance need camera.lens
     SourceLocation output_where;
     int samples = 4;
 };
+
+/// The integrators by the names that users write.
+inline constexpr std::array<std::pair<std::string_view, RenderDesc::Integrator>, 3>
+    k_integrator_names{{{"volume", RenderDesc::Integrator::volume},
+                        {"planes", RenderDesc::Integrator::planes},
+                        {"reference", RenderDesc::Integrator::reference}}};
 
 struct SceneDesc {
     std::filesystem::path file;

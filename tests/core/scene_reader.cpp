@@ -51,8 +51,8 @@ lamps:
   - {position: [1, 0, 0], profile: {type: cosine, fwhm: 120}, power: 20}
 render:
   integrator: reference
-  output: sensor_irradiance
   planes: {count: 64, near: 0.1, far: 12}
+  output: sensor_irradiance
   samples: 9
 )";
 
@@ -205,9 +205,12 @@ TEST_F(SceneReader, readsLampsAndRender) {
     EXPECT_EQ(scene.render.integrator, RenderDesc::Integrator::reference);
     EXPECT_EQ(scene.render.output, RenderDesc::Output::sensor_irradiance);
     EXPECT_EQ(scene.render.samples, 9);
-    ASSERT_EQ(scene.warnings.size(), 1U);
-    EXPECT_NE(scene.warnings[0].find("render.planes: only the planes integrator"),
-              std::string::npos);
+    EXPECT_EQ(scene.render.planes.count, 64);
+    EXPECT_EQ(scene.render.planes.near, 0.1);
+    EXPECT_EQ(scene.render.planes.far, 12);
+    EXPECT_NE(scene.render.planes.where.find("scene.yaml:40:11: render.planes"), std::string::npos)
+        << scene.render.planes.where;
+    EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST_F(SceneReader, fillsInDefaults) {

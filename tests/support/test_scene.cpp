@@ -46,21 +46,14 @@ GeometryDesc plane_at_z(double z) {
     return plane;
 }
 
-GeometryDesc box(const Point3& min, const Point3& max) {
-    GeometryDesc desc;
-    desc.type = GeometryDesc::Type::box;
-    desc.min = min;
-    desc.max = max;
-    return desc;
-}
-
 TestScene::TestScene(const SceneDesc& desc, const LightFieldOptions& options)
     : scene_(assemble_scene(desc, [](const std::string&) {})) {
     if (desc.render.integrator == RenderDesc::Integrator::volume)
         light_fields_ = splat_lamps(scene_, options);
     integrator_ = make_integrator(scene_, light_fields_);
-    renderer_ = std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
-                                                desc.render.samples, SensorModel(desc));
+    renderer_ =
+        std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
+                                        desc.render.samples, scene_.slabs, SensorModel(desc));
 }
 
 PixelResult TestScene::pixel(int x, int y) const {

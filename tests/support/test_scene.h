@@ -5,6 +5,7 @@
 
 #include "cli/scene_assembly.h"
 #include "core/pixel_renderer.h"
+#include "tests/support/geometry_descs.h"
 
 namespace uw::test {
 
@@ -16,7 +17,6 @@ WaterDesc hg_water(double g);
 
 LampDesc isotropic_lamp(const Point3& position, double intensity);
 GeometryDesc plane_at_z(double z);
-GeometryDesc box(const Point3& min, const Point3& max);
 
 /// A scene with its integrator, ready to render pixels.
 class TestScene {
