@@ -80,22 +80,27 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
     std::string phases;
     for (const auto& phase : medium.phase_functions)
         phases += (phases.empty() ? "" : "; ") + phase->description();
-    ImageMetadata m{
-        {"software", "uwvdb " + program_version()},
-        {"uwvdb/scene", scene.desc.file.filename().string()},
-        {"uwvdb/scene_hash", scene.desc.hash},
-        {"uwvdb/integrator", name_of(scene.desc.render.integrator)},
-        {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
-        {"uwvdb/seed", std::string("none: deterministic")},
-        {"uwvdb/units", std::string("radiance W m^-2 sr^-1, irradiance W m^-2, metres")},
-        {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
-        {"uwvdb/water_absorption_per_m", band_list(a)},
-        {"uwvdb/water_scattering_per_m", band_list(b)},
-        {"uwvdb/water_attenuation_per_m", band_list(c)},
-        {"uwvdb/phase_functions", phases}};
+    const std::string quantity = SensorModel(scene.desc).description();
+    ImageMetadata m{{"software", "uwvdb " + program_version()},
+                    {"uwvdb/scene", scene.desc.file.filename().string()},
+                    {"uwvdb/scene_hash", scene.desc.hash},
+                    {"uwvdb/integrator", name_of(scene.desc.render.integrator)},
+                    {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
+                    {"uwvdb/seed", std::string("none: deterministic")},
+                    {"uwvdb/rgb_quantity", quantity},
+                    {"uwvdb/units", quantity + ", irradiance W m^-2, metres"},
+                    {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
+                    {"uwvdb/water_absorption_per_m", band_list(a)},
+                    {"uwvdb/water_scattering_per_m", band_list(b)},
+                    {"uwvdb/water_attenuation_per_m", band_list(c)},
+                    {"uwvdb/phase_functions", phases}};
     m["uwvdb/slab_near_m"] = scene.slabs.near;
     m["uwvdb/slab_thickness_m"] = scene.slabs.thickness();
     m["uwvdb/slabs"] = static_cast<double>(scene.slabs.count);
+    if (const auto& port = scene.desc.camera.port) {
+        m["uwvdb/port_fresnel"] = std::string(port->fresnel ? "on" : "off");
+        m["uwvdb/port_radiance_in"] = std::string(port->radiance_in_air ? "air" : "water");
+    }
     if (const auto& lens = scene.desc.camera.lens) {
         m["uwvdb/lens_f_number"] = lens->f_number;
         m["uwvdb/lens_focal_length_m"] = lens->focal_length;
@@ -124,7 +129,7 @@ void render(const AssembledScene& scene, const LightFields& light_fields, const 
             const BandColour& colour, bool quiet, Film& film) {
     const auto integrator = make_integrator(scene, light_fields);
     const PixelRenderer renderer(*scene.camera, scene.lit(), *integrator, scene.desc.render.samples,
-                                 scene.slabs);
+                                 scene.slabs, SensorModel(scene.desc));
     const double megapixels = 1e-6 * film.window().width() * film.window().height();
     Progress progress("render", "Mpx", megapixels, quiet);
     render_film(renderer, plan, colour, film, [&](double fraction) {
@@ -175,7 +180,7 @@ void write_images(const std::filesystem::path& output, const Film& film, ImageMe
     if (quiet) return;
     fmt::print(stderr, "wrote {}\n", output.string());
     if (exposure)
-        fmt::print(stderr, "wrote {} (preview, radiance x {:.4g})\n", preview.string(), *exposure);
+        fmt::print(stderr, "wrote {} (preview, R G B x {:.4g})\n", preview.string(), *exposure);
     else
         fmt::print(stderr, "wrote {} (preview, black)\n", preview.string());
 }

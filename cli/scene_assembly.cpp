@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/focus_weighted_integrator.h"
 #include "core/geometry_scene.h"
 #include "core/planes_integrator.h"
 #include "core/reference_integrator.h"
@@ -71,7 +72,7 @@ std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledSc
     return fields;
 }
 
-std::unique_ptr<Integrator> make_integrator(
+static std::unique_ptr<Integrator> make_unweighted_integrator(
     const AssembledScene& scene,
     const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
     if (scene.desc.render.integrator == RenderDesc::Integrator::reference)
@@ -82,6 +83,15 @@ std::unique_ptr<Integrator> make_integrator(
     return std::make_unique<VolumeIntegrator>(
         scene.lit(),
         std::vector<std::shared_ptr<const LightField>>(light_fields.begin(), light_fields.end()));
+}
+
+std::unique_ptr<Integrator> make_integrator(
+    const AssembledScene& scene,
+    const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
+    std::unique_ptr<Integrator> integrator = make_unweighted_integrator(scene, light_fields);
+    if (scene.desc.render.output != RenderDesc::Output::paper) return integrator;
+    return std::make_unique<FocusWeightedIntegrator>(std::move(integrator),
+                                                     scene.desc.camera.lens.value().focal_length);
 }
 
 }  // namespace uw

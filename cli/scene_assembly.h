@@ -44,6 +44,7 @@ std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledSc
 
 /// The integrator that the scene asks for, on light splatted before; `light_fields` may be empty
 /// for all but the volume integrator. Throws InputError for one that cannot do the scene.
+/// Weighted by distance where the output is the paper's.
 std::unique_ptr<Integrator> make_integrator(
     const AssembledScene& scene,
     const std::vector<std::shared_ptr<const LampLightField>>& light_fields);
