@@ -64,11 +64,14 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
 }
 
 std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledScene& scene,
-                                                               const LightFieldOptions& options) {
+                                                               const LightFieldOptions& options,
+                                                               const ShareCallback& progress) {
     std::vector<std::shared_ptr<const LampLightField>> fields;
-    for (const Lamp& lamp : scene.lamps)
+    for (const Lamp& lamp : scene.lamps) {
         fields.push_back(std::make_shared<LampLightField>(*scene.field, *scene.surfaces,
                                                           lamp.position(), options));
+        progress(static_cast<double>(fields.size()) / static_cast<double>(scene.lamps.size()));
+    }
     return fields;
 }
 
