@@ -9,8 +9,8 @@ namespace uw {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-// The interpolant is a cubic in each cell; straight lines between four knots a voxel leave 0.06 % of
-// the in-scatter of a rough plume, two knots 0.2 %.
+// The interpolant is a cubic in each cell; straight lines between four knots a voxel leave 0.06 %
+// of the in-scatter of a rough plume, two knots 0.2 %.
 constexpr double k_voxels_per_knot = 0.25;
 
 /// A stretch of the ray with the pace that one brick asks for.
