@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace uw {
@@ -24,10 +25,35 @@ struct RenderArguments {
     bool quiet = false;
 };
 
-struct Arguments {
-    RenderArguments render;
-    std::string message;  // help or version text to print instead of rendering
+/// `uwvdb water` as typed.
+struct WaterArguments {
+    std::string subject;                 // a preset or a scene file; empty: pure sea water
+    std::vector<std::string> overrides;  // --set key.path=value
+    std::vector<double> bands_nm;        // --bands; empty: the water's own
+    std::optional<double> band_nm;       // --band: the VSF at this one only
+    std::filesystem::path csv;           // --csv: beginning of the names of two files
+    std::filesystem::path svg;
+    bool json = false;
 };
+
+/// `uwvdb validate` as typed.
+struct ValidateArguments {
+    std::filesystem::path scene;         // empty: the built-in suite
+    std::vector<std::string> overrides;  // --set key.path=value
+    std::filesystem::path report;        // --report: HTML
+    double tolerance = 1e-3;
+    int threads = 0;  // 0: all
+    bool quiet = false;
+};
+
+/// Help or version text to print instead of doing anything.
+struct MessageArguments {
+    std::string text;
+};
+
+/// What the command line asks for.
+using Arguments =
+    std::variant<MessageArguments, RenderArguments, WaterArguments, ValidateArguments>;
 
 /// Parses the command line. Throws UsageError with one line for a wrong one.
 Arguments parse_arguments(int argc, const char* const* argv);

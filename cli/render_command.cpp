@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/console.h"
 #include "cli/grid_summary.h"
 #include "cli/irradiance_export.h"
@@ -23,17 +25,23 @@ namespace {
 
 using LightFields = std::vector<std::shared_ptr<const LampLightField>>;
 
+RenderDesc::Integrator integrator_named(const std::string& name) {
+    for (const auto& [known, integrator] : k_integrator_names)
+        if (name == known) return integrator;
+    throw UsageError(
+        fmt::format("--integrator: unknown '{}'; use volume, planes or reference", name));
+}
+
+std::string name_of(RenderDesc::Integrator integrator) {
+    return std::string(
+        std::ranges::find(k_integrator_names, integrator,
+                          &std::pair<std::string_view, RenderDesc::Integrator>::second)
+            ->first);
+}
+
 void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
     if (a.samples) desc.render.samples = *a.samples;
-    if (a.integrator == "volume")
-        desc.render.integrator = RenderDesc::Integrator::volume;
-    else if (a.integrator == "reference")
-        desc.render.integrator = RenderDesc::Integrator::reference;
-    else if (a.integrator == "planes")
-        throw UsageError("--integrator planes: not supported yet; use volume or reference");
-    else if (!a.integrator.empty())
-        throw UsageError(
-            fmt::format("--integrator: unknown '{}'; use volume or reference", a.integrator));
+    if (!a.integrator.empty()) desc.render.integrator = integrator_named(a.integrator);
     if (!a.size) return;
     const auto [width, height] = *a.size;
     if (width < 1 || height < 1 || width > 32768 || height > 32768)
@@ -65,20 +73,27 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
     std::string phases;
     for (const auto& phase : medium.phase_functions)
         phases += (phases.empty() ? "" : "; ") + phase->description();
-    const bool reference = scene.desc.render.integrator == RenderDesc::Integrator::reference;
-    ImageMetadata m{
-        {"software", "uwvdb " + program_version()},
-        {"uwvdb/scene", scene.desc.file.filename().string()},
-        {"uwvdb/scene_hash", scene.desc.hash},
-        {"uwvdb/integrator", std::string(reference ? "reference" : "volume")},
-        {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
-        {"uwvdb/seed", std::string("none: deterministic")},
-        {"uwvdb/units", std::string("radiance W m^-2 sr^-1, irradiance W m^-2, metres")},
-        {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
-        {"uwvdb/water_absorption_per_m", band_list(a)},
-        {"uwvdb/water_scattering_per_m", band_list(b)},
-        {"uwvdb/water_attenuation_per_m", band_list(c)},
-        {"uwvdb/phase_functions", phases}};
+    const std::string quantity = SensorModel(scene.desc).description();
+    ImageMetadata m{{"software", "uwvdb " + program_version()},
+                    {"uwvdb/scene", scene.desc.file.filename().string()},
+                    {"uwvdb/scene_hash", scene.desc.hash},
+                    {"uwvdb/integrator", name_of(scene.desc.render.integrator)},
+                    {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
+                    {"uwvdb/seed", std::string("none: deterministic")},
+                    {"uwvdb/rgb_quantity", quantity},
+                    {"uwvdb/units", quantity + ", irradiance W m^-2, metres"},
+                    {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
+                    {"uwvdb/water_absorption_per_m", band_list(a)},
+                    {"uwvdb/water_scattering_per_m", band_list(b)},
+                    {"uwvdb/water_attenuation_per_m", band_list(c)},
+                    {"uwvdb/phase_functions", phases}};
+    m["uwvdb/slab_near_m"] = scene.slabs.near;
+    m["uwvdb/slab_thickness_m"] = scene.slabs.thickness();
+    m["uwvdb/slabs"] = static_cast<double>(scene.slabs.count);
+    if (const auto& port = scene.desc.camera.port) {
+        m["uwvdb/port_fresnel"] = std::string(port->fresnel ? "on" : "off");
+        m["uwvdb/port_radiance_in"] = std::string(port->radiance_in_air ? "air" : "water");
+    }
     if (const auto& lens = scene.desc.camera.lens) {
         m["uwvdb/lens_f_number"] = lens->f_number;
         m["uwvdb/lens_focal_length_m"] = lens->focal_length;
@@ -106,8 +121,8 @@ PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
 void render(const AssembledScene& scene, const LightFields& light_fields, const LayerPlan& plan,
             const BandColour& colour, bool quiet, Film& film) {
     const auto integrator = make_integrator(scene, light_fields);
-    const PixelRenderer renderer(*scene.camera, scene.lit(), *integrator,
-                                 scene.desc.render.samples);
+    const PixelRenderer renderer(*scene.camera, scene.lit(), *integrator, scene.desc.render.samples,
+                                 scene.slabs, SensorModel(scene.desc));
     const double megapixels = 1e-6 * film.window().width() * film.window().height();
     Progress progress("render", "Mpx", megapixels, quiet);
     render_film(renderer, plan, colour, film, [&](double fraction) {
@@ -182,8 +197,8 @@ void write_images(const OutputFiles& files, const Film& film, ImageMetadata meta
     if (quiet) return;
     print_message(fmt::format("wrote {}\n", files.image.string()));
     if (exposure)
-        print_message(fmt::format("wrote {} (preview, radiance x {:.4g})\n", files.preview.string(),
-                                  *exposure));
+        print_message(
+            fmt::format("wrote {} (preview, R G B x {:.4g})\n", files.preview.string(), *exposure));
     else
         print_message(fmt::format("wrote {} (preview, black)\n", files.preview.string()));
 }

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
+#include "core/focus_weighted_integrator.h"
 #include "core/geometry_scene.h"
-#include "core/ray_panels.h"
+#include "core/planes_integrator.h"
 #include "core/reference_integrator.h"
 #include "core/volume_integrator.h"
 
@@ -37,6 +39,11 @@ void warn_of_lamps_at_the_camera(AssembledScene& scene) {
 }  // namespace
 
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage) {
+    if (desc.render.integrator == RenderDesc::Integrator::planes && !desc.volumes.empty())
+        throw InputError(
+            fmt::format("{}: the planes integrator is for uniform water: remove `volumes`, or use "
+                        "integrator volume",
+                        desc.volumes.front().where));
     AssembledScene scene;
     scene.desc = desc;
     scene.warnings = desc.warnings;
@@ -52,6 +59,7 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
     for (const LampDesc& lamp : desc.lamps)
         scene.lamps.emplace_back(lamp, desc.camera.world_from_camera, medium.band_count());
     warn_of_lamps_at_the_camera(scene);
+    scene.slabs = place_slabs(desc.render.planes, *scene.camera, scene.lit());
     return scene;
 }
 
@@ -67,14 +75,26 @@ std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledSc
     return fields;
 }
 
-std::unique_ptr<Integrator> make_integrator(
+static std::unique_ptr<Integrator> make_unweighted_integrator(
     const AssembledScene& scene,
     const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
     if (scene.desc.render.integrator == RenderDesc::Integrator::reference)
         return std::make_unique<ReferenceIntegrator>(scene.lit());
+    if (scene.desc.render.integrator == RenderDesc::Integrator::planes)
+        return std::make_unique<PlanesIntegrator>(scene.lit(), scene.desc.camera.world_from_camera,
+                                                  scene.slabs);
     return std::make_unique<VolumeIntegrator>(
         scene.lit(),
         std::vector<std::shared_ptr<const LightField>>(light_fields.begin(), light_fields.end()));
+}
+
+std::unique_ptr<Integrator> make_integrator(
+    const AssembledScene& scene,
+    const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
+    std::unique_ptr<Integrator> integrator = make_unweighted_integrator(scene, light_fields);
+    if (scene.desc.render.output != RenderDesc::Output::paper) return integrator;
+    return std::make_unique<FocusWeightedIntegrator>(std::move(integrator),
+                                                     scene.desc.camera.lens.value().focal_length);
 }
 
 }  // namespace uw

@@ -9,6 +9,7 @@
 #include "core/integrator.h"
 #include "core/lit_scene.h"
 #include "core/scene_desc.h"
+#include "core/slabs.h"
 #include "media/grid_field.h"
 #include "media/lamp_light_field.h"
 #include "media/water_model.h"
@@ -23,6 +24,7 @@ struct AssembledScene {
     std::unique_ptr<ConcentrationField> field;
     std::unique_ptr<Surfaces> surfaces;
     std::vector<Lamp> lamps;
+    Slabs slabs;
     std::vector<VolumeReport> volume_reports;
     std::vector<std::string> warnings;  // one line each, in the order met
 
@@ -32,7 +34,8 @@ struct AssembledScene {
 /// Called with the name of each stage as it begins.
 using StageCallback = std::function<void(const std::string& stage)>;
 
-/// Loads what `desc` names and builds it. Throws InputError and IoError of one line each.
+/// Loads what `desc` names and builds it, and places the slabs. Throws InputError and IoError of
+/// one line each.
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage);
 
 /// Told the share of a stage's work that is done.
@@ -44,7 +47,8 @@ std::vector<std::shared_ptr<const LampLightField>> splat_lamps(
     const ShareCallback& progress = [](double) {});
 
 /// The integrator that the scene asks for, on light splatted before; `light_fields` may be empty
-/// for the reference integrator.
+/// for all but the volume integrator. Throws InputError for one that cannot do the scene.
+/// Weighted by distance where the output is the paper's.
 std::unique_ptr<Integrator> make_integrator(
     const AssembledScene& scene,
     const std::vector<std::shared_ptr<const LampLightField>>& light_fields);

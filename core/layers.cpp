@@ -21,6 +21,7 @@ constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {"total", ""},
     {"direct", ""},
     {"backscatter", ""},
+    {"backscatter_first", ""},
     {"irradiance", ""},
     {"lit", "V"},
     {"clean", ""},
@@ -34,8 +35,8 @@ constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {"id", "V"},
 }};
 
-constexpr std::array<std::string_view, 5> k_not_supported{"forward", "backscatter_first", "flow",
-                                                          "flow_back", "flow_occluded"};
+constexpr std::array<std::string_view, 4> k_not_supported{"forward", "flow", "flow_back",
+                                                          "flow_occluded"};
 
 constexpr std::string_view k_lamp_prefix = "lamp.";
 /// EXR allows 255 bytes for "lamp.<name>.<band>nm".

@@ -15,6 +15,7 @@ enum class Layer {
     total,
     direct,
     backscatter,
+    backscatter_first,
     irradiance,
     lit,
     clean,
@@ -27,7 +28,7 @@ enum class Layer {
     position,
     id,
 };
-inline constexpr std::size_t k_layer_count = 14;
+inline constexpr std::size_t k_layer_count = 15;
 
 /// Which channels an image has, what they are called, and where each layer begins.
 ///

@@ -39,15 +39,37 @@ ImageOffset sample_offset(int i, int count) {
 struct PixelRenderer::Workspace {
     std::vector<double> distances;  // to the surface, of each sample that entered the water
     std::vector<double> ends;
-    std::vector<double> shares;  // of the samples that end there
+    std::vector<double> shares;  // of the samples that end there; 0 at faces of the first slab
     SurfaceLight light;
     InScatter in_scatter;
     int hits = 0;
+
+    // Makes `distance` one of the ends unless it lies behind them all.
+    void add_end(double distance) {
+        const auto at = std::lower_bound(ends.begin(), ends.end(), distance);
+        if (at == ends.end() || *at == distance) return;
+        shares.insert(shares.begin() + (at - ends.begin()), 0.0);
+        ends.insert(at, distance);
+    }
+    // In-scatter by lamp `lamp` up to `distance`, one of the ends, or to end `last` if it is
+    // nearer.
+    Spectrum in_scatter_up_to(double distance, std::size_t last, std::size_t lamp) const {
+        if (distance <= 0) return {};
+        const auto at = std::lower_bound(ends.begin(), ends.end(), distance) - ends.begin();
+        return in_scatter.at(std::min(last, static_cast<std::size_t>(at)), lamp);
+    }
 };
 
 PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
-                             const Integrator& integrator, int samples)
-    : rays_(rays), scene_(scene), integrator_(integrator), samples_(samples) {}
+                             const Integrator& integrator, int samples, const Slabs& slabs,
+                             const SensorModel& sensor)
+    : rays_(rays),
+      scene_(scene),
+      integrator_(integrator),
+      samples_(samples),
+      slabs_(slabs),
+      sensor_(sensor),
+      camera_from_world_(rays.world_from_camera().inverse()) {}
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {
     thread_local Workspace w;
@@ -58,13 +80,17 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
     result.lamps = std::move(lamps);
     result.lamps.assign(scene_.lamps->size(), Spectrum{});
 
-    std::optional<Ray> water = rays_.water_ray(x + 0.5, y + 0.5);
+    ImageOffset water_at{0.5, 0.5};
+    std::optional<Ray> water = rays_.water_ray(x + water_at.x, y + water_at.y);
     if (water) record_ground_truth(*water, result);
     for (int i = 0; i < samples_; ++i) {
         const ImageOffset offset = sample_offset(i, samples_);
         const std::optional<Ray> ray = rays_.water_ray(x + offset.x, y + offset.y);
         if (!ray) continue;
-        if (!water) water = ray;
+        if (!water) {
+            water = ray;
+            water_at = offset;
+        }
         result.alpha += 1.0 / samples_;
         SurfaceHit hit;
         if (!scene_.surfaces->closest_hit(*ray, k_far, hit)) {
@@ -79,6 +105,7 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
     if (w.hits > 0)
         for (double& t : result.transmittance) t /= w.hits;
     if (water && !w.distances.empty()) add_water(*water, w, result);
+    if (water) expose(x + water_at.x, y + water_at.y, result);
 }
 
 void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
@@ -86,6 +113,7 @@ void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Wo
     integrator_.surface_light(ray, hit, w.light);
     ++w.hits;
     const double share = 1.0 / samples_;
+    const double seen = sensor_.surface_factor(hit.distance);
     const auto bands = static_cast<std::size_t>(band_count());
     for (std::size_t b = 0; b < bands; ++b) result.transmittance[b] += w.light.transmittance[b];
     for (std::size_t j = 0; j < w.light.lamps.size(); ++j) {
@@ -93,7 +121,7 @@ void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Wo
         if (!lamp.visible) continue;
         result.lit += share / static_cast<double>(w.light.lamps.size());
         for (std::size_t b = 0; b < bands; ++b) {
-            const double brdf = hit.reflectance[b] * std::numbers::inv_pi;
+            const double brdf = hit.reflectance[b] * std::numbers::inv_pi * seen;
             const double direct = share * lamp.irradiance[b] * brdf * w.light.transmittance[b];
             result.irradiance[b] += share * lamp.irradiance[b];
             result.clean[b] += share * lamp.clean[b] * brdf;
@@ -120,23 +148,47 @@ void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result)
         w.shares.push_back(count / samples_);
         first = last;
     }
+    const Interval first = first_slab(ray);
+    for (const double face : {first.begin, first.end})
+        if (face > 0) w.add_end(face);
     integrator_.in_scatter(ray, w.ends, w.in_scatter);
     for (std::size_t end = 0; end < w.ends.size(); ++end) {
         for (std::size_t j = 0; j < result.lamps.size(); ++j) {
+            const Spectrum before = w.in_scatter_up_to(first.begin, end, j);
+            const Spectrum behind = w.in_scatter_up_to(first.end, end, j);
             for (std::size_t b = 0; b < static_cast<std::size_t>(band_count()); ++b) {
                 const double radiance = w.shares[end] * w.in_scatter.at(end, j)[b];
                 result.backscatter[b] += radiance;
                 result.lamps[j][b] += radiance;
+                result.backscatter_first[b] += w.shares[end] * (behind[b] - before[b]);
             }
         }
     }
 }
 
+void PixelRenderer::expose(double x, double y, PixelResult& result) const {
+    const double factor = sensor_.pixel_factor(rays_.lens_ray(x, y),
+                                               result.has_hit ? result.range : k_infinitely_far);
+    const auto scale = [&](Spectrum& spectrum) {
+        for (double& value : spectrum) value *= factor;
+    };
+    scale(result.direct);
+    scale(result.backscatter);
+    scale(result.backscatter_first);
+    scale(result.clean);
+    for (Spectrum& lamp : result.lamps) scale(lamp);
+}
+
+Interval PixelRenderer::first_slab(const Ray& ray) const {
+    const RayDepth depth(camera_from_world_, ray);
+    if (depth.cosine() <= 0) return {};
+    return {depth.distance(slabs_.boundary(0)), depth.distance(slabs_.boundary(1))};
+}
+
 void PixelRenderer::record_ground_truth(const Ray& center, PixelResult& result) const {
     result.has_hit = scene_.surfaces->closest_hit(center, k_far, result.hit);
     if (!result.has_hit) return;
-    const Affine camera_from_world = rays_.world_from_camera().inverse();
-    const Point3 in_camera = camera_from_world * result.hit.position;
+    const Point3 in_camera = camera_from_world_ * result.hit.position;
     result.depth_z = in_camera.z;
     result.range = glm::length(from_origin(in_camera));
     result.path = result.hit.distance;

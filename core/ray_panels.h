@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "core/lamp.h"
@@ -22,15 +21,9 @@ struct LampPassage {
     double scattering_angle(double s) const;
 };
 
-/// A lamp counts as a sphere this large: no in-scatter is gathered inside, where 1/r^2 of a point
-/// would grow without bound [m].
-inline constexpr double k_lamp_radius = 1e-3;
-
 /// Appends the distances in (begin, end) at which the integrand of single scattering changes its
 /// scale, so that a Gauss rule of few nodes is exact to 1e-5 between neighbours: octaves of the
-/// distance from the foot (1/r^2 and the forward peak are power laws there), and the phase
-/// functions' own breakpoints [rad].
-void append_passage_breaks(const LampPassage& passage, const Interval& interval,
-                           std::span<const double> phase_breakpoints, std::vector<double>& s);
+/// distance from the foot, on which 1/r^2 and the forward peak of a phase function are power laws.
+void append_octaves(const LampPassage& passage, const Interval& interval, std::vector<double>& s);
 
 }  // namespace uw

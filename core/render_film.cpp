@@ -60,6 +60,7 @@ void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandCol
     out.bands(Layer::total, total);
     out.bands(Layer::direct, result.direct);
     out.bands(Layer::backscatter, result.backscatter);
+    out.bands(Layer::backscatter_first, result.backscatter_first);
     out.bands(Layer::irradiance, result.irradiance);
     out.scalar(Layer::lit, result.lit);
     out.bands(Layer::clean, result.clean);

@@ -52,28 +52,38 @@ void check_version(const ConfigValue& scene) {
 
 }  // namespace
 
-RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value, {"integrator", "planes", "samples"}, "write {samples: 4}");
-    RenderDesc render;
-    if (const auto entry = map.find("integrator")) {
-        constexpr std::array<std::string_view, 3> k_words{"volume", "reference", "planes"};
-        const std::size_t index = entry->word_index(k_words);
-        if (index == 2) entry->fail("'planes' is not supported yet; use volume or reference");
-        render.integrator =
-            index == 0 ? RenderDesc::Integrator::volume : RenderDesc::Integrator::reference;
-    }
-    if (const auto entry = map.find("planes")) {
-        constexpr auto k_example = "write {count: 64, near: 0.1, far: 12}";
-        ConfigMap planes(*entry, {"count", "near", "far"}, k_example);
-        planes.require("count", k_example).integer(1, 65536, "give the number of slabs");
-        const double near = planes.require("near", k_example).non_negative("give metres");
-        const ConfigValue far = planes.require("far", k_example);
-        if (far.positive("give metres") <= near) {
-            far.fail(
-                fmt::format("must be greater than near ({}); give metres along camera z", near));
+PlanesDesc read_planes(const ConfigValue& value) {
+    ConfigMap map(value, {"count", "near", "far"}, "write {count: 64, near: 0.1, far: 12}");
+    PlanesDesc planes;
+    planes.where = value.location();
+    if (const auto entry = map.find("count"))
+        planes.count = entry->integer(1, 65536, "give the number of slabs");
+    if (const auto entry = map.find("near")) planes.near = entry->non_negative("give metres");
+    if (const auto entry = map.find("far")) {
+        planes.far = entry->positive("give metres");
+        if (planes.near && *planes.far <= *planes.near) {
+            entry->fail(fmt::format("must be greater than near ({}); give metres along camera z",
+                                    *planes.near));
         }
-        context.warn(*entry, "only the planes integrator uses this, and that is not supported yet");
     }
+    return planes;
+}
+
+RenderDesc read_render(const ConfigValue& value) {
+    ConfigMap map(value, {"integrator", "output", "planes", "samples"}, "write {samples: 4}");
+    RenderDesc render;
+    render.planes.where = value.location() + ".planes";
+    if (const auto entry = map.find("integrator"))
+        render.integrator = entry->choice(k_integrator_names);
+    if (const auto entry = map.find("output")) {
+        constexpr std::array<std::pair<std::string_view, RenderDesc::Output>, 3> k_outputs{
+            {{"radiance", RenderDesc::Output::radiance},
+             {"sensor_irradiance", RenderDesc::Output::sensor_irradiance},
+             {"paper", RenderDesc::Output::paper}}};
+        render.output = entry->choice(k_outputs);
+        render.output_where = entry->location();
+    }
+    if (const auto entry = map.find("planes")) render.planes = read_planes(*entry);
     if (const auto entry = map.find("samples")) {
         render.samples = entry->integer(1, 4096, "give the samples per pixel");
     }
@@ -95,6 +105,7 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
     desc.file = file;
     SceneContext context{file.parent_path(), desc.water.bands_nm.size(), &desc.warnings};
     desc.water.where = scene.location();
+    desc.render.planes.where = scene.location() + ": render.planes";
     if (const auto entry = map.find("water")) desc.water = read_water(*entry, context);
     desc.camera = read_camera(
         map.require("camera", "give camera: {resolution: [W, H], intrinsics: {fov_x: 60}}"),
@@ -102,12 +113,28 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
     if (const auto entry = map.find("volumes")) desc.volumes = read_volumes(*entry, context);
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
-    if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
+    if (const auto entry = map.find("render")) desc.render = read_render(*entry);
+    if (desc.render.output != RenderDesc::Output::radiance && !desc.camera.lens) {
+        throw InputError(desc.render.output_where +
+                         ": needs the camera's lens; give camera.lens: {f_number: 2.8, "
+                         "focal_length: 0.0085}, or write output: radiance");
+    }
     if (desc.lamps.empty()) {
         context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
     }
     desc.hash = config_hash(root);
     return desc;
+}
+
+WaterDesc read_water_overrides(const std::vector<std::string>& overrides) {
+    ConfigNode root = parse_yaml("water: {}", "water");
+    for (const std::string& text : overrides) apply_override(root, text);
+    ConfigMap map(ConfigValue(root, ""), {"water"}, "without a scene only water can be set");
+    std::vector<std::string> warnings;
+    SceneContext context{{}, 0, &warnings};
+    WaterDesc water = read_water(map.require("water", "give water.bands"), context);
+    water.where = "water";  // no file to point into
+    return water;
 }
 
 }  // namespace uw

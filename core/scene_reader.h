@@ -14,4 +14,9 @@ namespace uw {
 /// cannot be read, UsageError for an override that is not of that form.
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
+/// The `water` of a scene without a file: the defaults, with `overrides` such as
+/// "water.preset=jerlov-II" applied as read_scene does. Keys of other sections are errors; names of
+/// files are relative to the current folder. Throws as read_scene.
+WaterDesc read_water_overrides(const std::vector<std::string>& overrides);
+
 }  // namespace uw

@@ -34,7 +34,7 @@ PhaseDesc read_phase(const ConfigValue& value, const SceneContext& context);
 std::vector<VolumeDesc> read_volumes(const ConfigValue& value, const SceneContext& context);
 std::vector<GeometryDesc> read_geometry(const ConfigValue& value, const SceneContext& context);
 std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context);
-RenderDesc read_render(const ConfigValue& value, const SceneContext& context);
+RenderDesc read_render(const ConfigValue& value);
 
 /// `transform: {scale, rotate, translate}` as translate * rotate * scale.
 Affine read_transform(const ConfigValue& value);

@@ -37,6 +37,9 @@ TEST(Layers, DefaultIsEverythingButLamps) {
                       "backscatter.R",
                       "backscatter.G",
                       "backscatter.B",
+                      "backscatter_first.R",
+                      "backscatter_first.G",
+                      "backscatter_first.B",
                       "irradiance.R",
                       "irradiance.G",
                       "irradiance.B",
@@ -63,18 +66,18 @@ TEST(Layers, DefaultIsEverythingButLamps) {
     EXPECT_EQ(plan.channel_names(), truth);
     EXPECT_EQ(plan.first_channel(Layer::total), -1);  // R G B
     EXPECT_EQ(plan.first_channel(Layer::direct), 4);
-    EXPECT_EQ(plan.first_channel(Layer::position), 29);
+    EXPECT_EQ(plan.first_channel(Layer::position), 32);
     EXPECT_EQ(plan.first_channel_of_lamp(0), -1);
     EXPECT_EQ(LayerPlan("default", k_rgb, k_lamps).channel_names(), truth);
 }
 
 TEST(Layers, AllAddsTheLamps) {
     const LayerPlan plan("all", k_rgb, k_lamps);
-    ASSERT_EQ(plan.channel_names().size(), 33u + 6u);
-    EXPECT_EQ(plan.first_channel_of_lamp(0), 33);
-    EXPECT_EQ(plan.first_channel_of_lamp(1), 36);
-    EXPECT_EQ(plan.channel_names()[33], "lamp.left.R");
-    EXPECT_EQ(plan.channel_names()[38], "lamp.right.top.B");
+    ASSERT_EQ(plan.channel_names().size(), 36u + 6u);
+    EXPECT_EQ(plan.first_channel_of_lamp(0), 36);
+    EXPECT_EQ(plan.first_channel_of_lamp(1), 39);
+    EXPECT_EQ(plan.channel_names()[36], "lamp.left.R");
+    EXPECT_EQ(plan.channel_names()[41], "lamp.right.top.B");
 }
 
 TEST(Layers, ListInAnyOrderWithSpacesAndRepetition) {
@@ -112,7 +115,7 @@ TEST(Layers, ManyBandsAndLamps) {
     Names lamps;
     for (int i = 0; i < 40; ++i) lamps.push_back("lamp" + std::to_string(i));
     const LayerPlan plan("all", bands, lamps);
-    EXPECT_EQ(plan.channel_names().size(), 4u + 7u * 32u + 11u + 40u * 32u);
+    EXPECT_EQ(plan.channel_names().size(), 4u + 8u * 32u + 11u + 40u * 32u);
     EXPECT_EQ(plan.channel_names()[static_cast<std::size_t>(plan.first_channel_of_lamp(39)) + 31],
               "lamp.lamp39.710nm");
 }
@@ -120,7 +123,7 @@ TEST(Layers, ManyBandsAndLamps) {
 TEST(Layers, RefusesWithOneUsefulLine) {
     EXPECT_EQ(message_of<UsageError>("forward"),
               "--layers: forward: not supported yet; leave it out");
-    for (const char* name : {"flow", "flow_back", "flow_occluded", "backscatter_first"}) {
+    for (const char* name : {"flow", "flow_back", "flow_occluded"}) {
         EXPECT_NE(message_of<UsageError>(name).find("not supported yet"), std::string::npos);
     }
     const std::string unknown = message_of<UsageError>("depth,dirct");
