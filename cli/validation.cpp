@@ -45,16 +45,10 @@ SceneDesc small_image(const SceneDesc& desc, int longest_side) {
     return small;
 }
 
-double mean_of(const std::vector<Spectrum>& image, std::size_t band) {
-    double sum = 0;
-    for (const Spectrum& pixel : image) sum += pixel[band];
-    return sum / static_cast<double>(image.size());
-}
-
 // Over the pixels that `counted` marks.
 double largest_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
                           const std::vector<char>& counted, std::size_t band) {
-    const double floor = k_dark * mean_of(b, band);
+    const double floor = k_dark * mean_over_pixels(b, band);
     double largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double difference = std::abs(a[i][band] - b[i][band]);
@@ -69,7 +63,7 @@ double rms_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum
     double squares = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
         squares += (a[i][band] - b[i][band]) * (a[i][band] - b[i][band]);
-    const double mean = mean_of(b, band);
+    const double mean = mean_over_pixels(b, band);
     return squares == 0 ? 0 : std::sqrt(squares / static_cast<double>(a.size())) / mean;
 }
 
@@ -183,6 +177,12 @@ class SceneTrial {
 };
 
 }  // namespace
+
+double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band) {
+    double sum = 0;
+    for (const Spectrum& pixel : image) sum += pixel[band];
+    return sum / static_cast<double>(image.size());
+}
 
 bool SceneValidation::passed() const {
     return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed(); });

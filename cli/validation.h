@@ -52,6 +52,9 @@ struct SceneValidation {
     bool passed() const;
 };
 
+/// The mean of one band.
+double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band);
+
 /// Compares every way of computing `desc`: sums over McGlamery's planes and their limit, adaptive
 /// quadrature, the reference integrator and a VDB of constant value against the volume integrator,
 /// all in uniform water (a scene with volumes is homogenised: its grids replaced by their mean),

@@ -42,11 +42,12 @@ void read_subject(const WaterArguments& a, WaterReport& report) {
         std::vector<std::string> overrides = a.overrides;
         if (!preset.empty()) overrides.insert(overrides.begin(), "water.preset=" + preset);
         report.water = read_water_overrides(overrides);
-        report.title = preset.empty() ? "pure sea water" : preset;
-        if (!a.overrides.empty()) {
-            report.title += ",";
-            for (const std::string& text : a.overrides) report.title += " " + text;
-        }
+        if (preset.empty())
+            report.title = a.overrides.empty() ? "pure sea water" : "sea water";
+        else
+            report.title = preset;
+        for (const std::string& text : a.overrides)
+            report.title += (&text == &a.overrides.front() ? " with " : ", ") + text;
         return;
     }
     const std::filesystem::path file = a.subject;
@@ -143,9 +144,10 @@ void run_water(const WaterArguments& a, std::ostream& out) {
     if (!a.svg.empty()) files.add(a.svg, svg_document(water_figure(report)));
     for (const std::string& warning : report.table.warnings)
         fmt::print(stderr, "warning: {}\n", warning);
+    // First the files: whoever reads the tables may stop reading, which ends the program.
+    files.commit();
     out << (a.json ? water_json(report) : water_text(report)) << std::flush;
     if (!out) throw IoError("standard output: cannot write; is the disk full?");
-    files.commit();
 }
 
 }  // namespace uw

@@ -66,6 +66,15 @@ struct ScatteringDesc {
     PhaseDesc phase;
 };
 
+/// Light that comes back blurred after scattering by small angles (physics section 6).
+struct ForwardScatterDesc {
+    enum class Shape { gaussian, exponential };
+    double K = 0;  // strength; 0 turns it off
+    double G = 0;  // attenuation of what is scattered forward [1/m], |G| <= c
+    double B = 0;  // blur: the spectrum falls as e^{-B R f}, f in cycles/rad [rad/m]
+    Shape shape = Shape::gaussian;
+};
+
 struct WaterDesc {
     std::vector<double> bands_nm{620, 540, 450};
     std::string preset;                 // "", or "jerlov-II"
@@ -77,6 +86,7 @@ struct WaterDesc {
     std::optional<double> small_ppm, large_ppm;
     bool mineral_absorption = false;           // particles absorb as mineral sediment
     std::optional<ScatteringDesc> scattering;  // instead of particles and molecules
+    ForwardScatterDesc forward_scatter;
     SourceLocation where;
 };
 
