@@ -13,12 +13,15 @@
 #include "cli/stop_signal.h"
 #include "cli/validate_command.h"
 #include "cli/water_command.h"
+#include "core/config_text.h"
 #include "core/error.h"
 
 namespace {
 
+// One line, whatever the user's files and names brought into it.
 int fail(uw::ExitCode code, const char* what) {
-    fmt::print(stderr, "uwvdb: {}\n", what);
+    constexpr std::size_t k_longest_message = 4000;
+    fmt::print(stderr, "uwvdb: {}\n", uw::printable(what, k_longest_message));
     return code;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "core/lamp.h"
@@ -24,9 +23,7 @@ struct LampPassage {
 
 /// Appends the distances in (begin, end) at which the integrand of single scattering changes its
 /// scale, so that a Gauss rule of few nodes is exact to 1e-5 between neighbours: octaves of the
-/// distance from the foot (1/r^2 and the forward peak are power laws there), and the phase
-/// functions' own breakpoints [rad].
-void append_passage_breaks(const LampPassage& passage, const Interval& interval,
-                           std::span<const double> phase_breakpoints, std::vector<double>& s);
+/// distance from the foot, on which 1/r^2 and the forward peak of a phase function are power laws.
+void append_octaves(const LampPassage& passage, const Interval& interval, std::vector<double>& s);
 
 }  // namespace uw

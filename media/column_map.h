@@ -15,16 +15,16 @@ namespace uw {
 /// band follows from them (physics section 1).
 class ColumnMap {
   public:
-    /// Marches the field once along each texel's ray. Texels are about as wide as the finest voxel
-    /// at the field's centre and steps as long as it, coarser where `memory_budget` [bytes] would
-    /// be exceeded. `field` is not kept.
+    /// Marches the field once along each texel's ray. At the field's centre texels are about a
+    /// third as wide as the finest voxel, and steps half as long, coarser where `memory_budget`
+    /// [bytes] would be exceeded. `field` is not kept.
     ColumnMap(const ConcentrationField& field, const Point3& lamp, std::size_t memory_budget);
 
     /// As LightField::columns: bilinear over directions, linear over distance.
     void columns(std::span<const Point3> x, std::span<double> column) const;
 
-    /// As LightField::append_column_breaks: one break a texel where the ray crosses directions
-    /// whose rays meet particles.
+    /// As LightField::append_column_breaks: one break per voxel's width where the ray crosses
+    /// directions whose rays meet particles.
     void append_breaks(const Ray& ray, const Interval& interval, std::vector<double>& s) const;
 
     std::size_t bytes() const;
