@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <variant>
 
 #include "cli/arguments.h"
+#include "cli/console.h"
 #include "cli/exit_code.h"
 #include "cli/render_command.h"
 #include "cli/stop_signal.h"
@@ -21,12 +21,12 @@ namespace {
 // One line, whatever the user's files and names brought into it.
 int fail(uw::ExitCode code, const char* what) {
     constexpr std::size_t k_longest_message = 4000;
-    fmt::print(stderr, "uwvdb: {}\n", uw::printable(what, k_longest_message));
+    uw::print_message(fmt::format("uwvdb: {}\n", uw::printable(what, k_longest_message)));
     return code;
 }
 
 uw::ExitCode run(const uw::MessageArguments& arguments) {
-    fmt::print("{}", arguments.text);
+    uw::print_output(arguments.text);
     return uw::k_exit_done;
 }
 
@@ -50,6 +50,7 @@ uw::ExitCode run(const uw::ValidateArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    uw::prepare_streams();
     try {
         const uw::Arguments parsed = uw::parse_arguments(argc, argv);
         return std::visit([](const auto& arguments) { return run(arguments); }, parsed);

@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "cli/console.h"
 
 namespace uw {
 
@@ -49,7 +50,7 @@ Progress::Progress(std::string label, std::string unit, double scale, bool quiet
       start_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() {
-    if (drawn_ && terminal_) std::fputs("\n", stderr);
+    if (drawn_ && terminal_) print_message("\n");
 }
 
 void Progress::update(double fraction) {
@@ -75,8 +76,7 @@ void Progress::draw(double fraction, double seconds) {
     if (terminal_)
         draw_bar(fraction, figures);
     else
-        fmt::print(stderr, "{} {}\n", label_, figures);
-    std::fflush(stderr);
+        print_message(fmt::format("{} {}\n", label_, figures));
     drawn_ = true;
 }
 
@@ -96,7 +96,7 @@ void Progress::draw_bar(double fraction, const std::string& figures) {
     const std::size_t length = line.size();
     if (length < last_length_) line.append(last_length_ - length, ' ');
     last_length_ = length;
-    fmt::print(stderr, "\r{}", line);
+    print_message("\r" + line);
 }
 
 }  // namespace uw

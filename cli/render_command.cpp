@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cli/console.h"
 #include "cli/grid_summary.h"
 #include "cli/irradiance_export.h"
 #include "cli/output_files.h"
@@ -174,15 +175,15 @@ void warn_of_darkness(const Film& film, bool black) {
     const std::size_t pixels =
         static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
     if (empty > 0)
-        fmt::print(stderr,
-                   "warning: {} of {} pixels are empty (alpha 0): their rays do not pass the port, "
-                   "or the lens's distortion has no ray for them\n",
-                   empty, pixels);
+        print_message(fmt::format(
+            "warning: {} of {} pixels are empty (alpha 0): their rays do not pass the port, "
+            "or the lens's distortion has no ray for them\n",
+            empty, pixels));
     if (black && empty < pixels)
-        fmt::print(stderr,
-                   "warning: the image is black: no lamp's light reaches the camera; check the "
-                   "lamps' positions, directions and intensities, the camera's pose, and how far "
-                   "light comes in this water\n");
+        print_message(fmt::format(
+            "warning: the image is black: no lamp's light reaches the camera; check the "
+            "lamps' positions, directions and intensities, the camera's pose, and how far "
+            "light comes in this water\n"));
 }
 
 // Writes the images; says where they are and what exposure the preview has.
@@ -194,12 +195,12 @@ void write_images(const OutputFiles& files, const Film& film, ImageMetadata meta
     write_png(files.preview, preview, metadata);
     warn_of_darkness(film, !exposure);
     if (quiet) return;
-    fmt::print(stderr, "wrote {}\n", files.image.string());
+    print_message(fmt::format("wrote {}\n", files.image.string()));
     if (exposure)
-        fmt::print(stderr, "wrote {} (preview, R G B x {:.4g})\n", files.preview.string(),
-                   *exposure);
+        print_message(
+            fmt::format("wrote {} (preview, R G B x {:.4g})\n", files.preview.string(), *exposure));
     else
-        fmt::print(stderr, "wrote {} (preview, black)\n", files.preview.string());
+        print_message(fmt::format("wrote {} (preview, black)\n", files.preview.string()));
 }
 
 }  // namespace
@@ -209,7 +210,7 @@ void run_render(const RenderArguments& a) {
     const ThreadLimit limit(a.threads);
     const OutputFiles files = output_files(a);
     const auto say = [&](const std::string& text) {
-        if (!a.quiet) fmt::print(stderr, "{}", text);
+        if (!a.quiet) print_message(text);
     };
 
     stats.begin_stage("scene");
@@ -227,7 +228,8 @@ void run_render(const RenderArguments& a) {
         assemble_scene(desc, [&](const std::string& stage) { stats.begin_stage(stage); });
     for (const VolumeReport& report : scene.volume_reports)
         say(describe_grid(report, scene.water.medium));
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : scene.warnings)
+        print_message(fmt::format("warning: {}\n", warning));
     if (!files.irradiance_vdb.empty()) check_irradiance_vdb(scene);
 
     stats.begin_stage("splat");

@@ -115,6 +115,21 @@ TEST_F(OutputFiles, StayAsTheyWereWhenInterrupted) {
     }
 }
 
+TEST_F(OutputFiles, AreWholeWhoeverListens) {
+    render();
+    const std::string whole = read("out.exr");
+    for (const test::ProgramOptions& deaf :
+         {test::ProgramOptions{.folder = folder_.path(), .streams_full = true},
+          test::ProgramOptions{.folder = folder_.path(), .streams_closed = true}}) {
+        std::filesystem::remove(folder_ / "out.exr");
+        EXPECT_EQ(test::run_program({"render", "scene.yaml", "-o", "out.exr"}, deaf).exit_code, 0);
+        EXPECT_EQ(read("out.exr"), whole);
+        EXPECT_EQ(test::run_program({"rendr"}, deaf).exit_code, 2);
+    }
+    // What was asked for on stdout and did not get there is a failure.
+    EXPECT_EQ(test::run_program({"--help"}, {.streams_full = true}).exit_code, 4);
+}
+
 TEST_F(OutputFiles, BlackImagesAreNotWithoutAWord) {
     const test::ProgramResult dark = run({"render", "scene.yaml", "--set", "lamps=[]"});
     EXPECT_EQ(dark.exit_code, 0);

@@ -61,8 +61,11 @@ Program::Program(const std::vector<std::string>& arguments, const ProgramOptions
     if (process_ < 0) throw std::runtime_error("fork failed");
     if (process_ == 0) {
         if (::chdir(options.folder.c_str()) != 0) ::_exit(126);
-        ::dup2(out, STDOUT_FILENO);
-        ::dup2(err, STDERR_FILENO);
+        const int full = options.streams_full ? ::open("/dev/full", O_WRONLY | O_CLOEXEC) : -1;
+        ::dup2(options.streams_full ? full : out, STDOUT_FILENO);
+        ::dup2(options.streams_full ? full : err, STDERR_FILENO);
+        if (options.streams_closed)
+            for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::close(stream);
         ::execv(argv[0], argv.data());
         ::_exit(127);
     }
