@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/geometry_scene.h"
 #include "core/planes_integrator.h"
@@ -65,9 +67,11 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
 std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledScene& scene,
                                                                const LightFieldOptions& options) {
     std::vector<std::shared_ptr<const LampLightField>> fields;
+    LightFieldOptions share = options;
+    share.column_budget /= std::max(std::size_t{1}, scene.lamps.size());
     for (const Lamp& lamp : scene.lamps)
         fields.push_back(std::make_shared<LampLightField>(*scene.field, *scene.surfaces,
-                                                          lamp.position(), options));
+                                                          lamp.position(), share));
     return fields;
 }
 
