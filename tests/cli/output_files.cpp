@@ -20,7 +20,7 @@ TEST_F(OutputFiles, GoToTheFolderOneIsInUnlessSaidOtherwise) {
     EXPECT_TRUE(exists("here/scene.exr"));
     EXPECT_TRUE(exists("here/scene.png"));
     EXPECT_EQ(result.out, "");
-    EXPECT_NE(result.err.find("wrote scene.exr\nwrote scene.png (preview, radiance x "),
+    EXPECT_NE(result.err.find("wrote scene.exr\nwrote scene.png (preview, R G B x "),
               std::string::npos)
         << result.err;
     EXPECT_NE(result.err.find("peak memory"), std::string::npos);
