@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/focus_weighted_integrator.h"
 #include "core/geometry_scene.h"
@@ -67,9 +69,11 @@ std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledSc
                                                                const LightFieldOptions& options,
                                                                const ShareCallback& progress) {
     std::vector<std::shared_ptr<const LampLightField>> fields;
+    LightFieldOptions share = options;
+    share.column_budget /= std::max(std::size_t{1}, scene.lamps.size());
     for (const Lamp& lamp : scene.lamps) {
         fields.push_back(std::make_shared<LampLightField>(*scene.field, *scene.surfaces,
-                                                          lamp.position(), options));
+                                                          lamp.position(), share));
         progress(static_cast<double>(fields.size()) / static_cast<double>(scene.lamps.size()));
     }
     return fields;

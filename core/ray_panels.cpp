@@ -11,14 +11,6 @@ LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
     distance = glm::length(to_lamp - foot * ray.direction);
 }
 
-double LampPassage::radius(double s) const {
-    return std::sqrt((s - foot) * (s - foot) + distance * distance);
-}
-
-double LampPassage::scattering_angle(double s) const {
-    return std::atan2(distance, foot - s);
-}
-
 void append_octaves(const LampPassage& passage, const Interval& interval, std::vector<double>& s) {
     const auto append = [&](double at) {
         if (at > interval.begin && at < interval.end) s.push_back(at);

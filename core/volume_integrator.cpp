@@ -39,23 +39,31 @@ int node_count(double length, double nearest_radius) {
     return length < 0.35 * nearest_radius ? 3 : 4;
 }
 
-// Puts Gauss nodes on [begin, end], between two breaks, in `pieces` equal parts.
-void add_panel(const Ray& ray, const Lamp& lamp, const LampPassage& passage, const Interval& panel,
-               int pieces, std::size_t end_index, ScatterNodes& nodes) {
-    const double length = panel.length() / pieces;
-    for (int piece = 0; piece < pieces; ++piece) {
-        const double begin = panel.begin + piece * length;
+// One stretch between two breaks, and what holds all over it.
+struct Panel {
+    Interval stretch;
+    int pieces = 1;       // equal parts, each with its own nodes
+    bool evenly = false;  // the lamp shines as on its axis
+    std::size_t end = 0;  // index of the first of the ray's ends beyond it
+};
+
+void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, const Panel& panel,
+               ScatterNodes& nodes) {
+    const double length = panel.stretch.length() / panel.pieces;
+    for (int piece = 0; piece < panel.pieces; ++piece) {
+        const double begin = panel.stretch.begin + piece * length;
         const double nearest = passage.radius(glm::clamp(passage.foot, begin, begin + length));
         for (const QuadratureNode& node : gauss_legendre(node_count(length, nearest))) {
             const double s = begin + node.position * length;
             const double radius = passage.radius(s);
             const Point3 x = ray.at(s);
-            const double relative = lamp.relative_intensity(x - lamp.position());
+            const double relative =
+                panel.evenly ? 1.0 : lamp.relative_intensity(x - lamp.position());
             nodes.s.push_back(s);
             nodes.radius.push_back(radius);
             nodes.weight.push_back(node.weight * length * relative / (radius * radius));
-            nodes.psi.push_back(passage.scattering_angle(s));
-            nodes.end.push_back(end_index);
+            nodes.half_tangent.push_back(passage.half_tangent(s, radius));
+            nodes.end.push_back(panel.end);
             nodes.position.push_back(x);
         }
     }
@@ -97,6 +105,7 @@ VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
     : scene_(scene),
       light_fields_(std::move(light_fields)),
       phase_cotangents_(cotangents_of_breakpoints(*scene.medium)),
+      phases_(*scene.medium),
       sum_(*scene.medium) {
     const AttenuationTable& c = sum_.attenuation();
     largest_attenuation_ = largest_value(c.uniform, c.band_count);
@@ -127,7 +136,7 @@ void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
                                    static_cast<std::size_t>(w.profile.constituent_count));
         light_fields_[j]->columns(w.nodes.position, w.nodes.lamp_column);
         w.nodes.look_up(w.profile);
-        w.nodes.evaluate_phases(*scene_.medium);
+        w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
         w.radiance.assign(ends.size(), Spectrum{});
         sum_.add(w.nodes, lamps[j].axis_intensity(), w.radiance);
         Spectrum so_far{};
@@ -182,7 +191,8 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         if (panel.length() <= 1e-12 * (1 + middle)) continue;
         if (passage.radius(middle) < k_lamp_radius) continue;
         // A panel lies between the edges of the lamp's cone: dark in the middle is dark all over.
-        if (source.relative_intensity(ray.at(middle) - source.position()) == 0) continue;
+        const double relative = source.relative_intensity(ray.at(middle) - source.position());
+        if (relative == 0) continue;
         while (end_index + 1 < ends.size() && ends[end_index] < middle) ++end_index;
         while (knot + 2 < profile.s.size() && profile.s[knot + 1] < middle) ++knot;
         double attenuation = largest_attenuation_;
@@ -193,7 +203,9 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         const double depth = 2 * attenuation * panel.length();
         const int pieces =
             static_cast<int>(std::min(64.0, std::ceil(depth / k_panel_optical_depth)));
-        add_panel(ray, source, passage, panel, std::max(1, pieces), end_index, nodes);
+        add_nodes(ray, source, passage,
+                  {panel, std::max(1, pieces), relative == 1 && source.has_even_core(), end_index},
+                  nodes);
     }
 }
 

@@ -38,6 +38,7 @@ class VolumeIntegrator : public Integrator {
     LitScene scene_;
     std::vector<std::shared_ptr<const LightField>> light_fields_;
     std::vector<double> phase_cotangents_;  // of all phase functions' breakpoints
+    PhaseTable phases_;
     ScatterSum sum_;
     double largest_attenuation_ = 0;  // of the uniform water over the bands [1/m]
     double smallest_attenuation_ = 0;
