@@ -80,6 +80,18 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
 
     std::optional<Ray> water = rays_.water_ray(x + 0.5, y + 0.5);
     if (water) record_ground_truth(*water, result);
+    if (samples_ > 1)
+        add_samples(x, y, water, w, result);
+    else if (water)
+        add_center(*water, w, result);
+    if (w.hits > 0)
+        for (double& t : result.transmittance) t /= w.hits;
+    if (water && !w.distances.empty()) add_water(*water, w, result);
+}
+
+// Adds what the samples see of surfaces; `water` becomes the ray of one if the centre has none.
+void PixelRenderer::add_samples(int x, int y, std::optional<Ray>& water, Workspace& w,
+                                PixelResult& result) const {
     for (int i = 0; i < samples_; ++i) {
         const ImageOffset offset = sample_offset(i, samples_);
         const std::optional<Ray> ray = rays_.water_ray(x + offset.x, y + offset.y);
@@ -96,9 +108,13 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
         w.distances.push_back(at_center ? result.path : hit.distance);
         add_surface_sample(*ray, hit, w, result);
     }
-    if (w.hits > 0)
-        for (double& t : result.transmittance) t /= w.hits;
-    if (water && !w.distances.empty()) add_water(*water, w, result);
+}
+
+// The one sample is the ground truth's own ray.
+void PixelRenderer::add_center(const Ray& ray, Workspace& w, PixelResult& result) const {
+    result.alpha = 1;
+    w.distances.push_back(result.has_hit ? result.path : k_far);
+    if (result.has_hit) add_surface_sample(ray, result.hit, w, result);
 }
 
 void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/integrator.h"
@@ -45,6 +46,9 @@ class PixelRenderer {
   private:
     struct Workspace;
 
+    void add_samples(int x, int y, std::optional<Ray>& water, Workspace& w,
+                     PixelResult& result) const;
+    void add_center(const Ray& ray, Workspace& w, PixelResult& result) const;
     void add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
                             PixelResult& result) const;
     void add_water(const Ray& ray, Workspace& w, PixelResult& result) const;
