@@ -2,205 +2,120 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <charconv>
-#include <cmath>
-#include <string_view>
 
+#include "cli/command_options.h"
 #include "cli/version.h"
+#include "core/config_text.h"
 #include "core/error.h"
 
 namespace uw {
 
 namespace {
 
-constexpr const char* k_render_examples = R"(Examples:
-  uwvdb render assets/scenes/plume.yaml
-  uwvdb render plume.yaml -o out/plume.exr --size 960x540 --samples 1
-  uwvdb render plume.yaml --set lamps.left.intensity='[80, 80, 80]' --layers direct,backscatter,depth
-  uwvdb render plume.yaml --integrator reference --crop 100,80,140,120 --stats stats.json
-  uwvdb render houdini.yaml --set volumes[0].file=my.vdb --irradiance-vdb light.vdb
+std::vector<std::string> names_of_options(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
 
-Writes OUT.exr (32-bit float, one part, layers by name) and OUT.png, a preview.
-Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
-130 interrupted.)";
-
-template <std::size_t N>
-std::array<int, N> parse_integers(const std::string& text, char separator, const char* option,
-                                  const char* form) {
-    std::array<int, N> values{};
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    for (std::size_t i = 0; i < N; ++i) {
-        const auto [next, error] = std::from_chars(at, end, values[i]);
-        const bool last = i + 1 == N;
-        if (error != std::errc() || (last ? next != end : next == end || *next != separator))
-            throw UsageError(fmt::format("{}: expected {}, found '{}'", option, form, text));
-        at = next + 1;
+// One line about the first word that neither `app` nor its command could place.
+std::string about_unexpected(const CLI::App& app) {
+    const std::vector<CLI::App*> commands = app.get_subcommands();
+    const std::vector<std::string> words = app.remaining(true);
+    const auto option = std::ranges::find_if(
+        words, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+    if (option != words.end()) {
+        const std::vector<std::string> names =
+            names_of_options(commands.empty() ? app : *commands.front());
+        const std::string word = option->substr(0, option->find('='));
+        return fmt::format(
+            "{}: unknown option; {}", printable(word),
+            suggestion(word, std::vector<std::string_view>(names.begin(), names.end())));
     }
-    return values;
+    const std::string word = words.empty() ? "" : words.front();
+    if (!commands.empty())
+        return fmt::format("'{}': not expected; give one SCENE, and options", printable(word));
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    return fmt::format("'{}': unknown command; {}", printable(word),
+                       suggestion(word, std::vector<std::string_view>(names.begin(), names.end())));
 }
 
-void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
-    command.add_option("--set", overrides, "key.path=value: replace a value of the scene file")
-        ->take_all()
-        ->type_size(1)
-        ->allow_extra_args(false);
-}
-
-void add_render_options(CLI::App& render, RenderArguments& a, std::string& size,
-                        std::string& crop) {
-    render.add_option("SCENE", a.scene, "scene file (docs/scene-file.md)")->required();
-    render.add_option("-o,--output", a.output, "EXR to write; the preview goes beside it as PNG");
-    add_set_option(render, a.overrides);
-    render.add_option("--size", size, "WxH: render at this size, intrinsics scaled with it");
-    render.add_option("--crop", crop, "x0,y0,x1,y1: render these pixels only (x1, y1 excluded)");
-    render.add_option("--integrator", a.integrator, "volume | planes | reference");
-    render.add_option("--layers", a.layers, "all, or names separated by commas");
-    render.add_option("--samples", a.samples, "surface samples per pixel")
-        ->check(CLI::Range(1, 4096));
-    render.add_option("--threads", a.threads, "threads to use; 0: all")->check(CLI::Range(0, 1024));
-    render.add_option("--stats", a.stats, "write times, rays, voxels and memory as JSON");
-    render.add_option("--irradiance-vdb", a.irradiance_vdb,
-                      "write each lamp's irradiance per band as a VDB");
-    render.add_flag("--quiet", a.quiet, "print errors only");
-    render.footer(k_render_examples);
-}
-
-constexpr const char* k_water_examples = R"(Examples:
-  uwvdb water                                    pure sea water
-  uwvdb water jerlov-II --bands 400:700:10 --csv out/jerlov-II
-  uwvdb water --set water.particles='{small: 1, large: 1}' --band 540 --svg vsf.svg
-  uwvdb water plume.yaml --set water.preset=jerlov-3C --json
-
-Prints a, b, c and what follows from them per band [1/m], then the volume scattering function by
-component. --set water.* needs no scene. docs/water.md explains the tables and names their sources.
-Presets: jerlov-IB, jerlov-II, jerlov-III, jerlov-1C, jerlov-3C, jerlov-5C.
-Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
-
-constexpr std::size_t k_most_bands = 2000;
-
-double parse_wavelength(std::string_view text, const std::string& whole) {
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || stop != end || !(value >= 10 && value <= 1e5))
-        throw UsageError(
-            fmt::format("--bands: expected nanometres as in 620,540,450 or "
-                        "400:700:10, found '{}'",
-                        whole));
-    return value;
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-    std::vector<std::string_view> parts;
-    for (std::size_t start = 0; start <= text.size();) {
-        const std::size_t end = std::min(text.find(separator, start), text.size());
-        parts.push_back(text.substr(start, end - start));
-        start = end + 1;
+// Refuses `-o ''`: most likely a variable of a script that was not set.
+void refuse_empty_files(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() == 0 || option->get_type_size() == 0) continue;
+        for (const std::string& text : option->results())
+            if (text.empty())
+                throw UsageError(
+                    fmt::format("{}: has an empty value; give one, or leave it out",
+                                option->get_positional() ? "SCENE" : option->get_name()));
     }
-    return parts;
-}
-
-/// "620,540,450" or "first:last:step".
-std::vector<double> parse_bands(const std::string& text) {
-    std::vector<double> bands;
-    const std::vector<std::string_view> range = split(text, ':');
-    if (range.size() == 1) {
-        for (const std::string_view part : split(text, ','))
-            bands.push_back(parse_wavelength(part, text));
-    } else {
-        double step = 0;
-        if (range.size() == 3) {
-            const char* const end = range[2].data() + range[2].size();
-            if (const auto [stop, error] = std::from_chars(range[2].data(), end, step);
-                error != std::errc() || stop != end)
-                step = 0;
-        }
-        if (!(step > 0))
-            throw UsageError(
-                fmt::format("--bands: a range is first:last:step in nm, such as "
-                            "400:700:10, not '{}'",
-                            text));
-        const double first = parse_wavelength(range[0], text);
-        const double last = parse_wavelength(range[1], text);
-        const double count = std::floor((last - first) / step + 1e-9) + 1;
-        if (!(count >= 1 && count <= static_cast<double>(k_most_bands)))
-            throw UsageError(fmt::format("--bands {}: gives no or more than {} wavelengths", text,
-                                         k_most_bands));
-        for (int i = 0; i < static_cast<int>(count); ++i) bands.push_back(first + i * step);
-    }
-    std::vector<double> sorted = bands;
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-        throw UsageError(fmt::format("--bands {}: a wavelength is given twice", text));
-    if (bands.size() > k_most_bands)
-        throw UsageError(fmt::format("--bands: more than {} wavelengths", k_most_bands));
-    return bands;
-}
-
-void add_water_options(CLI::App& water, WaterArguments& a, std::string& bands) {
-    water.add_option("PRESET|SCENE", a.subject,
-                     "jerlov-II, or a scene file; pure sea water if left out");
-    add_set_option(water, a.overrides);
-    water.add_option("--bands", bands, "nm: 620,540,450 or first:last:step; replaces the water's");
-    water.add_option("--band", a.band_nm, "nm: the scattering function at this band only");
-    water
-        .add_option("--csv", a.csv,
-                    "write PREFIX-coefficients.csv and PREFIX-vsf.csv, with finer angles")
-        ->type_name("PREFIX");
-    water.add_option("--svg", a.svg,
-                     "plot coefficients over wavelength, and scattering over angle");
-    water.add_flag("--json", a.json, "print everything as JSON instead of tables");
-    water.footer(k_water_examples);
 }
 
 }  // namespace
 
+CLI::Validator in_range(int low, int high) {
+    return CLI::Validator(
+        [low, high](const std::string& text) -> std::string {
+            int value = 0;
+            const char* const end = text.data() + text.size();
+            const auto [next, error] = std::from_chars(text.data(), end, value);
+            if (error == std::errc() && next == end && value >= low && value <= high) return {};
+            return fmt::format("expected {} to {}, found '{}'", low, high, printable(text));
+        },
+        "");
+}
+
+void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
+    command.add_option("--set", overrides, "replace a value of the scene file; may be repeated")
+        ->take_all()
+        ->type_name("KEY.PATH=VALUE")
+        ->type_size(1)
+        ->allow_extra_args(false);
+}
+
+void add_threads_option(CLI::App& command, int& threads) {
+    command.add_option("--threads", threads, "threads to use; 0, the default: all there are")
+        ->check(in_range(0, 1024))
+        ->type_name("N");
+}
+
 Arguments parse_arguments(int argc, const char* const* argv) {
-    RenderArguments render;
-    WaterArguments water;
-    std::string size, crop, bands;
-    bool version = false;
     CLI::App app("uwvdb: physically exact images of lamp-lit water, plumes and what is in them",
                  "uwvdb");
+    bool version = false;
     app.add_flag("--version", version, "print the version and stop");
     app.footer(
         "Example:\n  uwvdb render assets/scenes/plume.yaml -o plume.exr\n\n"
-        "`uwvdb render --help` and `uwvdb water --help` tell more.");
-    CLI::App* const render_app =
-        app.add_subcommand("render", "render a scene to a multi-layer EXR");
-    add_render_options(*render_app, render, size, crop);
-    CLI::App* const water_app =
-        app.add_subcommand("water", "tables and plots of a water's optical properties");
-    add_water_options(*water_app, water, bands);
-    app.require_subcommand(0, 1);
-    const auto chosen = [&]() -> CLI::App* {
-        const std::vector<CLI::App*> parsed = app.get_subcommands();
-        return parsed.empty() ? nullptr : parsed.front();
+        "`uwvdb render --help` and so on tell more.");
+    const std::array commands = {add_render_command(app), add_water_command(app),
+                                 add_validate_command(app)};
+    const auto chosen = [&] {
+        return std::ranges::find_if(commands, [](const Command& c) { return c.app->parsed(); });
     };
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
-        CLI::App* const command = chosen();
-        return MessageArguments{command ? command->help("uwvdb " + command->get_name())
-                                        : app.help()};
+        return MessageArguments{chosen() == commands.end() ? app.help()
+                                                           : chosen()->app->help("uwvdb")};
+    } catch (const CLI::ExtrasError&) {
+        throw UsageError(about_unexpected(app));
     } catch (const CLI::ParseError& error) {
-        const CLI::App* const command = chosen();
-        throw UsageError(fmt::format("{}; see 'uwvdb {}--help'", error.what(),
-                                     command ? command->get_name() + " " : ""));
+        const std::string name = chosen() == commands.end() ? "" : chosen()->app->get_name() + " ";
+        throw UsageError(fmt::format("{}; see 'uwvdb {}--help'", error.what(), name));
     }
     if (version) return MessageArguments{"uwvdb " + program_version() + "\n"};
-    if (chosen() == water_app) {
-        if (!bands.empty()) water.bands_nm = parse_bands(bands);
-        return water;
-    }
-    if (chosen() != render_app)
-        throw UsageError("which command? 'uwvdb render SCENE', 'uwvdb water', or --help");
-    if (!size.empty()) render.size = parse_integers<2>(size, 'x', "--size", "WxH such as 640x360");
-    if (!crop.empty()) render.crop = parse_integers<4>(crop, ',', "--crop", "x0,y0,x1,y1");
-    return render;
+    if (chosen() == commands.end())
+        throw UsageError(
+            "which command? 'uwvdb render SCENE', 'uwvdb water', 'uwvdb validate', or --help");
+    refuse_empty_files(*chosen()->app);
+    return chosen()->finish();
 }
 
 }  // namespace uw

@@ -36,13 +36,24 @@ struct WaterArguments {
     bool json = false;
 };
 
+/// `uwvdb validate` as typed.
+struct ValidateArguments {
+    std::filesystem::path scene;         // empty: the built-in suite
+    std::vector<std::string> overrides;  // --set key.path=value
+    std::filesystem::path report;        // --report: HTML
+    double tolerance = 1e-3;
+    int threads = 0;  // 0: all
+    bool quiet = false;
+};
+
 /// Help or version text to print instead of doing anything.
 struct MessageArguments {
     std::string text;
 };
 
 /// What the command line asks for.
-using Arguments = std::variant<MessageArguments, RenderArguments, WaterArguments>;
+using Arguments =
+    std::variant<MessageArguments, RenderArguments, WaterArguments, ValidateArguments>;
 
 /// Parses the command line. Throws UsageError with one line for a wrong one.
 Arguments parse_arguments(int argc, const char* const* argv);

@@ -1,45 +1,59 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <variant>
 
 #include "cli/arguments.h"
+#include "cli/console.h"
 #include "cli/exit_code.h"
 #include "cli/render_command.h"
 #include "cli/stop_signal.h"
+#include "cli/validate_command.h"
 #include "cli/water_command.h"
+#include "core/config_text.h"
 #include "core/error.h"
 
 namespace {
 
+// One line, whatever the user's files and names brought into it.
 int fail(uw::ExitCode code, const char* what) {
-    fmt::print(stderr, "uwvdb: {}\n", what);
+    constexpr std::size_t k_longest_message = 4000;
+    uw::print_message(fmt::format("uwvdb: {}\n", uw::printable(what, k_longest_message)));
     return code;
 }
 
-void run(const uw::MessageArguments& arguments) {
-    fmt::print("{}", arguments.text);
+uw::ExitCode run(const uw::MessageArguments& arguments) {
+    uw::print_output(arguments.text);
+    return uw::k_exit_done;
 }
 
-void run(const uw::RenderArguments& arguments) {
+uw::ExitCode run(const uw::RenderArguments& arguments) {
     uw::install_stop_signal();
     uw::run_render(arguments);
+    return uw::k_exit_done;
 }
 
-void run(const uw::WaterArguments& arguments) {
+uw::ExitCode run(const uw::WaterArguments& arguments) {
     uw::run_water(arguments, std::cout);
+    return uw::k_exit_done;
+}
+
+uw::ExitCode run(const uw::ValidateArguments& arguments) {
+    uw::install_stop_signal();
+    const bool colour = isatty(STDOUT_FILENO) != 0;
+    return uw::run_validate(arguments, colour, std::cout) ? uw::k_exit_done : uw::k_exit_validation;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+    uw::prepare_streams();
     try {
         const uw::Arguments parsed = uw::parse_arguments(argc, argv);
-        std::visit([](const auto& arguments) { run(arguments); }, parsed);
-        return uw::k_exit_done;
+        return std::visit([](const auto& arguments) { return run(arguments); }, parsed);
     } catch (const uw::UsageError& error) {
         return fail(uw::k_exit_usage, error.what());
     } catch (const uw::InputError& error) {

@@ -35,11 +35,10 @@ double round_step(double x) {
 std::string linear_label(double value, double step) {
     if (std::abs(value) < 1e-9 * step) return "0";
     if (std::abs(value) >= 1e5 || step < 1e-4) return fmt::format("{:.6g}", value);
-    const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-    std::string text = fmt::format("{:.{}f}", value, decimals + 1);
-    if (text.back() == '0') text.pop_back();  // the digit that only steps like 0.25 need
-    if (text.back() == '.') text.pop_back();
-    return text;
+    int decimals = 0;
+    for (double scaled = step; decimals < 6; ++decimals, scaled *= 10)
+        if (std::abs(scaled - std::round(scaled)) < 1e-6 * scaled) break;
+    return fmt::format("{:.{}f}", value, decimals);
 }
 
 AxisTicks linear_ticks(const AxisRequest& request, double low, double high) {

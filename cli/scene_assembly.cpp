@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/focus_weighted_integrator.h"
 #include "core/geometry_scene.h"
 #include "core/planes_integrator.h"
 #include "core/reference_integrator.h"
@@ -65,17 +66,20 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
 }
 
 std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledScene& scene,
-                                                               const LightFieldOptions& options) {
+                                                               const LightFieldOptions& options,
+                                                               const ShareCallback& progress) {
     std::vector<std::shared_ptr<const LampLightField>> fields;
     LightFieldOptions share = options;
     share.column_budget /= std::max(std::size_t{1}, scene.lamps.size());
-    for (const Lamp& lamp : scene.lamps)
+    for (const Lamp& lamp : scene.lamps) {
         fields.push_back(std::make_shared<LampLightField>(*scene.field, *scene.surfaces,
                                                           lamp.position(), share));
+        progress(static_cast<double>(fields.size()) / static_cast<double>(scene.lamps.size()));
+    }
     return fields;
 }
 
-std::unique_ptr<Integrator> make_integrator(
+static std::unique_ptr<Integrator> make_unweighted_integrator(
     const AssembledScene& scene,
     const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
     if (scene.desc.render.integrator == RenderDesc::Integrator::reference)
@@ -86,6 +90,15 @@ std::unique_ptr<Integrator> make_integrator(
     return std::make_unique<VolumeIntegrator>(
         scene.lit(),
         std::vector<std::shared_ptr<const LightField>>(light_fields.begin(), light_fields.end()));
+}
+
+std::unique_ptr<Integrator> make_integrator(
+    const AssembledScene& scene,
+    const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
+    std::unique_ptr<Integrator> integrator = make_unweighted_integrator(scene, light_fields);
+    if (scene.desc.render.output != RenderDesc::Output::paper) return integrator;
+    return std::make_unique<FocusWeightedIntegrator>(std::move(integrator),
+                                                     scene.desc.camera.lens.value().focal_length);
 }
 
 }  // namespace uw

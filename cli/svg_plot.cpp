@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "core/utf8.h"
+#include "cli/svg_text.h"
 
 namespace uw {
 
@@ -14,59 +14,8 @@ namespace {
 
 constexpr double k_font = 13, k_title_font = 17, k_line = 18;
 constexpr double k_left = 76, k_right = 18, k_bottom = 50, k_margin = 14;
+constexpr std::size_t k_many_dots = 12;  // on one curve: smaller ones, that do not run together
 constexpr double k_swatch = 30, k_legend_gap = 16;
-// Of the font's size; an upper estimate for sans-serif fonts, as the reader's is not known.
-constexpr double k_glyph_width = 0.6;
-
-std::size_t glyph_count(const std::string& text) {
-    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char byte) {
-        return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
-    }));
-}
-
-double text_width(const std::string& text, double font = k_font) {
-    return k_glyph_width * font * static_cast<double>(glyph_count(text));
-}
-
-std::string escaped(std::string text) {
-    for (std::size_t bad = first_non_text(text); bad < text.size(); bad = first_non_text(text))
-        text[bad] = '?';
-    std::string out;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
-
-std::vector<std::string> wrapped(const std::string& text, double width) {
-    std::vector<std::string> lines{""};
-    std::size_t start = 0;
-    while (start < text.size()) {
-        const std::size_t end = std::min(text.find(' ', start), text.size());
-        const std::string word = text.substr(start, end - start);
-        if (!lines.back().empty() && text_width(lines.back() + " " + word) > width)
-            lines.emplace_back("  " + word);
-        else
-            lines.back() += (lines.back().empty() ? "" : " ") + word;
-        start = end + 1;
-    }
-    return lines;
-}
 
 struct Box {
     double left, top, right, bottom;
@@ -108,7 +57,7 @@ class Writer {
 void Writer::text(double x, double y, const char* anchor, const std::string& content,
                   const char* extra) {
     put("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, extra,
-        escaped(content));
+        xml_escaped(content));
 }
 
 template <class Place>
@@ -118,7 +67,7 @@ void Writer::place_legend(const PlotPanel& panel, Place place) const {
     int row = 0;
     for (const PlotCurve& curve : panel.curves) {
         if (curve.label.empty()) continue;
-        const double entry = k_swatch + 6 + text_width(curve.label);
+        const double entry = k_swatch + 6 + text_width(curve.label, k_font);
         if (x > 0 && x + entry > width) {
             x = 0;
             ++row;
@@ -136,9 +85,9 @@ int Writer::legend_rows(const PlotPanel& panel) const {
 
 std::string stroke(const PlotCurve& curve) {
     std::string text =
-        fmt::format("stroke=\"{}\" stroke-width=\"{:g}\"", escaped(curve.colour), curve.width);
+        fmt::format("stroke=\"{}\" stroke-width=\"{:g}\"", xml_escaped(curve.colour), curve.width);
     if (!curve.dashes.empty())
-        text += fmt::format(" stroke-dasharray=\"{}\"", escaped(curve.dashes));
+        text += fmt::format(" stroke-dasharray=\"{}\"", xml_escaped(curve.dashes));
     return text;
 }
 
@@ -147,7 +96,7 @@ void Writer::swatch(const PlotCurve& curve, double x, double y) {
         put("<path d=\"M{:.1f} {:.1f}h{:g}\" fill=\"none\" {}/>\n", x, y, k_swatch, stroke(curve));
     if (curve.markers)
         put("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"/>\n", x + k_swatch / 2, y,
-            escaped(curve.colour));
+            xml_escaped(curve.colour));
 }
 
 void Writer::legend(const PlotPanel& panel, double x, double y) {
@@ -190,6 +139,7 @@ void Writer::curve(const PlotPanel& panel, const PlotCurve& curve, const AxisTic
     const auto shown = [](const PlotAxis& axis, double value) {
         return std::isfinite(value) && (axis.request.scale == AxisScale::linear || value > 0);
     };
+    const double radius = curve.x.size() > k_many_dots ? 2 : 3.5;
     // Far outside the frame a point only gives its line a direction; keep it a sane number.
     const auto place = [](double from, double to, double t) {
         return from + std::clamp(t, -50.0, 50.0) * (to - from);
@@ -206,22 +156,27 @@ void Writer::curve(const PlotPanel& panel, const PlotCurve& curve, const AxisTic
             path += fmt::format("{}{:.2f} {:.2f}", pen_down ? "L" : "M", px, py);
             const bool inside = tx > -1e-9 && tx < 1 + 1e-9 && ty > -1e-9 && ty < 1 + 1e-9;
             if (curve.markers && inside)
-                dots += fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3.5\"/>", px, py);
+                dots +=
+                    fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{}\"/>", px, py, radius);
         }
         pen_down = visible;
     }
     if (curve.width > 0 && !path.empty())
         put("<path class=\"curve\" d=\"{}\" clip-path=\"url(#clip{})\" {}/>\n", path, clip_,
             stroke(curve));
-    if (!dots.empty()) put("<g fill=\"{}\">{}</g>\n", escaped(curve.colour), dots);
+    if (!dots.empty()) put("<g fill=\"{}\">{}</g>\n", xml_escaped(curve.colour), dots);
 }
 
 void Writer::panel(const PlotPanel& panel, double x, double y) {
     std::vector<double> xs, ys;
     int rows = 0;
+    const AxisRequest& x_range = panel.x.request;
     for (const PlotCurve& curve : panel.curves) {
         xs.insert(xs.end(), curve.x.begin(), curve.x.end());
-        ys.insert(ys.end(), curve.y.begin(), curve.y.end());
+        for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
+            if (curve.x[i] >= x_range.min.value_or(curve.x[i]) &&
+                curve.x[i] <= x_range.max.value_or(curve.x[i]))
+                ys.push_back(curve.y[i]);
     }
     // Legends as high as the figure's highest, so that the axes of a row align.
     for (const PlotPanel& other : figure_.panels) rows = std::max(rows, legend_rows(other));
@@ -233,9 +188,12 @@ void Writer::panel(const PlotPanel& panel, double x, double y) {
     put("<g>\n");
     text(box.left, y + k_line - 4, "start", panel.title, " font-weight=\"bold\"");
     legend(panel, box.left, y + 2 * k_line);
+    // A little more than the frame, so that a curve along it keeps its width.
+    constexpr double k_slack = 2;
     put("<clipPath id=\"clip{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
         "height=\"{:.1f}\"/></clipPath>\n",
-        ++clip_, box.left, box.top, box.right - box.left, box.bottom - box.top);
+        ++clip_, box.left - k_slack, box.top - k_slack, box.right - box.left + 2 * k_slack,
+        box.bottom - box.top + 2 * k_slack);
     axes(panel, x_ticks, y_ticks, box);
     for (const PlotCurve& c : panel.curves) curve(panel, c, x_ticks, y_ticks, box);
     put("</g>\n");
@@ -246,10 +204,14 @@ std::string Writer::document() {
         std::max(1, std::min(figure_.columns, static_cast<int>(figure_.panels.size())));
     const int rows = (static_cast<int>(figure_.panels.size()) + columns - 1) / columns;
     const double width = 2 * k_margin + columns * figure_.panel_width;
-    const double head = figure_.title.empty() ? 0 : 1.8 * k_title_font;
+    const std::vector<std::string> title =
+        wrapped_lines(figure_.title, width - 2 * k_margin, k_title_font);
+    const double title_line = 1.4 * k_title_font;
+    const double head =
+        figure_.title.empty() ? 0 : title_line * static_cast<double>(title.size()) + 8;
     std::vector<std::string> caption;
     for (const std::string& line : figure_.caption)
-        for (std::string& part : wrapped(line, width - 4 * k_margin))
+        for (std::string& part : wrapped_lines(line, width - 4 * k_margin, k_font))
             caption.push_back(std::move(part));
     const double panels_end = k_margin + head + rows * figure_.panel_height;
     const double height = panels_end + k_line * static_cast<double>(caption.size()) + k_margin;
@@ -262,13 +224,13 @@ std::string Writer::document() {
         "<style>.grid{{stroke:#ddd;fill:none}}.tick{{stroke:#333;fill:none}}"
         ".frame{{stroke:#333;fill:none}}.curve{{fill:none;stroke-linejoin:round}}</style>\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-        width, height, k_font, escaped(figure_.title));
-    if (!figure_.title.empty())
-        text(k_margin, k_margin + k_title_font, "start", figure_.title,
+        width, height, k_font, xml_escaped(figure_.title));
+    for (std::size_t i = 0; i < title.size(); ++i)
+        text(k_margin, k_margin + k_title_font + title_line * static_cast<double>(i), "start",
+             title[i],
              fmt::format(" font-size=\"{:g}\" font-weight=\"bold\"", k_title_font).c_str());
     for (std::size_t i = 0; i < figure_.panels.size(); ++i) {
-        const auto column = static_cast<double>(i % static_cast<std::size_t>(columns));
-        const auto row = static_cast<double>(i / static_cast<std::size_t>(columns));
+        const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
         panel(figure_.panels[i], k_margin + column * figure_.panel_width,
               k_margin + head + row * figure_.panel_height);
     }

@@ -24,7 +24,7 @@ struct PlotCurve {
     std::string label;                          // in the legend; empty: not in it
     std::vector<double> x, y;                   // same length
     std::string colour = plot_colour::k_black;  // "#rrggbb"
-    std::string dashes;                         // SVG's stroke-dasharray, e.g. "6 3"; empty: solid
+    std::string dashes{};                       // SVG's stroke-dasharray, e.g. "6 3"; empty: solid
     double width = 1.8;                         // pixels; 0: no line
     bool markers = false;                       // a dot at each point
 };

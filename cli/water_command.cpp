@@ -8,6 +8,7 @@
 #include <memory>
 #include <ostream>
 
+#include "cli/console.h"
 #include "cli/water_report.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -42,11 +43,12 @@ void read_subject(const WaterArguments& a, WaterReport& report) {
         std::vector<std::string> overrides = a.overrides;
         if (!preset.empty()) overrides.insert(overrides.begin(), "water.preset=" + preset);
         report.water = read_water_overrides(overrides);
-        report.title = preset.empty() ? "pure sea water" : preset;
-        if (!a.overrides.empty()) {
-            report.title += ",";
-            for (const std::string& text : a.overrides) report.title += " " + text;
-        }
+        if (preset.empty())
+            report.title = a.overrides.empty() ? "pure sea water" : "sea water";
+        else
+            report.title = preset;
+        for (const std::string& text : a.overrides)
+            report.title += (&text == &a.overrides.front() ? " with " : ", ") + text;
         return;
     }
     const std::filesystem::path file = a.subject;
@@ -103,7 +105,7 @@ class OutputFiles {
     void commit() {
         for (Entry& entry : files_) {
             entry.file->commit();
-            fmt::print(stderr, "wrote {}\n", entry.path.string());
+            print_message(fmt::format("wrote {}\n", entry.path.string()));
         }
     }
 
@@ -142,10 +144,11 @@ void run_water(const WaterArguments& a, std::ostream& out) {
     }
     if (!a.svg.empty()) files.add(a.svg, svg_document(water_figure(report)));
     for (const std::string& warning : report.table.warnings)
-        fmt::print(stderr, "warning: {}\n", warning);
+        print_message(fmt::format("warning: {}\n", warning));
+    // First the files: whoever reads the tables may stop reading, which ends the program.
+    files.commit();
     out << (a.json ? water_json(report) : water_text(report)) << std::flush;
     if (!out) throw IoError("standard output: cannot write; is the disk full?");
-    files.commit();
 }
 
 }  // namespace uw

@@ -8,7 +8,8 @@ namespace uw {
 
 /// `uwvdb water`: tables of a, b, c and beta of a preset's or a scene's water onto `out`, as text
 /// or JSON, and into the CSV and SVG files asked for. Warnings and names of files written go to
-/// stderr. Throws UsageError, InputError and IoError; then nothing has been written.
+/// stderr. Throws UsageError, InputError and IoError; then no file has been touched, unless it is
+/// `out` that cannot be written.
 void run_water(const WaterArguments& arguments, std::ostream& out);
 
 }  // namespace uw

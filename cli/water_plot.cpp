@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <optional>
+#include <utility>
 
 #include "cli/water_report.h"
 #include "media/pure_water.h"
@@ -13,6 +13,9 @@
 namespace uw {
 
 namespace {
+
+/// Bands more than this lie so close that their dots would hide the curve.
+constexpr std::size_t k_most_dots = 40;
 
 using Value = std::function<double(const CoefficientTable&, std::size_t)>;
 
@@ -46,6 +49,13 @@ struct FineCurves {
     bool absorption, scattering;  // whether those of the uniform water are known
 };
 
+/// First and last wavelength [nm] of the plots: visible light, and further where the bands go.
+std::pair<double, double> plotted_range(const WaterReport& report) {
+    const std::vector<double>& bands = report.table.wavelengths_nm;
+    const auto [low, high] = std::minmax_element(bands.begin(), bands.end());
+    return {std::floor(std::min(400.0, *low)), std::ceil(std::max(700.0, *high))};
+}
+
 FineCurves fine_curves(const WaterReport& report) {
     FineCurves fine{{}, !report.water.absorption, !report.water.scattering};
     WaterDesc water = report.water;
@@ -55,19 +65,21 @@ FineCurves fine_curves(const WaterReport& report) {
     for (VolumeDesc& volume : volumes)
         std::erase_if(volume.grids,
                       [](const GridMappingDesc& grid) { return grid.optics.has_value(); });
-    const auto [low, high] =
-        std::minmax_element(report.table.wavelengths_nm.begin(), report.table.wavelengths_nm.end());
     const WavelengthRange known = pure_water_absorption_range();
-    const double first = std::max(known.first_nm, std::floor(std::min(400.0, *low)));
-    const double last = std::min(known.last_nm, std::ceil(std::max(700.0, *high)));
+    const double first = std::max(known.first_nm, plotted_range(report).first);
+    const double last = std::min(known.last_nm, plotted_range(report).second);
     water.bands_nm.clear();
     for (double nm = first; nm <= last; nm += 2) water.bands_nm.push_back(nm);
     fine.table = tabulate_water(water, volumes);
     return fine;
 }
 
-PlotPanel spectral_panel(const std::string& title, const std::string& y_label) {
+PlotPanel spectral_panel(const WaterReport& report, const std::string& title,
+                         const std::string& y_label) {
     PlotPanel panel{title, {"wavelength [nm]", {}}, {y_label, {}}, {}};
+    const auto [first, last] = plotted_range(report);
+    panel.x.request.min = first;
+    panel.x.request.max = last;
     panel.y.request.scale = AxisScale::log;
     return panel;
 }
@@ -82,6 +94,7 @@ void add_spectrum(PlotPanel& panel, const std::string& label, LineStyle style,
         PlotCurve line{label, fine.wavelengths_nm, {}, style.colour, style.dashes};
         for (std::size_t i = 0; i < line.x.size(); ++i) line.y.push_back(value(*at_fine, i));
         panel.curves.push_back(std::move(line));
+        if (dots.x.size() > k_most_dots) return;
         dots.label.clear();
     }
     panel.curves.push_back(std::move(dots));
@@ -97,7 +110,7 @@ const Value k_c = [](const CoefficientTable& t, std::size_t i) { return t.attenu
 const Value k_bb = [](const CoefficientTable& t, std::size_t i) { return t.backscattering(i); };
 
 PlotPanel coefficient_panel(const WaterReport& report, const FineCurves& fine) {
-    PlotPanel panel = spectral_panel("Coefficients", "coefficient [1/m]");
+    PlotPanel panel = spectral_panel(report, "Coefficients", "coefficient [1/m]");
     const CoefficientTable* const table = &fine.table.uniform;
     const auto add = [&](const char* label, LineStyle style, bool known, const Value& value) {
         add_spectrum(panel, label, style, report.table, report.table.uniform, fine.table,
@@ -111,10 +124,13 @@ PlotPanel coefficient_panel(const WaterReport& report, const FineCurves& fine) {
 }
 
 PlotPanel scattering_panel(const WaterReport& report, const FineCurves& fine) {
-    PlotPanel panel = spectral_panel("Scattering by component", "b [1/m]");
+    PlotPanel panel = spectral_panel(report, "Scattering by component", "b [1/m]");
     const CoefficientTable& uniform = report.table.uniform;
+    const bool split = uniform.parts.size() != 1;
     const CoefficientTable* const table = fine.scattering ? &fine.table.uniform : nullptr;
-    add_spectrum(panel, "total", style_of("total"), report.table, uniform, fine.table, table, k_b);
+    if (split)
+        add_spectrum(panel, "total", style_of("total"), report.table, uniform, fine.table, table,
+                     k_b);
     for (std::size_t part = 0; part < uniform.parts.size(); ++part)
         add_spectrum(panel, uniform.parts[part].name, style_of(uniform.parts[part].name),
                      report.table, uniform, fine.table, table, b_of_part(part));
@@ -123,7 +139,7 @@ PlotPanel scattering_panel(const WaterReport& report, const FineCurves& fine) {
 
 /// What grids add; particles are known at all wavelengths, a grid's own optics at the bands.
 PlotPanel constituent_panel(const WaterReport& report, const FineCurves& fine) {
-    PlotPanel panel = spectral_panel("What grids add: attenuation", "c* [1/m per unit]");
+    PlotPanel panel = spectral_panel(report, "What grids add: attenuation", "c* [1/m per unit]");
     for (std::size_t k = 0; k < report.table.constituents.size(); ++k) {
         const CoefficientTable& constituent = report.table.constituents[k];
         const CoefficientTable* known = nullptr;
@@ -138,9 +154,11 @@ PlotPanel constituent_panel(const WaterReport& report, const FineCurves& fine) {
 }
 
 /// Angles [deg] fine enough for the forward peak on a logarithmic axis and the rest on a linear.
+/// The peak below 0.1 degrees, unbounded in some models, would leave no room for the rest.
 std::vector<double> plot_angles() {
-    std::vector<double> angles{0};
-    for (int i = 0; i < 90; ++i) angles.push_back(0.01 * std::pow(10, i / 30.0));
+    std::vector<double> angles;
+    angles.reserve(60 + 171);
+    for (int i = 0; i < 60; ++i) angles.push_back(0.1 * std::pow(10, i / 30.0));
     for (double angle = 10; angle <= 180; angle += 1) angles.push_back(angle);
     return angles;
 }
@@ -166,8 +184,9 @@ PlotPanel vsf_panel(const WaterReport& report, AxisScale scale) {
         fmt::format("Volume scattering function at {:g} nm{}", report.table.wavelengths_nm[band],
                     scale == AxisScale::log ? ", log-log" : ""),
         "β [1/(m sr)]", scale);
-    add_angular(panel, "total", style_of("total"), 3,
-                [&](double psi) { return uniform.vsf(band, psi); });
+    if (uniform.parts.size() != 1)
+        add_angular(panel, "total", style_of("total"), 3,
+                    [&](double psi) { return uniform.vsf(band, psi); });
     for (std::size_t part = 0; part < uniform.parts.size(); ++part)
         add_angular(panel, uniform.parts[part].name, style_of(uniform.parts[part].name), 1.8,
                     [&](double psi) { return uniform.vsf(band, part, psi); });

@@ -20,7 +20,10 @@ class TextTable {
         columns_.push_back({std::move(name), std::move(unit)});
     }
     void add(std::size_t column, double value) {
-        columns_[column].push_back(std::isfinite(value) ? fmt::format("{:.4g}", value) : "-");
+        // Column 0 is the wavelength or angle, which has the digits it was given with.
+        const int digits = column == 0 ? 8 : 4;
+        columns_[column].push_back(std::isfinite(value) ? fmt::format("{:.{}g}", value, digits)
+                                                        : "-");
     }
     std::string text() const {
         std::string out;
@@ -107,6 +110,7 @@ const std::vector<double>& printed_angles() {
 const std::vector<double>& filed_angles() {
     static const std::vector<double> k_angles = [] {
         std::vector<double> angles;
+        angles.reserve(10 + 9 + 180);
         for (int i = 0; i < 10; ++i) angles.push_back(i / 100.0);
         for (int i = 1; i < 10; ++i) angles.push_back(i / 10.0);
         for (int i = 1; i <= 180; ++i) angles.push_back(i);

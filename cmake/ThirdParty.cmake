@@ -19,6 +19,13 @@ if(NOT TARGET CLI11::CLI11)
     set_target_properties(CLI11::CLI11 PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${CLI11_INCLUDE_DIR})
 endif()
 
+# FFTW brings no CMake package. Its threads are not used: ours split the work.
+find_path(FFTW3_INCLUDE_DIR fftw3.h REQUIRED)
+find_library(FFTW3_LIBRARY fftw3 REQUIRED)
+add_library(uwvdb_fftw INTERFACE)
+target_include_directories(uwvdb_fftw SYSTEM INTERFACE ${FFTW3_INCLUDE_DIR})
+target_link_libraries(uwvdb_fftw INTERFACE ${FFTW3_LIBRARY})
+
 # OpenVDB ships find modules, not a package config; their folder names the architecture.
 file(GLOB UWVDB_OPENVDB_MODULES /usr/lib/*/cmake/OpenVDB /usr/lib/cmake/OpenVDB
      /usr/local/lib/cmake/OpenVDB)

@@ -26,8 +26,11 @@ fs::path checked(const fs::path& target) {
     // What cannot be looked at is found out when the file is made, with a better message.
     std::error_code error;
     fs::path resolved = target;
-    if (fs::is_symlink(fs::symlink_status(target, error))) {
-        resolved = fs::weakly_canonical(target, error);
+    constexpr int k_most_links = 40;  // as many as Linux follows
+    for (int links = 0; fs::is_symlink(fs::symlink_status(resolved, error)); ++links) {
+        if (links == k_most_links) fail(target, "its symbolic links lead in a circle");
+        // Relative to the link's folder; what it names need not be there yet.
+        resolved = resolved.parent_path() / fs::read_symlink(resolved, error);
         if (error) fail(target, error.message());
     }
     const fs::file_status status = fs::status(resolved, error);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <new>
+#include <stdexcept>
 #include <utility>
 
+#include "core/available_memory.h"
 #include "core/error.h"
 
 namespace uw {
@@ -22,17 +24,19 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
         4.0 * window.width() * window.height() * static_cast<double>(channel_names_.size());
     const auto no_memory = [&] {
         return InputError(fmt::format(
-            "camera.resolution: {} x {} pixels of {} channels need {:.3g} GB, more than there is; "
-            "ask for fewer --layers, a --crop or a smaller --size",
-            window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9));
+            "camera.resolution: {} x {} pixels of {} channels need {:.3g} GB of memory, and {:.3g} "
+            "GB are free; ask for fewer --layers, a --crop or a smaller --size",
+            window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9,
+            static_cast<double>(available_memory_bytes()) * 1e-9));
     };
-    // No machine we know holds more, and far above it the count of values overflows.
-    constexpr double k_most_bytes = 1e12;
-    if (bytes > k_most_bytes) throw no_memory();
+    // Asked first, for Linux promises more than it has and ends the program that makes use of it.
+    if (bytes > static_cast<double>(available_memory_bytes())) throw no_memory();
     try {
         values_.resize(static_cast<std::size_t>(window.width()) *
                        static_cast<std::size_t>(window.height()) * channel_names_.size());
     } catch (const std::bad_alloc&) {
+        throw no_memory();
+    } catch (const std::length_error&) {
         throw no_memory();
     }
 }

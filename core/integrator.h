@@ -29,6 +29,7 @@ class InScatter {
         lamps_ = lamps;
         values_.assign(ends * lamps, Spectrum{});
     }
+    std::size_t lamp_count() const { return lamps_; }
     Spectrum& at(std::size_t end, std::size_t lamp) { return values_[end * lamps_ + lamp]; }
     const Spectrum& at(std::size_t end, std::size_t lamp) const {
         return values_[end * lamps_ + lamp];

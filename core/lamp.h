@@ -32,7 +32,8 @@ class Lamp {
     /// Power of the lamp for 1 W/sr on its axis: its relative intensity over the sphere [sr].
     double beam_solid_angle() const;
 
-    /// Appends the distances along `ray` where the profile is not smooth (edges of its cone).
+    /// Appends the distances along `ray` where the profile is not smooth or changes much: the edges
+    /// of its beam and cones of equal intensity within.
     void append_profile_breaks(const Ray& ray, std::vector<double>& s) const;
 
   private:

@@ -35,6 +35,8 @@ struct FlatPortDesc {         // camera frame
     double distance = 0;      // camera centre to inner glass surface, along the normal
     double thickness = 0;
     double n_air = 1.0, n_glass = 1.49, n_water = 1.334;
+    bool fresnel = false;          // reflection losses at both surfaces
+    bool radiance_in_air = false;  // the camera's radiance is that in air, not in water
 };
 
 struct LensDesc {
@@ -64,6 +66,15 @@ struct ScatteringDesc {
     PhaseDesc phase;
 };
 
+/// Light that comes back blurred after scattering by small angles (physics section 6).
+struct ForwardScatterDesc {
+    enum class Shape { gaussian, exponential };
+    double K = 0;  // strength; 0 turns it off
+    double G = 0;  // attenuation of what is scattered forward [1/m], |G| <= c
+    double B = 0;  // blur: the spectrum falls as e^{-B R f}, f in cycles/rad [rad/m]
+    Shape shape = Shape::gaussian;
+};
+
 struct WaterDesc {
     std::vector<double> bands_nm{620, 540, 450};
     std::string preset;                 // "", or "jerlov-II"
@@ -75,6 +86,7 @@ struct WaterDesc {
     std::optional<double> small_ppm, large_ppm;
     bool mineral_absorption = false;           // particles absorb as mineral sediment
     std::optional<ScatteringDesc> scattering;  // instead of particles and molecules
+    ForwardScatterDesc forward_scatter;
     SourceLocation where;
 };
 
@@ -147,6 +159,9 @@ struct RenderDesc {
     enum class Integrator { volume, planes, reference };
     Integrator integrator = Integrator::volume;
     PlanesDesc planes;
+    enum class Output { radiance, sensor_irradiance, paper };
+    Output output = Output::radiance;  // all but radiance need camera.lens
+    SourceLocation output_where;
     int samples = 4;
 };
 

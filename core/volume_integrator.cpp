@@ -211,12 +211,7 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
 
 void VolumeIntegrator::surface_light(const Ray& ray, const SurfaceHit& hit,
                                      SurfaceLight& light) const {
-    light_surface(
-        scene_, sum_.attenuation(), ray, hit,
-        [&](std::size_t lamp, std::span<double> column) {
-            light_fields_[lamp]->columns(std::span<const Point3>(&hit.position, 1), column);
-        },
-        light);
+    light_surface(scene_, sum_.attenuation(), ray, hit, light);
 }
 
 }  // namespace uw

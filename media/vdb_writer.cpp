@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
-#include <system_error>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "media/vdb_header.h"
 
@@ -50,46 +49,28 @@ openvdb::FloatGrid::Ptr make_grid(const VdbOutputGrid& source) {
     return grid;
 }
 
-/// Removes the unfinished file if writing it fails.
-class TemporaryFile {
-  public:
-    explicit TemporaryFile(const std::filesystem::path& target)
-        : path_(fmt::format("{}.{}.tmp", target.string(), getpid())) {}
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    TemporaryFile(TemporaryFile&&) = delete;
-    TemporaryFile& operator=(TemporaryFile&&) = delete;
-    ~TemporaryFile() {
-        std::error_code ignored;
-        std::filesystem::remove(path_, ignored);
-    }
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
-};
-
 }  // namespace
 
 void write_vdb(const std::filesystem::path& file, const std::vector<VdbOutputGrid>& grids,
                const std::vector<std::pair<std::string, std::string>>& metadata) {
     openvdb::initialize();
-    const TemporaryFile temporary(file);
+    AtomicFile target(file);
     try {
         openvdb::GridPtrVec output;
         for (const VdbOutputGrid& grid : grids) output.push_back(make_grid(grid));
         openvdb::MetaMap map;
         for (const auto& [key, value] : metadata)
             map.insertMeta(key, openvdb::StringMetadata(value));
-        openvdb::io::File(temporary.path().string()).write(output, map);
+        openvdb::io::File(target.temporary_path().string()).write(output, map);
         // OpenVDB does not notice a full disk; reading the header back does.
-        read_vdb_header(temporary.path(), "written file");
-        std::filesystem::rename(temporary.path(), file);
+        read_vdb_header(target.temporary_path(), "written file");
     } catch (const std::bad_alloc&) {
-        throw IoError(fmt::format("cannot write '{}': not enough memory", file.string()));
+        throw IoError(fmt::format("{}: cannot write: not enough memory", file.string()));
     } catch (const std::exception& error) {
-        throw IoError(fmt::format("cannot write '{}': {}", file.string(), error.what()));
+        throw IoError(
+            fmt::format("{}: cannot write: {}; is the disk full?", file.string(), error.what()));
     }
+    target.commit();
 }
 
 }  // namespace uw

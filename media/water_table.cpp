@@ -17,10 +17,10 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 
 /// 2 pi int p f sin over [from, pi]: Gauss-Legendre on panels between the phase function's
-/// breakpoints, each cut into eight.
+/// breakpoints, each cut into 32.
 template <class F>
 double moment(const PhaseFunction& phase, double from, F f) {
-    constexpr int k_panels = 8;
+    constexpr int k_panels = 32;
     std::vector<double> edges{from};
     for (const double at : phase.breakpoints())
         if (at > from) edges.push_back(at);
@@ -79,7 +79,10 @@ double backscatter_fraction(const PhaseFunction& phase) {
 }
 
 double mean_cosine(const PhaseFunction& phase) {
-    return moment(phase, 0, [](double psi) { return std::cos(psi); });
+    // What is left of symmetric scattering is the rounding of the sum, and means 0.
+    constexpr double k_rounding = 1e-13;
+    const double mean = moment(phase, 0, [](double psi) { return std::cos(psi); });
+    return std::abs(mean) < k_rounding ? 0 : mean;
 }
 
 double CoefficientTable::scattering(std::size_t i) const {

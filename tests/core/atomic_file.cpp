@@ -95,6 +95,21 @@ TEST_F(AtomicFileTest, SymbolicLinksAreWrittenThrough) {
     EXPECT_EQ(read(folder_ / "elsewhere" / "real.exr"), "new");
 }
 
+TEST_F(AtomicFileTest, SymbolicLinksToWhatIsNotThereYet) {
+    fs::create_directory(folder_ / "elsewhere");
+    fs::create_symlink("second", folder_ / "elsewhere" / "first");
+    fs::create_symlink("elsewhere/first", target_);
+    AtomicFile file(target_);
+    write(file.temporary_path(), "new");
+    file.commit();
+    EXPECT_TRUE(fs::is_symlink(target_));
+    EXPECT_EQ(read(folder_ / "elsewhere" / "second"), "new");
+    fs::create_symlink("no folder/image.exr", folder_ / "astray.exr");
+    EXPECT_NE(error_of(folder_ / "astray.exr").find("create it first"), std::string::npos);
+    fs::create_symlink("circle.exr", folder_ / "circle.exr");
+    EXPECT_NE(error_of(folder_ / "circle.exr").find("circle"), std::string::npos);
+}
+
 TEST_F(AtomicFileTest, SaysWhatIsWrongWithTheTarget) {
     const std::string missing = error_of(folder_ / "no" / "image.exr");
     EXPECT_NE(missing.find((folder_ / "no" / "image.exr").string()), std::string::npos);

@@ -2,6 +2,7 @@
 #include "core/film.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "core/error.h"
 
@@ -34,6 +35,12 @@ TEST(Film, RefusesWhatMemoryCannotHold) {
     EXPECT_THROW(Film(side, side, {0, 0, side, side}, names), InputError);
     const int large = 1 << 21;  // 281 TB
     EXPECT_THROW(Film(large, large, {0, 0, large, large}, names), InputError);
+    // More than the machine has, less than the address space: Linux grants it, and then ends the
+    // program that makes use of it.
+    const double machine = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) *
+                           static_cast<double>(::sysconf(_SC_PAGESIZE));
+    const int rows = static_cast<int>(4 * machine / (4.0 * 16 * 100000)) + 1;
+    EXPECT_THROW(Film(100000, rows, {0, 0, 100000, rows}, names), InputError);
 }
 
 }  // namespace

@@ -3,20 +3,20 @@
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <fstream>
 #include <iterator>
 
 #include "core/error.h"
 #include "core/layers.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"
 
 namespace uw {
 namespace {
 
 namespace fs = std::filesystem;
+using test::limited;
 
 std::string read_bytes(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
@@ -39,23 +39,6 @@ Film filled_film(int width, int height, const PixelWindow& window,
         }
     }
     return film;
-}
-
-/// Runs `work` while every write beyond `bytes` into a file fails, as on a full disk.
-template <typename Work>
-void limited(rlim_t bytes, const Work& work) {
-    struct Restore {
-        rlimit limit{};
-        void (*handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
-        Restore() { ::getrlimit(RLIMIT_FSIZE, &limit); }
-        ~Restore() {
-            ::setrlimit(RLIMIT_FSIZE, &limit);
-            std::signal(SIGXFSZ, handler);
-        }
-    } const restore;
-    const rlimit full{bytes, restore.limit.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &full);
-    work();
 }
 
 class ImageWriterTest : public testing::Test {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "media/vdb_file.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"
 
 namespace uw {
@@ -43,6 +44,24 @@ TEST(VdbWriter, LeavesNothingBehindWhenItCannotWrite) {
     std::ofstream(dir / "taken/file") << "x";
     EXPECT_THROW(write_vdb(dir / "taken", {out}, {}), IoError);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
+}
+
+TEST(VdbWriter, AFullDiskLeavesTheOldFile) {
+    const TempDir dir;
+    VdbOutputGrid out;
+    out.name = "noise";
+    out.size = {32, 32, 32};
+    out.value = [](int i, int j, int k) {
+        return static_cast<float>(i * 7919 + j * 104729 + k * 1299709 % 1009) + 0.1F;
+    };
+    write_vdb(dir / "whole.vdb", {out}, {});
+    const auto size = static_cast<rlim_t>(std::filesystem::file_size(dir / "whole.vdb"));
+    std::ofstream(dir / "out.vdb") << "old";
+    for (const rlim_t room : {rlim_t{0}, rlim_t{100}, size / 2, size - 100, size - 1})
+        EXPECT_THROW(test::limited(room, [&] { write_vdb(dir / "out.vdb", {out}, {}); }), IoError)
+            << room << " of " << size;
+    EXPECT_EQ(std::filesystem::file_size(dir / "out.vdb"), 3U);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 2);
 }
 
 }  // namespace
