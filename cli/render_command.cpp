@@ -154,9 +154,10 @@ void count_work(const AssembledScene& scene, const LightFields& light_fields, co
         grid_bytes += report.bytes;
     }
     stats.count("pixels", pixels);
-    // One ray a sample, and one more for the pixel's centre: its water and ground truth.
-    stats.count("camera_rays",
-                pixels * (static_cast<std::uint64_t>(scene.desc.render.samples) + 1));
+    // One ray a sample, and one more for the pixel's centre unless that is the sample: its water
+    // and ground truth.
+    const auto samples = static_cast<std::uint64_t>(scene.desc.render.samples);
+    stats.count("camera_rays", pixels * (samples == 1 ? 1 : samples + 1));
     stats.count("splat_rays", splat_rays);
     stats.count("light_field_bytes", splat_bytes);
     stats.count("active_voxels", voxels);

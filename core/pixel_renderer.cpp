@@ -92,8 +92,8 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
             water_at = offset;
         }
         result.alpha += 1.0 / samples_;
-        SurfaceHit hit;
-        if (!scene_.surfaces->closest_hit(*ray, k_far, hit)) {
+        SurfaceHit hit = result.hit;  // a single sample's ray is that of the ground truth
+        if (!(samples_ == 1 ? result.has_hit : scene_.surfaces->closest_hit(*ray, k_far, hit))) {
             w.distances.push_back(k_far);
             continue;
         }

@@ -30,6 +30,17 @@ double farthest_corner(const Bounds& bounds, const Point3& from) {
     return farthest;
 }
 
+// Cuts `part` of the straight line from `a` to `b` to where it lies within [-1, size].
+void clip(double a, double b, int size, Interval& part) {
+    if (a == b) {
+        if (a < -1 || a > size) part = {1, 0};
+        return;
+    }
+    const double to_low = (-1 - a) / (b - a), to_high = (size - a) / (b - a);
+    part.begin = std::max(part.begin, std::min(to_low, to_high));
+    part.end = std::min(part.end, std::max(to_low, to_high));
+}
+
 }  // namespace
 
 ColumnMap::ColumnMap(const ConcentrationField& field, const Point3& lamp, std::size_t memory_budget)
@@ -204,7 +215,12 @@ void ColumnMap::append_breaks(const Ray& ray, const Interval& interval,
         const int steps = static_cast<int>(
             std::ceil(std::max(std::abs(ub - ua), std::abs(vb - va)) / k_per_voxel));
         s.push_back(segment.stretch.begin);
-        for (int i = 1; i < steps; ++i) {
+        Interval stored{0, 1};  // the part of the line on texels that are stored
+        clip(ua, ub, face.width, stored);
+        clip(va, vb, face.height, stored);
+        if (stored.length() < 0) continue;
+        const int last = std::min(steps - 1, static_cast<int>(stored.end * steps));
+        for (int i = std::max(1, static_cast<int>(stored.begin * steps)); i <= last; ++i) {
             const double t = static_cast<double>(i) / steps;
             if (!any_particles(face, ua + t * (ub - ua), va + t * (vb - va))) continue;
             // Equal steps on the face are not equal in space: interpolate s / depth.

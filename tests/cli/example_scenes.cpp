@@ -34,7 +34,6 @@ class ExampleScenes : public test::CliTest {
 TEST_F(ExampleScenes, RenderAsTheyAre) {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(scenes_)) {
-        // Those of the paper have a test of their own.
         if (!entry.is_regular_file() || entry.path().filename() == "houdini.yaml") continue;
         expect_renders(entry.path());
         ++count;
