@@ -17,6 +17,8 @@ class Progress {
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
+    Progress(Progress&&) = delete;
+    Progress& operator=(Progress&&) = delete;
 
     /// Reports that the share `fraction` (0..1) of the work is done.
     void update(double fraction);
