@@ -104,6 +104,7 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
 
 std::vector<std::string> names_of(const std::vector<LampDesc>& lamps) {
     std::vector<std::string> names;
+    names.reserve(lamps.size());
     for (const LampDesc& lamp : lamps) names.push_back(lamp.name);
     return names;
 }

@@ -17,6 +17,8 @@ class ThreadLimit {
     ~ThreadLimit();
     ThreadLimit(const ThreadLimit&) = delete;
     ThreadLimit& operator=(const ThreadLimit&) = delete;
+    ThreadLimit(ThreadLimit&&) = delete;
+    ThreadLimit& operator=(ThreadLimit&&) = delete;
 
   private:
     void* control_ = nullptr;
