@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <mutex>
 
 #include "cli/grid_summary.h"
 #include "cli/irradiance_export.h"
 #include "cli/progress.h"
 #include "cli/scene_assembly.h"
+#include "cli/scene_rendering.h"
 #include "cli/stats.h"
 #include "cli/stop_signal.h"
 #include "cli/version.h"
@@ -15,14 +17,11 @@
 #include "core/error.h"
 #include "core/image_writer.h"
 #include "core/parallel.h"
-#include "core/render_film.h"
 #include "core/scene_reader.h"
 
 namespace uw {
 
 namespace {
-
-using LightFields = std::vector<std::shared_ptr<const LampLightField>>;
 
 RenderDesc::Integrator integrator_named(const std::string& name) {
     for (const auto& [known, integrator] : k_integrator_names)
@@ -93,6 +92,13 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
         {"uwvdb/water_scattering_per_m", band_list(b)},
         {"uwvdb/water_attenuation_per_m", band_list(c)},
         {"uwvdb/phase_functions", phases}};
+    if (const ForwardScatterDesc& forward = scene.desc.water.forward_scatter; forward.K > 0) {
+        m["uwvdb/forward_scatter_K"] = forward.K;
+        m["uwvdb/forward_scatter_G_per_m"] = forward.G;
+        m["uwvdb/forward_scatter_B_rad_per_m"] = forward.B;
+        m["uwvdb/forward_scatter_shape"] = std::string(
+            forward.shape == ForwardScatterDesc::Shape::gaussian ? "gaussian" : "exponential");
+    }
     m["uwvdb/slab_near_m"] = scene.slabs.near;
     m["uwvdb/slab_thickness_m"] = scene.slabs.thickness();
     m["uwvdb/slabs"] = static_cast<double>(scene.slabs.count);
@@ -123,14 +129,21 @@ PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
 void render(const AssembledScene& scene, const LightFields& light_fields, const LayerPlan& plan,
             const BandColour& colour, bool quiet, Film& film) {
     const auto integrator = make_integrator(scene, light_fields);
-    const PixelRenderer renderer(*scene.camera, scene.lit(), *integrator, scene.desc.render.samples,
-                                 scene.slabs);
     const double megapixels = 1e-6 * film.window().width() * film.window().height();
-    Progress progress("render", "Mpx", megapixels, quiet);
-    render_film(renderer, plan, colour, film, [&](double fraction) {
-        progress.update(fraction);
-        return !stop_requested();
-    });
+    std::unique_ptr<Progress> progress;
+    std::string pass;
+    std::mutex mutex;
+    render_scene(scene, light_fields, *integrator, plan, colour, film,
+                 [&](const std::string& name, double fraction) {
+                     const std::lock_guard lock(mutex);
+                     if (name != pass) {
+                         progress.reset();  // ends the line of the pass before
+                         progress = std::make_unique<Progress>(name, "Mpx", megapixels, quiet);
+                         pass = name;
+                     }
+                     progress->update(fraction);
+                     return !stop_requested();
+                 });
 }
 
 void count_work(const AssembledScene& scene, const LightFields& light_fields, const Film& film,
@@ -216,8 +229,18 @@ void run_render(const RenderArguments& a) {
     if (stop_requested()) throw Interrupted();
 
     stats.begin_stage("render");
-    Film film(desc.camera.width, desc.camera.height, window, plan.channel_names());
+    // Light from beyond a crop is scattered into it: forward scatter needs the whole image.
+    const PixelWindow whole{0, 0, desc.camera.width, desc.camera.height};
+    const bool uncropped = desc.water.forward_scatter.K > 0 && window != whole;
+    if (uncropped)
+        fmt::print(stderr,
+                   "warning: --crop: forward scatter takes light from the whole image: all of it "
+                   "is rendered, then cropped; set water.forward_scatter.K=0 to save that time\n");
+    Film film(desc.camera.width, desc.camera.height, uncropped ? whole : window,
+              plan.channel_names());
     render(scene, light_fields, plan, colour, a.quiet, film);
+    count_work(scene, light_fields, film, stats);
+    if (uncropped) film = cropped(film, window);
 
     stats.begin_stage("write");
     write_images(output, film, metadata_of(scene), a.quiet);
@@ -227,7 +250,6 @@ void run_render(const RenderArguments& a) {
         say(fmt::format("wrote {}\n", a.irradiance_vdb.string()));
     }
     stats.end_stage();
-    count_work(scene, light_fields, film, stats);
     if (!a.stats.empty())
         stats.write_json(a.stats, a.scene.filename().string(), output.filename().string());
     say(fmt::format("done in {}, peak memory {:.0f} MB\n", format_duration(stats.total_seconds()),

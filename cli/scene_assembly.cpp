@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/forward_images.h"
 #include "core/geometry_scene.h"
 #include "core/planes_integrator.h"
 #include "core/reference_integrator.h"
@@ -35,6 +36,15 @@ void warn_of_lamps_at_the_camera(AssembledScene& scene) {
     }
 }
 
+void check_water_of_forward_scatter(const ForwardScatterDesc& desc, const Medium& medium) {
+    if (desc.K == 0) return;
+    std::vector<double> attenuation;
+    for (int band = 0; band < medium.band_count(); ++band)
+        attenuation.push_back(medium.uniform.attenuation(band));
+    check_forward_scatter(desc, attenuation, desc.where);
+    check_blur_length(medium, desc.where);
+}
+
 }  // namespace
 
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage) {
@@ -50,6 +60,7 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
     scene.water = build_water_model(desc.water, desc.volumes);
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
+    check_water_of_forward_scatter(desc.water.forward_scatter, medium);
     begin_stage("volumes");
     scene.field = load_volumes(desc.volumes, scene.water.loads, medium.constituent_count(),
                                scene.volume_reports, scene.warnings);

@@ -29,6 +29,7 @@ class InScatter {
         lamps_ = lamps;
         values_.assign(ends * lamps, Spectrum{});
     }
+    std::size_t lamp_count() const { return lamps_; }
     Spectrum& at(std::size_t end, std::size_t lamp) { return values_[end * lamps_ + lamp]; }
     const Spectrum& at(std::size_t end, std::size_t lamp) const {
         return values_[end * lamps_ + lamp];
@@ -48,6 +49,11 @@ class Integrator {
     /// be k_far for a ray that meets nothing], for each lamp.
     virtual void in_scatter(const Ray& ray, std::span<const double> ends,
                             InScatter& result) const = 0;
+
+    /// Likewise from `begin` [m] on, which lies before all of `ends`. What is here takes the
+    /// difference of two in_scatter; integrators that can leave out what lies before do.
+    virtual void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                                 InScatter& result) const;
 
     /// Light on the surface point that `ray` meets.
     virtual void surface_light(const Ray& ray, const SurfaceHit& hit,

@@ -44,6 +44,8 @@ struct PixelRenderer::Workspace {
     InScatter in_scatter;
     int hits = 0;
 
+    // Makes `ends` and `shares` of the distances; those that agree become one.
+    void group(const PixelResult& result, int samples);
     // Makes `distance` one of the ends unless it lies behind them all.
     void add_end(double distance) {
         const auto at = std::lower_bound(ends.begin(), ends.end(), distance);
@@ -60,6 +62,25 @@ struct PixelRenderer::Workspace {
     }
 };
 
+void PixelRenderer::Workspace::group(const PixelResult& result, int samples) {
+    std::sort(distances.begin(), distances.end());
+    ends.clear();
+    shares.clear();
+    for (std::size_t first = 0; first < distances.size();) {
+        std::size_t last = first;
+        double sum = 0;
+        while (last < distances.size() &&
+               distances[last] <= distances[first] * (1 + k_same_distance))
+            sum += distances[last++];
+        const auto count = static_cast<double>(last - first);
+        const bool at_center =
+            result.has_hit && distances[first] <= result.path && result.path <= distances[last - 1];
+        ends.push_back(at_center ? result.path : sum / count);
+        shares.push_back(count / samples);
+        first = last;
+    }
+}
+
 PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
                              const Integrator& integrator, int samples, const Slabs& slabs)
     : rays_(rays),
@@ -71,13 +92,26 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {
     thread_local Workspace w;
-    w.distances.clear();
     w.hits = 0;
     std::vector<Spectrum> lamps = std::move(result.lamps);
     result = PixelResult{};
     result.lamps = std::move(lamps);
     result.lamps.assign(scene_.lamps->size(), Spectrum{});
 
+    const std::optional<Ray> water = trace(
+        x, y, w, result,
+        [&](const Ray& ray, const SurfaceHit& hit) { add_surface_sample(ray, hit, w, result); });
+    if (w.hits > 0)
+        for (double& t : result.transmittance) t /= w.hits;
+    if (water && !w.distances.empty()) {
+        w.group(result, samples_);
+        add_water(*water, w, result);
+    }
+}
+
+std::optional<Ray> PixelRenderer::trace(int x, int y, Workspace& w, PixelResult& result,
+                                        const HitVisitor& on_hit) const {
+    w.distances.clear();
     std::optional<Ray> water = rays_.water_ray(x + 0.5, y + 0.5);
     if (water) record_ground_truth(*water, result);
     for (int i = 0; i < samples_; ++i) {
@@ -94,11 +128,26 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
         const bool at_center = result.has_hit && hit.object_id == result.hit.object_id &&
                                std::abs(hit.distance / result.path - 1) < k_same_surface;
         w.distances.push_back(at_center ? result.path : hit.distance);
-        add_surface_sample(*ray, hit, w, result);
+        on_hit(*ray, hit);
     }
-    if (w.hits > 0)
-        for (double& t : result.transmittance) t /= w.hits;
-    if (water && !w.distances.empty()) add_water(*water, w, result);
+    return water;
+}
+
+void PixelRenderer::visit_hits(int x, int y, const HitVisitor& visit) const {
+    thread_local Workspace w;
+    PixelResult result;
+    trace(x, y, w, result, visit);
+}
+
+std::optional<Ray> PixelRenderer::water(int x, int y, WaterEnds& ends) const {
+    thread_local Workspace w;
+    PixelResult result;
+    const std::optional<Ray> ray = trace(x, y, w, result, [](const Ray&, const SurfaceHit&) {});
+    if (w.distances.empty()) return std::nullopt;
+    w.group(result, samples_);
+    ends.ends = w.ends;
+    ends.shares = w.shares;
+    return ray;
 }
 
 void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
@@ -124,22 +173,6 @@ void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Wo
 }
 
 void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result) const {
-    std::sort(w.distances.begin(), w.distances.end());
-    w.ends.clear();
-    w.shares.clear();
-    for (std::size_t first = 0; first < w.distances.size();) {
-        std::size_t last = first;
-        double sum = 0;
-        while (last < w.distances.size() &&
-               w.distances[last] <= w.distances[first] * (1 + k_same_distance))
-            sum += w.distances[last++];
-        const auto count = static_cast<double>(last - first);
-        const bool at_center = result.has_hit && w.distances[first] <= result.path &&
-                               result.path <= w.distances[last - 1];
-        w.ends.push_back(at_center ? result.path : sum / count);
-        w.shares.push_back(count / samples_);
-        first = last;
-    }
     const Interval first = first_slab(ray);
     for (const double face : {first.begin, first.end})
         if (face > 0) w.add_end(face);

@@ -103,6 +103,11 @@ VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
 
 void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
                                   InScatter& result) const {
+    in_scatter_from(ray, 0, ends, result);
+}
+
+void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                                       InScatter& result) const {
     Workspace& w = workspace();
     const std::vector<Lamp>& lamps = *scene_.lamps;
     result.reset(ends.size(), lamps.size());
@@ -115,7 +120,9 @@ void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
                 reach, passage.radius(0) + k_negligible_optical_depth / smallest_attenuation_);
         light_fields_[j]->lit_intervals(ray, reach, w.lit);
         w.nodes.clear();
-        for (const Interval& interval : w.lit) {
+        for (Interval interval : w.lit) {
+            interval.begin = std::max(interval.begin, begin);
+            if (interval.length() <= 0) continue;
             append_breaks(ray, j, passage, interval, ends, w.profile, w.breaks);
             add_panels(ray, j, passage, ends, w.breaks, w.profile, w.nodes);
         }
