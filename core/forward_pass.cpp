@@ -29,8 +29,7 @@ std::vector<ImagePlane> planes(std::size_t count, std::size_t pixels) {
     return std::vector<ImagePlane>(count, ImagePlane(pixels));
 }
 
-// `body(i)` for every pixel, row by row.
-void for_each_pixel(const ScatterPlane& plane, const std::function<void(std::size_t)>& row) {
+void for_each_row(const ScatterPlane& plane, const std::function<void(std::size_t y)>& row) {
     parallel_for(static_cast<std::size_t>(plane.height), row);
 }
 
@@ -94,56 +93,63 @@ void ForwardPass::keep(int x, int y, const PixelResult& result) {
     keep_surfaces(x, y, result);
 }
 
-void ForwardPass::keep_surfaces(int x, int y, const PixelResult& result) {
-    const std::size_t i = pixel(x, y);
-    const std::size_t constituents = scene_.medium->constituents.size();
-    thread_local SurfaceLight light;
-    thread_local std::vector<Spectrum> irradiance, direct;
-    thread_local WaterPath from_lamps, to_camera;
-    thread_local std::vector<double> column;
+/// Sums over the samples of one pixel.
+struct ForwardPass::SurfaceSums {
     Spectrum response{};
-    irradiance.assign(components_.size(), Spectrum{});
-    direct.assign(components_.size(), Spectrum{});
-    from_lamps.reset(constituents);
-    to_camera.reset(constituents);
-    column.assign(constituents, 0.0);
+    std::vector<Spectrum> irradiance, direct;  // per component
+    WaterPath from_lamps, to_camera;
     int hits = 0;
-    const double share = 1.0 / renderer_.samples();
-    renderer_.visit_hits(x, y, [&](const Ray& ray, const SurfaceHit& hit) {
-        ++hits;
-        integrator_.surface_light(ray, hit, light);
-        if (constituents > 0) scene_.field->column(ray.origin, hit.position, column);
-        to_camera.add(1, hit.distance, column);
-        lamp_paths_.add_mean(1, hit.position, from_lamps);
-        for (std::size_t b = 0; b < bands_; ++b) {
-            const double factor =
-                hit.reflectance[b] * std::numbers::inv_pi * light.transmittance[b];
-            response[b] += share * factor;
-            for (std::size_t c = 0; c < components_.size(); ++c) {
-                for (const std::size_t j : components_[c].lamps) {
-                    irradiance[c][b] += share * light.lamps[j].irradiance[b];
-                    direct[c][b] += share * light.lamps[j].irradiance[b] * factor;
-                }
-            }
-        }
-    });
-    if (hits == 0) return;
+};
+
+void ForwardPass::keep_surfaces(int x, int y, const PixelResult& result) {
+    SurfaceSums sums;
+    sums.irradiance.resize(components_.size());
+    sums.direct.resize(components_.size());
+    sums.from_lamps.reset(scene_.medium->constituents.size());
+    sums.to_camera.reset(scene_.medium->constituents.size());
+    renderer_.visit_hits(
+        x, y, [&](const Ray& ray, const SurfaceHit& hit) { add_surface(ray, hit, sums); });
+    if (sums.hits == 0) return;
+    const std::size_t i = pixel(x, y);
     for (std::size_t b = 0; b < bands_; ++b) {
-        response_[b][i] = as_light(response[b]);
+        response_[b][i] = as_light(sums.response[b]);
         for (std::size_t c = 0; c < components_.size(); ++c) {
-            components_[c].forward[b][i] = as_light(irradiance[c][b]);
-            components_[c].direct[b][i] = as_light(direct[c][b]);
+            components_[c].forward[b][i] = as_light(sums.irradiance[c][b]);
+            components_[c].direct[b][i] = as_light(sums.direct[c][b]);
         }
         // The very number that the first pass has written.
-        components_[0].direct[b][i] = static_cast<float>(result.direct[b]);
+        components_[0].direct[b][i] = as_light(result.direct[b]);
     }
-    WaterPath mean;
-    mean.reset(constituents);
-    mean.add(1.0 / hits, from_lamps.length, from_lamps.columns);
-    from_lamps_.set(i, mean);
-    mean.reset(constituents);
-    mean.add(1.0 / hits, to_camera.length, to_camera.columns);
-    to_camera_.set(i, mean);
+    const auto set_mean = [&](const WaterPath& sum, PathImage& image) {
+        WaterPath mean;
+        mean.reset(sum.columns.size());
+        mean.add(1.0 / sums.hits, sum.length, sum.columns);
+        image.set(i, mean);
+    };
+    set_mean(sums.from_lamps, from_lamps_);
+    set_mean(sums.to_camera, to_camera_);
+}
+
+void ForwardPass::add_surface(const Ray& ray, const SurfaceHit& hit, SurfaceSums& sums) const {
+    thread_local SurfaceLight light;
+    thread_local std::vector<double> column;
+    integrator_.surface_light(ray, hit, light);
+    column.assign(scene_.medium->constituents.size(), 0.0);
+    if (!column.empty()) scene_.field->column(ray.origin, hit.position, column);
+    sums.to_camera.add(1, hit.distance, column);
+    lamp_paths_.add_mean(1, hit.position, sums.from_lamps);
+    ++sums.hits;
+    const double share = 1.0 / renderer_.samples();
+    for (std::size_t b = 0; b < bands_; ++b) {
+        const double factor = hit.reflectance[b] * std::numbers::inv_pi * light.transmittance[b];
+        sums.response[b] += share * factor;
+        for (std::size_t c = 0; c < components_.size(); ++c) {
+            for (const std::size_t j : components_[c].lamps) {
+                sums.irradiance[c][b] += share * light.lamps[j].irradiance[b];
+                sums.direct[c][b] += share * light.lamps[j].irradiance[b] * factor;
+            }
+        }
+    }
 }
 
 void ForwardPass::run(const ProgressCallback& progress) {
@@ -190,35 +196,34 @@ void ForwardPass::scatter_surfaces() {
 }
 
 void ForwardPass::gather(std::size_t first, std::vector<Layer>& layers) const {
-    for_each_pixel(setup_.plane, [&](std::size_t y) {
+    for_each_row(setup_.plane, [&](std::size_t y) {
         thread_local PixelRenderer::WaterEnds ends;
         thread_local std::vector<LayerLight> lights;
         for (int x = 0; x < setup_.plane.width; ++x) {
-            const std::size_t i = pixel(x, static_cast<int>(y));
             const std::optional<Ray> ray = renderer_.water(x, static_cast<int>(y), ends);
+            if (ray)
+                water_.gather(*ray, ends.ends, ends.shares, first, first + layers.size(), lights);
+            const std::size_t i = pixel(x, static_cast<int>(y));
             for (std::size_t n = 0; n < layers.size(); ++n)
-                for (std::size_t b = 0; b < bands_; ++b) {
-                    layers[n].weight[b][i] = 0;
-                    for (auto& light : layers[n].light) light[b][i] = 0;
-                }
-            if (!ray) continue;
-            water_.gather(*ray, ends.ends, ends.shares, first, first + layers.size(), lights);
-            for (std::size_t n = 0; n < layers.size(); ++n) {
-                const LayerLight& from = lights[n];
-                for (std::size_t b = 0; b < bands_; ++b) {
-                    layers[n].weight[b][i] = static_cast<float>(from.weight[b]);
-                    if (layers[n].weight[b][i] <= std::numeric_limits<float>::min()) continue;
-                    for (std::size_t c = 0; c < components_.size(); ++c) {
-                        double sum = 0;
-                        for (const std::size_t j : components_[c].lamps) sum += from.lamps[j][b];
-                        layers[n].light[c][b][i] = as_light(sum / from.weight[b]);
-                    }
-                }
-                layers[n].from_lamps.set(i, from.to_lamps);
-                layers[n].to_camera.set(i, from.to_camera);
-            }
+                store(ray ? &lights[n] : nullptr, i, layers[n]);
         }
     });
+}
+
+void ForwardPass::store(const LayerLight* from, std::size_t i, Layer& layer) const {
+    for (std::size_t b = 0; b < bands_; ++b) {
+        layer.weight[b][i] = from != nullptr ? static_cast<float>(from->weight[b]) : 0.0F;
+        const bool seen = layer.weight[b][i] > std::numeric_limits<float>::min();
+        for (std::size_t c = 0; c < components_.size(); ++c) {
+            double sum = 0;
+            for (const std::size_t j : components_[c].lamps)
+                if (seen) sum += from->lamps[j][b];
+            layer.light[c][b][i] = seen ? as_light(sum / from->weight[b]) : 0.0F;
+        }
+    }
+    if (from == nullptr) return;
+    layer.from_lamps.set(i, from->to_lamps);
+    layer.to_camera.set(i, from->to_camera);
 }
 
 void ForwardPass::scatter_layer(std::size_t index, Layer& layer) {
@@ -243,7 +248,7 @@ void ForwardPass::scatter_layer(std::size_t index, Layer& layer) {
 }
 
 void ForwardPass::write(const LayerPlan& plan, const BandColour& colour, Film& film) const {
-    for_each_pixel(setup_.plane, [&](std::size_t y) {
+    for_each_row(setup_.plane, [&](std::size_t y) {
         for (int x = 0; x < setup_.plane.width; ++x) {
             const std::size_t i = pixel(x, static_cast<int>(y));
             const std::span<float> channels = film.pixel(x, static_cast<int>(y));

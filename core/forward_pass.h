@@ -60,10 +60,14 @@ class ForwardPass {
         std::vector<ImagePlane> water;    // per band: backscatter, or what is added to it
     };
     struct Layer;
+    struct SurfaceSums;
 
     void keep_surfaces(int x, int y, const PixelResult& result);
+    void add_surface(const Ray& ray, const SurfaceHit& hit, SurfaceSums& sums) const;
     void scatter_surfaces();
     void gather(std::size_t first, std::vector<Layer>& layers) const;
+    // Puts one pixel's light into the layer; none where no ray enters the water.
+    void store(const LayerLight* from, std::size_t i, Layer& layer) const;
     void scatter_layer(std::size_t index, Layer& layer);
     std::size_t pixel(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(setup_.plane.width) +

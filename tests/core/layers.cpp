@@ -34,6 +34,9 @@ TEST(Layers, DefaultIsEverythingButLamps) {
                       "direct.R",
                       "direct.G",
                       "direct.B",
+                      "forward.R",
+                      "forward.G",
+                      "forward.B",
                       "backscatter.R",
                       "backscatter.G",
                       "backscatter.B",
@@ -66,14 +69,14 @@ TEST(Layers, DefaultIsEverythingButLamps) {
     EXPECT_EQ(plan.channel_names(), truth);
     EXPECT_EQ(plan.first_channel(Layer::total), -1);  // R G B
     EXPECT_EQ(plan.first_channel(Layer::direct), 4);
-    EXPECT_EQ(plan.first_channel(Layer::position), 32);
+    EXPECT_EQ(plan.first_channel(Layer::position), 35);
     EXPECT_EQ(plan.first_channel_of_lamp(0), -1);
     EXPECT_EQ(LayerPlan("default", k_rgb, k_lamps).channel_names(), truth);
 }
 
 TEST(Layers, AllAddsTheLamps) {
     const LayerPlan plan("all", k_rgb, k_lamps);
-    ASSERT_EQ(plan.channel_names().size(), 36u + 6u);
+    ASSERT_EQ(plan.channel_names().size(), 39u + 6u);
     EXPECT_EQ(plan.first_channel_of_lamp(0), 36);
     EXPECT_EQ(plan.first_channel_of_lamp(1), 39);
     EXPECT_EQ(plan.channel_names()[36], "lamp.left.R");

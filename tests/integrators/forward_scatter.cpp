@@ -253,6 +253,34 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ForwardScatterOfShape,
                              return test.param == Shape::gaussian ? "gaussian" : "exponential";
                          });
 
+TEST(ForwardScatter, OfTheReferenceIntegratorIsThatOfTheVolume) {
+    SceneDesc desc = scattering(uniform_scene({1, -0.5, 0}), forward(1));
+    const RenderedFilm volume(desc);
+    desc.render.integrator = RenderDesc::Integrator::reference;
+    expect_same_components(RenderedFilm(desc), volume, 3e-3);
+}
+
+// Large images take few layers at a time, and their water from a distance on.
+TEST(InScatterFrom, IsTheDifferenceOfTwo) {
+    using Integrators = RenderDesc::Integrator;
+    for (const auto which : {Integrators::volume, Integrators::planes, Integrators::reference}) {
+        SceneDesc desc = with_planes(uniform_scene({1, -0.5, 0}), 10, 0, 5);
+        desc.render.integrator = which;
+        const TestScene scene(desc);
+        const Ray ray{{0, 0, 0}, {0, 0, 1}};
+        InScatter whole, rest;
+        const std::vector<double> ends{0.5, 1, 1.5, 3.5};
+        scene.integrator().in_scatter(ray, ends, whole);
+        scene.integrator().in_scatter_from(ray, 0.5, std::span(ends).subspan(1), rest);
+        for (std::size_t i = 1; i < ends.size(); ++i)
+            for (std::size_t band = 0; band < 3; ++band) {
+                const double truth = whole.at(i, 0)[band] - whole.at(0, 0)[band];
+                // The volume integrator places its nodes anew.
+                EXPECT_NEAR(rest.at(i - 1, 0)[band], truth, 1e-4 * truth);
+            }
+    }
+}
+
 TEST(ForwardScatter, RefusesWhatHasNoMeaning) {
     SceneDesc desc = scattering(staged(), forward(1));
     desc.water.forward_scatter.G = 3;
