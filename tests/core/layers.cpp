@@ -77,10 +77,10 @@ TEST(Layers, DefaultIsEverythingButLamps) {
 TEST(Layers, AllAddsTheLamps) {
     const LayerPlan plan("all", k_rgb, k_lamps);
     ASSERT_EQ(plan.channel_names().size(), 39u + 6u);
-    EXPECT_EQ(plan.first_channel_of_lamp(0), 36);
+    EXPECT_EQ(plan.first_channel_of_lamp(0), 39);
     EXPECT_EQ(plan.first_channel_of_lamp(1), 39);
-    EXPECT_EQ(plan.channel_names()[36], "lamp.left.R");
-    EXPECT_EQ(plan.channel_names()[41], "lamp.right.top.B");
+    EXPECT_EQ(plan.channel_names()[39], "lamp.left.R");
+    EXPECT_EQ(plan.channel_names()[44], "lamp.right.top.B");
 }
 
 TEST(Layers, ListInAnyOrderWithSpacesAndRepetition) {

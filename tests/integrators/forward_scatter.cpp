@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "tests/support/blur_shares.h"
 #include "tests/support/film_rendering.h"
 #include "tests/support/planes_scene.h"
 #include "tests/support/temp_dir.h"
@@ -174,6 +175,56 @@ TEST_P(ForwardScatterOfShape, AgreesBetweenPlanesAndVolume) {
         desc.camera.intrinsics = {28, 28, 16, 12};
         const RenderedFilm volume(desc), planes(with_planes(desc, 512, 0, 5));
         expect_same_components(volume, planes, 3e-3);
+    }
+}
+
+// Equations 17 and 18 for one thin slab, summed pixel by pixel.
+TEST_P(ForwardScatterOfShape, OfOneSlabIsTheDirectSum) {
+    const Point3 lamp(1, -0.5, 0);
+    SceneDesc desc =
+        scattering(with_planes(uniform_scene(lamp), 1, 1.9, 2.1), forward(1, GetParam()));
+    desc.water.forward_scatter.B = 0.3;  // the kernel's s is 1.3 pixels
+    const IntrinsicsDesc& k = desc.camera.intrinsics;
+    const RenderedFilm image(desc);
+    SceneDesc off = desc;
+    off.water.forward_scatter.K = 0;
+    const RenderedFilm plain(off);
+    const double c = attenuation(1);
+    const auto gained = [&](double range) {
+        return std::exp(-0.05 * range) - std::exp(-c * range);
+    };
+    // What `light` adds to each pixel when every one spreads its own over its own range.
+    const auto blurred = [&](const std::vector<double>& light, const std::vector<double>& range) {
+        std::vector<double> sum(light.size());
+        for (int i = 0; i < 16 * 12; ++i) {
+            const auto from = static_cast<std::size_t>(i);
+            const double s = k.fx * 0.3 * range[from] / (2 * std::numbers::pi);
+            const BlurShares shares(GetParam(), s, 200);
+            for (int j = 0; j < 16 * 12; ++j)
+                sum[static_cast<std::size_t>(j)] +=
+                    light[from] * gained(range[from]) *
+                    shares.mirrored(i % 16, i / 16, j % 16, j / 16, 16, 12);
+        }
+        return sum;
+    };
+    std::vector<double> e, weight, radius, path;
+    for (int i = 0; i < 16 * 12; ++i) {
+        const Vector3 ray((i % 16 + 0.5 - k.cx) / k.fx, (i / 16 + 0.5 - k.cy) / k.fy, 1);
+        path.push_back(2 * glm::length(ray));
+        radius.push_back(distance(at_origin_plus(2.0 * ray), lamp));
+        weight.push_back(std::exp(-c * path.back()) * 0.2 * glm::length(ray));
+        e.push_back(plain.value(Layer::backscatter, i % 16, i / 16, 1) / weight.back());
+    }
+    const std::vector<double> fallen = blurred(e, radius);
+    std::vector<double> slab;
+    for (std::size_t i = 0; i < e.size(); ++i) slab.push_back(weight[i] * (e[i] + fallen[i]));
+    const std::vector<double> way = blurred(slab, path);
+    for (int i = 0; i < 16 * 12; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const double truth = slab[at] + way[at];
+        // Neighbouring widths of the blur are mixed: 0.25 % of the light may lie elsewhere.
+        EXPECT_NEAR(image.value(Layer::backscatter, i % 16, i / 16, 1), truth, 3e-3 * truth);
+        EXPECT_NEAR(image.value(Layer::backscatter_first, i % 16, i / 16, 1), truth, 3e-3 * truth);
     }
 }
 
