@@ -78,7 +78,7 @@ TEST(Layers, AllAddsTheLamps) {
     const LayerPlan plan("all", k_rgb, k_lamps);
     ASSERT_EQ(plan.channel_names().size(), 39u + 6u);
     EXPECT_EQ(plan.first_channel_of_lamp(0), 39);
-    EXPECT_EQ(plan.first_channel_of_lamp(1), 39);
+    EXPECT_EQ(plan.first_channel_of_lamp(1), 42);
     EXPECT_EQ(plan.channel_names()[39], "lamp.left.R");
     EXPECT_EQ(plan.channel_names()[44], "lamp.right.top.B");
 }

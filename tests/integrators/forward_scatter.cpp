@@ -1,6 +1,6 @@
-// ctest labels: analytic metamorphic
-// Forward scatter through the whole renderer: energies, equal waters, integrators against each
-// other, and what must not change anything.
+// ctest labels: analytic
+// Forward scatter through the whole renderer: energies, direct sums, and what must not change
+// anything.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,46 +10,10 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "tests/support/blur_shares.h"
-#include "tests/support/film_rendering.h"
-#include "tests/support/planes_scene.h"
-#include "tests/support/temp_dir.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/forward_scenes.h"
 
 namespace uw::test {
 namespace {
-
-using Shape = ForwardScatterDesc::Shape;
-
-ForwardScatterDesc forward(double K, Shape shape = Shape::gaussian) {
-    ForwardScatterDesc desc;
-    desc.K = K;
-    desc.G = 0.05;
-    desc.B = 0.05;
-    desc.shape = shape;
-    return desc;
-}
-
-SceneDesc scattering(SceneDesc desc, const ForwardScatterDesc& how) {
-    desc.water.forward_scatter = how;
-    return desc;
-}
-
-double attenuation(std::size_t band) {
-    const WaterDesc water = hg_water(0.9);
-    return (*water.absorption)[band] + water.scattering->b[band];
-}
-
-// A wall, a box before it and two lamps: depth edges and shadows.
-SceneDesc staged() {
-    SceneDesc desc = uniform_scene({1, -0.5, 0});
-    desc.camera.width = 32;
-    desc.camera.height = 24;
-    desc.camera.intrinsics = {28, 28, 16, 12};
-    desc.geometry.push_back(box({-0.5, -0.4, 1.5}, {0.1, 0.2, 1.8}));
-    desc.lamps.push_back(isotropic_lamp({-1.2, 0.3, 0.4}, 80));
-    desc.lamps[1].name = "second";
-    return desc;
-}
 
 // A small sphere that sends light to the camera from one range, and nothing else but water.
 SceneDesc point_source() {
@@ -153,30 +117,7 @@ TEST(ForwardScatter, DoublesWithTheLamps) {
                                 static_cast<float>(2 * once.value(layer, x, y, 1)));
 }
 
-void expect_same_components(const RenderedFilm& a, const RenderedFilm& b, double tolerance) {
-    for (const auto& [name, layer] : {std::pair{"direct", Layer::direct},
-                                      {"forward", Layer::forward},
-                                      {"backscatter", Layer::backscatter}}) {
-        const double worst = worst_difference(a, b, layer);
-        std::cout << name << ": largest difference " << worst << "\n";
-        EXPECT_LE(worst, tolerance) << name;
-    }
-}
-
 class ForwardScatterOfShape : public ::testing::TestWithParam<Shape> {};
-
-// The planes' 512 slabs against the volume's layers, which are some dozens.
-TEST_P(ForwardScatterOfShape, AgreesBetweenPlanesAndVolume) {
-    for (SceneDesc desc : {uniform_scene({1, -0.5, 0}), uniform_scene({0.4, -0.3, -1.5}),
-                           ported(uniform_scene({1, -0.5, 0}))}) {
-        desc = scattering(desc, forward(1, GetParam()));
-        desc.camera.width = 32;
-        desc.camera.height = 24;
-        desc.camera.intrinsics = {28, 28, 16, 12};
-        const RenderedFilm volume(desc), planes(with_planes(desc, 512, 0, 5));
-        expect_same_components(volume, planes, 3e-3);
-    }
-}
 
 // Equations 17 and 18 for one thin slab, summed pixel by pixel.
 TEST_P(ForwardScatterOfShape, OfOneSlabIsTheDirectSum) {
@@ -228,34 +169,6 @@ TEST_P(ForwardScatterOfShape, OfOneSlabIsTheDirectSum) {
     }
 }
 
-// Half of the water moved into a grid of ones, with the same phase function. G is relative to the
-// uniform water's c, B to its b: they halve too.
-TEST_P(ForwardScatterOfShape, IsTheSameInAConstantGrid) {
-    const TempDir dir;
-    const SceneDesc whole = scattering(staged(), forward(1, GetParam()));
-    SceneDesc half = whole;
-    for (double& a : *half.water.absorption) a *= 0.5;
-    for (double& b : half.water.scattering->b) b *= 0.5;
-    half.water.forward_scatter.G *= 0.5;
-    half.water.forward_scatter.B *= 0.5;
-    VdbFixture ones;
-    ones.boxes = {{{0, 0, 0}, {63, 63, 63}, 1.0}};
-    ones.file_from_index = Affine::translation(Vector3(-8 + 0.125)) * Affine::scale(Vector3(0.25));
-    const std::filesystem::path file = dir / "ones.vdb";
-    write_fixture(file, {ones});
-    VolumeDesc volume;
-    volume.file = file;
-    volume.where = "test";
-    GridMappingDesc mapping;
-    mapping.grid = "density";
-    mapping.optics =
-        GridMappingDesc::Optics{*half.water.absorption, half.water.scattering->b, std::nullopt};
-    mapping.where = "test";
-    volume.grids = {mapping};
-    half.volumes = {volume};
-    expect_same_components(RenderedFilm(half), RenderedFilm(whole), 3e-3);
-}
-
 // A bright box before a wall that lies in its shadow or is black: what the box spreads has the
 // width of the box's own range, right across the edge.
 TEST_P(ForwardScatterOfShape, KeepsTheKernelOfItsOwnSideAtADepthEdge) {
@@ -303,34 +216,6 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ForwardScatterOfShape,
                          [](const auto& test) {
                              return test.param == Shape::gaussian ? "gaussian" : "exponential";
                          });
-
-TEST(ForwardScatter, OfTheReferenceIntegratorIsThatOfTheVolume) {
-    SceneDesc desc = scattering(uniform_scene({1, -0.5, 0}), forward(1));
-    const RenderedFilm volume(desc);
-    desc.render.integrator = RenderDesc::Integrator::reference;
-    expect_same_components(RenderedFilm(desc), volume, 3e-3);
-}
-
-// Large images take few layers at a time, and their water from a distance on.
-TEST(InScatterFrom, IsTheDifferenceOfTwo) {
-    using Integrators = RenderDesc::Integrator;
-    for (const auto which : {Integrators::volume, Integrators::planes, Integrators::reference}) {
-        SceneDesc desc = with_planes(uniform_scene({1, -0.5, 0}), 10, 0, 5);
-        desc.render.integrator = which;
-        const TestScene scene(desc);
-        const Ray ray{{0, 0, 0}, {0, 0, 1}};
-        InScatter whole, rest;
-        const std::vector<double> ends{0.5, 1, 1.5, 3.5};
-        scene.integrator().in_scatter(ray, ends, whole);
-        scene.integrator().in_scatter_from(ray, 0.5, std::span(ends).subspan(1), rest);
-        for (std::size_t i = 1; i < ends.size(); ++i)
-            for (std::size_t band = 0; band < 3; ++band) {
-                const double truth = whole.at(i, 0)[band] - whole.at(0, 0)[band];
-                // The volume integrator places its nodes anew.
-                EXPECT_NEAR(rest.at(i - 1, 0)[band], truth, 1e-4 * truth);
-            }
-    }
-}
 
 TEST(ForwardScatter, RefusesWhatHasNoMeaning) {
     SceneDesc desc = scattering(staged(), forward(1));
