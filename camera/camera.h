@@ -19,9 +19,13 @@ class Camera final : public RaySource {
     int height() const override { return height_; }
     /// See RaySource. Empty too where the distortion shows nothing (beyond its fold).
     std::optional<Ray> water_ray(double x, double y) const override;
+    LensRay lens_ray(double x, double y) const override;
     const Affine& world_from_camera() const override { return world_from_camera_; }
 
   private:
+    // In camera space, inside the housing, unit; empty where the distortion shows nothing.
+    std::optional<Vector3> direction(double x, double y) const;
+
     int width_;
     int height_;
     IntrinsicsDesc intrinsics_;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "camera/fresnel.h"
+
 namespace uw {
 
 std::optional<Vector3> refract(const Vector3& direction, const Vector3& normal, double n1,
@@ -29,6 +31,27 @@ std::optional<Ray> FlatPort::water_ray(const Vector3& direction) const {
     const double reach = glm::dot(outer, outer);
     if (!std::isfinite(reach)) return std::nullopt;
     return Ray{at_origin_plus(outer), *in_water};
+}
+
+double FlatPort::transmittance(const Vector3& direction) const {
+    double result = 1;
+    if (desc_.radiance_in_air) {
+        const double ratio = desc_.n_air / desc_.n_water;
+        result *= ratio * ratio;
+    }
+    if (desc_.fresnel) {
+        const Vector3& n = desc_.normal;
+        const auto in_glass = refract(direction, n, desc_.n_air, desc_.n_glass);
+        if (!in_glass) return 0;
+        const FresnelTransmittance inner =
+            fresnel_transmittance(glm::dot(direction, n), desc_.n_air, desc_.n_glass);
+        const FresnelTransmittance outer =
+            fresnel_transmittance(glm::dot(*in_glass, n), desc_.n_glass, desc_.n_water);
+        // The surfaces are parallel and share their plane of incidence: what the first polarises
+        // meets the second so.
+        result *= 0.5 * (inner.s * outer.s + inner.p * outer.p);
+    }
+    return result;
 }
 
 }  // namespace uw

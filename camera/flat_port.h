@@ -25,6 +25,13 @@ class FlatPort {
     /// the glass, or is totally reflected at either surface.
     std::optional<Ray> water_ray(const Vector3& direction) const;
 
+    /// What the port makes of the radiance in water on its way to the camera centre along
+    /// `direction` (unit, in air), as the description asks: Fresnel's transmittance of unpolarised
+    /// light through both surfaces, without the light that is reflected to and fro in the glass,
+    /// and (n_air / n_water)^2 where the radiance is asked for in air. 1 if neither is.
+    /// Precondition: there is a water ray.
+    double transmittance(const Vector3& direction) const;
+
   private:
     FlatPortDesc desc_;
 };

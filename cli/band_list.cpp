@@ -55,6 +55,7 @@ std::vector<double> parse_range(const std::vector<std::string_view>& parts,
     if (count > k_most_bands)
         fail(text, fmt::format("more than {} wavelengths; give a larger step", k_most_bands));
     std::vector<double> bands;
+    bands.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < static_cast<int>(count); ++i) bands.push_back(first + i * step);
     return bands;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "cli/version.h"
 #include "core/error.h"
@@ -15,6 +16,8 @@ namespace uw {
 namespace {
 
 constexpr int k_longest_side = 256;
+// Of all grids together: 1 GiB here, and as much again in OpenVDB's hands.
+constexpr double k_most_values = 1 << 28;
 
 struct Lattice {
     std::array<int, 3> size{};
@@ -51,20 +54,26 @@ Lattice lattice_over(const AssembledScene& scene) {
     Lattice lattice;
     lattice.voxel = std::max(voxel, longest / k_longest_side);
     lattice.origin = bounds.min;
-    for (int axis = 0; axis < 3; ++axis)
-        lattice.size[static_cast<std::size_t>(axis)] =
-            static_cast<int>(extent[axis] / lattice.voxel) + 1;
-    return lattice;
+    const auto grids = static_cast<double>(scene.lamps.size()) * scene.water.medium.band_count();
+    for (;; lattice.voxel *= 1.1) {
+        for (int axis = 0; axis < 3; ++axis)
+            lattice.size[static_cast<std::size_t>(axis)] =
+                static_cast<int>(extent[axis] / lattice.voxel) + 1;
+        if (static_cast<double>(lattice.count()) * grids <= k_most_values) return lattice;
+    }
 }
 
 // Irradiance of one lamp at every lattice point, [band][point].
 std::vector<std::vector<float>> sample_lamp(const AssembledScene& scene, std::size_t lamp_index,
-                                            const LampLightField& light, const Lattice& lattice) {
+                                            const LampLightField& light, const Lattice& lattice,
+                                            const ProgressCallback& progress) {
     const Lamp& lamp = scene.lamps[lamp_index];
     const AttenuationTable attenuation(scene.water.medium);
     const auto bands = static_cast<std::size_t>(attenuation.band_count);
     std::vector<std::vector<float>> result(bands, std::vector<float>(lattice.count()));
-    parallel_for(static_cast<std::size_t>(lattice.size[2]), [&](std::size_t slice) {
+    const auto slices = static_cast<std::size_t>(lattice.size[2]);
+    std::atomic<std::size_t> done = lamp_index * slices;
+    parallel_for(slices, [&](std::size_t slice) {
         const int k = static_cast<int>(slice);
         std::vector<double> column(static_cast<std::size_t>(scene.field->constituent_count()));
         for (int j = 0; j < lattice.size[1]; ++j) {
@@ -83,18 +92,26 @@ std::vector<std::vector<float>> sample_lamp(const AssembledScene& scene, std::si
                         static_cast<float>(lamp.axis_intensity()[b] * relative * t[b]);
             }
         }
+        if (!progress(static_cast<double>(++done) /
+                      static_cast<double>(slices * scene.lamps.size())))
+            throw Interrupted();
     });
     return result;
 }
 
 }  // namespace
 
+void check_irradiance_vdb(const AssembledScene& scene) {
+    lattice_over(scene);
+}
+
 void write_irradiance_vdb(const std::filesystem::path& file, const AssembledScene& scene,
-                          const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
+                          const std::vector<std::shared_ptr<const LampLightField>>& light_fields,
+                          const ProgressCallback& progress) {
     const Lattice lattice = lattice_over(scene);
     std::vector<std::vector<std::vector<float>>> values;  // [lamp][band][point]
     for (std::size_t j = 0; j < scene.lamps.size(); ++j)
-        values.push_back(sample_lamp(scene, j, *light_fields[j], lattice));
+        values.push_back(sample_lamp(scene, j, *light_fields[j], lattice, progress));
     std::vector<VdbOutputGrid> grids;
     for (std::size_t j = 0; j < scene.lamps.size(); ++j) {
         for (std::size_t b = 0; b < values[j].size(); ++b) {

@@ -1,29 +1,32 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <variant>
 
 #include "cli/arguments.h"
+#include "cli/console.h"
 #include "cli/exit_code.h"
 #include "cli/render_command.h"
 #include "cli/stop_signal.h"
 #include "cli/validate_command.h"
 #include "cli/water_command.h"
+#include "core/config_text.h"
 #include "core/error.h"
 
 namespace {
 
+// One line, whatever the user's files and names brought into it.
 int fail(uw::ExitCode code, const char* what) {
-    fmt::print(stderr, "uwvdb: {}\n", what);
+    constexpr std::size_t k_longest_message = 4000;
+    uw::print_message(fmt::format("uwvdb: {}\n", uw::printable(what, k_longest_message)));
     return code;
 }
 
 uw::ExitCode run(const uw::MessageArguments& arguments) {
-    fmt::print("{}", arguments.text);
+    uw::print_output(arguments.text);
     return uw::k_exit_done;
 }
 
@@ -47,6 +50,7 @@ uw::ExitCode run(const uw::ValidateArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    uw::prepare_streams();
     try {
         const uw::Arguments parsed = uw::parse_arguments(argc, argv);
         return std::visit([](const auto& arguments) { return run(arguments); }, parsed);

@@ -1,9 +1,13 @@
 #include "cli/progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include <algorithm>
+#include <cmath>
+
+#include "cli/console.h"
 
 namespace uw {
 
@@ -11,7 +15,21 @@ namespace {
 
 constexpr double k_terminal_interval = 0.1;  // seconds between two drawings of the bar
 constexpr double k_line_interval = 5.0;      // seconds between two plain lines
-constexpr int k_bar_width = 30;
+constexpr int k_longest_bar = 30;
+constexpr int k_shortest_bar = 5;
+
+// Of the terminal; 80 where it does not say.
+int terminal_columns() {
+    winsize size{};
+    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return known ? size.ws_col : 80;
+}
+
+// "0.0523", "1.52", "153": three figures, whatever the rate.
+std::string format_rate(double rate) {
+    const double figures = rate > 0 ? 2 - std::floor(std::log10(rate)) : 0;
+    return fmt::format("{:.{}f}", rate, static_cast<int>(std::clamp(figures, 0.0, 6.0)));
+}
 
 }  // namespace
 
@@ -32,7 +50,7 @@ Progress::Progress(std::string label, std::string unit, double scale, bool quiet
       start_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() {
-    if (drawn_ && terminal_) std::fputs("\n", stderr);
+    if (drawn_ && terminal_) print_message("\n");
 }
 
 void Progress::update(double fraction) {
@@ -42,27 +60,43 @@ void Progress::update(double fraction) {
     const double interval = terminal_ ? k_terminal_interval : k_line_interval;
     const bool last = fraction >= 1;
     if (!last && elapsed.count() - last_drawn_ < interval) return;
-    if (last && !drawn_ && !terminal_) return;  // it was over before a line was due
+    if (last && !drawn_) return;  // it was over before anything was due
     last_drawn_ = elapsed.count();
     draw(fraction, elapsed.count());
 }
 
 void Progress::draw(double fraction, double seconds) {
     const double rate = seconds > 0 ? fraction * scale_ / seconds : 0;
-    const std::string left =
-        fraction > 0 ? format_duration(seconds * (1 - fraction) / fraction) + " left" : "";
-    const std::string line = fmt::format("{:3.0f} %  {:.3g} {}/s  {}", 100 * fraction, rate, unit_,
-                                         fraction >= 1 ? format_duration(seconds) : left);
-    if (terminal_) {
-        const int filled = static_cast<int>(fraction * k_bar_width);
-        fmt::print(stderr, "\r{} [{}{}] {:<40}", label_,
-                   std::string(static_cast<std::size_t>(filled), '='),
-                   std::string(static_cast<std::size_t>(k_bar_width - filled), ' '), line);
-    } else {
-        fmt::print(stderr, "{} {}\n", label_, line);
-    }
-    std::fflush(stderr);
+    const std::string time = fraction >= 1 ? format_duration(seconds)
+                             : fraction > 0
+                                 ? format_duration(seconds * (1 - fraction) / fraction) + " left"
+                                 : "";
+    const std::string figures =
+        fmt::format("{:3.0f} %  {} {}/s  {}", 100 * fraction, format_rate(rate), unit_, time);
+    if (terminal_)
+        draw_bar(fraction, figures);
+    else
+        print_message(fmt::format("{} {}\n", label_, figures));
     drawn_ = true;
+}
+
+void Progress::draw_bar(double fraction, const std::string& figures) {
+    // A line that fills the last column may wrap, and then could not be drawn over.
+    const int room = terminal_columns() - 1;
+    const int for_bar = room - static_cast<int>(label_.size() + figures.size()) - 4;
+    std::string line = label_ + " ";
+    if (for_bar >= k_shortest_bar) {
+        const int width = std::min(for_bar, k_longest_bar);
+        const auto filled = static_cast<std::size_t>(fraction * width);
+        line += "[" + std::string(filled, '=') +
+                std::string(static_cast<std::size_t>(width) - filled, ' ') + "] ";
+    }
+    line += figures;
+    line.resize(std::min(line.size(), static_cast<std::size_t>(std::max(room, 1))));
+    const std::size_t length = line.size();
+    if (length < last_length_) line.append(last_length_ - length, ' ');
+    last_length_ = length;
+    print_message("\r" + line);
 }
 
 }  // namespace uw

@@ -1,13 +1,15 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <mutex>
 #include <string>
 
 namespace uw {
 
-/// Progress of long work on stderr: a bar with rate and time left on a terminal, plain lines
-/// every few seconds otherwise. Thread safe.
+/// Progress of long work on stderr: a bar with rate and time left on a terminal, as wide as there
+/// is room; plain lines every few seconds otherwise. Work that is soon done shows nothing. Thread
+/// safe.
 class Progress {
   public:
     /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole.
@@ -21,6 +23,7 @@ class Progress {
 
   private:
     void draw(double fraction, double seconds);
+    void draw_bar(double fraction, const std::string& figures);
 
     std::string label_;
     std::string unit_;
@@ -30,7 +33,8 @@ class Progress {
     bool drawn_ = false;
     std::mutex mutex_;
     std::chrono::steady_clock::time_point start_;
-    double last_drawn_ = 0;  // seconds since start
+    double last_drawn_ = 0;        // seconds since start
+    std::size_t last_length_ = 0;  // of the bar's line
 };
 
 /// Seconds as "0.8 s", "12 s", "3 min 05 s", "1 h 12 min".

@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <mutex>
 
+#include "cli/console.h"
 #include "cli/grid_summary.h"
 #include "cli/irradiance_export.h"
+#include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/scene_assembly.h"
 #include "cli/scene_rendering.h"
 #include "cli/stats.h"
 #include "cli/stop_signal.h"
 #include "cli/version.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/image_writer.h"
 #include "core/parallel.h"
@@ -53,14 +54,6 @@ void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
     camera.height = height;
 }
 
-std::filesystem::path output_of(const RenderArguments& a) {
-    if (a.output.empty()) return a.scene.filename().replace_extension(".exr");
-    if (a.output.extension() != ".exr")
-        throw UsageError(fmt::format("-o {}: the image is OpenEXR; give a name that ends in .exr",
-                                     a.output.string()));
-    return a.output;
-}
-
 std::string band_list(std::span<const double> values) {
     std::string text;
     for (const double value : values)
@@ -79,19 +72,20 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
     std::string phases;
     for (const auto& phase : medium.phase_functions)
         phases += (phases.empty() ? "" : "; ") + phase->description();
-    ImageMetadata m{
-        {"software", "uwvdb " + program_version()},
-        {"uwvdb/scene", scene.desc.file.filename().string()},
-        {"uwvdb/scene_hash", scene.desc.hash},
-        {"uwvdb/integrator", name_of(scene.desc.render.integrator)},
-        {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
-        {"uwvdb/seed", std::string("none: deterministic")},
-        {"uwvdb/units", std::string("radiance W m^-2 sr^-1, irradiance W m^-2, metres")},
-        {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
-        {"uwvdb/water_absorption_per_m", band_list(a)},
-        {"uwvdb/water_scattering_per_m", band_list(b)},
-        {"uwvdb/water_attenuation_per_m", band_list(c)},
-        {"uwvdb/phase_functions", phases}};
+    const std::string quantity = SensorModel(scene.desc).description();
+    ImageMetadata m{{"software", "uwvdb " + program_version()},
+                    {"uwvdb/scene", scene.desc.file.filename().string()},
+                    {"uwvdb/scene_hash", scene.desc.hash},
+                    {"uwvdb/integrator", name_of(scene.desc.render.integrator)},
+                    {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
+                    {"uwvdb/seed", std::string("none: deterministic")},
+                    {"uwvdb/rgb_quantity", quantity},
+                    {"uwvdb/units", quantity + ", irradiance W m^-2, metres"},
+                    {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
+                    {"uwvdb/water_absorption_per_m", band_list(a)},
+                    {"uwvdb/water_scattering_per_m", band_list(b)},
+                    {"uwvdb/water_attenuation_per_m", band_list(c)},
+                    {"uwvdb/phase_functions", phases}};
     if (const ForwardScatterDesc& forward = scene.desc.water.forward_scatter; forward.K > 0) {
         m["uwvdb/forward_scatter_K"] = forward.K;
         m["uwvdb/forward_scatter_G_per_m"] = forward.G;
@@ -102,6 +96,10 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
     m["uwvdb/slab_near_m"] = scene.slabs.near;
     m["uwvdb/slab_thickness_m"] = scene.slabs.thickness();
     m["uwvdb/slabs"] = static_cast<double>(scene.slabs.count);
+    if (const auto& port = scene.desc.camera.port) {
+        m["uwvdb/port_fresnel"] = std::string(port->fresnel ? "on" : "off");
+        m["uwvdb/port_radiance_in"] = std::string(port->radiance_in_air ? "air" : "water");
+    }
     if (const auto& lens = scene.desc.camera.lens) {
         m["uwvdb/lens_f_number"] = lens->f_number;
         m["uwvdb/lens_focal_length_m"] = lens->focal_length;
@@ -146,6 +144,15 @@ void render(const AssembledScene& scene, const LightFields& light_fields, const 
                  });
 }
 
+void write_irradiance(const std::filesystem::path& file, const AssembledScene& scene,
+                      const LightFields& light_fields, bool quiet) {
+    Progress progress("irradiance", "lamps", static_cast<double>(scene.lamps.size()), quiet);
+    write_irradiance_vdb(file, scene, light_fields, [&](double share) {
+        progress.update(share);
+        return !stop_requested();
+    });
+}
+
 void count_work(const AssembledScene& scene, const LightFields& light_fields, const Film& film,
                 RunStats& stats) {
     const auto pixels = static_cast<std::uint64_t>(film.window().width()) *
@@ -160,9 +167,10 @@ void count_work(const AssembledScene& scene, const LightFields& light_fields, co
         grid_bytes += report.bytes;
     }
     stats.count("pixels", pixels);
-    // One ray a sample, and one more for the pixel's centre: its water and ground truth.
-    stats.count("camera_rays",
-                pixels * (static_cast<std::uint64_t>(scene.desc.render.samples) + 1));
+    // One ray a sample, and one more for the pixel's centre unless that is the sample: its water
+    // and ground truth.
+    const auto samples = static_cast<std::uint64_t>(scene.desc.render.samples);
+    stats.count("camera_rays", pixels * (samples == 1 ? 1 : samples + 1));
     stats.count("splat_rays", splat_rays);
     stats.count("light_field_bytes", splat_bytes);
     stats.count("active_voxels", voxels);
@@ -172,25 +180,41 @@ void count_work(const AssembledScene& scene, const LightFields& light_fields, co
     stats.count("bands", static_cast<std::uint64_t>(scene.water.medium.band_count()));
 }
 
+// One line if the image shows nothing, or is empty in part; no black image without a word.
+void warn_of_darkness(const Film& film, bool black) {
+    const PixelWindow& window = film.window();
+    std::size_t empty = 0;
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) empty += film.pixel(x, y)[k_alpha] == 0 ? 1 : 0;
+    const std::size_t pixels =
+        static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+    if (empty > 0)
+        print_message(fmt::format(
+            "warning: {} of {} pixels are empty (alpha 0): their rays do not pass the port, "
+            "or the lens's distortion has no ray for them\n",
+            empty, pixels));
+    if (black && empty < pixels)
+        print_message(fmt::format(
+            "warning: the image is black: no lamp's light reaches the camera; check the "
+            "lamps' positions, directions and intensities, the camera's pose, and how far "
+            "light comes in this water\n"));
+}
+
 // Writes the images; says where they are and what exposure the preview has.
-void write_images(const std::filesystem::path& output, const Film& film, ImageMetadata metadata,
-                  bool quiet) {
-    write_exr(output, film, metadata);
-    std::filesystem::path preview = output;
-    preview.replace_extension(".png");
+void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata, bool quiet) {
     const std::optional<double> exposure = automatic_exposure(film);
+    const Preview preview = make_preview(film, exposure.value_or(1.0));
+    write_exr(files.image, film, metadata);
     metadata["exposure"] = exposure.value_or(1.0);
-    write_png(preview, make_preview(film, exposure.value_or(1.0)), metadata);
-    if (!exposure)
-        fmt::print(stderr,
-                   "warning: the image is black: no lamp's light reaches the camera; check the "
-                   "lamps' positions, directions and intensities, and the camera's pose\n");
+    write_png(files.preview, preview, metadata);
+    warn_of_darkness(film, !exposure);
     if (quiet) return;
-    fmt::print(stderr, "wrote {}\n", output.string());
+    print_message(fmt::format("wrote {}\n", files.image.string()));
     if (exposure)
-        fmt::print(stderr, "wrote {} (preview, radiance x {:.4g})\n", preview.string(), *exposure);
+        print_message(
+            fmt::format("wrote {} (preview, R G B x {:.4g})\n", files.preview.string(), *exposure));
     else
-        fmt::print(stderr, "wrote {} (preview, black)\n", preview.string());
+        print_message(fmt::format("wrote {} (preview, black)\n", files.preview.string()));
 }
 
 }  // namespace
@@ -198,9 +222,9 @@ void write_images(const std::filesystem::path& output, const Film& film, ImageMe
 void run_render(const RenderArguments& a) {
     RunStats stats;
     const ThreadLimit limit(a.threads);
-    const std::filesystem::path output = output_of(a);
+    const OutputFiles files = output_files(a);
     const auto say = [&](const std::string& text) {
-        if (!a.quiet) fmt::print(stderr, "{}", text);
+        if (!a.quiet) print_message(text);
     };
 
     stats.begin_stage("scene");
@@ -211,47 +235,49 @@ void run_render(const RenderArguments& a) {
     const LayerPlan plan(a.layers, desc.water.bands_nm, lamp_names);
     const BandColour colour(desc.water.bands_nm);
     if (!colour.warning().empty()) desc.warnings.push_back(colour.warning());
-    // Found out now rather than after an hour: can the results be written?
-    for (const std::filesystem::path& file : {output, a.stats, a.irradiance_vdb})
-        if (!file.empty()) const AtomicFile probe(file);
+    check_output_files(files, desc);
+    // Light from beyond a crop is scattered into it: forward scatter needs the whole image.
+    const PixelWindow whole{0, 0, desc.camera.width, desc.camera.height};
+    const bool uncropped = desc.water.forward_scatter.K > 0 && window != whole;
+    if (uncropped)
+        desc.warnings.push_back(
+            "--crop: forward scatter takes light from the whole image: all of it is rendered, then "
+            "cropped; set water.forward_scatter.K=0 to save that time");
+    Film film(desc.camera.width, desc.camera.height, uncropped ? whole : window,
+              plan.channel_names());
 
     const AssembledScene scene =
         assemble_scene(desc, [&](const std::string& stage) { stats.begin_stage(stage); });
     for (const VolumeReport& report : scene.volume_reports)
         say(describe_grid(report, scene.water.medium));
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
-    if (stop_requested()) throw Interrupted();
+    for (const std::string& warning : scene.warnings)
+        print_message(fmt::format("warning: {}\n", warning));
+    if (!files.irradiance_vdb.empty()) check_irradiance_vdb(scene);
 
     stats.begin_stage("splat");
     LightFields light_fields;
     const bool volume = desc.render.integrator == RenderDesc::Integrator::volume;
-    if (volume || !a.irradiance_vdb.empty()) light_fields = splat_lamps(scene, LightFieldOptions{});
-    if (stop_requested()) throw Interrupted();
+    if (volume || !files.irradiance_vdb.empty()) {
+        Progress progress("splat", "lamps", static_cast<double>(scene.lamps.size()), a.quiet);
+        light_fields =
+            splat_lamps(scene, LightFieldOptions{}, [&](double share) { progress.update(share); });
+    }
 
     stats.begin_stage("render");
-    // Light from beyond a crop is scattered into it: forward scatter needs the whole image.
-    const PixelWindow whole{0, 0, desc.camera.width, desc.camera.height};
-    const bool uncropped = desc.water.forward_scatter.K > 0 && window != whole;
-    if (uncropped)
-        fmt::print(stderr,
-                   "warning: --crop: forward scatter takes light from the whole image: all of it "
-                   "is rendered, then cropped; set water.forward_scatter.K=0 to save that time\n");
-    Film film(desc.camera.width, desc.camera.height, uncropped ? whole : window,
-              plan.channel_names());
+    begin_orderly_stop();
     render(scene, light_fields, plan, colour, a.quiet, film);
     count_work(scene, light_fields, film, stats);
     if (uncropped) film = cropped(film, window);
-
-    stats.begin_stage("write");
-    write_images(output, film, metadata_of(scene), a.quiet);
-    if (!a.irradiance_vdb.empty()) {
+    if (!files.irradiance_vdb.empty()) {
         stats.begin_stage("irradiance");
-        write_irradiance_vdb(a.irradiance_vdb, scene, light_fields);
-        say(fmt::format("wrote {}\n", a.irradiance_vdb.string()));
+        write_irradiance(files.irradiance_vdb, scene, light_fields, a.quiet);
+        say(fmt::format("wrote {}\n", files.irradiance_vdb.string()));
     }
+    stats.begin_stage("write");
+    write_images(files, film, metadata_of(scene), a.quiet);
     stats.end_stage();
-    if (!a.stats.empty())
-        stats.write_json(a.stats, a.scene.filename().string(), output.filename().string());
+    if (!files.stats.empty())
+        stats.write_json(files.stats, a.scene.filename().string(), files.image.filename().string());
     say(fmt::format("done in {}, peak memory {:.0f} MB\n", format_duration(stats.total_seconds()),
                     static_cast<double>(RunStats::peak_memory_bytes()) / 1e6));
 }

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.h"
+#include "core/focus_weighted_integrator.h"
 #include "core/forward_images.h"
 #include "core/geometry_scene.h"
 #include "core/planes_integrator.h"
@@ -36,8 +39,17 @@ void warn_of_lamps_at_the_camera(AssembledScene& scene) {
     }
 }
 
-void check_water_of_forward_scatter(const ForwardScatterDesc& desc, const Medium& medium) {
+// The blur is that of radiance in water; factors that the port or the lens puts on each pixel would
+// have to follow it.
+void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
+    const ForwardScatterDesc& desc = scene.water.forward_scatter;
     if (desc.K == 0) return;
+    const bool port =
+        scene.camera.port && (scene.camera.port->fresnel || scene.camera.port->radiance_in_air);
+    if (port || scene.render.output != RenderDesc::Output::radiance)
+        throw InputError(fmt::format(
+            "{}: not supported yet together with {}; set one of the two off", desc.where,
+            port ? "camera.port.fresnel and radiance_in: air" : "render.output"));
     std::vector<double> attenuation;
     for (int band = 0; band < medium.band_count(); ++band)
         attenuation.push_back(medium.uniform.attenuation(band));
@@ -60,7 +72,7 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
     scene.water = build_water_model(desc.water, desc.volumes);
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
-    check_water_of_forward_scatter(desc.water.forward_scatter, medium);
+    check_forward_scatter_of(desc, medium);
     begin_stage("volumes");
     scene.field = load_volumes(desc.volumes, scene.water.loads, medium.constituent_count(),
                                scene.volume_reports, scene.warnings);
@@ -74,15 +86,20 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
 }
 
 std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledScene& scene,
-                                                               const LightFieldOptions& options) {
+                                                               const LightFieldOptions& options,
+                                                               const ShareCallback& progress) {
     std::vector<std::shared_ptr<const LampLightField>> fields;
-    for (const Lamp& lamp : scene.lamps)
+    LightFieldOptions share = options;
+    share.column_budget /= std::max(std::size_t{1}, scene.lamps.size());
+    for (const Lamp& lamp : scene.lamps) {
         fields.push_back(std::make_shared<LampLightField>(*scene.field, *scene.surfaces,
-                                                          lamp.position(), options));
+                                                          lamp.position(), share));
+        progress(static_cast<double>(fields.size()) / static_cast<double>(scene.lamps.size()));
+    }
     return fields;
 }
 
-std::unique_ptr<Integrator> make_integrator(
+static std::unique_ptr<Integrator> make_unweighted_integrator(
     const AssembledScene& scene,
     const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
     if (scene.desc.render.integrator == RenderDesc::Integrator::reference)
@@ -93,6 +110,15 @@ std::unique_ptr<Integrator> make_integrator(
     return std::make_unique<VolumeIntegrator>(
         scene.lit(),
         std::vector<std::shared_ptr<const LightField>>(light_fields.begin(), light_fields.end()));
+}
+
+std::unique_ptr<Integrator> make_integrator(
+    const AssembledScene& scene,
+    const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
+    std::unique_ptr<Integrator> integrator = make_unweighted_integrator(scene, light_fields);
+    if (scene.desc.render.output != RenderDesc::Output::paper) return integrator;
+    return std::make_unique<FocusWeightedIntegrator>(std::move(integrator),
+                                                     scene.desc.camera.lens.value().focal_length);
 }
 
 }  // namespace uw

@@ -38,12 +38,17 @@ using StageCallback = std::function<void(const std::string& stage)>;
 /// one line each.
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage);
 
+/// Told the share of a stage's work that is done.
+using ShareCallback = std::function<void(double share)>;
+
 /// Splats the light of every lamp of `scene`.
-std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledScene& scene,
-                                                               const LightFieldOptions& options);
+std::vector<std::shared_ptr<const LampLightField>> splat_lamps(
+    const AssembledScene& scene, const LightFieldOptions& options,
+    const ShareCallback& progress = [](double) {});
 
 /// The integrator that the scene asks for, on light splatted before; `light_fields` may be empty
 /// for all but the volume integrator. Throws InputError for one that cannot do the scene.
+/// Weighted by distance where the output is the paper's.
 std::unique_ptr<Integrator> make_integrator(
     const AssembledScene& scene,
     const std::vector<std::shared_ptr<const LampLightField>>& light_fields);

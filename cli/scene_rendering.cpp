@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/render_film.h"
+#include "core/sensor.h"
 
 namespace uw {
 
@@ -107,7 +108,7 @@ void render_scene(const AssembledScene& scene, const LightFields& light_fields,
                   const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const PassProgress& progress) {
     const PixelRenderer renderer(*scene.camera, scene.lit(), integrator, scene.desc.render.samples,
-                                 scene.slabs);
+                                 scene.slabs, SensorModel(scene.desc));
     const auto told = [&progress](const std::string& pass) {
         return [&progress, pass](double fraction) { return progress(pass, fraction); };
     };

@@ -1,14 +1,28 @@
 #include "cli/stop_signal.h"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <cstring>
+
+#include "cli/exit_code.h"
 
 namespace uw {
 
 namespace {
 
+volatile std::sig_atomic_t g_orderly = 0;
 volatile std::sig_atomic_t g_stop = 0;
+volatile std::sig_atomic_t g_skip = 1;  // 0 on a terminal, where "^C" or a bar fills the line
 
+// Only what may be done inside a signal handler: write(2), _exit(2).
 void on_signal(int signal) {
+    if (g_orderly == 0) {
+        const char* const text = "\nuwvdb: interrupted; nothing was written\n";
+        const char* const line = text + g_skip;
+        if (write(STDERR_FILENO, line, std::strlen(line)) < 0) _exit(k_exit_interrupted);
+        _exit(k_exit_interrupted);
+    }
     g_stop = 1;
     std::signal(signal, SIG_DFL);
 }
@@ -16,8 +30,13 @@ void on_signal(int signal) {
 }  // namespace
 
 void install_stop_signal() {
+    g_skip = isatty(STDERR_FILENO) != 0 ? 0 : 1;
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+}
+
+void begin_orderly_stop() {
+    g_orderly = 1;
 }
 
 bool stop_requested() {

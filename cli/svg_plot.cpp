@@ -230,8 +230,7 @@ std::string Writer::document() {
              title[i],
              fmt::format(" font-size=\"{:g}\" font-weight=\"bold\"", k_title_font).c_str());
     for (std::size_t i = 0; i < figure_.panels.size(); ++i) {
-        const auto column = static_cast<double>(i % static_cast<std::size_t>(columns));
-        const auto row = static_cast<double>(i / static_cast<std::size_t>(columns));
+        const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
         panel(figure_.panels[i], k_margin + column * figure_.panel_width,
               k_margin + head + row * figure_.panel_height);
     }

@@ -4,6 +4,7 @@
 
 #include <ostream>
 
+#include "cli/console.h"
 #include "cli/stop_signal.h"
 #include "cli/validation_report.h"
 #include "cli/validation_suite.h"
@@ -29,7 +30,7 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     options.tolerance = a.tolerance;
     options.volume = volume;
     options.proceed = [] { return !stop_requested(); };
-    if (!a.quiet) options.say = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+    if (!a.quiet) options.say = [](const std::string& what) { print_message(what + "\n"); };
     std::vector<SceneValidation> results;
     bool passed = true;
     for (const auto& [name, desc] : scenes) {
@@ -40,9 +41,10 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     }
     if (!a.report.empty()) {
         write_validation_report(a.report, results);
-        if (!a.quiet) fmt::print(stderr, "wrote {}\n", a.report.string());
+        if (!a.quiet) print_message(fmt::format("wrote {}\n", a.report.string()));
     }
     if (!a.quiet || !passed) out << (passed ? "validation passed\n" : "validation FAILED\n");
+    if (!out.flush()) throw IoError("standard output: cannot write; is the disk full?");
     return passed;
 }
 

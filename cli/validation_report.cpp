@@ -87,34 +87,48 @@ double exposure_of(const SceneValidation& scene, const MethodImage& image) {
     return bright > 0 ? 0.8 / bright : 1;
 }
 
-// Blue where `left` is darker, red where it is brighter, full at the tolerance; grey where a shadow
-// or beam edge crosses the ray, so that only the RMS counts. The worst band of each pixel.
-Preview difference_map(const SceneValidation& scene, const Check& check) {
-    const MethodImage& a = scene.images.at(check.left);
-    const MethodImage& b = scene.images.at(check.right);
-    std::vector<double> mean(scene.bands_nm.size());
-    for (std::size_t band = 0; band < mean.size(); ++band)
-        for (const Spectrum& pixel : b.backscatter)
-            mean[band] += pixel[band] / static_cast<double>(b.backscatter.size());
-    Preview picture{scene.width, scene.height, {}};
-    for (std::size_t i = 0; i < a.backscatter.size(); ++i) {
-        double worst = 0;
-        for (std::size_t band = 0; band < mean.size(); ++band) {
-            const double reference = std::max(b.backscatter[i][band], 0.01 * mean[band]);
-            const double d = (a.backscatter[i][band] - b.backscatter[i][band]) / reference;
-            if (reference > 0 && std::abs(d) > std::abs(worst)) worst = d;
+/// The relative differences of the backscatter, the band that differs most at each pixel.
+struct DifferenceMap {
+    Preview picture;
+    double full_colour = 0;  // the difference that is shown in full colour
+};
+
+// Blue where `left` is darker, red where it is brighter; grey where a shadow edge or hard beam edge
+// crosses the ray of a method that steps over it.
+DifferenceMap difference_map(const SceneValidation& scene, const Check& check) {
+    const std::vector<Spectrum>& a = scene.images.at(check.left).backscatter;
+    const std::vector<Spectrum>& b = scene.images.at(check.right).backscatter;
+    const auto counts = [&](std::size_t i) { return check.everywhere || scene.smooth[i] != 0; };
+    std::vector<double> worst(a.size());
+    DifferenceMap map{{scene.width, scene.height, {}}, 0};
+    for (std::size_t band = 0; band < scene.bands_nm.size(); ++band) {
+        const double dark = 0.01 * mean_over_pixels(b, band);
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            const double reference = std::max(b[i][band], dark);
+            const double d = reference > 0 ? (a[i][band] - b[i][band]) / reference : 0;
+            if (std::abs(d) > std::abs(worst[i])) worst[i] = d;
+            if (counts(i)) map.full_colour = std::max(map.full_colour, std::abs(worst[i]));
         }
-        const double strength = std::min(1.0, std::abs(worst) / check.tolerance);
-        const auto fade = static_cast<std::uint8_t>(255 * (1 - strength));
-        if (!check.everywhere && scene.smooth[i] == 0)
-            picture.rgb.insert(picture.rgb.end(), {190, 190, 190});
-        else if (worst > 0)
-            picture.rgb.insert(picture.rgb.end(), {255, fade, fade});
-        else
-            picture.rgb.insert(picture.rgb.end(), {fade, fade, 255});
     }
-    return picture;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double strength = worst[i] == 0 ? 0 : std::abs(worst[i]) / map.full_colour;
+        const auto fade = static_cast<std::uint8_t>(255 * (1 - std::min(1.0, strength)));
+        if (!counts(i))
+            map.picture.rgb.insert(map.picture.rgb.end(), {190, 190, 190});
+        else if (worst[i] > 0)
+            map.picture.rgb.insert(map.picture.rgb.end(), {255, fade, fade});
+        else
+            map.picture.rgb.insert(map.picture.rgb.end(), {fade, fade, 255});
+    }
+    return map;
 }
+
+// A strip from blue over white to red, as the maps are coloured.
+constexpr const char* k_colour_scale =
+    "<p><span style=\"display:inline-block;width:12em;height:1em;border:1px solid #ccc;background:"
+    "linear-gradient(90deg,#00f,#fff,#f00)\"></span> the first is darker … the same … brighter; "
+    "full colour at the largest difference, which stands below each map. Grey: a shadow edge or "
+    "hard beam edge crosses the ray of a method that steps over it.</p>\n";
 
 std::string table_of(const SceneValidation& scene) {
     std::string html =
@@ -171,15 +185,14 @@ std::string section_of(const SceneValidation& scene, Pictures& pictures) {
     for (const auto& [name, image] : scene.images)
         if (name.find("planes, ") != 0 || name == "planes, limit")
             html += pictures.figure(picture_of(scene, image, exposure), name);
-    html +=
-        "<h3>Differences of the backscatter</h3>\n<p>Red: the first is brighter, blue: darker; "
-        "full "
-        "colour at the tolerance. Grey: a shadow edge or hard beam edge crosses the ray of a "
-        "method that steps "
-        "over it.</p>\n";
-    for (const Check& check : scene.checks)
-        if (check.component == "backscatter" && check.band == 0)
-            html += pictures.figure(difference_map(scene, check), check.left + " − " + check.right);
+    html += "<h3>Differences of the backscatter</h3>\n";
+    html += k_colour_scale;
+    for (const Check& check : scene.checks) {
+        if (check.component != "backscatter" || check.band != 0) continue;
+        const DifferenceMap map = difference_map(scene, check);
+        html += pictures.figure(map.picture, fmt::format("{} − {}: {:.2g} %", check.left,
+                                                         check.right, 100 * map.full_colour));
+    }
     html += "<h3>Convergence</h3>\n";
     return html + convergence_plot(scene);
 }

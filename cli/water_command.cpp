@@ -8,6 +8,7 @@
 #include <memory>
 #include <ostream>
 
+#include "cli/console.h"
 #include "cli/water_report.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -104,7 +105,7 @@ class OutputFiles {
     void commit() {
         for (Entry& entry : files_) {
             entry.file->commit();
-            fmt::print(stderr, "wrote {}\n", entry.path.string());
+            print_message(fmt::format("wrote {}\n", entry.path.string()));
         }
     }
 
@@ -143,7 +144,7 @@ void run_water(const WaterArguments& a, std::ostream& out) {
     }
     if (!a.svg.empty()) files.add(a.svg, svg_document(water_figure(report)));
     for (const std::string& warning : report.table.warnings)
-        fmt::print(stderr, "warning: {}\n", warning);
+        print_message(fmt::format("warning: {}\n", warning));
     // First the files: whoever reads the tables may stop reading, which ends the program.
     files.commit();
     out << (a.json ? water_json(report) : water_text(report)) << std::flush;

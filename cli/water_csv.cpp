@@ -43,7 +43,8 @@ std::string unit_suffix(const CoefficientTable& table, const std::string& per) {
 void name_coefficients(const CoefficientTable& table, std::string& header) {
     const std::string before = table.name.empty() ? "" : table.name + "_";
     const std::string after = unit_suffix(table, "_per_m");
-    for (const char* name : {"a", "b", "c", "bb"}) add(header, before + name + after);
+    for (const char* name : {"a", "b", "c", "bb"})
+        add(header, fmt::format("{}{}{}", before, name, after));
     for (const char* name : {"bb_over_b", "albedo", "mean_cosine"}) add(header, before + name);
 }
 

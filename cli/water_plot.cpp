@@ -157,6 +157,7 @@ PlotPanel constituent_panel(const WaterReport& report, const FineCurves& fine) {
 /// The peak below 0.1 degrees, unbounded in some models, would leave no room for the rest.
 std::vector<double> plot_angles() {
     std::vector<double> angles;
+    angles.reserve(60 + 171);
     for (int i = 0; i < 60; ++i) angles.push_back(0.1 * std::pow(10, i / 30.0));
     for (double angle = 10; angle <= 180; angle += 1) angles.push_back(angle);
     return angles;

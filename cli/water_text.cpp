@@ -110,6 +110,7 @@ const std::vector<double>& printed_angles() {
 const std::vector<double>& filed_angles() {
     static const std::vector<double> k_angles = [] {
         std::vector<double> angles;
+        angles.reserve(10 + 9 + 180);
         for (int i = 0; i < 10; ++i) angles.push_back(i / 100.0);
         for (int i = 1; i < 10; ++i) angles.push_back(i / 10.0);
         for (int i = 1; i <= 180; ++i) angles.push_back(i);

@@ -96,9 +96,16 @@ void Lamp::append_profile_breaks(const Ray& ray, std::vector<double>& s) const {
     if (profile_.type == LampProfileDesc::Type::isotropic) return;
     if (profile_.type == LampProfileDesc::Type::spot) {
         append_cone_crossings(ray, position_, axis_, cos_full_, s);
-        if (cos_dark_ != cos_full_) append_cone_crossings(ray, position_, axis_, cos_dark_, s);
+        if (cos_dark_ == cos_full_) return;
+        // Within the edge as well: a ray that grazes the beam sees a narrow bump of it.
+        for (const double part : {0.25, 0.5, 0.75, 1.0})
+            append_cone_crossings(ray, position_, axis_,
+                                  std::cos(full_angle_ + part * (dark_angle_ - full_angle_)), s);
         return;
     }
+    // A cosine beam is smooth but may be narrow: cones of equal intensity follow it.
+    for (const double level : {0.95, 0.75, 0.5, 0.25, 0.1, 0.03, 0.003, 1e-4})
+        append_cone_crossings(ray, position_, axis_, std::pow(level, 1 / exponent_), s);
     const double along = glm::dot(ray.direction, axis_);
     const double root = -glm::dot(ray.origin - position_, axis_) / along;
     if (std::isfinite(root) && root > 0) s.push_back(root);

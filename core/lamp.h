@@ -26,10 +26,14 @@ class Lamp {
 
     /// Intensity in the direction of `v` (from the lamp, any length), relative to the axis: 0..1.
     double relative_intensity(const Vector3& v) const;
+    /// Whether a relative intensity of 1 somewhere means 1 all around, up to a break of the profile
+    /// (append_profile_breaks): the core of a spot.
+    bool has_even_core() const { return profile_.type != LampProfileDesc::Type::cosine; }
     /// Power of the lamp for 1 W/sr on its axis: its relative intensity over the sphere [sr].
     double beam_solid_angle() const;
 
-    /// Appends the distances along `ray` where the profile is not smooth (edges of its cone).
+    /// Appends the distances along `ray` where the profile is not smooth or changes much: the edges
+    /// of its beam and cones of equal intensity within.
     void append_profile_breaks(const Ray& ray, std::vector<double>& s) const;
 
   private:

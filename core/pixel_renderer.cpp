@@ -43,6 +43,7 @@ struct PixelRenderer::Workspace {
     SurfaceLight light;
     InScatter in_scatter;
     int hits = 0;
+    ImageOffset water_at{0.5, 0.5};  // where in the pixel the water's ray passes
 
     // Makes `ends` and `shares` of the distances; those that agree become one.
     void group(const PixelResult& result, int samples);
@@ -82,12 +83,14 @@ void PixelRenderer::Workspace::group(const PixelResult& result, int samples) {
 }
 
 PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
-                             const Integrator& integrator, int samples, const Slabs& slabs)
+                             const Integrator& integrator, int samples, const Slabs& slabs,
+                             const SensorModel& sensor)
     : rays_(rays),
       scene_(scene),
       integrator_(integrator),
       samples_(samples),
       slabs_(slabs),
+      sensor_(sensor),
       camera_from_world_(rays.world_from_camera().inverse()) {}
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {
@@ -107,21 +110,26 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
         w.group(result, samples_);
         add_water(*water, w, result);
     }
+    if (water) expose(x + w.water_at.x, y + w.water_at.y, result);
 }
 
 std::optional<Ray> PixelRenderer::trace(int x, int y, Workspace& w, PixelResult& result,
                                         const HitVisitor& on_hit) const {
     w.distances.clear();
-    std::optional<Ray> water = rays_.water_ray(x + 0.5, y + 0.5);
+    w.water_at = {0.5, 0.5};
+    std::optional<Ray> water = rays_.water_ray(x + w.water_at.x, y + w.water_at.y);
     if (water) record_ground_truth(*water, result);
     for (int i = 0; i < samples_; ++i) {
         const ImageOffset offset = sample_offset(i, samples_);
         const std::optional<Ray> ray = rays_.water_ray(x + offset.x, y + offset.y);
         if (!ray) continue;
-        if (!water) water = ray;
+        if (!water) {
+            water = ray;
+            w.water_at = offset;
+        }
         result.alpha += 1.0 / samples_;
-        SurfaceHit hit;
-        if (!scene_.surfaces->closest_hit(*ray, k_far, hit)) {
+        SurfaceHit hit = result.hit;  // a single sample's ray is that of the ground truth
+        if (!(samples_ == 1 ? result.has_hit : scene_.surfaces->closest_hit(*ray, k_far, hit))) {
             w.distances.push_back(k_far);
             continue;
         }
@@ -155,6 +163,7 @@ void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Wo
     integrator_.surface_light(ray, hit, w.light);
     ++w.hits;
     const double share = 1.0 / samples_;
+    const double seen = sensor_.surface_factor(hit.distance);
     const auto bands = static_cast<std::size_t>(band_count());
     for (std::size_t b = 0; b < bands; ++b) result.transmittance[b] += w.light.transmittance[b];
     for (std::size_t j = 0; j < w.light.lamps.size(); ++j) {
@@ -162,7 +171,7 @@ void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Wo
         if (!lamp.visible) continue;
         result.lit += share / static_cast<double>(w.light.lamps.size());
         for (std::size_t b = 0; b < bands; ++b) {
-            const double brdf = hit.reflectance[b] * std::numbers::inv_pi;
+            const double brdf = hit.reflectance[b] * std::numbers::inv_pi * seen;
             const double direct = share * lamp.irradiance[b] * brdf * w.light.transmittance[b];
             result.irradiance[b] += share * lamp.irradiance[b];
             result.clean[b] += share * lamp.clean[b] * brdf;
@@ -189,6 +198,19 @@ void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result)
             }
         }
     }
+}
+
+void PixelRenderer::expose(double x, double y, PixelResult& result) const {
+    const double factor = sensor_.pixel_factor(rays_.lens_ray(x, y),
+                                               result.has_hit ? result.range : k_infinitely_far);
+    const auto scale = [&](Spectrum& spectrum) {
+        for (double& value : spectrum) value *= factor;
+    };
+    scale(result.direct);
+    scale(result.backscatter);
+    scale(result.backscatter_first);
+    scale(result.clean);
+    for (Spectrum& lamp : result.lamps) scale(lamp);
 }
 
 Interval PixelRenderer::first_slab(const Ray& ray) const {

@@ -6,13 +6,15 @@
 
 #include "core/integrator.h"
 #include "core/lit_scene.h"
+#include "core/sensor.h"
 #include "core/slabs.h"
 #include "core/water_ray.h"
 
 namespace uw {
 
 /// Everything one pixel holds. Radiometric values are means over the pixel's samples; ground truth
-/// (`hit` and the depths) belongs to the pixel's centre. W m^-2 sr^-1, W m^-2, metres, world space.
+/// (`hit` and the depths) belongs to the pixel's centre. W m^-2, metres, world space. Radiance
+/// (direct, backscatter, clean, lamps) is in W m^-2 sr^-1, or what the sensor model makes of it.
 struct PixelResult {
     double alpha = 0;  // share of samples whose ray enters the water
     Spectrum direct{};
@@ -34,9 +36,10 @@ struct PixelResult {
 class PixelRenderer {
   public:
     /// All references outlive the renderer. `samples` >= 1 per pixel; one lies at the centre. The
-    /// first of `slabs` is the water of `backscatter_first`.
+    /// first of `slabs` is the water of `backscatter_first`. `sensor` says what the image holds:
+    /// the radiance itself if left out.
     PixelRenderer(const RaySource& rays, const LitScene& scene, const Integrator& integrator,
-                  int samples, const Slabs& slabs);
+                  int samples, const Slabs& slabs, const SensorModel& sensor = {});
 
     int lamp_count() const { return static_cast<int>(scene_.lamps->size()); }
     int band_count() const { return scene_.medium->band_count(); }
@@ -70,6 +73,8 @@ class PixelRenderer {
     void add_water(const Ray& ray, Workspace& w, PixelResult& result) const;
     // The first slab's stretch of `ray`; it may begin before the ray does.
     Interval first_slab(const Ray& ray) const;
+    // Turns the pixel's radiance into what the sensor model says; its ray is that at (x, y).
+    void expose(double x, double y, PixelResult& result) const;
     void record_ground_truth(const Ray& center, PixelResult& result) const;
 
     const RaySource& rays_;
@@ -77,6 +82,7 @@ class PixelRenderer {
     const Integrator& integrator_;
     int samples_;
     Slabs slabs_;
+    SensorModel sensor_;
     Affine camera_from_world_;
 };
 

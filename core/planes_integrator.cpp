@@ -119,8 +119,7 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
 void PlanesIntegrator::surface_light(const Ray& ray, const SurfaceHit& hit,
                                      SurfaceLight& light) const {
     // Uniform water: there are no columns to fill.
-    light_surface(
-        scene_, attenuation_, ray, hit, [](std::size_t, std::span<double>) {}, light);
+    light_surface(scene_, attenuation_, ray, hit, light);
 }
 
 }  // namespace uw

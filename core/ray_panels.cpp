@@ -11,16 +11,7 @@ LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
     distance = glm::length(to_lamp - foot * ray.direction);
 }
 
-double LampPassage::radius(double s) const {
-    return std::hypot(s - foot, distance);
-}
-
-double LampPassage::scattering_angle(double s) const {
-    return std::atan2(distance, foot - s);
-}
-
-void append_passage_breaks(const LampPassage& passage, const Interval& interval,
-                           std::span<const double> phase_breakpoints, std::vector<double>& s) {
+void append_octaves(const LampPassage& passage, const Interval& interval, std::vector<double>& s) {
     const auto append = [&](double at) {
         if (at > interval.begin && at < interval.end) s.push_back(at);
     };
@@ -31,8 +22,6 @@ void append_passage_breaks(const LampPassage& passage, const Interval& interval,
         append(passage.foot - u);
         append(passage.foot + u);
     }
-    for (const double psi : phase_breakpoints)
-        append(passage.foot - passage.distance / std::tan(psi));
 }
 
 }  // namespace uw

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <cmath>
 #include <vector>
 
 #include "core/lamp.h"
@@ -16,17 +16,21 @@ struct LampPassage {
     LampPassage(const Ray& ray, const Point3& lamp);
 
     /// Distance from the lamp of the point at `s`.
-    double radius(double s) const;
-    /// Scattering angle at `s` for light from the lamp to the ray's origin [rad]: pi beyond the
-    /// lamp, 0 well before it (physics section 2).
-    double scattering_angle(double s) const;
+    double radius(double s) const {
+        return std::sqrt((s - foot) * (s - foot) + distance * distance);
+    }
+    /// tan(psi / 2) at `s`, whose distance from the lamp is `radius`, with psi the scattering angle
+    /// for light from the lamp to the ray's origin (physics section 2): infinite beyond the lamp,
+    /// 0 well before it.
+    double half_tangent(double s, double radius) const {
+        const double to_foot = foot - s;
+        return to_foot > 0 ? distance / (radius + to_foot) : (radius - to_foot) / distance;
+    }
 };
 
 /// Appends the distances in (begin, end) at which the integrand of single scattering changes its
 /// scale, so that a Gauss rule of few nodes is exact to 1e-5 between neighbours: octaves of the
-/// distance from the foot (1/r^2 and the forward peak are power laws there), and the phase
-/// functions' own breakpoints [rad].
-void append_passage_breaks(const LampPassage& passage, const Interval& interval,
-                           std::span<const double> phase_breakpoints, std::vector<double>& s);
+/// distance from the foot, on which 1/r^2 and the forward peak of a phase function are power laws.
+void append_octaves(const LampPassage& passage, const Interval& interval, std::vector<double>& s);
 
 }  // namespace uw

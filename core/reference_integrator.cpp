@@ -101,12 +101,7 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
 
 void ReferenceIntegrator::surface_light(const Ray& ray, const SurfaceHit& hit,
                                         SurfaceLight& light) const {
-    light_surface(
-        scene_, attenuation_, ray, hit,
-        [&](std::size_t lamp, std::span<double> column) {
-            scene_.field->column((*scene_.lamps)[lamp].position(), hit.position, column);
-        },
-        light);
+    light_surface(scene_, attenuation_, ray, hit, light);
 }
 
 }  // namespace uw

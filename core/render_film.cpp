@@ -84,6 +84,8 @@ void render_film(const PixelRenderer& renderer, const LayerPlan& plan, const Ban
     const int columns = (window.width() + k_tile - 1) / k_tile;
     const int rows = (window.height() + k_tile - 1) / k_tile;
     const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    // Counted by rows of tiles: a tile of the reference integrator may take a minute.
+    const auto all = static_cast<double>(columns) * window.height();
     std::atomic<std::size_t> done = 0;
     parallel_for(tiles, [&](std::size_t tile) {
         const int x0 = window.x0 + static_cast<int>(tile) % columns * k_tile;
@@ -95,9 +97,8 @@ void render_film(const PixelRenderer& renderer, const LayerPlan& plan, const Ban
                 store_pixel(result, plan, colour, renderer.band_count(), film.pixel(x, y));
                 if (pixel_done) pixel_done(x, y, result);
             }
+            if (!progress(static_cast<double>(++done) / all)) throw Interrupted();
         }
-        if (!progress(static_cast<double>(++done) / static_cast<double>(tiles)))
-            throw Interrupted();
     });
 }
 

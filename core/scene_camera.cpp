@@ -100,7 +100,7 @@ LensDesc read_lens(const ConfigValue& value) {
 FlatPortDesc read_port(const ConfigValue& value, const SceneContext& context) {
     ConfigMap map(value,
                   {"type", "normal", "distance", "thickness", "n_air", "n_glass", "n_water",
-                   "center", "radius"},
+                   "fresnel", "radiance_in", "center", "radius"},
                   "write {type: flat, distance: 0.02, thickness: 0.01}");
     enum class Type { flat, dome };
     constexpr std::array<std::pair<std::string_view, Type>, 2> k_types{
@@ -139,6 +139,16 @@ FlatPortDesc read_port(const ConfigValue& value, const SceneContext& context) {
     read_index("n_air", port.n_air);
     read_index("n_glass", port.n_glass);
     read_index("n_water", port.n_water);
+    if (const auto fresnel = map.find("fresnel")) {
+        constexpr std::array<std::pair<std::string_view, bool>, 2> k_switch{
+            {{"true", true}, {"false", false}}};
+        port.fresnel = fresnel->choice(k_switch);
+    }
+    if (const auto medium = map.find("radiance_in")) {
+        constexpr std::array<std::pair<std::string_view, bool>, 2> k_media{
+            {{"water", false}, {"air", true}}};
+        port.radiance_in_air = medium->choice(k_media);
+    }
     map.finish("type 'flat'");
     return port;
 }

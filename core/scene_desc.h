@@ -35,6 +35,8 @@ struct FlatPortDesc {         // camera frame
     double distance = 0;      // camera centre to inner glass surface, along the normal
     double thickness = 0;
     double n_air = 1.0, n_glass = 1.49, n_water = 1.334;
+    bool fresnel = false;          // reflection losses at both surfaces
+    bool radiance_in_air = false;  // the camera's radiance is that in air, not in water
 };
 
 struct LensDesc {
@@ -158,6 +160,9 @@ struct RenderDesc {
     enum class Integrator { volume, planes, reference };
     Integrator integrator = Integrator::volume;
     PlanesDesc planes;
+    enum class Output { radiance, sensor_irradiance, paper };
+    Output output = Output::radiance;  // all but radiance need camera.lens
+    SourceLocation output_where;
     int samples = 4;
 };
 

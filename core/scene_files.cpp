@@ -43,6 +43,10 @@ std::filesystem::path read_existing_file(const ConfigValue& value, const SceneCo
     if (fs::is_directory(status)) {
         value.fail(fmt::format("'{}' is a folder; name a file in it", printable(name, 200)));
     }
+    // A pipe would keep the program waiting, a device might never end.
+    if (!fs::is_regular_file(status)) {
+        value.fail(fmt::format("'{}' is a pipe or device; name a file", printable(name, 200)));
+    }
     return file;
 }
 

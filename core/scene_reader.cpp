@@ -70,11 +70,19 @@ PlanesDesc read_planes(const ConfigValue& value) {
 }
 
 RenderDesc read_render(const ConfigValue& value) {
-    ConfigMap map(value, {"integrator", "planes", "samples"}, "write {samples: 4}");
+    ConfigMap map(value, {"integrator", "output", "planes", "samples"}, "write {samples: 4}");
     RenderDesc render;
     render.planes.where = value.location() + ".planes";
     if (const auto entry = map.find("integrator"))
         render.integrator = entry->choice(k_integrator_names);
+    if (const auto entry = map.find("output")) {
+        constexpr std::array<std::pair<std::string_view, RenderDesc::Output>, 3> k_outputs{
+            {{"radiance", RenderDesc::Output::radiance},
+             {"sensor_irradiance", RenderDesc::Output::sensor_irradiance},
+             {"paper", RenderDesc::Output::paper}}};
+        render.output = entry->choice(k_outputs);
+        render.output_where = entry->location();
+    }
     if (const auto entry = map.find("planes")) render.planes = read_planes(*entry);
     if (const auto entry = map.find("samples")) {
         render.samples = entry->integer(1, 4096, "give the samples per pixel");
@@ -106,6 +114,11 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
     if (const auto entry = map.find("render")) desc.render = read_render(*entry);
+    if (desc.render.output != RenderDesc::Output::radiance && !desc.camera.lens) {
+        throw InputError(desc.render.output_where +
+                         ": needs the camera's lens; give camera.lens: {f_number: 2.8, "
+                         "focal_length: 0.0085}, or write output: radiance");
+    }
     if (desc.lamps.empty()) {
         context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
     }

@@ -3,7 +3,7 @@
 namespace uw {
 
 void light_surface(const LitScene& scene, const AttenuationTable& attenuation, const Ray& ray,
-                   const SurfaceHit& hit, const LampColumn& lamp_column, SurfaceLight& light) {
+                   const SurfaceHit& hit, SurfaceLight& light) {
     std::vector<double> column(attenuation.constituents.size());
     scene.field->column(ray.origin, hit.position, column);
     light.transmittance = attenuation.transmittance(hit.distance, column);
@@ -17,7 +17,7 @@ void light_surface(const LitScene& scene, const AttenuationTable& attenuation, c
         // The true surface decides what a lamp can reach; the shading normal only shades.
         if (cosine <= 0 || relative <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
         if (scene.surfaces->occluded(lamp.position(), hit.position)) continue;
-        lamp_column(j, column);
+        scene.field->column(lamp.position(), hit.position, column);
         const Spectrum transmittance = attenuation.transmittance(radius, column);
         LampIrradiance& out = light.lamps[j];
         out.visible = true;

@@ -16,20 +16,12 @@ constexpr double k_panel_optical_depth = 1.5;
 // What lies this many optical depths behind the nearest light path adds less than 1e-6 of it.
 constexpr double k_negligible_optical_depth = 15;
 
-struct Workspace {
-    ConcentrationProfile profile;
-    std::vector<Interval> lit;
-    std::vector<double> breaks;
-    std::vector<Spectrum> radiance;
-    ScatterNodes nodes;
-};
+// A break that only marks a change of scale is left out where the one before it is nearer than
+// this: relative to the distance from the lamp, and in voxels.
+constexpr double k_least_relative_panel = 0.35;
+constexpr double k_least_voxels = 2;
 
-Workspace& workspace() {
-    thread_local Workspace w;
-    return w;
-}
-
-std::vector<double> merged_breakpoints(const Medium& medium) {
+std::vector<double> cotangents_of_breakpoints(const Medium& medium) {
     std::vector<double> all;
     for (const auto& phase : medium.phase_functions) {
         const std::vector<double> own = phase->breakpoints();
@@ -37,6 +29,7 @@ std::vector<double> merged_breakpoints(const Medium& medium) {
     }
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
+    for (double& psi : all) psi = 1 / std::tan(psi);
     return all;
 }
 
@@ -46,38 +39,48 @@ int node_count(double length, double nearest_radius) {
     return length < 0.35 * nearest_radius ? 3 : 4;
 }
 
-// Puts Gauss nodes on [begin, end], between two breaks, in `pieces` equal parts.
-void add_panel(const Ray& ray, const Lamp& lamp, const LampPassage& passage, const Interval& panel,
-               int pieces, std::size_t end_index, ScatterNodes& nodes) {
-    const double length = panel.length() / pieces;
-    for (int piece = 0; piece < pieces; ++piece) {
-        const double begin = panel.begin + piece * length;
+// One stretch between two breaks, and what holds all over it.
+struct Panel {
+    Interval stretch;
+    int pieces = 1;       // equal parts, each with its own nodes
+    bool evenly = false;  // the lamp shines as on its axis
+    std::size_t end = 0;  // index of the first of the ray's ends beyond it
+};
+
+void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, const Panel& panel,
+               ScatterNodes& nodes) {
+    const double length = panel.stretch.length() / panel.pieces;
+    for (int piece = 0; piece < panel.pieces; ++piece) {
+        const double begin = panel.stretch.begin + piece * length;
         const double nearest = passage.radius(glm::clamp(passage.foot, begin, begin + length));
         for (const QuadratureNode& node : gauss_legendre(node_count(length, nearest))) {
             const double s = begin + node.position * length;
             const double radius = passage.radius(s);
             const Point3 x = ray.at(s);
-            const double relative = lamp.relative_intensity(x - lamp.position());
+            const double relative =
+                panel.evenly ? 1.0 : lamp.relative_intensity(x - lamp.position());
             nodes.s.push_back(s);
             nodes.radius.push_back(radius);
             nodes.weight.push_back(node.weight * length * relative / (radius * radius));
-            nodes.psi.push_back(passage.scattering_angle(s));
-            nodes.end.push_back(end_index);
+            nodes.half_tangent.push_back(passage.half_tangent(s, radius));
+            nodes.end.push_back(panel.end);
             nodes.position.push_back(x);
         }
     }
 }
 
-// Appends the knots of a profile at the pace of its voxels: every second one, and where
-// particles begin and end.
-void append_knots(const ConcentrationProfile& profile, const Interval& interval,
-                  std::vector<double>& s) {
+// Adds the knots of a profile at the pace of its voxels: every second one, and where particles
+// begin and end.
+void add_knots(const ConcentrationProfile& profile, PanelBreaks& breaks) {
+    constexpr std::size_t k_pace = 2;
+    constexpr double k_least_knots = 1.9;
     bool was_empty = true;
     for (std::size_t i = 0; i + 1 < profile.s.size(); ++i) {
         const bool is_empty = profile.empty_between(i);
-        const bool wanted = is_empty != was_empty || (!is_empty && i % 2 == 0);
-        if (wanted && profile.s[i] > interval.begin && profile.s[i] < interval.end)
-            s.push_back(profile.s[i]);
+        if (is_empty != was_empty)
+            breaks.add_edge(profile.s[i]);
+        else if (!is_empty && i % k_pace == 0)
+            breaks.add_mark(profile.s[i], k_least_knots * (profile.s[i + 1] - profile.s[i]));
         was_empty = is_empty;
     }
 }
@@ -88,11 +91,21 @@ double largest_value(const Spectrum& spectrum, int band_count) {
 
 }  // namespace
 
+struct VolumeIntegrator::Workspace {
+    ConcentrationProfile profile;
+    std::vector<Interval> lit;
+    PanelBreaks breaks;
+    std::vector<double> marks;
+    std::vector<Spectrum> radiance;
+    ScatterNodes nodes;
+};
+
 VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
                                    std::vector<std::shared_ptr<const LightField>> light_fields)
     : scene_(scene),
       light_fields_(std::move(light_fields)),
-      phase_breakpoints_(merged_breakpoints(*scene.medium)),
+      phase_cotangents_(cotangents_of_breakpoints(*scene.medium)),
+      phases_(*scene.medium),
       sum_(*scene.medium) {
     const AttenuationTable& c = sum_.attenuation();
     largest_attenuation_ = largest_value(c.uniform, c.band_count);
@@ -108,7 +121,7 @@ void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
 
 void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
                                        InScatter& result) const {
-    Workspace& w = workspace();
+    thread_local Workspace w;
     const std::vector<Lamp>& lamps = *scene_.lamps;
     result.reset(ends.size(), lamps.size());
     scene_.field->profile(ray, ends.back(), w.profile);
@@ -123,14 +136,14 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<c
         for (Interval interval : w.lit) {
             interval.begin = std::max(interval.begin, begin);
             if (interval.length() <= 0) continue;
-            append_breaks(ray, j, passage, interval, ends, w.profile, w.breaks);
-            add_panels(ray, j, passage, ends, w.breaks, w.profile, w.nodes);
+            const std::vector<double>& breaks = find_breaks(ray, j, passage, interval, ends, w);
+            add_panels(ray, j, passage, ends, breaks, w.profile, w.nodes);
         }
         w.nodes.lamp_column.resize(w.nodes.size() *
                                    static_cast<std::size_t>(w.profile.constituent_count));
         light_fields_[j]->columns(w.nodes.position, w.nodes.lamp_column);
         w.nodes.look_up(w.profile);
-        w.nodes.evaluate_phases(*scene_.medium);
+        w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
         w.radiance.assign(ends.size(), Spectrum{});
         sum_.add(w.nodes, lamps[j].axis_intensity(), w.radiance);
         Spectrum so_far{};
@@ -142,26 +155,35 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<c
     }
 }
 
-void VolumeIntegrator::append_breaks(const Ray& ray, std::size_t lamp, const LampPassage& passage,
-                                     const Interval& interval, std::span<const double> ends,
-                                     const ConcentrationProfile& profile,
-                                     std::vector<double>& breaks) const {
-    breaks.assign({interval.begin, interval.end});
-    breaks.insert(breaks.end(), ends.begin(), ends.end());
-    (*scene_.lamps)[lamp].append_profile_breaks(ray, breaks);
-    append_passage_breaks(passage, interval, phase_breakpoints_, breaks);
+const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::size_t lamp,
+                                                         const LampPassage& passage,
+                                                         const Interval& interval,
+                                                         std::span<const double> ends,
+                                                         Workspace& w) const {
+    w.breaks.reset(interval);
+    for (const double end : ends) w.breaks.add_edge(end);
+    w.marks.clear();
+    (*scene_.lamps)[lamp].append_profile_breaks(ray, w.marks);
+    for (const double s : w.marks) w.breaks.add_edge(s);
     if (passage.distance < k_lamp_radius) {
         const double half =
             std::sqrt(k_lamp_radius * k_lamp_radius - passage.distance * passage.distance);
-        breaks.push_back(passage.foot - half);
-        breaks.push_back(passage.foot + half);
+        w.breaks.add_edge(passage.foot - half);
+        w.breaks.add_edge(passage.foot + half);
     }
-    if (profile.constituent_count > 0) {
-        append_knots(profile, interval, breaks);
-        light_fields_[lamp]->append_column_breaks(ray, interval, breaks);
+    w.marks.clear();
+    append_octaves(passage, interval, w.marks);
+    for (const double s : w.marks) w.breaks.add_mark(s, k_least_relative_panel * passage.radius(s));
+    for (const double cotangent : phase_cotangents_)
+        w.breaks.add_edge(passage.foot - passage.distance * cotangent);
+    if (w.profile.constituent_count > 0) {
+        add_knots(w.profile, w.breaks);
+        w.marks.clear();
+        light_fields_[lamp]->append_column_breaks(ray, interval, w.marks);
+        const double spacing = k_least_voxels * scene_.field->finest_voxel();
+        for (const double s : w.marks) w.breaks.add_mark(s, spacing);
     }
-    std::erase_if(breaks, [&](double s) { return s < interval.begin || s > interval.end; });
-    std::sort(breaks.begin(), breaks.end());
+    return w.breaks.kept();
 }
 
 void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPassage& passage,
@@ -176,7 +198,8 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         if (panel.length() <= 1e-12 * (1 + middle)) continue;
         if (passage.radius(middle) < k_lamp_radius) continue;
         // A panel lies between the edges of the lamp's cone: dark in the middle is dark all over.
-        if (source.relative_intensity(ray.at(middle) - source.position()) == 0) continue;
+        const double relative = source.relative_intensity(ray.at(middle) - source.position());
+        if (relative == 0) continue;
         while (end_index + 1 < ends.size() && ends[end_index] < middle) ++end_index;
         while (knot + 2 < profile.s.size() && profile.s[knot + 1] < middle) ++knot;
         double attenuation = largest_attenuation_;
@@ -187,18 +210,15 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         const double depth = 2 * attenuation * panel.length();
         const int pieces =
             static_cast<int>(std::min(64.0, std::ceil(depth / k_panel_optical_depth)));
-        add_panel(ray, source, passage, panel, std::max(1, pieces), end_index, nodes);
+        add_nodes(ray, source, passage,
+                  {panel, std::max(1, pieces), relative == 1 && source.has_even_core(), end_index},
+                  nodes);
     }
 }
 
 void VolumeIntegrator::surface_light(const Ray& ray, const SurfaceHit& hit,
                                      SurfaceLight& light) const {
-    light_surface(
-        scene_, sum_.attenuation(), ray, hit,
-        [&](std::size_t lamp, std::span<double> column) {
-            light_fields_[lamp]->columns(std::span<const Point3>(&hit.position, 1), column);
-        },
-        light);
+    light_surface(scene_, sum_.attenuation(), ray, hit, light);
 }
 
 }  // namespace uw

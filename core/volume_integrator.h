@@ -6,6 +6,7 @@
 #include "core/integrator.h"
 #include "core/light_field.h"
 #include "core/lit_scene.h"
+#include "core/panel_breaks.h"
 #include "core/ray_panels.h"
 #include "core/scatter_nodes.h"
 
@@ -26,17 +27,20 @@ class VolumeIntegrator : public Integrator {
     void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
 
   private:
-    // Where the integrand of lamp `lamp` changes its character within a lit interval, ascending.
-    void append_breaks(const Ray& ray, std::size_t lamp, const LampPassage& passage,
-                       const Interval& interval, std::span<const double> ends,
-                       const ConcentrationProfile& profile, std::vector<double>& breaks) const;
+    struct Workspace;
+
+    // Where panels begin and end within a lit interval of lamp `lamp`, ascending.
+    const std::vector<double>& find_breaks(const Ray& ray, std::size_t lamp,
+                                           const LampPassage& passage, const Interval& interval,
+                                           std::span<const double> ends, Workspace& w) const;
     void add_panels(const Ray& ray, std::size_t lamp, const LampPassage& passage,
                     std::span<const double> ends, std::span<const double> breaks,
                     const ConcentrationProfile& profile, ScatterNodes& nodes) const;
 
     LitScene scene_;
     std::vector<std::shared_ptr<const LightField>> light_fields_;
-    std::vector<double> phase_breakpoints_;  // of all phase functions, ascending [rad]
+    std::vector<double> phase_cotangents_;  // of all phase functions' breakpoints
+    PhaseTable phases_;
     ScatterSum sum_;
     double largest_attenuation_ = 0;  // of the uniform water over the bands [1/m]
     double smallest_attenuation_ = 0;

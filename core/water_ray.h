@@ -7,6 +7,14 @@
 
 namespace uw {
 
+/// How light arrives at the lens.
+struct LensRay {
+    /// Of the angle to the optical axis, inside the housing (in the water without a port).
+    double cosine = 1;
+    /// What the port makes of the radiance in water; 1 unless the scene asks for it.
+    double port_transmittance = 1;
+};
+
 /// Where camera rays come from: pixel in, ray in the water out. Thread safe.
 class RaySource {
   public:
@@ -20,6 +28,10 @@ class RaySource {
     /// outer glass surface, or at the camera centre without a port. Empty where no ray enters the
     /// water: the port is missed or reflects totally.
     virtual std::optional<Ray> water_ray(double x, double y) const = 0;
+
+    /// How the light of the water ray at image position (x, y) arrives at the lens.
+    /// Precondition: there is a water ray.
+    virtual LensRay lens_ray(double x, double y) const = 0;
 
     virtual const Affine& world_from_camera() const = 0;
 };

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/concentration_field.h"
-#include "media/cube_face.h"
+#include "media/face_rectangle.h"
 
 namespace uw {
 
@@ -15,16 +15,16 @@ namespace uw {
 /// band follows from them (physics section 1).
 class ColumnMap {
   public:
-    /// Marches the field once along each texel's ray. Texels are about as wide as the finest voxel
-    /// at the field's centre and steps as long as it, coarser where `memory_budget` [bytes] would
-    /// be exceeded. `field` is not kept.
+    /// Marches the field once along each texel's ray. Texels are about half as wide as the finest
+    /// voxel at the field's centre, and steps half as long as it; coarser where a field that fills
+    /// its bounds would exceed `memory_budget` [bytes]. `field` is not kept.
     ColumnMap(const ConcentrationField& field, const Point3& lamp, std::size_t memory_budget);
 
     /// As LightField::columns: bilinear over directions, linear over distance.
     void columns(std::span<const Point3> x, std::span<double> column) const;
 
-    /// As LightField::append_column_breaks: one break a texel where the ray crosses directions
-    /// whose rays meet particles.
+    /// As LightField::append_column_breaks: one break in two texels where the ray crosses
+    /// directions whose rays meet particles.
     void append_breaks(const Ray& ray, const Interval& interval, std::vector<double>& s) const;
 
     std::size_t bytes() const;
@@ -32,18 +32,19 @@ class ColumnMap {
 
   private:
     struct TexelRay {
-        float begin = 0;          // distance at which columns start to grow [m]
-        std::uint32_t count = 0;  // samples; 0: nothing this way
-        std::size_t offset = 0;   // of the first in samples
+        float begin = 0;           // distance at which columns start to grow [m]
+        std::uint32_t count = 0;   // samples; 0: nothing this way
+        std::uint32_t offset = 0;  // of the first in its row's samples
     };
     struct Face {
         int u0 = 0, v0 = 0, width = 0, height = 0;  // the rectangle of texels that is stored
         std::vector<TexelRay> rays;
-        std::vector<float> samples;  // [ray offset + step * constituents + k]
+        std::vector<std::vector<float>> rows;  // [v][ray offset + step * constituents + k]
     };
 
-    bool crop_to_field(const Bounds& bounds, int face, Face& out) const;
-    void trace_face(const ConcentrationField& field, int face, double reach);
+    void crop(const FaceRectangle& rectangle, Face& out) const;
+    void trace_face(const ConcentrationField& field, int face, const FaceRectangle& rectangle,
+                    double reach);
     static void append_samples(const ConcentrationProfile& profile, double step,
                                std::vector<float>& samples, TexelRay& ray);
     void add_texel(const Face& face, int u, int v, double distance, double weight,

@@ -9,6 +9,9 @@ namespace uw {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
+// The interpolant is a cubic in each cell; straight lines between four knots a voxel leave 0.06 %
+// of the in-scatter of a rough plume, two knots 0.2 %.
+constexpr double k_voxels_per_knot = 0.25;
 
 /// A stretch of the ray with the pace that one brick asks for.
 struct PacedStretch {
@@ -39,14 +42,14 @@ void gather_stretches(const std::vector<GridVolume>& volumes, const Ray& ray, do
     scratch.boundaries.assign({0.0, s_end});
     for (const GridVolume& volume : volumes) {
         const LatticeLine line = volume.lattice_line(ray.origin, ray.direction);
-        const double half_voxel = 0.5 / glm::length(line.direction);
+        const double pace = k_voxels_per_knot / glm::length(line.direction);
         for (const NanoGrid& brick : volume.bricks()) {
             scratch.stretches.clear();
             brick.append_stretches(line, 0, s_end, scratch.stretches);
             scratch.cursor.push_back(scratch.paced.size());
             for (const GridStretch& stretch : scratch.stretches) {
                 scratch.paced.push_back(
-                    {stretch.begin, stretch.end, stretch.constant ? k_infinity : half_voxel});
+                    {stretch.begin, stretch.end, stretch.constant ? k_infinity : pace});
                 scratch.boundaries.push_back(stretch.begin);
                 scratch.boundaries.push_back(stretch.end);
             }

@@ -9,13 +9,14 @@ namespace uw {
 /// How finely lamps are splatted.
 struct LightFieldOptions {
     int shadow_resolution = 512;               // texels along an edge of a cube face
-    std::size_t column_budget = 256ull << 20;  // bytes of columns per lamp
+    std::size_t column_budget = 256ull << 20;  // bytes of columns, all lamps of a scene together
 };
 
 /// One lamp's light splatted into the scene (docs/design.md): a shadow map and a column map.
 class LampLightField : public LightField {
   public:
-    /// `surfaces` outlives the light field; `field` is only read here.
+    /// `surfaces` outlives the light field; `field` is only read here. The lamp has the whole of
+    /// the options' budget to itself.
     LampLightField(const ConcentrationField& field, const Surfaces& surfaces, const Point3& lamp,
                    const LightFieldOptions& options)
         : shadows_(surfaces, lamp, options.shadow_resolution),

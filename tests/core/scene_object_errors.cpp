@@ -133,6 +133,10 @@ TEST_F(SceneObjectErrors, render) {
     check(std::string(k_base) + "render:\n",
           {
               {"  integrator: path\n", "render.integrator: unknown value 'path'; "},
+              {"  output: irradiance\n", "render.output: unknown value 'irradiance'; "},
+              {"  output: paper\n",
+               "scene.yaml:4:11: render.output: needs the camera's lens; give camera.lens: {"},
+              {"  output: sensor_irradiance\n", "render.output: needs the camera's lens; give "},
               {"  samples: 0\n", "render.samples: must be from 1 to 4096, found 0"},
               {"  samples: 2.5\n", "render.samples: expected a whole number, found 2.5"},
               {"  planes: {count: 3, near: 2, far: 1}\n",

@@ -17,7 +17,7 @@ camera:
   resolution: [1920, 1080]
   intrinsics: {fx: 1400, fy: 1401, cx: 961, cy: 541}      # pixels
   distortion: {model: brown-conrady, k: [0.1, 0.2, 0.3, 0.4, 0.5, 0.6], p: [0.01, 0.02]}
-  port: {type: flat, normal: [0, 0, 2], distance: 0.02, thickness: 0.04, n_air: 1.01, n_glass: 1.5, n_water: 1.34}
+  port: {type: flat, normal: [0, 0, 2], distance: 0.02, thickness: 0.04, n_air: 1.01, n_glass: 1.5, n_water: 1.34, fresnel: true, radiance_in: air}
   pose: {position: [1, 2, 3], look_at: [1, 2, 9], up: [0, -1, 0]}
   lens: {f_number: 2.8, focal_length: 0.0085, transmission: 0.95}
 water:
@@ -52,6 +52,7 @@ lamps:
 render:
   integrator: reference
   planes: {count: 64, near: 0.1, far: 12}
+  output: sensor_irradiance
   samples: 9
 )";
 
@@ -94,6 +95,8 @@ TEST_F(SceneReader, readsTheCamera) {
     EXPECT_EQ(camera.port->n_air, 1.01);
     EXPECT_EQ(camera.port->n_glass, 1.5);
     EXPECT_EQ(camera.port->n_water, 1.34);
+    EXPECT_TRUE(camera.port->fresnel);
+    EXPECT_TRUE(camera.port->radiance_in_air);
     ASSERT_TRUE(camera.lens);
     EXPECT_EQ(camera.lens->f_number, 2.8);
     EXPECT_EQ(camera.lens->focal_length, 0.0085);
@@ -200,6 +203,7 @@ TEST_F(SceneReader, readsLampsAndRender) {
     EXPECT_FALSE(second.intensity);
     EXPECT_TRUE(second.fixed_to_camera);
     EXPECT_EQ(scene.render.integrator, RenderDesc::Integrator::reference);
+    EXPECT_EQ(scene.render.output, RenderDesc::Output::sensor_irradiance);
     EXPECT_EQ(scene.render.samples, 9);
     EXPECT_EQ(scene.render.planes.count, 64);
     EXPECT_EQ(scene.render.planes.near, 0.1);
@@ -223,6 +227,7 @@ TEST_F(SceneReader, fillsInDefaults) {
     EXPECT_EQ(scene.water.salinity, 35);
     EXPECT_EQ(scene.water.temperature, 20);
     EXPECT_TRUE(scene.volumes.empty());
+    EXPECT_EQ(scene.render.output, RenderDesc::Output::radiance);
     EXPECT_EQ(scene.render.samples, 4);
     ASSERT_EQ(scene.warnings.size(), 1U);
     EXPECT_NE(scene.warnings[0].find("no lamps, so the image will be black"), std::string::npos);

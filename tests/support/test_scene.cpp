@@ -51,8 +51,9 @@ TestScene::TestScene(const SceneDesc& desc, const LightFieldOptions& options)
     if (desc.render.integrator == RenderDesc::Integrator::volume)
         light_fields_ = splat_lamps(scene_, options);
     integrator_ = make_integrator(scene_, light_fields_);
-    renderer_ = std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
-                                                desc.render.samples, scene_.slabs);
+    renderer_ =
+        std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
+                                        desc.render.samples, scene_.slabs, SensorModel(desc));
 }
 
 PixelResult TestScene::pixel(int x, int y) const {

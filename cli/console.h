@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string_view>
+
+namespace uw {
+
+/// To be called first: opens what of stdin, stdout and stderr the caller has closed, or the first
+/// files opened would take their place and receive our messages; and has a file's size limit
+/// reported as a failed write instead of ending the program.
+void prepare_streams();
+
+/// Writes to stderr. That it cannot be written to is no reason to end an hour's work.
+void print_message(std::string_view text);
+
+/// Writes to stdout and sees it through. Throws IoError.
+void print_output(std::string_view text);
+
+}  // namespace uw

@@ -1,0 +1,77 @@
+#include "cli/output_files.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/config_text.h"
+#include "core/error.h"
+
+namespace uw {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NamedFile {
+    std::string name;  // for messages
+    fs::path file;
+};
+
+std::vector<NamedFile> named(const OutputFiles& files) {
+    std::vector<NamedFile> result{{"the image", files.image}, {"the preview", files.preview}};
+    if (!files.stats.empty()) result.push_back({"--stats", files.stats});
+    if (!files.irradiance_vdb.empty()) result.push_back({"--irradiance-vdb", files.irradiance_vdb});
+    return result;
+}
+
+// One name for a file however it is written: without links, "." and "..".
+fs::path identity(const fs::path& file) {
+    std::error_code error;
+    const fs::path found = fs::weakly_canonical(fs::absolute(file, error), error);
+    return error ? file : found;
+}
+
+void refuse_other_ending(const char* option, const fs::path& file, const char* ending,
+                         const char* format) {
+    if (file.extension() != ending)
+        throw UsageError(fmt::format("{} {}: it is written as {}; give a name that ends in {}",
+                                     option, printable(file.string(), 300), format, ending));
+}
+
+}  // namespace
+
+OutputFiles output_files(const RenderArguments& a) {
+    OutputFiles files;
+    files.image = a.output.empty() ? a.scene.filename().replace_extension(".exr") : a.output;
+    refuse_other_ending("-o", files.image, ".exr", "OpenEXR");
+    files.preview = files.image;
+    files.preview.replace_extension(".png");
+    files.stats = a.stats;
+    files.irradiance_vdb = a.irradiance_vdb;
+    if (!a.irradiance_vdb.empty())
+        refuse_other_ending("--irradiance-vdb", a.irradiance_vdb, ".vdb", "OpenVDB");
+    return files;
+}
+
+void check_output_files(const OutputFiles& files, const SceneDesc& scene) {
+    std::map<fs::path, std::string> taken{{identity(scene.file), "the scene"}};
+    for (const VolumeDesc& volume : scene.volumes)
+        taken.emplace(identity(volume.file), "a volume of the scene");
+    for (const GeometryDesc& geometry : scene.geometry)
+        if (geometry.type == GeometryDesc::Type::file)
+            taken.emplace(identity(geometry.file), "a mesh of the scene");
+    for (const auto& [name, file] : named(files)) {
+        const auto [other, is_new] = taken.emplace(identity(file), name);
+        if (!is_new)
+            throw UsageError(fmt::format("{}: {} would replace {}; give another name",
+                                         printable(file.string(), 300), name, other->second));
+    }
+    for (const auto& [name, file] : named(files)) const AtomicFile probe(file);
+}
+
+}  // namespace uw

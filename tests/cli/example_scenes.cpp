@@ -1,0 +1,63 @@
+// ctest labels: golden
+#include <gtest/gtest.h>
+
+#include "tests/support/cli_test.h"
+#include "tests/support/vdb_fixtures.h"
+
+namespace uw {
+namespace {
+
+class ExampleScenes : public test::CliTest {
+  protected:
+    // Renders a scene of the project small; it must be lit, finite and free of doubts.
+    void expect_renders(const std::filesystem::path& scene,
+                        const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"render", scene.string(), "-o", "out.exr",  "--size",
+                                           "96x54",  "--samples",    "1",  "--layers", "all"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const test::ProgramResult result = run(arguments);
+        ASSERT_EQ(result.exit_code, 0) << scene << result.err;
+        EXPECT_EQ(result.err.find("black"), std::string::npos) << scene << result.err;
+        const test::ImageFile image = test::read_exr(folder_ / "out.exr");
+        test::expect_finite_and_lit(image);
+        float largest = 0;
+        for (const float value : image.channels.at("backscatter.G"))
+            largest = std::max(largest, value);
+        EXPECT_GT(largest, 0) << scene;
+        for (const float alpha : image.channels.at("A")) ASSERT_EQ(alpha, 1) << scene;
+    }
+
+    const std::filesystem::path scenes_ =
+        std::filesystem::path(UWVDB_SOURCE_DIR) / "assets" / "scenes";
+};
+
+TEST_F(ExampleScenes, RenderAsTheyAre) {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(scenes_)) {
+        if (!entry.is_regular_file() || entry.path().filename() == "houdini.yaml") continue;
+        expect_renders(entry.path());
+        ++count;
+    }
+    EXPECT_GE(count, 2);
+}
+
+TEST_F(ExampleScenes, TheUsersOwnVolumeIsNamedOnTheCommandLine) {
+    // A ball some 100 units high on the ground, as the scene says it expects.
+    test::VdbFixture smoke;
+    smoke.min = {-25, 0, -25};
+    smoke.max = {25, 50, 25};
+    smoke.value = [](int i, int j, int k) {
+        const double r = std::hypot(i, j - 25, k) / 25;
+        return r < 1 ? 1 - r * r : 0;
+    };
+    smoke.file_from_index = Affine::scale(Vector3(2.0));
+    const std::filesystem::path file = folder_ / "smoke of mine.vdb";
+    test::write_fixture(file, {smoke}, "Houdini");
+    expect_renders(scenes_ / "houdini.yaml", {"--set", "volumes[0].file=" + file.string()});
+    const test::ProgramResult missing = run({"render", (scenes_ / "houdini.yaml").string()});
+    EXPECT_EQ(missing.exit_code, 3);
+    EXPECT_NE(missing.err.find("no such file 'my_houdini.vdb'"), std::string::npos) << missing.err;
+}
+
+}  // namespace
+}  // namespace uw

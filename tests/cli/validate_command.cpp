@@ -1,0 +1,131 @@
+// ctest labels: analytic
+#include "cli/validate_command.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/support/temp_dir.h"
+
+namespace uw::test {
+namespace {
+
+/// The volume integrator with one fault.
+class FaultyIntegrator : public Integrator {
+  public:
+    FaultyIntegrator(std::unique_ptr<Integrator> honest, double in_scatter, double direct)
+        : honest_(std::move(honest)), in_scatter_(in_scatter), direct_(direct) {}
+
+    void in_scatter(const Ray& ray, std::span<const double> ends,
+                    InScatter& result) const override {
+        honest_->in_scatter(ray, ends, result);
+        for (std::size_t end = 0; end < ends.size(); ++end)
+            for (double& value : result.at(end, 0)) value *= in_scatter_;
+    }
+    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override {
+        honest_->surface_light(ray, hit, light);
+        for (LampIrradiance& lamp : light.lamps)
+            for (double& value : lamp.irradiance) value *= direct_;
+    }
+
+  private:
+    std::unique_ptr<Integrator> honest_;
+    double in_scatter_, direct_;
+};
+
+IntegratorFactory faulty(double in_scatter, double direct) {
+    return [=](const AssembledScene& scene,
+               const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
+        return std::make_unique<FaultyIntegrator>(make_integrator(scene, light_fields), in_scatter,
+                                                  direct);
+    };
+}
+
+class Validate : public ::testing::Test {
+  protected:
+    Validate() {
+        arguments_.quiet = true;
+        arguments_.scene = std::string(UWVDB_SOURCE_DIR) + "/assets/scenes/uniform.yaml";
+        arguments_.overrides = {"camera.resolution=[24,14]"};
+    }
+    TempDir dir_;
+    ValidateArguments arguments_;
+    std::ostringstream out_;
+};
+
+TEST_F(Validate, PassesOnTheExampleOfUniformWater) {
+    EXPECT_TRUE(run_validate(arguments_, false, out_)) << out_.str();
+    EXPECT_EQ(out_.str(), "");  // quiet
+}
+
+TEST_F(Validate, FailsOnWrongBackscatterAndNamesItInRed) {
+    // One lamp of two by half a percent: more than the tolerance of a tenth.
+    EXPECT_FALSE(run_validate(arguments_, true, out_, faulty(1.005, 1)));
+    const std::string text = out_.str();
+    EXPECT_NE(text.find("validation FAILED"), std::string::npos);
+    const std::size_t red = text.find("\033[31m");
+    ASSERT_NE(red, std::string::npos);
+    EXPECT_NE(text.substr(red, text.find('\n', red) - red).find("backscatter"), std::string::npos);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.find("direct") != std::string::npos) {
+            EXPECT_EQ(line.find("FAILED"), std::string::npos) << line;
+        }
+    }
+}
+
+TEST_F(Validate, FailsOnWrongDirectLight) {
+    EXPECT_FALSE(run_validate(arguments_, false, out_, faulty(1, 0.99)));
+    std::istringstream lines(out_.str());
+    bool named = false;
+    for (std::string line; std::getline(lines, line);)
+        named = named || (line.find("direct") != std::string::npos &&
+                          line.find("FAILED") != std::string::npos);
+    EXPECT_TRUE(named);
+}
+
+TEST_F(Validate, WritesOnePageThatNeedsNothingElse) {
+    arguments_.report = dir_ / "report.html";
+    EXPECT_TRUE(run_validate(arguments_, false, out_));
+    std::ifstream in(arguments_.report);
+    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+    EXPECT_NE(html.find("<svg"), std::string::npos);
+    EXPECT_EQ(html.find("<script"), std::string::npos);
+    EXPECT_EQ(html.find("src=\"http"), std::string::npos);
+    EXPECT_EQ(html.find("href="), std::string::npos);
+}
+
+TEST(Validation, PlanesConvergeAsTheSquareOfTheirThickness) {
+    SceneDesc desc;
+    desc.file = "test";
+    desc.camera.width = 12;
+    desc.camera.height = 9;
+    desc.camera.intrinsics = {10, 10, 6, 4.5};
+    desc.water.absorption = PerBand{0.35, 0.08, 0.05};
+    desc.water.scattering = ScatteringDesc{{0.20, 0.22, 0.25}, {}};
+    desc.water.scattering->phase.g = 0.9;
+    GeometryDesc wall;
+    wall.type = GeometryDesc::Type::plane;
+    wall.point = {0, 0, 4};
+    wall.normal = {0, 0, -1};
+    desc.geometry = {wall};
+    LampDesc lamp;
+    lamp.name = "lamp";
+    lamp.position = {1, -0.5, 0};
+    lamp.intensity = PerBand{50, 50, 50};
+    desc.lamps = {lamp};
+    const SceneValidation result = validate_scene(desc, "test", {});
+    EXPECT_TRUE(result.passed());
+    ASSERT_EQ(result.planes.back().count, 512);
+    for (const PlanesStep& step : result.planes) {
+        if (step.count >= 64) {
+            EXPECT_NEAR(step.order, 2, 0.05) << step.count;
+        }
+    }
+    EXPECT_LT(result.planes.back().error, 1e-3);
+}
+
+}  // namespace
+}  // namespace uw::test

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace uw::test {
+
+/// An EXR as OpenImageIO reads it: every channel by its name, row by row.
+struct ImageFile {
+    int x = 0, y = 0, width = 0, height = 0;  // of the pixels stored
+    int full_width = 0, full_height = 0;
+    std::vector<std::string> names;  // in the file's order
+    std::map<std::string, std::vector<float>> channels;
+    std::map<std::string, std::string> metadata;  // texts and numbers, as text
+
+    /// Value at pixel (column, row) of the full image. Throws std::out_of_range.
+    float at(const std::string& channel, int column, int row) const {
+        return channels.at(channel).at(static_cast<std::size_t>((row - y) * width + (column - x)));
+    }
+};
+
+/// Throws std::runtime_error if the file cannot be read.
+ImageFile read_exr(const std::filesystem::path& file);
+
+}  // namespace uw::test
