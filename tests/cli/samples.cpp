@@ -44,8 +44,8 @@ std::ostream& operator<<(std::ostream& out, const VolumeSample& sample) {
     return out << sample.file << " " << sample.grid;
 }
 
-constexpr const char* k_blender = "centering cell (from the file), up z (from the file)";
-constexpr const char* k_others = "centering node (from the file), up y (from the file)";
+constexpr const char* k_blender = "centering cell (automatic), up z (automatic)";
+constexpr const char* k_others = "centering node (automatic), up y (automatic)";
 // Of the domain of 6 x 3 x 2.4 m, the third nearest its inlet.
 constexpr const char* k_in_domain = "{translate: [-2, -0.5, 1.5]}";
 
