@@ -43,6 +43,7 @@ PhaseTable::PhaseTable(const Medium& medium)
 }
 
 void PhaseTable::evaluate(std::span<const double> half_tangent, std::span<double> p) const {
+    if (phases_ == 0) return;  // water that scatters nothing has no table
     constexpr std::uint64_t k_offset_mask = (std::uint64_t{1} << k_offset_bits) - 1;
     constexpr double k_offset_unit = 1.0 / (std::uint64_t{1} << k_offset_bits);
     const double largest = std::nextafter(k_most, 0);

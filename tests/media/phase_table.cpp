@@ -68,5 +68,13 @@ TEST(PhaseTable, HoldsTheEndsOfTheRange) {
     EXPECT_EQ(p[3], p[2]);
 }
 
+TEST(PhaseTable, WaterThatScattersNothingHasNone) {
+    const PhaseTable table(medium_of({}));
+    const std::vector<double> half_tangents{0.0, 1.0};
+    std::vector<double> p;
+    table.evaluate(half_tangents, p);
+    EXPECT_TRUE(p.empty());
+}
+
 }  // namespace
 }  // namespace uw::test
