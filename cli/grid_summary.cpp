@@ -42,8 +42,8 @@ std::string describe_grid(const VolumeReport& report, const Medium& medium) {
         report.statistics.active_voxels, static_cast<double>(report.bytes) / 1e6);
     text +=
         fmt::format("  centering {}{}, up {}{}\n", p.centering == Centering::cell ? "cell" : "node",
-                    p.automatic_centering ? " (from the file)" : "", p.up == UpAxis::z ? "z" : "y",
-                    p.automatic_up ? " (from the file)" : "");
+                    p.automatic_centering ? " (automatic)" : "", p.up == UpAxis::z ? "z" : "y",
+                    p.automatic_up ? " (automatic)" : "");
     if (report.bounds.empty()) return text + "  no values above 0\n";
     text += "  bounds " + describe_bounds(report.bounds) + "\n";
     for (const ConstituentReport& c : report.constituents) {

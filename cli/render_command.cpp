@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <mutex>
 
 #include "cli/console.h"
 #include "cli/grid_summary.h"
@@ -10,20 +11,18 @@
 #include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/scene_assembly.h"
+#include "cli/scene_rendering.h"
 #include "cli/stats.h"
 #include "cli/stop_signal.h"
 #include "cli/version.h"
 #include "core/error.h"
 #include "core/image_writer.h"
 #include "core/parallel.h"
-#include "core/render_film.h"
 #include "core/scene_reader.h"
 
 namespace uw {
 
 namespace {
-
-using LightFields = std::vector<std::shared_ptr<const LampLightField>>;
 
 RenderDesc::Integrator integrator_named(const std::string& name) {
     for (const auto& [known, integrator] : k_integrator_names)
@@ -87,6 +86,13 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
                     {"uwvdb/water_scattering_per_m", band_list(b)},
                     {"uwvdb/water_attenuation_per_m", band_list(c)},
                     {"uwvdb/phase_functions", phases}};
+    if (const ForwardScatterDesc& forward = scene.desc.water.forward_scatter; forward.K > 0) {
+        m["uwvdb/forward_scatter_K"] = forward.K;
+        m["uwvdb/forward_scatter_G_per_m"] = forward.G;
+        m["uwvdb/forward_scatter_B_rad_per_m"] = forward.B;
+        m["uwvdb/forward_scatter_shape"] = std::string(
+            forward.shape == ForwardScatterDesc::Shape::gaussian ? "gaussian" : "exponential");
+    }
     m["uwvdb/slab_near_m"] = scene.slabs.near;
     m["uwvdb/slab_thickness_m"] = scene.slabs.thickness();
     m["uwvdb/slabs"] = static_cast<double>(scene.slabs.count);
@@ -122,14 +128,21 @@ PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
 void render(const AssembledScene& scene, const LightFields& light_fields, const LayerPlan& plan,
             const BandColour& colour, bool quiet, Film& film) {
     const auto integrator = make_integrator(scene, light_fields);
-    const PixelRenderer renderer(*scene.camera, scene.lit(), *integrator, scene.desc.render.samples,
-                                 scene.slabs, SensorModel(scene.desc));
     const double megapixels = 1e-6 * film.window().width() * film.window().height();
-    Progress progress("render", "Mpx", megapixels, quiet);
-    render_film(renderer, plan, colour, film, [&](double fraction) {
-        progress.update(fraction);
-        return !stop_requested();
-    });
+    std::unique_ptr<Progress> progress;
+    std::string pass;
+    std::mutex mutex;
+    render_scene(scene, light_fields, *integrator, plan, colour, film,
+                 [&](const std::string& name, double fraction) {
+                     const std::lock_guard lock(mutex);
+                     if (name != pass) {
+                         progress.reset();  // ends the line of the pass before
+                         progress = std::make_unique<Progress>(name, "Mpx", megapixels, quiet);
+                         pass = name;
+                     }
+                     progress->update(fraction);
+                     return !stop_requested();
+                 });
 }
 
 void write_irradiance(const std::filesystem::path& file, const AssembledScene& scene,
@@ -224,7 +237,15 @@ void run_render(const RenderArguments& a) {
     const BandColour colour(desc.water.bands_nm);
     if (!colour.warning().empty()) desc.warnings.push_back(colour.warning());
     check_output_files(files, desc);
-    Film film(desc.camera.width, desc.camera.height, window, plan.channel_names());
+    // Light from beyond a crop is scattered into it: forward scatter needs the whole image.
+    const PixelWindow whole{0, 0, desc.camera.width, desc.camera.height};
+    const bool uncropped = desc.water.forward_scatter.K > 0 && window != whole;
+    if (uncropped)
+        desc.warnings.push_back(
+            "--crop: forward scatter takes light from the whole image: all of it is rendered, then "
+            "cropped; set water.forward_scatter.K=0 to save that time");
+    Film film(desc.camera.width, desc.camera.height, uncropped ? whole : window,
+              plan.channel_names());
 
     const AssembledScene scene =
         assemble_scene(desc, [&](const std::string& stage) { stats.begin_stage(stage); });
@@ -246,6 +267,8 @@ void run_render(const RenderArguments& a) {
     stats.begin_stage("render");
     begin_orderly_stop();
     render(scene, light_fields, plan, colour, a.quiet, film);
+    count_work(scene, light_fields, film, stats);
+    if (uncropped) film = cropped(film, window);
     if (!files.irradiance_vdb.empty()) {
         stats.begin_stage("irradiance");
         write_irradiance(files.irradiance_vdb, scene, light_fields, a.quiet);
@@ -254,7 +277,6 @@ void run_render(const RenderArguments& a) {
     stats.begin_stage("write");
     write_images(files, film, metadata_of(scene), a.quiet);
     stats.end_stage();
-    count_work(scene, light_fields, film, stats);
     if (!files.stats.empty())
         stats.write_json(files.stats, a.scene.filename().string(), files.image.filename().string());
     say(fmt::format("done in {}, peak memory {:.0f} MB\n", format_duration(stats.total_seconds()),

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/focus_weighted_integrator.h"
+#include "core/forward_images.h"
 #include "core/geometry_scene.h"
 #include "core/planes_integrator.h"
 #include "core/reference_integrator.h"
@@ -38,6 +39,24 @@ void warn_of_lamps_at_the_camera(AssembledScene& scene) {
     }
 }
 
+// The blur is that of radiance in water; factors that the port or the lens puts on each pixel would
+// have to follow it.
+void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
+    const ForwardScatterDesc& desc = scene.water.forward_scatter;
+    if (desc.K == 0) return;
+    const bool port =
+        scene.camera.port && (scene.camera.port->fresnel || scene.camera.port->radiance_in_air);
+    if (port || scene.render.output != RenderDesc::Output::radiance)
+        throw InputError(fmt::format(
+            "{}: not supported yet together with {}; set one of the two off", desc.where,
+            port ? "camera.port.fresnel and radiance_in: air" : "render.output"));
+    std::vector<double> attenuation;
+    for (int band = 0; band < medium.band_count(); ++band)
+        attenuation.push_back(medium.uniform.attenuation(band));
+    check_forward_scatter(desc, attenuation, desc.where);
+    check_blur_length(medium, desc.where);
+}
+
 }  // namespace
 
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage) {
@@ -53,6 +72,7 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
     scene.water = build_water_model(desc.water, desc.volumes);
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
+    check_forward_scatter_of(desc, medium);
     begin_stage("volumes");
     scene.field = load_volumes(desc.volumes, scene.water.loads, medium.constituent_count(),
                                scene.volume_reports, scene.warnings);

@@ -45,6 +45,7 @@ SceneDesc small_image(const SceneDesc& desc, int longest_side) {
     camera.width = width;
     camera.height = height;
     small.render.integrator = RenderDesc::Integrator::volume;
+    small.water.forward_scatter.K = 0;  // what is compared is the light before it is blurred
     small.render.output = RenderDesc::Output::radiance;
     return small;
 }

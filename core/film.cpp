@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -39,6 +40,14 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
     } catch (const std::length_error&) {
         throw no_memory();
     }
+}
+
+Film cropped(const Film& film, const PixelWindow& window) {
+    Film part(film.width(), film.height(), window, film.channel_names());
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x)
+            std::ranges::copy(film.pixel(x, y), part.pixel(x, y).begin());
+    return part;
 }
 
 }  // namespace uw

@@ -57,4 +57,7 @@ class Film {
     std::vector<float> values_;
 };
 
+/// The part of `film` within `window`. Throws as Film's constructor.
+Film cropped(const Film& film, const PixelWindow& window);
+
 }  // namespace uw

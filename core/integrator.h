@@ -50,6 +50,11 @@ class Integrator {
     virtual void in_scatter(const Ray& ray, std::span<const double> ends,
                             InScatter& result) const = 0;
 
+    /// Likewise from `begin` [m] on, which lies before all of `ends`. What is here takes the
+    /// difference of two in_scatter; integrators that can leave out what lies before do.
+    virtual void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                                 InScatter& result) const;
+
     /// Light on the surface point that `ray` meets.
     virtual void surface_light(const Ray& ray, const SurfaceHit& hit,
                                SurfaceLight& light) const = 0;

@@ -20,6 +20,7 @@ struct LayerKind {
 constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {"total", ""},
     {"direct", ""},
+    {"forward", ""},
     {"backscatter", ""},
     {"backscatter_first", ""},
     {"irradiance", ""},
@@ -35,8 +36,7 @@ constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {"id", "V"},
 }};
 
-constexpr std::array<std::string_view, 4> k_not_supported{"forward", "flow", "flow_back",
-                                                          "flow_occluded"};
+constexpr std::array<std::string_view, 3> k_not_supported{"flow", "flow_back", "flow_occluded"};
 
 constexpr std::string_view k_lamp_prefix = "lamp.";
 /// EXR allows 255 bytes for "lamp.<name>.<band>nm".

@@ -14,6 +14,7 @@ namespace uw {
 enum class Layer {
     total,
     direct,
+    forward,
     backscatter,
     backscatter_first,
     irradiance,
@@ -28,7 +29,7 @@ enum class Layer {
     position,
     id,
 };
-inline constexpr std::size_t k_layer_count = 15;
+inline constexpr std::size_t k_layer_count = 16;
 
 /// Which channels an image has, what they are called, and where each layer begins.
 ///

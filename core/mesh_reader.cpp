@@ -24,7 +24,7 @@ std::string lower_extension(const std::filesystem::path& file) {
 
 TriangleMesh read_any(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const std::string extension = lower_extension(file);
-    if (extension == ".ply") return read_ply(file);
+    if (extension == ".ply") return read_ply(file, warnings);
     if (extension == ".obj") return read_with_assimp(file, {}, warnings);
     // STL repeats the face's normal at each corner.
     if (extension == ".stl") return read_with_assimp(file, {.normals = false}, warnings);

@@ -43,7 +43,10 @@ struct PixelRenderer::Workspace {
     SurfaceLight light;
     InScatter in_scatter;
     int hits = 0;
+    ImageOffset water_at{0.5, 0.5};  // where in the pixel the water's ray passes
 
+    // Makes `ends` and `shares` of the distances; those that agree become one.
+    void group(const PixelResult& result, int samples);
     // Makes `distance` one of the ends unless it lies behind them all.
     void add_end(double distance) {
         const auto at = std::lower_bound(ends.begin(), ends.end(), distance);
@@ -60,6 +63,25 @@ struct PixelRenderer::Workspace {
     }
 };
 
+void PixelRenderer::Workspace::group(const PixelResult& result, int samples) {
+    std::sort(distances.begin(), distances.end());
+    ends.clear();
+    shares.clear();
+    for (std::size_t first = 0; first < distances.size();) {
+        std::size_t last = first;
+        double sum = 0;
+        while (last < distances.size() &&
+               distances[last] <= distances[first] * (1 + k_same_distance))
+            sum += distances[last++];
+        const auto count = static_cast<double>(last - first);
+        const bool at_center =
+            result.has_hit && distances[first] <= result.path && result.path <= distances[last - 1];
+        ends.push_back(at_center ? result.path : sum / count);
+        shares.push_back(count / samples);
+        first = last;
+    }
+}
+
 PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
                              const Integrator& integrator, int samples, const Slabs& slabs,
                              const SensorModel& sensor)
@@ -73,15 +95,29 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {
     thread_local Workspace w;
-    w.distances.clear();
     w.hits = 0;
     std::vector<Spectrum> lamps = std::move(result.lamps);
     result = PixelResult{};
     result.lamps = std::move(lamps);
     result.lamps.assign(scene_.lamps->size(), Spectrum{});
 
-    ImageOffset water_at{0.5, 0.5};
-    std::optional<Ray> water = rays_.water_ray(x + water_at.x, y + water_at.y);
+    const std::optional<Ray> water = trace(
+        x, y, w, result,
+        [&](const Ray& ray, const SurfaceHit& hit) { add_surface_sample(ray, hit, w, result); });
+    if (w.hits > 0)
+        for (double& t : result.transmittance) t /= w.hits;
+    if (water && !w.distances.empty()) {
+        w.group(result, samples_);
+        add_water(*water, w, result);
+    }
+    if (water) expose(x + w.water_at.x, y + w.water_at.y, result);
+}
+
+std::optional<Ray> PixelRenderer::trace(int x, int y, Workspace& w, PixelResult& result,
+                                        const HitVisitor& on_hit) const {
+    w.distances.clear();
+    w.water_at = {0.5, 0.5};
+    std::optional<Ray> water = rays_.water_ray(x + w.water_at.x, y + w.water_at.y);
     if (water) record_ground_truth(*water, result);
     for (int i = 0; i < samples_; ++i) {
         const ImageOffset offset = sample_offset(i, samples_);
@@ -89,7 +125,7 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
         if (!ray) continue;
         if (!water) {
             water = ray;
-            water_at = offset;
+            w.water_at = offset;
         }
         result.alpha += 1.0 / samples_;
         SurfaceHit hit = result.hit;  // a single sample's ray is that of the ground truth
@@ -100,12 +136,26 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
         const bool at_center = result.has_hit && hit.object_id == result.hit.object_id &&
                                std::abs(hit.distance / result.path - 1) < k_same_surface;
         w.distances.push_back(at_center ? result.path : hit.distance);
-        add_surface_sample(*ray, hit, w, result);
+        on_hit(*ray, hit);
     }
-    if (w.hits > 0)
-        for (double& t : result.transmittance) t /= w.hits;
-    if (water && !w.distances.empty()) add_water(*water, w, result);
-    if (water) expose(x + water_at.x, y + water_at.y, result);
+    return water;
+}
+
+void PixelRenderer::visit_hits(int x, int y, const HitVisitor& visit) const {
+    thread_local Workspace w;
+    PixelResult result;
+    trace(x, y, w, result, visit);
+}
+
+std::optional<Ray> PixelRenderer::water(int x, int y, WaterEnds& ends) const {
+    thread_local Workspace w;
+    PixelResult result;
+    const std::optional<Ray> ray = trace(x, y, w, result, [](const Ray&, const SurfaceHit&) {});
+    if (w.distances.empty()) return std::nullopt;
+    w.group(result, samples_);
+    ends.ends = w.ends;
+    ends.shares = w.shares;
+    return ray;
 }
 
 void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
@@ -132,22 +182,6 @@ void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Wo
 }
 
 void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result) const {
-    std::sort(w.distances.begin(), w.distances.end());
-    w.ends.clear();
-    w.shares.clear();
-    for (std::size_t first = 0; first < w.distances.size();) {
-        std::size_t last = first;
-        double sum = 0;
-        while (last < w.distances.size() &&
-               w.distances[last] <= w.distances[first] * (1 + k_same_distance))
-            sum += w.distances[last++];
-        const auto count = static_cast<double>(last - first);
-        const bool at_center = result.has_hit && w.distances[first] <= result.path &&
-                               result.path <= w.distances[last - 1];
-        w.ends.push_back(at_center ? result.path : sum / count);
-        w.shares.push_back(count / samples_);
-        first = last;
-    }
     const Interval first = first_slab(ray);
     for (const double face : {first.begin, first.end})
         if (face > 0) w.add_end(face);

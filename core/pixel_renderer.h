@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/integrator.h"
@@ -45,9 +47,27 @@ class PixelRenderer {
     /// Renders pixel (x, y); `result` is reused storage. Thread safe.
     void render(int x, int y, PixelResult& result) const;
 
+    /// Told of a surface that one of a pixel's samples meets.
+    using HitVisitor = std::function<void(const Ray& ray, const SurfaceHit& hit)>;
+    /// The surfaces that `render` of pixel (x, y) takes the mean of, `samples()` at most.
+    void visit_hits(int x, int y, const HitVisitor& visit) const;
+    int samples() const { return samples_; }
+
+    /// Where the water of a pixel ends [m along its water ray, ascending; k_far without a surface],
+    /// and the shares of the samples that end there.
+    struct WaterEnds {
+        std::vector<double> ends, shares;
+    };
+    /// The water ray of pixel (x, y), if one enters the water, and its ends, as `render` has them.
+    std::optional<Ray> water(int x, int y, WaterEnds& ends) const;
+
   private:
     struct Workspace;
 
+    // Traces the samples of a pixel: fills result.alpha, its ground truth and w.distances. Returns
+    // the water ray.
+    std::optional<Ray> trace(int x, int y, Workspace& w, PixelResult& result,
+                             const HitVisitor& on_hit) const;
     void add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
                             PixelResult& result) const;
     void add_water(const Ray& ray, Workspace& w, PixelResult& result) const;

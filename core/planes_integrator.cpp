@@ -34,10 +34,15 @@ PlanesIntegrator::PlanesIntegrator(const LitScene& scene, const Affine& world_fr
 
 void PlanesIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
                                   InScatter& result) const {
+    in_scatter_from(ray, 0, ends, result);
+}
+
+void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                                       InScatter& result) const {
     thread_local Workspace w;
     const std::vector<Lamp>& lamps = *scene_.lamps;
     result.reset(ends.size(), lamps.size());
-    place_samples(ray, ends, w.samples);
+    place_samples(ray, begin, ends, w.samples);
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         light_samples(ray, lamps[j], w);
         Spectrum whole{};
@@ -56,14 +61,14 @@ void PlanesIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
     }
 }
 
-void PlanesIntegrator::place_samples(const Ray& ray, std::span<const double> ends,
+void PlanesIntegrator::place_samples(const Ray& ray, double begin, std::span<const double> ends,
                                      std::vector<Sample>& samples) const {
     samples.clear();
     const RayDepth depth(camera_from_world_, ray);
     if (depth.cosine() <= 0) return;
     std::size_t end = 0;  // the first that is not before the slab
     for (int i = 0; i < slabs_.count; ++i) {
-        const Interval slab{std::max(0.0, depth.distance(slabs_.boundary(i))),
+        const Interval slab{std::max(begin, depth.distance(slabs_.boundary(i))),
                             depth.distance(slabs_.boundary(i + 1))};
         if (slab.length() <= 0) continue;
         for (; end < ends.size() && ends[end] < slab.end; ++end)

@@ -27,6 +27,8 @@ class PlanesIntegrator : public Integrator {
     PlanesIntegrator(const LitScene& scene, const Affine& world_from_camera, const Slabs& slabs);
 
     void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
+    void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                         InScatter& result) const override;
     void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
 
   private:
@@ -39,7 +41,7 @@ class PlanesIntegrator : public Integrator {
     };
     struct Workspace;
 
-    void place_samples(const Ray& ray, std::span<const double> ends,
+    void place_samples(const Ray& ray, double begin, std::span<const double> ends,
                        std::vector<Sample>& samples) const;
     /// Radiance that each of w.samples sends to the ray's origin by the light of lamp `lamp`.
     void light_samples(const Ray& ray, const Lamp& lamp, Workspace& w) const;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -84,6 +85,13 @@ VertexLayout layout_of(const PlyElement& element, const std::string& name) {
     return layout;
 }
 
+bool has_colors(const PlyElement& vertices) {
+    return std::any_of(vertices.properties.begin(), vertices.properties.end(),
+                       [](const PlyProperty& property) {
+                           return property.name == "red" || property.name == "diffuse_red";
+                       });
+}
+
 void read_vertices(const PlyElement& element, PlySource& source, const std::string& name,
                    TriangleMesh& mesh) {
     if (element.count >= k_no_vertex) {
@@ -146,7 +154,7 @@ void read_faces(const PlyElement& element, PlySource& source, const std::string&
 
 }  // namespace
 
-TriangleMesh read_ply(const std::filesystem::path& file) {
+TriangleMesh read_ply(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const std::string name = file.string();
     std::ifstream in(file, std::ios::binary);
     if (!in) throw IoError(name + ": cannot open the mesh; check the name and its permissions");
@@ -157,6 +165,7 @@ TriangleMesh read_ply(const std::filesystem::path& file) {
     for (const PlyElement& element : header.elements) {
         if (element.properties.empty()) continue;  // nothing stands in the file for it
         if (element.name == "vertex") {
+            if (has_colors(element)) warnings.push_back(name + ": ignored: vertex colours");
             read_vertices(element, source, name, mesh);
         } else if (element.name == "face") {
             read_faces(element, source, name, mesh);

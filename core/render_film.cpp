@@ -79,7 +79,7 @@ void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandCol
 }
 
 void render_film(const PixelRenderer& renderer, const LayerPlan& plan, const BandColour& colour,
-                 Film& film, const ProgressCallback& progress) {
+                 Film& film, const ProgressCallback& progress, const PixelCallback& pixel_done) {
     const PixelWindow& window = film.window();
     const int columns = (window.width() + k_tile - 1) / k_tile;
     const int rows = (window.height() + k_tile - 1) / k_tile;
@@ -95,6 +95,7 @@ void render_film(const PixelRenderer& renderer, const LayerPlan& plan, const Ban
             for (int x = x0; x < std::min(x0 + k_tile, window.x1); ++x) {
                 renderer.render(x, y, result);
                 store_pixel(result, plan, colour, renderer.band_count(), film.pixel(x, y));
+                if (pixel_done) pixel_done(x, y, result);
             }
             if (!progress(static_cast<double>(++done) / all)) throw Interrupted();
         }

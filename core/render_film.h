@@ -16,9 +16,12 @@ void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandCol
 /// Told the share of the pixels that are done, from any thread; returns false to stop.
 using ProgressCallback = std::function<bool(double fraction)>;
 
+/// Shown each pixel that is done, from any thread.
+using PixelCallback = std::function<void(int x, int y, const PixelResult& result)>;
+
 /// Renders every pixel of the film's window on all threads allowed. The result does not depend on
 /// their number. Throws Interrupted if `progress` returned false.
 void render_film(const PixelRenderer& renderer, const LayerPlan& plan, const BandColour& colour,
-                 Film& film, const ProgressCallback& progress);
+                 Film& film, const ProgressCallback& progress, const PixelCallback& done = {});
 
 }  // namespace uw

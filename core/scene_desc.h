@@ -73,6 +73,7 @@ struct ForwardScatterDesc {
     double G = 0;  // attenuation of what is scattered forward [1/m], |G| <= c
     double B = 0;  // blur: the spectrum falls as e^{-B R f}, f in cycles/rad [rad/m]
     Shape shape = Shape::gaussian;
+    SourceLocation where = "water.forward_scatter";
 };
 
 struct WaterDesc {

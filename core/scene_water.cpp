@@ -76,19 +76,24 @@ ScatteringDesc read_scattering(const ConfigValue& value, const SceneContext& con
     return scattering;
 }
 
-/// Forward scatter is checked, and refused unless it is off.
-void check_forward_scatter(const ConfigValue& value) {
-    ConfigMap map(value, {"K", "G", "B", "shape"}, "write {K: 0}");
-    const ConfigValue strength = map.require("K", "write {K: 0} for none");
-    if (strength.non_negative("give 0 for no forward scatter") > 0) {
-        strength.fail("forward scatter is not supported yet; set K: 0");
-    }
-    if (const auto entry = map.find("G")) entry->number("give a coefficient in 1/m");
-    if (const auto entry = map.find("B")) entry->non_negative("give a width in rad/m");
+ForwardScatterDesc read_forward_scatter(const ConfigValue& value) {
+    constexpr auto k_example = "write {K: 1, G: 0.1, B: 0.02}";
+    ConfigMap map(value, {"K", "G", "B", "shape"}, k_example);
+    ForwardScatterDesc forward;
+    forward.where = value.location();
+    forward.K = map.require("K", k_example).non_negative("give 0 for no forward scatter");
+    if (const auto entry = map.find("G")) forward.G = entry->number("give a coefficient in 1/m");
+    const auto blur = map.find("B");
+    if (blur) forward.B = blur->non_negative("give a width in rad/m");
+    if (forward.K > 0 && !blur)
+        value.fail("has no B, the width of the blur in rad/m; " + std::string(k_example));
     if (const auto entry = map.find("shape")) {
-        constexpr std::array<std::string_view, 2> k_shapes{"gaussian", "exponential"};
-        entry->word_index(k_shapes);
+        constexpr std::array<std::pair<std::string_view, ForwardScatterDesc::Shape>, 2> k_shapes{
+            {{"gaussian", ForwardScatterDesc::Shape::gaussian},
+             {"exponential", ForwardScatterDesc::Shape::exponential}}};
+        forward.shape = entry->choice(k_shapes);
     }
+    return forward;
 }
 
 /// Absorption that is given as a number, or measured by a preset, holds what is dissolved already.
@@ -138,7 +143,8 @@ WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
         water.scattering = read_scattering(*entry, context);
     }
     if (const auto entry = map.find("particles")) read_particles(*entry, water);
-    if (const auto entry = map.find("forward_scatter")) check_forward_scatter(*entry);
+    if (const auto entry = map.find("forward_scatter"))
+        water.forward_scatter = read_forward_scatter(*entry);
     return water;
 }
 

@@ -116,6 +116,11 @@ VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
 
 void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
                                   InScatter& result) const {
+    in_scatter_from(ray, 0, ends, result);
+}
+
+void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                                       InScatter& result) const {
     thread_local Workspace w;
     const std::vector<Lamp>& lamps = *scene_.lamps;
     result.reset(ends.size(), lamps.size());
@@ -128,7 +133,9 @@ void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
                 reach, passage.radius(0) + k_negligible_optical_depth / smallest_attenuation_);
         light_fields_[j]->lit_intervals(ray, reach, w.lit);
         w.nodes.clear();
-        for (const Interval& interval : w.lit) {
+        for (Interval interval : w.lit) {
+            interval.begin = std::max(interval.begin, begin);
+            if (interval.length() <= 0) continue;
             const std::vector<double>& breaks = find_breaks(ray, j, passage, interval, ends, w);
             add_panels(ray, j, passage, ends, breaks, w.profile, w.nodes);
         }

@@ -22,6 +22,8 @@ class VolumeIntegrator : public Integrator {
                      std::vector<std::shared_ptr<const LightField>> light_fields);
 
     void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
+    void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                         InScatter& result) const override;
     void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
 
   private:

@@ -134,6 +134,16 @@ TEST_F(MeshReader, RefusesBrokenFilesInOneLine) {
     EXPECT_THROW(read_mesh(folder_.path("missing.glb"), warnings_), IoError);
 }
 
+TEST_F(MeshReader, SaysThatColoursOfAPlyAreIgnored) {
+    read("coloured.ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+         "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0 9 9 9\n1 0 0 9 9 9\n0 1 0 9 9 9\n3 0 1 2\n");
+    ASSERT_EQ(warnings_.size(), 1U);
+    EXPECT_TRUE(warnings_[0].ends_with("coloured.ply: ignored: vertex colours")) << warnings_[0];
+}
+
 TEST_F(MeshReader, ReadsTheProjectsSeabed) {
     const std::filesystem::path assets = std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/meshes";
     const TriangleMesh mesh = read_mesh(assets / "seabed.glb", warnings_);

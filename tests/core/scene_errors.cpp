@@ -184,8 +184,9 @@ TEST_F(SceneErrors, water) {
             {"  {scattering: {b: 1, phase: {type: water}}, particles: {small: 1}}\n",
              "water.particles: 'scattering' takes the place of background particles"},
             {"  forward_scatter: {K: 0.5}\n",
-             "scene.yaml:4:24: water.forward_scatter.K: forward "
-             "scatter is not supported yet; set K: 0"},
+             "scene.yaml:4:20: water.forward_scatter: has no B, the width of the blur in rad/m; "
+             "write {K: 1, G: 0.1, B: 0.02}"},
+            {"  forward_scatter: {K: -1, B: 0.1}\n", "water.forward_scatter.K: "},
             {"  forward_scatter: {K: 0, shape: gauss}\n",
              "water.forward_scatter.shape: unknown value"},
         });

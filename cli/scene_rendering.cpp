@@ -1,0 +1,128 @@
+#include "cli/scene_rendering.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/render_film.h"
+#include "core/sensor.h"
+
+namespace uw {
+
+namespace {
+
+// Layers of water that begin at a distance s are k_growth (s + offset) thick, the offset the lesser
+// of two bounds. Finer ones change the image by less than the ladder of blur widths does.
+constexpr double k_growth = 0.12;
+constexpr double k_offset = 0.3;        // m
+constexpr double k_offset_depth = 0.6;  // optical depth
+// Parts of such a layer that the middle of its light is found from.
+constexpr int k_cells = 2;
+
+std::vector<double> growing_layers(double near, double far, double attenuation) {
+    double offset = k_offset;
+    if (attenuation > 0) offset = std::min(offset, k_offset_depth / attenuation);
+    const double count =
+        std::max(1.0, std::ceil(std::log1p((far - near) / offset) / std::log1p(k_growth)));
+    std::vector<double> faces;
+    for (int i = 0; i <= static_cast<int>(count); ++i)
+        faces.push_back(near + offset * std::expm1(std::log1p((far - near) / offset) * i / count));
+    faces.back() = far;
+    return faces;
+}
+
+std::vector<double> layer_faces(const AssembledScene& scene) {
+    const Slabs& slabs = scene.slabs;
+    std::vector<double> faces;
+    if (scene.desc.render.integrator == RenderDesc::Integrator::planes) {
+        for (int i = 0; i <= slabs.count; ++i) faces.push_back(slabs.boundary(i));
+        return faces;
+    }
+    // All of the water, wherever the slabs of `backscatter_first` are.
+    PlanesDesc all;
+    const Slabs water = place_slabs(all, *scene.camera, scene.lit());
+    double attenuation = 0;
+    const Medium& medium = scene.water.medium;
+    for (int band = 0; band < medium.band_count(); ++band)
+        attenuation = std::max(attenuation, medium.uniform.attenuation(band));
+    faces = growing_layers(water.near, water.far, attenuation);
+    for (const double face : {slabs.boundary(0), slabs.boundary(1)})
+        if (face > water.near && face < water.far) faces.push_back(face);
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+}
+
+double angle_between(const Ray& a, const Ray& b) {
+    return std::atan2(glm::length(glm::cross(a.direction, b.direction)),
+                      glm::dot(a.direction, b.direction));
+}
+
+// Pixels per radian in the water, at the centre of the image; of a port that the centre does not
+// look through, at the place nearest to it that does.
+ScatterPlane scatter_plane(const Camera& camera) {
+    ScatterPlane plane{camera.width(), camera.height(), 1, 1};
+    constexpr int k_steps = 64;
+    double nearest = 1e300;
+    for (int j = 0; j <= k_steps; ++j) {
+        for (int i = 0; i <= k_steps; ++i) {
+            const double u = static_cast<double>(i) / k_steps - 0.5;
+            const double v = static_cast<double>(j) / k_steps - 0.5;
+            if (u * u + v * v >= nearest) continue;
+            const double x = (u + 0.5) * plane.width, y = (v + 0.5) * plane.height;
+            const auto left = camera.water_ray(x - 0.5, y), right = camera.water_ray(x + 0.5, y);
+            const auto above = camera.water_ray(x, y - 0.5), below = camera.water_ray(x, y + 0.5);
+            if (!left || !right || !above || !below) continue;
+            nearest = u * u + v * v;
+            plane.focal_x = 1 / angle_between(*left, *right);
+            plane.focal_y = 1 / angle_between(*above, *below);
+        }
+    }
+    return plane;
+}
+
+}  // namespace
+
+ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
+                                          const LightFields& light_fields) {
+    ForwardScatterSetup setup;
+    setup.desc = scene.desc.water.forward_scatter;
+    setup.plane = scatter_plane(*scene.camera);
+    setup.faces = layer_faces(scene);
+    // A slab of the planes is one sample: it has no parts.
+    const bool planes = scene.desc.render.integrator == RenderDesc::Integrator::planes;
+    setup.cells = planes ? 1 : k_cells;
+    setup.first = {scene.slabs.boundary(0), scene.slabs.boundary(1)};
+    const ConcentrationField* field = scene.field.get();
+    const std::vector<Lamp>* lamps = &scene.lamps;
+    setup.lamp_column = [&light_fields, field, lamps](std::size_t lamp, const Point3& x,
+                                                      std::span<double> column) {
+        if (light_fields.empty())
+            field->column((*lamps)[lamp].position(), x, column);
+        else
+            light_fields[lamp]->columns(std::span<const Point3>(&x, 1), column);
+    };
+    return setup;
+}
+
+void render_scene(const AssembledScene& scene, const LightFields& light_fields,
+                  const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
+                  Film& film, const PassProgress& progress) {
+    const PixelRenderer renderer(*scene.camera, scene.lit(), integrator, scene.desc.render.samples,
+                                 scene.slabs, SensorModel(scene.desc));
+    const auto told = [&progress](const std::string& pass) {
+        return [&progress, pass](double fraction) { return progress(pass, fraction); };
+    };
+    if (scene.desc.water.forward_scatter.K == 0) {
+        render_film(renderer, plan, colour, film, told("render"));
+        return;
+    }
+    const ForwardScatterSetup setup = forward_scatter_setup(scene, light_fields);
+    ForwardPass forward(renderer, scene.lit(), integrator, scene.camera->world_from_camera(), setup,
+                        plan);
+    render_film(renderer, plan, colour, film, told("render"),
+                [&](int x, int y, const PixelResult& result) { forward.keep(x, y, result); });
+    forward.run(told("forward scatter"));
+    forward.write(plan, colour, film);
+}
+
+}  // namespace uw

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/scene_assembly.h"
+#include "core/colour.h"
+#include "core/film.h"
+#include "core/forward_pass.h"
+#include "core/layers.h"
+
+namespace uw {
+
+using LightFields = std::vector<std::shared_ptr<const LampLightField>>;
+
+/// Told how far a pass over the image is (0..1), from any thread; returns false to stop.
+using PassProgress = std::function<bool(const std::string& pass, double fraction)>;
+
+/// Renders `scene` into `film` by `integrator`: the pass "render", and, with forward scatter on,
+/// the pass "forward scatter", for which the film's window must be the whole image.
+/// Throws Interrupted if `progress` returned false; InputError if there is not enough memory.
+void render_scene(const AssembledScene& scene, const LightFields& light_fields,
+                  const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
+                  Film& film, const PassProgress& progress);
+
+/// How the light of `scene` is scattered forward. The planes integrator's layers of water are its
+/// slabs; the others' grow with the distance. `light_fields` and `scene` outlive the result.
+ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
+                                          const LightFields& light_fields);
+
+}  // namespace uw
