@@ -23,8 +23,8 @@ Names sorted(Names names) {
 TEST_F(ImageLayers, ThreeBandsAreRedGreenBlue) {
     const ImageFile image = render({"--layers", "all"});
     Names expected{"R", "G", "B", "A"};
-    for (const char* layer : {"direct", "backscatter", "backscatter_first", "irradiance", "clean",
-                              "transmittance", "albedo", "lamp.left"})
+    for (const char* layer : {"direct", "forward", "backscatter", "backscatter_first", "irradiance",
+                              "clean", "transmittance", "albedo", "lamp.left"})
         for (const char* band : {".R", ".G", ".B"}) expected.push_back(std::string(layer) + band);
     for (const char* name : {"lit.V", "depth.Z", "range.V", "path.V", "normal.X", "normal.Y",
                              "normal.Z", "position.X", "position.Y", "position.Z", "id.V"})
