@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "camera/image_size.h"
 #include "cli/console.h"
 #include "cli/grid_summary.h"
 #include "cli/irradiance_export.h"
@@ -45,13 +46,7 @@ void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
     const auto [width, height] = *a.size;
     if (width < 1 || height < 1 || width > 32768 || height > 32768)
         throw UsageError("--size: each side must be 1 to 32768 pixels");
-    CameraDesc& camera = desc.camera;
-    const double sx = static_cast<double>(width) / camera.width;
-    const double sy = static_cast<double>(height) / camera.height;
-    camera.intrinsics = {camera.intrinsics.fx * sx, camera.intrinsics.fy * sy,
-                         camera.intrinsics.cx * sx, camera.intrinsics.cy * sy};
-    camera.width = width;
-    camera.height = height;
+    resize_image(desc.camera, width, height);
 }
 
 std::string band_list(std::span<const double> values) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "camera/image_size.h"
 #include "core/planes_integrator.h"
 #include "core/quadrature_integrator.h"
 #include "core/reference_integrator.h"
@@ -38,12 +39,7 @@ SceneDesc small_image(const SceneDesc& desc, int longest_side) {
         std::min(1.0, static_cast<double>(longest_side) / std::max(camera.width, camera.height));
     const int width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
     const int height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
-    const double sx = static_cast<double>(width) / camera.width;
-    const double sy = static_cast<double>(height) / camera.height;
-    camera.intrinsics = {camera.intrinsics.fx * sx, camera.intrinsics.fy * sy,
-                         camera.intrinsics.cx * sx, camera.intrinsics.cy * sy};
-    camera.width = width;
-    camera.height = height;
+    resize_image(camera, width, height);
     small.render.integrator = RenderDesc::Integrator::volume;
     small.water.forward_scatter.K = 0;  // what is compared is the light before it is blurred
     small.render.output = RenderDesc::Output::radiance;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "core/scene_desc.h"
+
+namespace uw {
+
+/// Gives the camera another resolution with the same picture: the intrinsics [pixels] are scaled
+/// with it. `width`, `height` >= 1.
+inline void resize_image(CameraDesc& camera, int width, int height) {
+    const double sx = static_cast<double>(width) / camera.width;
+    const double sy = static_cast<double>(height) / camera.height;
+    const IntrinsicsDesc& k = camera.intrinsics;
+    camera.intrinsics = {k.fx * sx, k.fy * sy, k.cx * sx, k.cy * sy};
+    camera.width = width;
+    camera.height = height;
+}
+
+}  // namespace uw
