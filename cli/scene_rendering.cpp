@@ -91,6 +91,7 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     // A slab of the planes is one sample: it has no parts.
     const bool planes = scene.desc.render.integrator == RenderDesc::Integrator::planes;
     setup.cells = planes ? 1 : k_cells;
+    setup.sensor = SensorModel(scene.desc);
     setup.first = {scene.slabs.boundary(0), scene.slabs.boundary(1)};
     const ConcentrationField* field = scene.field.get();
     const std::vector<Lamp>* lamps = &scene.lamps;

@@ -110,7 +110,10 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
         w.group(result, samples_);
         add_water(*water, w, result);
     }
-    if (water) expose(x + w.water_at.x, y + w.water_at.y, result);
+    if (water)
+        result.pixel_factor =
+            sensor_.pixel_factor(rays_.lens_ray(x + w.water_at.x, y + w.water_at.y),
+                                 result.has_hit ? result.range : k_infinitely_far);
 }
 
 std::optional<Ray> PixelRenderer::trace(int x, int y, Workspace& w, PixelResult& result,
@@ -198,19 +201,6 @@ void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result)
             }
         }
     }
-}
-
-void PixelRenderer::expose(double x, double y, PixelResult& result) const {
-    const double factor = sensor_.pixel_factor(rays_.lens_ray(x, y),
-                                               result.has_hit ? result.range : k_infinitely_far);
-    const auto scale = [&](Spectrum& spectrum) {
-        for (double& value : spectrum) value *= factor;
-    };
-    scale(result.direct);
-    scale(result.backscatter);
-    scale(result.backscatter_first);
-    scale(result.clean);
-    for (Spectrum& lamp : result.lamps) scale(lamp);
 }
 
 Interval PixelRenderer::first_slab(const Ray& ray) const {

@@ -14,9 +14,11 @@ namespace uw {
 
 /// Everything one pixel holds. Radiometric values are means over the pixel's samples; ground truth
 /// (`hit` and the depths) belongs to the pixel's centre. W m^-2, metres, world space. Radiance
-/// (direct, backscatter, clean, lamps) is in W m^-2 sr^-1, or what the sensor model makes of it.
+/// (direct, backscatter, clean, lamps) is that in water, W m^-2 sr^-1; in the paper's output light
+/// has its factor by distance besides (SensorModel::surface_factor).
 struct PixelResult {
-    double alpha = 0;  // share of samples whose ray enters the water
+    double alpha = 0;         // share of samples whose ray enters the water
+    double pixel_factor = 1;  // what radiance is multiplied by in images: SensorModel::pixel_factor
     Spectrum direct{};
     Spectrum backscatter{};
     Spectrum backscatter_first{};  // of the first slab
@@ -36,8 +38,8 @@ struct PixelResult {
 class PixelRenderer {
   public:
     /// All references outlive the renderer. `samples` >= 1 per pixel; one lies at the centre. The
-    /// first of `slabs` is the water of `backscatter_first`. `sensor` says what the image holds:
-    /// the radiance itself if left out.
+    /// first of `slabs` is the water of `backscatter_first`. `sensor` says what the image is to
+    /// hold: the radiance itself if left out.
     PixelRenderer(const RaySource& rays, const LitScene& scene, const Integrator& integrator,
                   int samples, const Slabs& slabs, const SensorModel& sensor = {});
 
@@ -73,8 +75,6 @@ class PixelRenderer {
     void add_water(const Ray& ray, Workspace& w, PixelResult& result) const;
     // The first slab's stretch of `ray`; it may begin before the ray does.
     Interval first_slab(const Ray& ray) const;
-    // Turns the pixel's radiance into what the sensor model says; its ray is that at (x, y).
-    void expose(double x, double y, PixelResult& result) const;
     void record_ground_truth(const Ray& center, PixelResult& result) const;
 
     const RaySource& rays_;

@@ -43,30 +43,37 @@ class LayerWriter {
     std::span<float> channels_;
 };
 
+Spectrum scaled(Spectrum radiance, double factor) {
+    for (double& value : radiance) value *= factor;
+    return radiance;
+}
+
 }  // namespace
 
 void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandColour& colour,
                  int band_count, std::span<float> channels) {
+    const Spectrum direct = scaled(result.direct, result.pixel_factor);
+    const Spectrum backscatter = scaled(result.backscatter, result.pixel_factor);
     // Components are rounded to float before they are added: their sum is the total to the bit.
     Spectrum total{};
     for (std::size_t b = 0; b < static_cast<std::size_t>(band_count); ++b)
-        total[b] = static_cast<double>(static_cast<float>(result.direct[b]) +
-                                       static_cast<float>(result.backscatter[b]));
+        total[b] =
+            static_cast<double>(static_cast<float>(direct[b]) + static_cast<float>(backscatter[b]));
     const LinearRgb rgb = colour(total);
     for (std::size_t i = 0; i < 3; ++i) channels[i] = static_cast<float>(rgb[i]);
     channels[k_alpha] = static_cast<float>(result.alpha);
 
     LayerWriter out(plan, band_count, channels);
     out.bands(Layer::total, total);
-    out.bands(Layer::direct, result.direct);
-    out.bands(Layer::backscatter, result.backscatter);
-    out.bands(Layer::backscatter_first, result.backscatter_first);
+    out.bands(Layer::direct, direct);
+    out.bands(Layer::backscatter, backscatter);
+    out.bands(Layer::backscatter_first, scaled(result.backscatter_first, result.pixel_factor));
     out.bands(Layer::irradiance, result.irradiance);
     out.scalar(Layer::lit, result.lit);
-    out.bands(Layer::clean, result.clean);
+    out.bands(Layer::clean, scaled(result.clean, result.pixel_factor));
     out.bands(Layer::transmittance, result.transmittance);
     for (std::size_t j = 0; j < result.lamps.size(); ++j)
-        out.bands(plan.first_channel_of_lamp(j), result.lamps[j]);
+        out.bands(plan.first_channel_of_lamp(j), scaled(result.lamps[j], result.pixel_factor));
     if (!result.has_hit) return;
     out.bands(Layer::albedo, result.hit.reflectance);
     out.scalar(Layer::depth, result.depth_z);

@@ -9,7 +9,8 @@
 
 namespace uw {
 
-/// Writes one pixel's result into the channels of `plan`. `film` was made with the plan's channels.
+/// Writes one pixel's result into the channels of `plan`, radiance times its factor. `channels`
+/// are those of a film made with the plan's names.
 void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandColour& colour,
                  int band_count, std::span<float> channels);
 
