@@ -87,13 +87,13 @@ ForwardPass::ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
     light_.resize(pixels_);
 }
 
-void ForwardPass::keep(int x, int y, const PixelResult& result) {
+void ForwardPass::keep(int x, int y, const PixelView& view, const PixelResult& result) {
     const std::size_t i = pixel(x, y);
     alpha_[i] = static_cast<float>(result.alpha);
     pixel_factor_[i] = result.pixel_factor;
     for (std::size_t b = 0; b < bands_; ++b)
         components_[0].water[b][i] = static_cast<float>(result.backscatter[b] * factor_before(i));
-    keep_surfaces(x, y, result);
+    if (!view.samples.empty()) keep_surfaces(i, view, result);
 }
 
 /// Sums over the samples of one pixel.
@@ -101,19 +101,15 @@ struct ForwardPass::SurfaceSums {
     Spectrum response{};
     std::vector<Spectrum> irradiance, direct;  // per component
     WaterPath from_lamps, to_camera;
-    int hits = 0;
 };
 
-void ForwardPass::keep_surfaces(int x, int y, const PixelResult& result) {
+void ForwardPass::keep_surfaces(std::size_t i, const PixelView& view, const PixelResult& result) {
     SurfaceSums sums;
     sums.irradiance.resize(components_.size());
     sums.direct.resize(components_.size());
     sums.from_lamps.reset(scene_.medium->constituents.size());
     sums.to_camera.reset(scene_.medium->constituents.size());
-    renderer_.visit_hits(
-        x, y, [&](const Ray& ray, const SurfaceHit& hit) { add_surface(ray, hit, sums); });
-    if (sums.hits == 0) return;
-    const std::size_t i = pixel(x, y);
+    for (const PixelView::Sample& sample : view.samples) add_surface(sample, sums);
     const double factor = factor_before(i);
     for (std::size_t b = 0; b < bands_; ++b) {
         response_[b][i] = as_light(sums.response[b] * factor);
@@ -126,14 +122,15 @@ void ForwardPass::keep_surfaces(int x, int y, const PixelResult& result) {
     const auto set_mean = [&](const WaterPath& sum, PathImage& image) {
         WaterPath mean;
         mean.reset(sum.columns.size());
-        mean.add(1.0 / sums.hits, sum.length, sum.columns);
+        mean.add(1.0 / static_cast<double>(view.samples.size()), sum.length, sum.columns);
         image.set(i, mean);
     };
     set_mean(sums.from_lamps, from_lamps_);
     set_mean(sums.to_camera, to_camera_);
 }
 
-void ForwardPass::add_surface(const Ray& ray, const SurfaceHit& hit, SurfaceSums& sums) const {
+void ForwardPass::add_surface(const PixelView::Sample& sample, SurfaceSums& sums) const {
+    const auto& [ray, hit] = sample;
     thread_local SurfaceLight light;
     thread_local std::vector<double> column;
     integrator_.surface_light(ray, hit, light);
@@ -141,7 +138,6 @@ void ForwardPass::add_surface(const Ray& ray, const SurfaceHit& hit, SurfaceSums
     if (!column.empty()) scene_.field->column(ray.origin, hit.position, column);
     sums.to_camera.add(1, hit.distance, column);
     lamp_paths_.add_mean(1, hit.position, sums.from_lamps);
-    ++sums.hits;
     const double share = 1.0 / renderer_.samples();
     const double seen = setup_.sensor.surface_factor(hit.distance);
     for (std::size_t b = 0; b < bands_; ++b) {
@@ -202,15 +198,16 @@ void ForwardPass::scatter_surfaces() {
 
 void ForwardPass::gather(std::size_t first, std::vector<Layer>& layers) const {
     for_each_row(setup_.plane, [&](std::size_t y) {
-        thread_local PixelRenderer::WaterEnds ends;
+        thread_local PixelView view;
         thread_local std::vector<LayerLight> lights;
         for (int x = 0; x < setup_.plane.width; ++x) {
-            const std::optional<Ray> ray = renderer_.water(x, static_cast<int>(y), ends);
-            if (ray)
-                water_.gather(*ray, ends.ends, ends.shares, first, first + layers.size(), lights);
+            renderer_.look(x, static_cast<int>(y), view);
+            if (view.ray)
+                water_.gather(*view.ray, view.ends, view.shares, first, first + layers.size(),
+                              lights);
             const std::size_t i = pixel(x, static_cast<int>(y));
             for (std::size_t n = 0; n < layers.size(); ++n)
-                store(ray ? &lights[n] : nullptr, i, layers[n]);
+                store(view.ray ? &lights[n] : nullptr, i, layers[n]);
         }
     });
 }

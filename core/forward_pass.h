@@ -48,7 +48,7 @@ class ForwardPass {
                 const LayerPlan& plan);
 
     /// Keeps what pixel (x, y) of the first pass needs in the second. From any thread.
-    void keep(int x, int y, const PixelResult& result);
+    void keep(int x, int y, const PixelView& view, const PixelResult& result);
 
     /// Scatters all that was kept. Throws Interrupted if `progress` returned false.
     void run(const ProgressCallback& progress);
@@ -67,8 +67,8 @@ class ForwardPass {
     struct Layer;
     struct SurfaceSums;
 
-    void keep_surfaces(int x, int y, const PixelResult& result);
-    void add_surface(const Ray& ray, const SurfaceHit& hit, SurfaceSums& sums) const;
+    void keep_surfaces(std::size_t i, const PixelView& view, const PixelResult& result);
+    void add_surface(const PixelView::Sample& sample, SurfaceSums& sums) const;
     void scatter_surfaces();
     void gather(std::size_t first, std::vector<Layer>& layers) const;
     // What light of pixel `i` is multiplied by before and after its blur on the way to the camera.

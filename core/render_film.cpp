@@ -2,15 +2,24 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
+#include <mutex>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/tile_renderer.h"
 
 namespace uw {
 
 namespace {
 
-constexpr int k_tile = 16;  // pixels along an edge
+constexpr int k_tile = WaterLattice::k_tile;  // pixels along an edge
+
+// The part of the tile that begins at (x0, y0) within `bounds`.
+PixelWindow tile_within(int x0, int y0, const PixelWindow& bounds) {
+    return {std::max(x0, bounds.x0), std::max(y0, bounds.y0), std::min(x0 + k_tile, bounds.x1),
+            std::min(y0 + k_tile, bounds.y1)};
+}
 
 /// Writes values one after another from a layer's first channel on, if the layer is wanted.
 class LayerWriter {
@@ -85,27 +94,67 @@ void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandCol
     out.scalar(Layer::id, result.hit.object_id);
 }
 
-void render_film(const PixelRenderer& renderer, const LayerPlan& plan, const BandColour& colour,
-                 Film& film, const ProgressCallback& progress, const PixelCallback& pixel_done) {
+namespace {
+
+/// Lends tile renderers, as many as tiles are rendered at once.
+class TileRendererPool {
+  public:
+    TileRendererPool(const PixelRenderer& renderer, double water_tolerance)
+        : renderer_(renderer), water_tolerance_(water_tolerance) {}
+
+    std::unique_ptr<TileRenderer> take() {
+        {
+            const std::lock_guard lock(mutex_);
+            if (!free_.empty()) {
+                std::unique_ptr<TileRenderer> taken = std::move(free_.back());
+                free_.pop_back();
+                return taken;
+            }
+        }
+        return std::make_unique<TileRenderer>(renderer_, water_tolerance_);
+    }
+    void give_back(std::unique_ptr<TileRenderer> renderer) {
+        const std::lock_guard lock(mutex_);
+        free_.push_back(std::move(renderer));
+    }
+
+  private:
+    const PixelRenderer& renderer_;
+    double water_tolerance_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<TileRenderer>> free_;
+};
+
+}  // namespace
+
+void render_film(const PixelRenderer& renderer, double water_tolerance, const LayerPlan& plan,
+                 const BandColour& colour, Film& film, const ProgressCallback& progress,
+                 const PixelCallback& pixel_done) {
     const PixelWindow& window = film.window();
-    const int columns = (window.width() + k_tile - 1) / k_tile;
-    const int rows = (window.height() + k_tile - 1) / k_tile;
+    const PixelWindow image{0, 0, film.width(), film.height()};
+    const int left = window.x0 / k_tile, top = window.y0 / k_tile;
+    const int columns = (window.x1 + k_tile - 1) / k_tile - left;
+    const int rows = (window.y1 + k_tile - 1) / k_tile - top;
     const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     // Counted by rows of tiles: a tile of the reference integrator may take a minute.
     const auto all = static_cast<double>(columns) * window.height();
     std::atomic<std::size_t> done = 0;
+    TileRendererPool pool(renderer, water_tolerance);
     parallel_for(tiles, [&](std::size_t tile) {
-        const int x0 = window.x0 + static_cast<int>(tile) % columns * k_tile;
-        const int y0 = window.y0 + static_cast<int>(tile) / columns * k_tile;
-        PixelResult result;
-        for (int y = y0; y < std::min(y0 + k_tile, window.y1); ++y) {
-            for (int x = x0; x < std::min(x0 + k_tile, window.x1); ++x) {
-                renderer.render(x, y, result);
+        const int x0 = (left + static_cast<int>(tile) % columns) * k_tile;
+        const int y0 = (top + static_cast<int>(tile) / columns) * k_tile;
+        std::unique_ptr<TileRenderer> tile_renderer = pool.take();
+        tile_renderer->begin(tile_within(x0, y0, image));
+        const PixelWindow wanted = tile_within(x0, y0, window);
+        for (int y = wanted.y0; y < wanted.y1; ++y) {
+            for (int x = wanted.x0; x < wanted.x1; ++x) {
+                const PixelResult& result = tile_renderer->render(x, y);
                 store_pixel(result, plan, colour, renderer.band_count(), film.pixel(x, y));
-                if (pixel_done) pixel_done(x, y, result);
+                if (pixel_done) pixel_done(x, y, tile_renderer->view(), result);
             }
             if (!progress(static_cast<double>(++done) / all)) throw Interrupted();
         }
+        pool.give_back(std::move(tile_renderer));
     });
 }
 

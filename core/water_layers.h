@@ -73,7 +73,7 @@ class WaterLayers {
     const AttenuationTable& attenuation() const { return attenuation_; }
 
     /// Layers `first` to `last` - 1 of the water along `ray`, of which `shares[i]` ends at
-    /// `ends[i]` (PixelRenderer::WaterEnds). Thread safe.
+    /// `ends[i]` (PixelView). Thread safe.
     void gather(const Ray& ray, std::span<const double> ends, std::span<const double> shares,
                 std::size_t first, std::size_t last, std::vector<LayerLight>& layers) const;
 
