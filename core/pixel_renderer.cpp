@@ -1,6 +1,7 @@
 #include "core/pixel_renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -33,6 +34,10 @@ ImageOffset sample_offset(int i, int count) {
     const double y = radical_inverse(static_cast<unsigned>(i)) + half_step;
     return {static_cast<double>(i) / count + half_step, count == 1 ? 0.5 : y};
 }
+
+constexpr std::array k_parts{&PixelResult::direct,     &PixelResult::backscatter,
+                             &PixelResult::irradiance, &PixelResult::backscatter_first,
+                             &PixelResult::clean,      &PixelResult::transmittance};
 
 // Makes ends and shares of the samples' distances; those that agree become one.
 void group_ends(std::vector<double>& distances, int samples, PixelView& view) {
@@ -107,21 +112,21 @@ void PixelRenderer::look(int x, int y, PixelView& view) const {
 
 void PixelRenderer::light(const PixelView& view, std::span<const double> water,
                           PixelResult& result) const {
-    std::vector<Spectrum> lamps = std::move(result.lamps);
-    result = PixelResult{};
-    result.lamps = std::move(lamps);
+    const auto bands = static_cast<std::size_t>(band_count());
+    for (Spectrum PixelResult::*part : k_parts) std::fill_n((result.*part).begin(), bands, 0.0);
     result.lamps.assign(water_.parts().lamps ? scene_.lamps->size() : 0, Spectrum{});
+    result.lit = 0;
+    result.pixel_factor = 1;
     result.alpha = view.alpha;
     result.has_hit = view.has_hit;
-    if (view.has_hit) {
-        result.hit = view.hit;
-        result.depth_z = view.depth_z;
-        result.range = view.range;
-        result.path = view.path;
-    }
+    result.hit = view.has_hit ? view.hit : SurfaceHit{};
+    result.depth_z = view.has_hit ? view.depth_z : 0;
+    result.range = view.has_hit ? view.range : 0;
+    result.path = view.has_hit ? view.path : 0;
     for (const PixelView::Sample& sample : view.samples) add_surface(sample, result);
     if (!view.samples.empty())
-        for (double& t : result.transmittance) t /= static_cast<double>(view.samples.size());
+        for (std::size_t b = 0; b < bands; ++b)
+            result.transmittance[b] /= static_cast<double>(view.samples.size());
     if (!view.ray) return;
     add_water(water, result);
     result.pixel_factor = sensor_.pixel_factor(rays_.lens_ray(view.x, view.y),

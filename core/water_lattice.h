@@ -37,7 +37,7 @@ class WaterLattice {
     }
 
   private:
-    static constexpr int k_coarsest = 8, k_finest = 2;  // spacings of the lattices [pixels]
+    static constexpr int k_coarsest = 16, k_finest = 2;  // spacings of the lattices [pixels]
     static constexpr int k_side = k_tile / k_finest + 1;
     static constexpr std::size_t k_stops = 3;  // distances of a node's parabola
 

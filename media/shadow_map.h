@@ -36,7 +36,7 @@ class ShadowMap {
     class Search;
 
     void trace_face(int face);
-    Level neighbourhood_ranges(const std::vector<float>& padded_depth) const;
+    Level cell_ranges(const std::vector<float>& padded_depth) const;
     static Level halved(const Level& fine);
 
     const Surfaces* surfaces_;
