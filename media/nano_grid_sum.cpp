@@ -22,9 +22,9 @@ double NanoGrid::stored_sum() const {
             // 512 codes of 16 bits do not overflow.
             const std::uint32_t codes =
                 std::accumulate(std::begin(block->mCode), std::end(block->mCode), 0U);
-            sums[chunk] += static_cast<double>(block->mQuantum) * codes +
-                           static_cast<double>(block->mMinimum) *
-                               static_cast<double>(std::size(block->mCode));
+            sums[chunk] +=
+                static_cast<double>(block->mQuantum) * codes +
+                static_cast<double>(block->mMinimum) * static_cast<double>(std::size(block->mCode));
         }
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0);

@@ -26,12 +26,29 @@ void measure(benchmark::State& state, const Floor& floor, int threads,
     state.counters["x_floor"] = cpu_s / floor_s;
 }
 
-void add_benchmark(const std::string& name, const std::function<void(benchmark::State&)>& run) {
-    benchmark::RegisterBenchmark(name.c_str(), run)
-        ->Iterations(1)
-        ->MeasureProcessCPUTime()
-        ->UseRealTime()
-        ->Unit(benchmark::kSecond);
+int run_benchmarks(int argc, char** argv, const std::vector<Benchmark>& benchmarks) {
+    std::function<void(benchmark::State&)> current;
+    const Benchmark* current_benchmark = nullptr;
+    for (const Benchmark& entry : benchmarks) {
+        const auto run = [&current, &current_benchmark, &entry](benchmark::State& state) {
+            if (current_benchmark != &entry) {
+                current = nullptr;
+                current = entry.prepare();
+                current_benchmark = &entry;
+            }
+            current(state);
+        };
+        benchmark::RegisterBenchmark(entry.name.c_str(), run)
+            ->Iterations(1)
+            ->MeasureProcessCPUTime()
+            ->UseRealTime()
+            ->Unit(benchmark::kSecond);
+    }
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+    return 0;
 }
 
 }  // namespace uw::bench

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "bench/support/floor.h"
 
@@ -15,8 +16,15 @@ namespace uw::bench {
 void measure(benchmark::State& state, const Floor& floor, int threads,
              const std::function<void()>& work);
 
-/// Registers `run` so that the library repeats it and tells medians: one iteration each, timed by
-/// the CPU time of the process and by the wall.
-void add_benchmark(const std::string& name, const std::function<void(benchmark::State&)>& run);
+/// One benchmark: `prepare` makes what all its repetitions share, a function that measures one.
+struct Benchmark {
+    std::string name;
+    std::function<std::function<void(benchmark::State&)>()> prepare;
+};
+
+/// The whole of a benchmark program; returns its exit code. Benchmarks are prepared one at a time,
+/// each when it is its turn. One iteration per repetition, timed by the CPU time of the process and
+/// by the wall.
+int run_benchmarks(int argc, char** argv, const std::vector<Benchmark>& benchmarks);
 
 }  // namespace uw::bench
