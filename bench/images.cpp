@@ -98,7 +98,6 @@ class ImageRun {
         state.counters["bands"] = scene_.water.medium.band_count();
         state.counters["voxels"] = voxels;
         state.counters["triangles"] = static_cast<double>(scene_.surfaces->triangle_count());
-        state.counters["threads"] = case_.threads;
     }
 
     SceneCase case_;
