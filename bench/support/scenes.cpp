@@ -36,8 +36,9 @@ render: {samples: 1}
 // 620, 540 and 450 nm, or more bands evenly from 400 to 700 nm.
 std::vector<double> wavelengths(int bands) {
     if (bands == 3) return {620, 540, 450};
-    std::vector<double> nm;
-    for (int band = 0; band < bands; ++band) nm.push_back(400 + 300.0 * band / (bands - 1));
+    std::vector<double> nm(static_cast<std::size_t>(bands));
+    for (std::size_t band = 0; band < nm.size(); ++band)
+        nm[band] = 400 + 300.0 * static_cast<double>(band) / (bands - 1);
     return nm;
 }
 
@@ -153,6 +154,7 @@ SceneDesc SceneFiles::read(const SceneCase& scene) const {
 
 std::vector<std::string> lamp_names(const SceneDesc& scene) {
     std::vector<std::string> names;
+    names.reserve(scene.lamps.size());
     for (const LampDesc& lamp : scene.lamps) names.push_back(lamp.name);
     return names;
 }
