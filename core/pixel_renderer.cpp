@@ -177,6 +177,7 @@ void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Wo
             const double brdf = hit.reflectance[b] * std::numbers::inv_pi * seen;
             const double direct = share * lamp.irradiance[b] * brdf * w.light.transmittance[b];
             result.irradiance[b] += share * lamp.irradiance[b];
+            result.exitance[b] += share * lamp.irradiance[b] * hit.reflectance[b];
             result.clean[b] += share * lamp.clean[b] * brdf;
             result.direct[b] += direct;
             result.lamps[j][b] += direct;

@@ -47,8 +47,8 @@ void expect_scaled(const RenderedFilm& found, const RenderedFilm& radiance, Fact
                 near(found.total(x, y, band), radiance.total(x, y, band));
                 for (std::size_t lamp = 0; lamp < 2; ++lamp)
                     near(found.lamp(lamp, x, y, band), radiance.lamp(lamp, x, y, band));
-                EXPECT_EQ(found.value(Layer::irradiance, x, y, band),
-                          radiance.value(Layer::irradiance, x, y, band));
+                for (const Layer layer : {Layer::irradiance, Layer::exitance})
+                    EXPECT_EQ(found.value(layer, x, y, band), radiance.value(layer, x, y, band));
             }
 }
 
