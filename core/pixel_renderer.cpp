@@ -158,6 +158,7 @@ void PixelRenderer::add_surface(const PixelView::Sample& sample, PixelResult& re
             const double brdf = hit.reflectance[b] * std::numbers::inv_pi * seen;
             const double direct = share * lamp.irradiance[b] * brdf * light.transmittance[b];
             result.irradiance[b] += share * lamp.irradiance[b];
+            result.exitance[b] += share * lamp.irradiance[b] * hit.reflectance[b];
             result.clean[b] += share * lamp.clean[b] * brdf;
             result.direct[b] += direct;
             if (!result.lamps.empty()) result.lamps[j][b] += direct;

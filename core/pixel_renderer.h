@@ -24,6 +24,7 @@ struct PixelResult {
     Spectrum backscatter{};
     Spectrum backscatter_first{};  // of the first slab
     Spectrum irradiance{};         // on the surface, 0 where there is none
+    Spectrum exitance{};           // of the surface: what it reflects of the irradiance
     Spectrum clean{};              // radiance of the surface without water
     Spectrum transmittance{};      // surface to port, mean over samples that meet a surface
     double lit = 0;                // mean fraction of lamps that see the surface

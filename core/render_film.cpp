@@ -78,6 +78,7 @@ void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandCol
     out.bands(Layer::backscatter, backscatter);
     out.bands(Layer::backscatter_first, scaled(result.backscatter_first, result.pixel_factor));
     out.bands(Layer::irradiance, result.irradiance);
+    out.bands(Layer::exitance, result.exitance);
     out.scalar(Layer::lit, result.lit);
     out.bands(Layer::clean, scaled(result.clean, result.pixel_factor));
     out.bands(Layer::transmittance, result.transmittance);
