@@ -37,7 +37,8 @@ ImageOffset sample_offset(int i, int count) {
 
 constexpr std::array k_parts{&PixelResult::direct,     &PixelResult::backscatter,
                              &PixelResult::irradiance, &PixelResult::backscatter_first,
-                             &PixelResult::clean,      &PixelResult::transmittance};
+                             &PixelResult::exitance,   &PixelResult::clean,
+                             &PixelResult::transmittance};
 
 // Makes ends and shares of the samples' distances; those that agree become one.
 void group_ends(std::vector<double>& distances, int samples, PixelView& view) {
