@@ -35,9 +35,9 @@ ImageOffset sample_offset(int i, int count) {
     return {static_cast<double>(i) / count + half_step, count == 1 ? 0.5 : y};
 }
 
-constexpr std::array k_parts{&PixelResult::direct,     &PixelResult::backscatter,
-                             &PixelResult::irradiance, &PixelResult::backscatter_first,
-                             &PixelResult::exitance,   &PixelResult::clean,
+constexpr std::array k_parts{&PixelResult::direct,       &PixelResult::backscatter,
+                             &PixelResult::irradiance,   &PixelResult::backscatter_first,
+                             &PixelResult::exitance,     &PixelResult::clean,
                              &PixelResult::transmittance};
 
 // Makes ends and shares of the samples' distances; those that agree become one.
