@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "cli/light_splatter.h"
+#include "core/config_text.h"
 #include "core/error.h"
 #include "core/focus_weighted_integrator.h"
 #include "core/forward_images.h"
@@ -16,7 +16,7 @@ namespace uw {
 
 namespace {
 
-void append(std::vector<std::string>& to, std::vector<std::string> from) {
+void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
@@ -49,27 +49,95 @@ void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
     check_blur_length(medium, desc.where);
 }
 
+void refuse_open_sequences(const SceneDesc& desc) {
+    const auto refuse = [](const SourceLocation& where, const std::filesystem::path& file) {
+        throw InputError(
+            fmt::format("{}.file: there is no '{}', and as the name of a sequence it wants frames; "
+                        "render it with --frames 1-10, or name one file",
+                        where, printable(file.string(), 300)));
+    };
+    for (const VolumeDesc& volume : desc.volumes)
+        if (volume.is_sequence) refuse(volume.where, volume.file);
+    for (const GeometryDesc& geometry : desc.geometry)
+        if (geometry.is_sequence) refuse(geometry.where, geometry.file);
+}
+
+// Whether volumes mean the same for the water; their files are no matter.
+bool same_water(const SceneDesc& a, const SceneDesc& b) {
+    return a.water == b.water &&
+           std::ranges::equal(a.volumes, b.volumes, {}, &VolumeDesc::grids, &VolumeDesc::grids);
+}
+
+void take_over_volumes(AssembledScene& scene, AssembledScene& before) {
+    const std::vector<VolumeDesc>& volumes = scene.desc.volumes;
+    bool all = volumes.size() == before.volumes.size() && before.field != nullptr &&
+               before.field->constituent_count() == scene.water.medium.constituent_count();
+    scene.volumes.resize(volumes.size());
+    for (std::size_t v = 0; v < volumes.size(); ++v) {
+        const bool same = v < before.volumes.size() && before.desc.volumes[v] == volumes[v] &&
+                          before.water.loads[v] == scene.water.loads[v];
+        if (same) scene.volumes[v] = std::move(before.volumes[v]);
+        all = all && same;
+    }
+    if (all) scene.field = before.field;
+    before.volumes.clear();
+    before.field.reset();
+}
+
+void load_volumes(AssembledScene& scene) {
+    for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
+        LoadedVolume& volume = scene.volumes[v];
+        if (volume.grids.empty()) volume = load_volume(scene.desc.volumes[v], scene.water.loads[v]);
+        append(scene.warnings, volume.warnings);
+        scene.volume_reports.insert(scene.volume_reports.end(), volume.reports.begin(),
+                                    volume.reports.end());
+    }
+    if (scene.field) return;
+    std::vector<GridVolume> grids;
+    for (const LoadedVolume& volume : scene.volumes)
+        grids.insert(grids.end(), volume.grids.begin(), volume.grids.end());
+    scene.field =
+        std::make_shared<GridField>(std::move(grids), scene.water.medium.constituent_count());
+}
+
+void take_over_surfaces(AssembledScene& scene, AssembledScene& before) {
+    if (before.surfaces && before.desc.geometry == scene.desc.geometry &&
+        before.desc.water.bands_nm == scene.desc.water.bands_nm) {
+        scene.surfaces = before.surfaces;
+        scene.geometry_warnings = std::move(before.geometry_warnings);
+    }
+    before.surfaces.reset();
+}
+
 }  // namespace
 
-AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage) {
+AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
+                              AssembledScene before) {
     if (desc.render.integrator == RenderDesc::Integrator::planes && !desc.volumes.empty())
         throw InputError(
             fmt::format("{}: the planes integrator is for uniform water: remove `volumes`, or use "
                         "integrator volume",
                         desc.volumes.front().where));
+    refuse_open_sequences(desc);
     AssembledScene scene;
     scene.desc = desc;
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
-    scene.water = build_water_model(desc.water, desc.volumes);
+    scene.water = before.camera && same_water(before.desc, desc)
+                      ? before.water
+                      : build_water_model(desc.water, desc.volumes);
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
     check_forward_scatter_of(desc, medium);
+    take_over_volumes(scene, before);
+    take_over_surfaces(scene, before);
     begin_stage("volumes");
-    scene.field = load_volumes(desc.volumes, scene.water.loads, medium.constituent_count(),
-                               scene.volume_reports, scene.warnings);
+    load_volumes(scene);
     begin_stage("geometry");
-    scene.surfaces = build_surfaces(desc.geometry, medium.wavelengths_nm, scene.warnings);
+    if (!scene.surfaces)
+        scene.surfaces =
+            build_surfaces(desc.geometry, medium.wavelengths_nm, scene.geometry_warnings);
+    append(scene.warnings, scene.geometry_warnings);
     for (const LampDesc& lamp : desc.lamps)
         scene.lamps.emplace_back(lamp, desc.camera.world_from_camera, medium.band_count());
     warn_of_lamps_at_the_camera(scene);
@@ -80,15 +148,7 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
 std::vector<std::shared_ptr<const LampLightField>> splat_lamps(const AssembledScene& scene,
                                                                const LightFieldOptions& options,
                                                                const ShareCallback& progress) {
-    std::vector<std::shared_ptr<const LampLightField>> fields;
-    LightFieldOptions share = options;
-    share.column_budget /= std::max(std::size_t{1}, scene.lamps.size());
-    for (const Lamp& lamp : scene.lamps) {
-        fields.push_back(std::make_shared<LampLightField>(*scene.field, *scene.surfaces,
-                                                          lamp.position(), share));
-        progress(static_cast<double>(fields.size()) / static_cast<double>(scene.lamps.size()));
-    }
-    return fields;
+    return LightSplatter().splat(scene, options, progress);
 }
 
 static std::unique_ptr<Integrator> make_unweighted_integrator(

@@ -21,12 +21,16 @@ struct AssembledScene {
     SceneDesc desc;
     std::unique_ptr<Camera> camera;
     WaterModel water;
-    std::unique_ptr<ConcentrationField> field;
-    std::unique_ptr<Surfaces> surfaces;
+    std::shared_ptr<const ConcentrationField> field;
+    std::shared_ptr<const Surfaces> surfaces;
     std::vector<Lamp> lamps;
     Slabs slabs;
     std::vector<VolumeReport> volume_reports;
     std::vector<std::string> warnings;  // one line each, in the order met
+
+    // For the scene that follows to take over.
+    std::vector<LoadedVolume> volumes;  // what `field` is made of
+    std::vector<std::string> geometry_warnings;
 
     LitScene lit() const { return {&water.medium, field.get(), surfaces.get(), &lamps}; }
 };
@@ -34,14 +38,18 @@ struct AssembledScene {
 /// Called with the name of each stage as it begins.
 using StageCallback = std::function<void(const std::string& stage)>;
 
-/// Loads what `desc` names and builds it, and places the slabs. Throws InputError and IoError of
-/// one line each.
-AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage);
+/// Loads what `desc` names and builds it, and places the slabs. `before`, a scene assembled
+/// earlier or none, is used up: water, volumes and surfaces whose description is the same are taken
+/// over from it as they are, even if their files have changed since; what is not is freed before
+/// anything is loaded. The result is to the bit what it is without `before`. Throws InputError,
+/// also for a file that is a sequence of which no frame was chosen, and IoError, of one line each.
+AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
+                              AssembledScene before = {});
 
 /// Told the share of a stage's work that is done.
 using ShareCallback = std::function<void(double share)>;
 
-/// Splats the light of every lamp of `scene`.
+/// Splats the light of every lamp of `scene`, all of it anew (else cli/light_splatter.h).
 std::vector<std::shared_ptr<const LampLightField>> splat_lamps(
     const AssembledScene& scene, const LightFieldOptions& options,
     const ShareCallback& progress = [](double) {});

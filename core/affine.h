@@ -32,6 +32,8 @@ class Affine {
     /// The inverse map. Precondition: determinant() != 0.
     Affine inverse() const;
 
+    friend bool operator==(const Affine&, const Affine&) = default;
+
   private:
     Matrix3 linear_{1.0};
     Vector3 translation_{0.0};

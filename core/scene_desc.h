@@ -59,11 +59,15 @@ struct PhaseDesc {
     double n = 1.10, mu = 3.5835;  // fournier_forand: relative index, Junge slope
     std::filesystem::path file;    // table: CSV of angle_deg,phase
     SourceLocation where;
+
+    friend bool operator==(const PhaseDesc&, const PhaseDesc&) = default;
 };
 
 struct ScatteringDesc {
     PerBand b;
     PhaseDesc phase;
+
+    friend bool operator==(const ScatteringDesc&, const ScatteringDesc&) = default;
 };
 
 /// Light that comes back blurred after scattering by small angles (physics section 6).
@@ -74,6 +78,8 @@ struct ForwardScatterDesc {
     double B = 0;  // blur: the spectrum falls as e^{-B R f}, f in cycles/rad [rad/m]
     Shape shape = Shape::gaussian;
     SourceLocation where = "water.forward_scatter";
+
+    friend bool operator==(const ForwardScatterDesc&, const ForwardScatterDesc&) = default;
 };
 
 struct WaterDesc {
@@ -89,6 +95,8 @@ struct WaterDesc {
     std::optional<ScatteringDesc> scattering;  // instead of particles and molecules
     ForwardScatterDesc forward_scatter;
     SourceLocation where;
+
+    friend bool operator==(const WaterDesc&, const WaterDesc&) = default;
 };
 
 /// What one unit of a grid's value means.
@@ -98,9 +106,13 @@ struct GridMappingDesc {
     struct Optics {
         PerBand absorption, scattering;
         std::optional<PhaseDesc> phase;  // the water's if left out
+
+        friend bool operator==(const Optics&, const Optics&) = default;
     };
     std::optional<Optics> optics;  // instead of ppm
     SourceLocation where;
+
+    friend bool operator==(const GridMappingDesc&, const GridMappingDesc&) = default;
 };
 
 enum class Centering { automatic, cell, node };
@@ -108,17 +120,21 @@ enum class UpAxis { automatic, y, z };
 
 struct VolumeDesc {
     std::filesystem::path file;
+    bool is_sequence = false;  // `file` has a place for the frame's number (core/frame_pattern.h)
     std::vector<GridMappingDesc> grids;
     Centering centering = Centering::automatic;
     UpAxis up = UpAxis::automatic;
     Affine world_from_upright;  // `transform`, applied after `up` has been brought to y
     SourceLocation where;
+
+    friend bool operator==(const VolumeDesc&, const VolumeDesc&) = default;
 };
 
 struct GeometryDesc {
     enum class Type { file, plane, box, sphere };
     Type type = Type::file;
     std::filesystem::path file;
+    bool is_sequence = false;  // as VolumeDesc's
     Affine world_from_object;
     Point3 point;                        // plane
     Vector3 normal{0, 0, 1};             // plane, unit
@@ -127,6 +143,8 @@ struct GeometryDesc {
     double radius = 0;                   // sphere
     std::optional<PerBand> reflectance;  // replaces the file's colours; without either, 0.5
     SourceLocation where;
+
+    friend bool operator==(const GeometryDesc&, const GeometryDesc&) = default;
 };
 
 struct LampProfileDesc {

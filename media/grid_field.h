@@ -54,9 +54,20 @@ struct VolumeReport {
     std::size_t bricks = 0, bytes = 0;  // what it takes in memory
 };
 
-/// Reads the volumes. `loads[v][g]` says what grid g of volume v means. Fills one report per grid
-/// in that order, and appends warnings of one line each. Throws InputError or IoError (see
+/// One volume of a scene, read. Copies share the voxels.
+struct LoadedVolume {
+    std::vector<GridVolume> grids;      // one per grid mapping, in that order
+    std::vector<VolumeReport> reports;  // likewise
+    std::vector<std::string> warnings;  // one line each
+};
+
+/// Reads one volume. `loads[g]` says what its grid g means. Throws InputError or IoError (see
 /// vdb_file.h).
+LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
+                         std::size_t slab_bytes = k_default_slab_bytes);
+
+/// Reads the volumes. `loads[v][g]` says what grid g of volume v means. Fills one report per grid
+/// in that order, and appends warnings of one line each. Throws as load_volume.
 std::unique_ptr<ConcentrationField> load_volumes(
     const std::vector<VolumeDesc>& volumes,
     const std::vector<std::vector<std::vector<GridLoad>>>& loads, int constituent_count,

@@ -6,6 +6,8 @@ namespace uw {
 struct GridLoad {
     int constituent = 0;
     double per_unit = 0;  // in the constituent's unit, e.g. ppm
+
+    friend bool operator==(const GridLoad&, const GridLoad&) = default;
 };
 
 }  // namespace uw

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <utility>
+
 #include "core/light_field.h"
 #include "media/column_map.h"
 #include "media/shadow_map.h"
@@ -12,33 +15,39 @@ struct LightFieldOptions {
     std::size_t column_budget = 256ull << 20;  // bytes of columns, all lamps of a scene together
 };
 
-/// One lamp's light splatted into the scene (docs/design.md): a shadow map and a column map.
+/// One lamp's light splatted into the scene (docs/design.md): a shadow map and a column map, which
+/// light fields of other renders may share.
 class LampLightField : public LightField {
   public:
     /// `surfaces` outlives the light field; `field` is only read here. The lamp has the whole of
     /// the options' budget to itself.
     LampLightField(const ConcentrationField& field, const Surfaces& surfaces, const Point3& lamp,
                    const LightFieldOptions& options)
-        : shadows_(surfaces, lamp, options.shadow_resolution),
-          columns_(field, lamp, options.column_budget) {}
+        : LampLightField(std::make_shared<ShadowMap>(surfaces, lamp, options.shadow_resolution),
+                         std::make_shared<ColumnMap>(field, lamp, options.column_budget)) {}
+
+    /// Of maps made before, both of the same lamp position.
+    LampLightField(std::shared_ptr<const ShadowMap> shadows,
+                   std::shared_ptr<const ColumnMap> columns)
+        : shadows_(std::move(shadows)), columns_(std::move(columns)) {}
 
     void lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const override {
-        shadows_.lit_intervals(ray, s_end, lit);
+        shadows_->lit_intervals(ray, s_end, lit);
     }
     void append_column_breaks(const Ray& ray, const Interval& interval,
                               std::vector<double>& s) const override {
-        columns_.append_breaks(ray, interval, s);
+        columns_->append_breaks(ray, interval, s);
     }
     void columns(std::span<const Point3> x, std::span<double> column) const override {
-        columns_.columns(x, column);
+        columns_->columns(x, column);
     }
 
-    std::size_t bytes() const { return shadows_.bytes() + columns_.bytes(); }
-    std::uint64_t rays_traced() const { return shadows_.rays_traced() + columns_.rays_traced(); }
+    std::size_t bytes() const { return shadows_->bytes() + columns_->bytes(); }
+    std::uint64_t rays_traced() const { return shadows_->rays_traced() + columns_->rays_traced(); }
 
   private:
-    ShadowMap shadows_;
-    ColumnMap columns_;
+    std::shared_ptr<const ShadowMap> shadows_;
+    std::shared_ptr<const ColumnMap> columns_;
 };
 
 }  // namespace uw

@@ -47,30 +47,40 @@ VolumeReport report_on(const VolumeDesc& desc, const LoadedGrid& loaded, const G
 
 }  // namespace
 
+LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
+                         std::size_t slab_bytes) {
+    LoadedVolume volume;
+    const VdbHeader header = read_vdb_header(desc.file, desc.where);
+    const Placement placement = decide_placement(header, desc);
+    for (std::size_t g = 0; g < desc.grids.size(); ++g) {
+        const GridMappingDesc& mapping = desc.grids[g];
+        LoadedGrid loaded = load_grid(header, mapping.grid, mapping.where, slab_bytes);
+        volume.warnings.insert(volume.warnings.end(), loaded.warnings.begin(),
+                               loaded.warnings.end());
+        const Affine place = world_from_index(loaded, placement, desc.world_from_upright);
+        const double determinant = place.determinant();
+        if (!std::isfinite(determinant) || determinant == 0)
+            throw InputError(desc.where + ": its transform leaves the volume no extent");
+        volume.grids.emplace_back(std::move(loaded.bricks), place, placement.centering,
+                                  loads.at(g));
+        volume.reports.push_back(report_on(desc, loaded, volume.grids.back(), placement));
+    }
+    return volume;
+}
+
 std::unique_ptr<ConcentrationField> load_volumes(
     const std::vector<VolumeDesc>& volumes,
     const std::vector<std::vector<std::vector<GridLoad>>>& loads, int constituent_count,
     std::vector<VolumeReport>& reports, std::vector<std::string>& warnings,
     std::size_t slab_bytes) {
-    std::vector<GridVolume> placed;
+    std::vector<GridVolume> grids;
     for (std::size_t v = 0; v < volumes.size(); ++v) {
-        const VolumeDesc& desc = volumes[v];
-        const VdbHeader header = read_vdb_header(desc.file, desc.where);
-        const Placement placement = decide_placement(header, desc);
-        for (std::size_t g = 0; g < desc.grids.size(); ++g) {
-            const GridMappingDesc& mapping = desc.grids[g];
-            LoadedGrid loaded = load_grid(header, mapping.grid, mapping.where, slab_bytes);
-            warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
-            const Affine place = world_from_index(loaded, placement, desc.world_from_upright);
-            const double determinant = place.determinant();
-            if (!std::isfinite(determinant) || determinant == 0)
-                throw InputError(desc.where + ": its transform leaves the volume no extent");
-            placed.emplace_back(std::move(loaded.bricks), place, placement.centering,
-                                loads.at(v).at(g));
-            reports.push_back(report_on(desc, loaded, placed.back(), placement));
-        }
+        LoadedVolume volume = load_volume(volumes[v], loads.at(v), slab_bytes);
+        grids.insert(grids.end(), volume.grids.begin(), volume.grids.end());
+        reports.insert(reports.end(), volume.reports.begin(), volume.reports.end());
+        warnings.insert(warnings.end(), volume.warnings.begin(), volume.warnings.end());
     }
-    return std::make_unique<GridField>(std::move(placed), constituent_count);
+    return std::make_unique<GridField>(std::move(grids), constituent_count);
 }
 
 }  // namespace uw
