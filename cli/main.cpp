@@ -60,8 +60,8 @@ int main(int argc, char** argv) {
         return fail(uw::k_exit_input, error.what());
     } catch (const uw::IoError& error) {
         return fail(uw::k_exit_io, error.what());
-    } catch (const uw::Interrupted&) {
-        return fail(uw::k_exit_interrupted, "interrupted; nothing was written");
+    } catch (const uw::Interrupted& stop) {
+        return fail(uw::k_exit_interrupted, stop.what());
     } catch (const std::bad_alloc&) {
         return fail(uw::k_exit_internal,
                     "out of memory; try --crop, fewer --layers or a smaller --size");

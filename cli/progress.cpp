@@ -41,11 +41,13 @@ std::string format_duration(double seconds) {
     return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
-Progress::Progress(std::string label, std::string unit, double scale, bool quiet)
+Progress::Progress(std::string label, std::string unit, double scale, bool quiet,
+                   std::optional<double> seconds_left)
     : label_(std::move(label)),
       unit_(std::move(unit)),
       scale_(scale),
       quiet_(quiet),
+      seconds_left_(seconds_left),
       terminal_(isatty(STDERR_FILENO) != 0),
       start_(std::chrono::steady_clock::now()) {}
 
@@ -67,10 +69,13 @@ void Progress::update(double fraction) {
 
 void Progress::draw(double fraction, double seconds) {
     const double rate = seconds > 0 ? fraction * scale_ / seconds : 0;
-    const std::string time = fraction >= 1 ? format_duration(seconds)
-                             : fraction > 0
-                                 ? format_duration(seconds * (1 - fraction) / fraction) + " left"
-                                 : "";
+    std::string time;
+    if (seconds_left_)
+        time = format_duration(std::max(*seconds_left_ - seconds, 0.0)) + " left";
+    else if (fraction >= 1)
+        time = format_duration(seconds);
+    else if (fraction > 0)
+        time = format_duration(seconds * (1 - fraction) / fraction) + " left";
     const std::string figures =
         fmt::format("{:3.0f} %  {} {}/s  {}", 100 * fraction, format_rate(rate), unit_, time);
     if (terminal_)

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <mutex>
+#include <optional>
 #include <string>
 
 namespace uw {
@@ -12,8 +13,11 @@ namespace uw {
 /// safe.
 class Progress {
   public:
-    /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole.
-    Progress(std::string label, std::string unit, double scale, bool quiet);
+    /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole. For work that is
+    /// a part of more, `seconds_left` is the time that all of it takes from now on; it is shown
+    /// in place of this part's.
+    Progress(std::string label, std::string unit, double scale, bool quiet,
+             std::optional<double> seconds_left = {});
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -31,6 +35,7 @@ class Progress {
     std::string unit_;
     double scale_;
     bool quiet_;
+    std::optional<double> seconds_left_;
     bool terminal_;
     bool drawn_ = false;
     std::mutex mutex_;

@@ -21,10 +21,11 @@ class UsageError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The user asked to stop (Ctrl-C). Exit code 130.
+/// The user asked to stop (Ctrl-C). `what()` says what there is of the work. Exit code 130.
 class Interrupted : public std::runtime_error {
   public:
-    Interrupted() : std::runtime_error("interrupted") {}
+    Interrupted() : std::runtime_error("interrupted; nothing was written") {}
+    using std::runtime_error::runtime_error;
 };
 
 }  // namespace uw

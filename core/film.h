@@ -42,6 +42,8 @@ class Film {
     }
     /// All values of the window: row by row, pixel by pixel, channel by channel.
     std::span<const float> values() const { return values_; }
+    /// Sets all values to 0, as they were at first.
+    void clear() { values_.assign(values_.size(), 0.0F); }
 
   private:
     std::size_t offset(int x, int y) const {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <variant>
 
 #include "core/error.h"
 
@@ -101,6 +102,30 @@ PixelImage read_image(std::span<const std::byte> encoded, const std::string& nam
             fmt::format("{}: cannot read the image: {}", name, first_line(OIIO::geterror())));
     }
     return decode(*input, name, static_cast<std::int64_t>(encoded.size()));
+}
+
+bool has_header_of(const std::filesystem::path& file, const Film& film,
+                   const ImageMetadata& metadata) {
+    std::error_code status;
+    if (!std::filesystem::is_regular_file(file, status)) return false;
+    const auto input = OIIO::ImageInput::open(file.string());
+    if (!input) {
+        static_cast<void>(OIIO::geterror());  // or it would be printed when the program ends
+        return false;
+    }
+    const OIIO::ImageSpec& spec = input->spec();
+    const PixelWindow window{spec.x, spec.y, spec.x + spec.width, spec.y + spec.height};
+    // Readers put the channels in an order of their own.
+    if (window != film.window() || spec.full_width != film.width() ||
+        spec.full_height != film.height() ||
+        !std::ranges::is_permutation(spec.channelnames, film.channel_names()))
+        return false;
+    return std::ranges::all_of(metadata, [&](const auto& entry) {
+        const auto& [name, value] = entry;
+        if (const auto* text = std::get_if<std::string>(&value))
+            return spec.get_string_attribute(name) == *text;
+        return spec.get_float_attribute(name, -1.0F) == static_cast<float>(std::get<double>(value));
+    });
 }
 
 }  // namespace uw

@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/film.h"
+#include "core/image_writer.h"
+
 namespace uw {
 
 /// A decoded picture: row-major, top row first, channels interleaved. 8 and 16 bit values are
@@ -21,5 +24,10 @@ PixelImage read_image(const std::filesystem::path& file);
 
 /// The same for a PNG or JPEG in memory; `name` stands in messages. Throws InputError.
 PixelImage read_image(std::span<const std::byte> encoded, const std::string& name);
+
+/// Whether `file` is an EXR as write_exr would write `film`, as far as its header tells: the same
+/// windows and channels, and all of `metadata`. False for what cannot be read.
+bool has_header_of(const std::filesystem::path& file, const Film& film,
+                   const ImageMetadata& metadata);
 
 }  // namespace uw

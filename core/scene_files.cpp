@@ -1,24 +1,17 @@
 #include <fmt/format.h>
 
-#include <regex>
 #include <system_error>
 
 #include "core/config_text.h"
+#include "core/frame_pattern.h"
 #include "core/scene_sections.h"
 
 namespace uw {
 namespace {
 
-/// Names of one file per frame: plume_%04d.vdb, plume_####.vdb, plume_$F4.vdb, plume_{frame}.vdb.
-bool has_frame_pattern(const std::string& name) {
-    static const std::regex pattern(R"(%0?[0-9]*d|#+|\$F[0-9]*|\{frame\})");
-    return std::regex_search(name, pattern);
-}
+namespace fs = std::filesystem;
 
-}  // namespace
-
-std::filesystem::path read_existing_file(const ConfigValue& value, const SceneContext& context) {
-    namespace fs = std::filesystem;
+fs::path read_file(const ConfigValue& value, const SceneContext& context, bool* is_sequence) {
     constexpr std::size_t k_longest_name = 4096;
     const std::string name = value.text("give the name of a file");
     if (name.size() > k_longest_name) value.fail("is too long for a file name; shorten it");
@@ -26,9 +19,9 @@ std::filesystem::path read_existing_file(const ConfigValue& value, const SceneCo
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
     if (status.type() == fs::file_type::not_found) {
-        if (has_frame_pattern(name)) {
-            value.fail(fmt::format("sequences are not supported yet ('{}'); name one file",
-                                   printable(name, 200)));
+        if (is_sequence != nullptr && has_frame_pattern(name)) {
+            *is_sequence = true;
+            return file;
         }
         const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
         value.fail(
@@ -48,6 +41,18 @@ std::filesystem::path read_existing_file(const ConfigValue& value, const SceneCo
         value.fail(fmt::format("'{}' is a pipe or device; name a file", printable(name, 200)));
     }
     return file;
+}
+
+}  // namespace
+
+fs::path read_existing_file(const ConfigValue& value, const SceneContext& context) {
+    return read_file(value, context, nullptr);
+}
+
+fs::path read_existing_file_or_sequence(const ConfigValue& value, const SceneContext& context,
+                                        bool& is_sequence) {
+    is_sequence = false;
+    return read_file(value, context, &is_sequence);
 }
 
 }  // namespace uw

@@ -76,8 +76,9 @@ GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) 
         read_shape(map, *type, object);
         return object;
     }
-    object.file = read_existing_file(
-        map.require("file", "give a mesh file, or type: plane, box or sphere"), context);
+    object.file = read_existing_file_or_sequence(
+        map.require("file", "give a mesh file, or type: plane, box or sphere"), context,
+        object.is_sequence);
     if (const auto entry = map.find("transform")) object.world_from_object = read_transform(*entry);
     map.finish("a mesh file");
     return object;

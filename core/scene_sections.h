@@ -41,5 +41,10 @@ Affine read_transform(const ConfigValue& value);
 
 /// A file name, resolved against the scene's folder. Throws InputError where no such file exists.
 std::filesystem::path read_existing_file(const ConfigValue& value, const SceneContext& context);
+/// Likewise, but a name with places for a frame's number that no file has as it is written stands
+/// for a sequence; its files are not looked at.
+std::filesystem::path read_existing_file_or_sequence(const ConfigValue& value,
+                                                     const SceneContext& context,
+                                                     bool& is_sequence);
 
 }  // namespace uw

@@ -76,7 +76,8 @@ VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
                   "write {file: plume.vdb, grids: {density: {small: 2, large: 10}}}");
     VolumeDesc volume;
     volume.where = value.location();
-    volume.file = read_existing_file(map.require("file", "name a VDB file"), context);
+    volume.file = read_existing_file_or_sequence(map.require("file", "name a VDB file"), context,
+                                                 volume.is_sequence);
     volume.grids = read_grids(map.require("grids", k_example), context);
     if (const auto entry = map.find("centering")) {
         constexpr std::array<std::pair<std::string_view, Centering>, 2> k_choices{

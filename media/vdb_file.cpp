@@ -46,6 +46,12 @@ class GridStream {
         openvdb::io::setStreamMetadataPtr(stream_, metadata_, /*transfer=*/true);
     }
 
+    openvdb::math::Transform::ConstPtr read_transform() {
+        openvdb::FloatGrid grid;
+        stream_.seekg(grid_.transform_offset);
+        grid.readTransform(stream_);
+        return grid.transformPtr();
+    }
     /// A grid with its transform and tree, but no voxel values yet.
     template <class GridT>
     typename GridT::Ptr read_topology() {
@@ -215,23 +221,16 @@ const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& 
     throw std::runtime_error("the grid it shares its voxels with is missing");
 }
 
-}  // namespace
+std::string describe(const VdbHeader& header, const GridSummary& grid,
+                     const SourceLocation& where) {
+    return fmt::format("{}: grid '{}' of '{}': ", where, grid.name, header.file.string());
+}
 
-LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,
-                     std::size_t slab_bytes) {
-    initialize_once();
-    const GridSummary& grid = select_grid(header, name, where);
-    const std::string prefix =
-        fmt::format("{}: grid '{}' of '{}': ", where, grid.name, header.file.string());
-    LoadedGrid loaded;
-    loaded.name = grid.name;
-    GridIntake intake;
+/// What `read` returns; what OpenVDB throws becomes an InputError that starts with `prefix`.
+template <class Read>
+auto read_guarded(const std::string& prefix, const Read& read) {
     try {
-        const GridSummary& voxels = holder_of_voxels(header, grid);
-        intake =
-            grid.value_type == "double"
-                ? read_grid<openvdb::DoubleGrid>(header, grid, voxels, slab_bytes, where, loaded)
-                : read_grid<openvdb::FloatGrid>(header, grid, voxels, slab_bytes, where, loaded);
+        return read();
     } catch (const InputError&) {
         throw;
     } catch (const std::ios_base::failure&) {
@@ -241,6 +240,32 @@ LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const Sou
     } catch (const std::exception& error) {
         throw InputError(prefix + "cannot be read: " + error.what());
     }
+}
+
+}  // namespace
+
+Affine read_file_from_index(const VdbHeader& header, const std::string& name,
+                            const SourceLocation& where) {
+    initialize_once();
+    const GridSummary& grid = select_grid(header, name, where);
+    return read_guarded(describe(header, grid, where), [&] {
+        return to_affine(*GridStream(header, grid, grid, where).read_transform());
+    });
+}
+
+LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,
+                     std::size_t slab_bytes) {
+    initialize_once();
+    const GridSummary& grid = select_grid(header, name, where);
+    const std::string prefix = describe(header, grid, where);
+    LoadedGrid loaded;
+    loaded.name = grid.name;
+    const GridIntake intake = read_guarded(prefix, [&] {
+        const GridSummary& voxels = holder_of_voxels(header, grid);
+        return grid.value_type == "double"
+                   ? read_grid<openvdb::DoubleGrid>(header, grid, voxels, slab_bytes, where, loaded)
+                   : read_grid<openvdb::FloatGrid>(header, grid, voxels, slab_bytes, where, loaded);
+    });
     loaded.statistics = intake.statistics(loaded.statistics.background);
     const bool classless = grid.grid_class != "fog volume";
     if (classless && loaded.statistics.background > 0 && intake.negative > 0)

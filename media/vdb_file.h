@@ -30,4 +30,8 @@ inline constexpr std::size_t k_default_slab_bytes = std::size_t{256} << 20;
 LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,
                      std::size_t slab_bytes = k_default_slab_bytes);
 
+/// The transform alone of a grid (LoadedGrid::file_from_index). Throws as load_grid.
+Affine read_file_from_index(const VdbHeader& header, const std::string& name,
+                            const SourceLocation& where);
+
 }  // namespace uw

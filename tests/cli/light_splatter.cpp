@@ -45,7 +45,9 @@ class LightReuse : public testing::Test {
         const auto light = splatter_.splat(scene_, options);
         EXPECT_EQ(splatter_.counts().shadow_maps, shadow_maps);
         EXPECT_EQ(splatter_.counts().column_maps, column_maps);
-        if (shadow_maps + column_maps == 0) EXPECT_EQ(splatter_.counts().rays, 0U);
+        if (shadow_maps + column_maps == 0) {
+            EXPECT_EQ(splatter_.counts().rays, 0U);
+        }
         const AssembledScene fresh_scene = assemble_scene(desc_, [](const std::string&) {});
         const auto fresh = splat_lamps(fresh_scene, options);
         ASSERT_EQ(light.size(), fresh.size());

@@ -1,0 +1,97 @@
+#include "cli/frame_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <unordered_set>
+
+#include "core/config_text.h"
+#include "core/error.h"
+
+namespace uw {
+
+namespace {
+
+constexpr int k_last_frame = 999'999'999;
+constexpr std::size_t k_most_frames = 1'000'000;
+constexpr std::size_t k_most_runs = 50;  // that a message names
+
+[[noreturn]] void refuse(std::string_view part, const std::string& why) {
+    throw UsageError(fmt::format("--frames: '{}': {}", printable(part), why));
+}
+
+// Removes a number from the beginning of `text`.
+int take_number(std::string_view& text, std::string_view part) {
+    int number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc::result_out_of_range || number > k_last_frame)
+        refuse(part, fmt::format("frames are numbers from 0 to {}", k_last_frame));
+    if (error != std::errc() || number < 0)
+        refuse(part, "expected frames such as 7, 1-10 or 20-40:2, separated by commas");
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return number;
+}
+
+bool take(std::string_view& text, char c) {
+    if (!text.starts_with(c)) return false;
+    text.remove_prefix(1);
+    return true;
+}
+
+struct FrameRange {
+    int first = 0, last = 0, step = 1;
+};
+
+FrameRange parse_range(std::string_view part) {
+    std::string_view text = part;
+    FrameRange range;
+    range.first = range.last = take_number(text, part);
+    if (take(text, '-')) {
+        range.last = take_number(text, part);
+        if (take(text, ':')) range.step = take_number(text, part);
+    }
+    if (!text.empty())
+        refuse(part, "expected frames such as 7, 1-10 or 20-40:2, separated by commas");
+    if (range.last < range.first)
+        refuse(part, fmt::format("begins after its end; write {}-{}", range.last, range.first));
+    if (range.step == 0) refuse(part, "a step of 0 leads nowhere; write 1 or more after the colon");
+    return range;
+}
+
+}  // namespace
+
+std::vector<int> parse_frame_list(const std::string& text) {
+    std::vector<int> frames;
+    std::unordered_set<int> known;
+    std::size_t at = 0;
+    while (at <= text.size()) {
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        const FrameRange range = parse_range(std::string_view(text).substr(at, comma - at));
+        for (long frame = range.first; frame <= range.last; frame += range.step) {
+            const int number = static_cast<int>(frame);
+            if (known.insert(number).second) frames.push_back(number);
+            if (frames.size() > k_most_frames)
+                refuse(text, "more than a million frames; render them in parts");
+        }
+        at = comma + 1;
+    }
+    return frames;
+}
+
+std::string format_frame_list(std::vector<int> frames) {
+    std::ranges::sort(frames);
+    std::string text;
+    std::size_t runs = 0;
+    for (std::size_t i = 0; i < frames.size(); ++runs) {
+        if (runs == k_most_runs) return text + fmt::format(" and {} more", frames.size() - i);
+        std::size_t last = i;
+        while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
+        text += fmt::format("{}{}", i == 0 ? "" : ",", frames[i]);
+        if (last > i) text += fmt::format("-{}", frames[last]);
+        i = last + 1;
+    }
+    return text;
+}
+
+}  // namespace uw

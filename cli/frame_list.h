@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace uw {
+
+/// The numbers of frames that `text` lists: "1-10,20-40:2" is 1 to 10, and every second from 20 to
+/// 40, both ends included. In the order given, each once. Throws UsageError for other text, and for
+/// more than a million frames.
+std::vector<int> parse_frame_list(const std::string& text);
+
+/// Frames as such a list, in ascending order: "3-5,9". Of many runs the first are named, and how
+/// many frames follow.
+std::string format_frame_list(std::vector<int> frames);
+
+}  // namespace uw
