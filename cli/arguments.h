@@ -13,6 +13,8 @@ namespace uw {
 struct RenderArguments {
     std::filesystem::path scene;
     std::filesystem::path output;            // empty: the scene's name with .exr, here
+    std::vector<int> frames;                 // --frames; empty: no sequence
+    bool resume = false;                     // --resume
     std::vector<std::string> overrides;      // --set key.path=value
     std::optional<std::array<int, 2>> size;  // --size WxH
     std::optional<std::array<int, 4>> crop;  // --crop x0,y0,x1,y1

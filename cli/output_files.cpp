@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
-#include <string>
 #include <system_error>
 #include <vector>
 
@@ -23,7 +21,9 @@ struct NamedFile {
 };
 
 std::vector<NamedFile> named(const OutputFiles& files) {
-    std::vector<NamedFile> result{{"the image", files.image}, {"the preview", files.preview}};
+    std::vector<NamedFile> result;
+    if (!files.image.empty()) result.push_back({"the image", files.image});
+    if (!files.preview.empty()) result.push_back({"the preview", files.preview});
     if (!files.stats.empty()) result.push_back({"--stats", files.stats});
     if (!files.irradiance_vdb.empty()) result.push_back({"--irradiance-vdb", files.irradiance_vdb});
     return result;
@@ -47,7 +47,8 @@ void refuse_other_ending(const char* option, const fs::path& file, const char* e
 
 OutputFiles output_files(const RenderArguments& a) {
     OutputFiles files;
-    files.image = a.output.empty() ? a.scene.filename().replace_extension(".exr") : a.output;
+    const char* const ending = a.frames.empty() ? ".exr" : ".####.exr";
+    files.image = a.output.empty() ? a.scene.filename().replace_extension(ending) : a.output;
     refuse_other_ending("-o", files.image, ".exr", "OpenEXR");
     files.preview = files.image;
     files.preview.replace_extension(".png");
@@ -58,15 +59,18 @@ OutputFiles output_files(const RenderArguments& a) {
     return files;
 }
 
-void check_output_files(const OutputFiles& files, const SceneDesc& scene) {
-    std::map<fs::path, std::string> taken{{identity(scene.file), "the scene"}};
+void OutputCheck::take_inputs(const SceneDesc& scene) {
+    taken_.emplace(identity(scene.file), "the scene");
     for (const VolumeDesc& volume : scene.volumes)
-        taken.emplace(identity(volume.file), "a volume of the scene");
+        taken_.emplace(identity(volume.file), "a volume of the scene");
     for (const GeometryDesc& geometry : scene.geometry)
         if (geometry.type == GeometryDesc::Type::file)
-            taken.emplace(identity(geometry.file), "a mesh of the scene");
+            taken_.emplace(identity(geometry.file), "a mesh of the scene");
+}
+
+void OutputCheck::take_outputs(const OutputFiles& files) {
     for (const auto& [name, file] : named(files)) {
-        const auto [other, is_new] = taken.emplace(identity(file), name);
+        const auto [other, is_new] = taken_.emplace(identity(file), name);
         if (!is_new)
             throw UsageError(fmt::format("{}: {} would replace {}; give another name",
                                          printable(file.string(), 300), name, other->second));

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "cli/arguments.h"
 #include "core/scene_desc.h"
@@ -15,11 +17,22 @@ struct OutputFiles {
     std::filesystem::path irradiance_vdb;  // empty: none
 };
 
-/// What the arguments ask for. Throws UsageError for a name whose ending is not that of its format.
+/// What the arguments ask for; names hold places for the frame's number where they do there, and
+/// so does the image's default name for a sequence. Throws UsageError for a name whose ending is
+/// not that of its format.
 OutputFiles output_files(const RenderArguments& arguments);
 
-/// Finds out before the work rather than after it whether all can be written. Throws UsageError if
-/// two are one file, or one is a file that the scene is read from; IoError if one cannot be made.
-void check_output_files(const OutputFiles& files, const SceneDesc& scene);
+/// Finds out before the work rather than after it whether all can be written.
+class OutputCheck {
+  public:
+    /// Takes note of the files that a scene is read from.
+    void take_inputs(const SceneDesc& scene);
+    /// Throws UsageError if two files are one, or one is a file that has been taken note of;
+    /// IoError if one cannot be made.
+    void take_outputs(const OutputFiles& files);
+
+  private:
+    std::map<std::filesystem::path, std::string> taken_;
+};
 
 }  // namespace uw

@@ -2,22 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <mutex>
+#include <utility>
+#include <vector>
 
 #include "camera/image_size.h"
 #include "cli/console.h"
-#include "cli/grid_summary.h"
-#include "cli/irradiance_export.h"
-#include "cli/output_files.h"
+#include "cli/frame_list.h"
+#include "cli/frame_renderer.h"
+#include "cli/frame_sequence.h"
+#include "cli/image_output.h"
 #include "cli/progress.h"
-#include "cli/scene_assembly.h"
-#include "cli/scene_rendering.h"
 #include "cli/stats.h"
-#include "cli/stop_signal.h"
-#include "cli/version.h"
 #include "core/error.h"
-#include "core/image_writer.h"
+#include "core/image_reader.h"
 #include "core/parallel.h"
 #include "core/scene_reader.h"
 
@@ -32,13 +29,6 @@ RenderDesc::Integrator integrator_named(const std::string& name) {
         fmt::format("--integrator: unknown '{}'; use volume, planes or reference", name));
 }
 
-std::string name_of(RenderDesc::Integrator integrator) {
-    return std::string(
-        std::ranges::find(k_integrator_names, integrator,
-                          &std::pair<std::string_view, RenderDesc::Integrator>::second)
-            ->first);
-}
-
 void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
     if (a.samples) desc.render.samples = *a.samples;
     if (!a.integrator.empty()) desc.render.integrator = integrator_named(a.integrator);
@@ -47,60 +37,6 @@ void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
     if (width < 1 || height < 1 || width > 32768 || height > 32768)
         throw UsageError("--size: each side must be 1 to 32768 pixels");
     resize_image(desc.camera, width, height);
-}
-
-std::string band_list(std::span<const double> values) {
-    std::string text;
-    for (const double value : values)
-        text += fmt::format("{}{:g}", text.empty() ? "" : ", ", value);
-    return text;
-}
-
-ImageMetadata metadata_of(const AssembledScene& scene) {
-    const Medium& medium = scene.water.medium;
-    std::vector<double> a, b, c;
-    for (int band = 0; band < medium.band_count(); ++band) {
-        a.push_back(medium.uniform.absorption[static_cast<std::size_t>(band)]);
-        c.push_back(medium.uniform.attenuation(band));
-        b.push_back(c.back() - a.back());
-    }
-    std::string phases;
-    for (const auto& phase : medium.phase_functions)
-        phases += (phases.empty() ? "" : "; ") + phase->description();
-    const std::string quantity = SensorModel(scene.desc).description();
-    ImageMetadata m{{"software", "uwvdb " + program_version()},
-                    {"uwvdb/scene", scene.desc.file.filename().string()},
-                    {"uwvdb/scene_hash", scene.desc.hash},
-                    {"uwvdb/integrator", name_of(scene.desc.render.integrator)},
-                    {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
-                    {"uwvdb/seed", std::string("none: deterministic")},
-                    {"uwvdb/rgb_quantity", quantity},
-                    {"uwvdb/units", quantity + ", irradiance and exitance W m^-2, metres"},
-                    {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
-                    {"uwvdb/water_absorption_per_m", band_list(a)},
-                    {"uwvdb/water_scattering_per_m", band_list(b)},
-                    {"uwvdb/water_attenuation_per_m", band_list(c)},
-                    {"uwvdb/phase_functions", phases}};
-    if (const ForwardScatterDesc& forward = scene.desc.water.forward_scatter; forward.K > 0) {
-        m["uwvdb/forward_scatter_K"] = forward.K;
-        m["uwvdb/forward_scatter_G_per_m"] = forward.G;
-        m["uwvdb/forward_scatter_B_rad_per_m"] = forward.B;
-        m["uwvdb/forward_scatter_shape"] = std::string(
-            forward.shape == ForwardScatterDesc::Shape::gaussian ? "gaussian" : "exponential");
-    }
-    m["uwvdb/slab_near_m"] = scene.slabs.near;
-    m["uwvdb/slab_thickness_m"] = scene.slabs.thickness();
-    m["uwvdb/slabs"] = static_cast<double>(scene.slabs.count);
-    if (const auto& port = scene.desc.camera.port) {
-        m["uwvdb/port_fresnel"] = std::string(port->fresnel ? "on" : "off");
-        m["uwvdb/port_radiance_in"] = std::string(port->radiance_in_air ? "air" : "water");
-    }
-    if (const auto& lens = scene.desc.camera.lens) {
-        m["uwvdb/lens_f_number"] = lens->f_number;
-        m["uwvdb/lens_focal_length_m"] = lens->focal_length;
-        m["uwvdb/lens_transmission"] = lens->transmission;
-    }
-    return m;
 }
 
 std::vector<std::string> names_of(const std::vector<LampDesc>& lamps) {
@@ -120,97 +56,43 @@ PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
     return {x0, y0, x1, y1};
 }
 
-void render(const AssembledScene& scene, const LightFields& light_fields, const LayerPlan& plan,
-            const BandColour& colour, bool quiet, Film& film) {
-    const auto integrator = make_integrator(scene, light_fields);
-    const double megapixels = 1e-6 * film.window().width() * film.window().height();
-    std::unique_ptr<Progress> progress;
-    std::string pass;
-    std::mutex mutex;
-    render_scene(scene, light_fields, *integrator, plan, colour, film,
-                 [&](const std::string& name, double fraction) {
-                     const std::lock_guard lock(mutex);
-                     if (name != pass) {
-                         progress.reset();  // ends the line of the pass before
-                         progress = std::make_unique<Progress>(name, "Mpx", megapixels, quiet);
-                         pass = name;
-                     }
-                     progress->update(fraction);
-                     return !stop_requested();
-                 });
-}
-
-void write_irradiance(const std::filesystem::path& file, const AssembledScene& scene,
-                      const LightFields& light_fields, bool quiet) {
-    Progress progress("irradiance", "lamps", static_cast<double>(scene.lamps.size()), quiet);
-    write_irradiance_vdb(file, scene, light_fields, [&](double share) {
-        progress.update(share);
-        return !stop_requested();
-    });
-}
-
-void count_work(const AssembledScene& scene, const LightFields& light_fields, const Film& film,
-                RunStats& stats) {
-    const auto pixels = static_cast<std::uint64_t>(film.window().width()) *
-                        static_cast<std::uint64_t>(film.window().height());
-    std::uint64_t splat_rays = 0, splat_bytes = 0, voxels = 0, grid_bytes = 0;
-    for (const auto& field : light_fields) {
-        splat_rays += field->rays_traced();
-        splat_bytes += field->bytes();
+// Leaves out the frames that are there already.
+void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const ImageLayout& layout,
+                        bool quiet) {
+    std::vector<int> there;
+    std::vector<Frame> left;
+    for (Frame& frame : sequence.frames) {
+        const bool rendered =
+            is_rendered(frame, scene_of_frame(desc, frame), [&](const std::filesystem::path& file) {
+                return has_header_of(file, layout, metadata_of(desc, frame.number));
+            });
+        if (rendered)
+            there.push_back(*frame.number);
+        else
+            left.push_back(std::move(frame));
     }
-    for (const VolumeReport& report : scene.volume_reports) {
-        voxels += static_cast<std::uint64_t>(report.statistics.active_voxels);
-        grid_bytes += report.bytes;
+    sequence.frames = std::move(left);
+    if (!there.empty() && !quiet)
+        print_message(fmt::format("resume: {} {} {} there already, {} to render\n",
+                                  there.size() == 1 ? "frame" : "frames", format_frame_list(there),
+                                  there.size() == 1 ? "is" : "are", sequence.frames.size()));
+}
+
+// Renders all frames; `done` gets the figures of each, whatever ends the run.
+void render_frames(const FrameSequence& sequence, const SceneDesc& desc, FrameRenderer& renderer,
+                   RunStats stats, std::vector<RunStats>& done) {
+    try {
+        for (const Frame& frame : sequence.frames) {
+            renderer.render(frame, scene_of_frame(desc, frame), stats);
+            if (!frame.files.stats.empty())
+                stats.write_json(frame.files.stats, desc.file.filename().string());
+            done.push_back(std::exchange(stats, RunStats()));
+        }
+    } catch (const Interrupted&) {
+        if (done.empty()) throw;
+        throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume goes on",
+                                      done.size(), sequence.frames.size()));
     }
-    stats.count("pixels", pixels);
-    // One ray a sample, and one more for the pixel's centre unless that is the sample: its water
-    // and ground truth.
-    const auto samples = static_cast<std::uint64_t>(scene.desc.render.samples);
-    stats.count("camera_rays", pixels * (samples == 1 ? 1 : samples + 1));
-    stats.count("splat_rays", splat_rays);
-    stats.count("light_field_bytes", splat_bytes);
-    stats.count("active_voxels", voxels);
-    stats.count("grid_bytes", grid_bytes);
-    stats.count("triangles", scene.surfaces->triangle_count());
-    stats.count("lamps", scene.lamps.size());
-    stats.count("bands", static_cast<std::uint64_t>(scene.water.medium.band_count()));
-}
-
-// One line if the image shows nothing, or is empty in part; no black image without a word.
-void warn_of_darkness(const Film& film, bool black) {
-    const PixelWindow& window = film.window();
-    std::size_t empty = 0;
-    for (int y = window.y0; y < window.y1; ++y)
-        for (int x = window.x0; x < window.x1; ++x) empty += film.pixel(x, y)[k_alpha] == 0 ? 1 : 0;
-    const std::size_t pixels =
-        static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
-    if (empty > 0)
-        print_message(fmt::format(
-            "warning: {} of {} pixels are empty (alpha 0): their rays do not pass the port, "
-            "or the lens's distortion has no ray for them\n",
-            empty, pixels));
-    if (black && empty < pixels)
-        print_message(fmt::format(
-            "warning: the image is black: no lamp's light reaches the camera; check the "
-            "lamps' positions, directions and intensities, the camera's pose, and how far "
-            "light comes in this water\n"));
-}
-
-// Writes the images; says where they are and what exposure the preview has.
-void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata, bool quiet) {
-    const std::optional<double> exposure = automatic_exposure(film);
-    const Preview preview = make_preview(film, exposure.value_or(1.0));
-    write_exr(files.image, film, metadata);
-    metadata["exposure"] = exposure.value_or(1.0);
-    write_png(files.preview, preview, metadata);
-    warn_of_darkness(film, !exposure);
-    if (quiet) return;
-    print_message(fmt::format("wrote {}\n", files.image.string()));
-    if (exposure)
-        print_message(
-            fmt::format("wrote {} (preview, R G B x {:.4g})\n", files.preview.string(), *exposure));
-    else
-        print_message(fmt::format("wrote {} (preview, black)\n", files.preview.string()));
 }
 
 }  // namespace
@@ -218,10 +100,7 @@ void write_images(const OutputFiles& files, const Film& film, ImageMetadata meta
 void run_render(const RenderArguments& a) {
     RunStats stats;
     const ThreadLimit limit(a.threads);
-    const OutputFiles files = output_files(a);
-    const auto say = [&](const std::string& text) {
-        if (!a.quiet) print_message(text);
-    };
+    FrameSequence sequence = frames_of(a);
 
     stats.begin_stage("scene");
     SceneDesc desc = read_scene(a.scene, a.overrides);
@@ -231,51 +110,36 @@ void run_render(const RenderArguments& a) {
     const LayerPlan plan(a.layers, desc.water.bands_nm, lamp_names);
     const BandColour colour(desc.water.bands_nm);
     if (!colour.warning().empty()) desc.warnings.push_back(colour.warning());
-    check_output_files(files, desc);
-    // Light from beyond a crop is scattered into it: forward scatter needs the whole image.
+    if (const auto warning = frame_warning(a, desc)) desc.warnings.push_back(*warning);
     const PixelWindow whole{0, 0, desc.camera.width, desc.camera.height};
-    const bool uncropped = desc.water.forward_scatter.K > 0 && window != whole;
-    if (uncropped)
+    if (desc.water.forward_scatter.K > 0 && window != whole)
         desc.warnings.push_back(
             "--crop: forward scatter takes light from the whole image: all of it is rendered, then "
             "cropped; set water.forward_scatter.K=0 to save that time");
-    Film film(desc.camera.width, desc.camera.height, uncropped ? whole : window,
-              plan.channel_names());
+    if (a.resume)
+        leave_out_rendered(sequence, desc,
+                           {whole.width(), whole.height(), window, plan.channel_names()}, a.quiet);
+    if (sequence.frames.empty()) return;
+    check_frames(sequence, desc);
+    FrameRenderer renderer(a, desc, {window, plan, colour}, sequence.frames.size());
 
-    const AssembledScene scene =
-        assemble_scene(desc, [&](const std::string& stage) { stats.begin_stage(stage); });
-    for (const VolumeReport& report : scene.volume_reports)
-        say(describe_grid(report, scene.water.medium));
-    for (const std::string& warning : scene.warnings)
-        print_message(fmt::format("warning: {}\n", warning));
-    if (!files.irradiance_vdb.empty()) check_irradiance_vdb(scene);
-
-    stats.begin_stage("splat");
-    LightFields light_fields;
-    const bool volume = desc.render.integrator == RenderDesc::Integrator::volume;
-    if (volume || !files.irradiance_vdb.empty()) {
-        Progress progress("splat", "lamps", static_cast<double>(scene.lamps.size()), a.quiet);
-        light_fields =
-            splat_lamps(scene, LightFieldOptions{}, [&](double share) { progress.update(share); });
+    std::vector<RunStats> done;
+    const auto write_stats = [&] {
+        if (!sequence.stats.empty() && !done.empty())
+            RunStats::write_json(sequence.stats, a.scene.filename().string(), done);
+    };
+    try {
+        render_frames(sequence, desc, renderer, std::move(stats), done);
+    } catch (...) {
+        write_stats();  // of what is done
+        throw;
     }
-
-    stats.begin_stage("render");
-    begin_orderly_stop();
-    render(scene, light_fields, plan, colour, a.quiet, film);
-    count_work(scene, light_fields, film, stats);
-    if (uncropped) film = cropped(film, window);
-    if (!files.irradiance_vdb.empty()) {
-        stats.begin_stage("irradiance");
-        write_irradiance(files.irradiance_vdb, scene, light_fields, a.quiet);
-        say(fmt::format("wrote {}\n", files.irradiance_vdb.string()));
-    }
-    stats.begin_stage("write");
-    write_images(files, film, metadata_of(scene), a.quiet);
-    stats.end_stage();
-    if (!files.stats.empty())
-        stats.write_json(files.stats, a.scene.filename().string(), files.image.filename().string());
-    say(fmt::format("done in {}, peak memory {:.0f} MB\n", format_duration(stats.total_seconds()),
-                    static_cast<double>(RunStats::peak_memory_bytes()) / 1e6));
+    write_stats();
+    if (a.quiet) return;
+    double seconds = 0;
+    for (const RunStats& frame : done) seconds += frame.total_seconds();
+    print_message(fmt::format("done in {}, peak memory {:.0f} MB\n", format_duration(seconds),
+                              static_cast<double>(RunStats::peak_memory_bytes()) / 1e6));
 }
 
 }  // namespace uw

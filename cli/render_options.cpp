@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cli/command_options.h"
+#include "cli/frame_list.h"
 #include "core/config_text.h"
 #include "core/error.h"
 
@@ -16,9 +17,11 @@ constexpr const char* k_render_examples = R"(Examples:
   uwvdb render plume.yaml -o out/plume.exr --size 960x540 --samples 1
   uwvdb render plume.yaml --set lamps.left.intensity='[80, 80, 80]' --layers direct,depth
   uwvdb render plume.yaml --integrator reference --crop 100,80,140,120 --stats stats.json
+  uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.exr --resume
   uwvdb render houdini.yaml --set 'volumes[0].file=/data/my.vdb' --irradiance-vdb light.vdb
 
-Writes OUT.exr (32-bit float, layers by name) and OUT.png beside it, a preview.
+Writes OUT.exr (32-bit float, layers by name) and OUT.png beside it, a preview. With --frames, a
+volume's file may hold the place of the frame's number: file: smoke_####.vdb
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted. More: docs/command-line.md)";
 
@@ -41,7 +44,7 @@ std::array<int, N> parse_integers(const std::string& text, char separator, const
 
 struct Parsed {
     RenderArguments arguments;
-    std::string size, crop;
+    std::string size, crop, frames;
 };
 
 }  // namespace
@@ -54,6 +57,12 @@ Command add_render_command(CLI::App& app) {
         .add_option("-o,--output", p->arguments.output,
                     "EXR to write; without it, the scene's name, here")
         ->type_name("OUT.exr");
+    render
+        .add_option("--frames", p->frames,
+                    "render these frames; file names hold %04d, ####, $F4 or {frame}")
+        ->type_name("1-10,20-40:2");
+    render.add_flag("--resume", p->arguments.resume,
+                    "with --frames: leave out frames that are there already");
     add_set_option(render, p->arguments.overrides);
     render.add_option("--size", p->size, "render at this size, the intrinsics scaled with it")
         ->type_name("WxH");
@@ -84,6 +93,9 @@ Command add_render_command(CLI::App& app) {
                     a.size = parse_integers<2>(p->size, 'x', "--size", "WxH such as 640x360");
                 if (!p->crop.empty())
                     a.crop = parse_integers<4>(p->crop, ',', "--crop", "x0,y0,x1,y1");
+                if (!p->frames.empty()) a.frames = parse_frame_list(p->frames);
+                if (a.resume && a.frames.empty())
+                    throw UsageError("--resume: goes on with a sequence; give its --frames");
                 return a;
             }};
 }

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "cli/version.h"
 #include "core/atomic_file.h"
@@ -41,22 +42,53 @@ std::uint64_t RunStats::peak_memory_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
+void RunStats::set_output(const std::string& name, std::optional<int> frame) {
+    output_ = name;
+    frame_ = frame;
+}
+
+/// The one door to the JSON library.
+struct StatsJson {
+    using Json = nlohmann::ordered_json;
+
+    static Json begin(const std::string& scene) {
+        Json json;
+        json["uwvdb"] = program_version();
+        json["scene"] = scene;
+        return json;
+    }
+
+    static void add(const RunStats& stats, Json& json) {
+        if (stats.frame_) json["frame"] = *stats.frame_;
+        json["output"] = stats.output_;
+        for (const auto& [name, seconds] : stats.stages_) json["seconds"][name] = seconds;
+        json["seconds"]["total"] = stats.total_seconds();
+        for (const auto& [name, value] : stats.counts_) json[name] = value;
+    }
+
+    static void write(const std::filesystem::path& file, Json json) {
+        json["peak_memory_bytes"] = RunStats::peak_memory_bytes();
+        AtomicFile target(file);
+        std::ofstream out(target.temporary_path());
+        out << json.dump(2) << "\n";
+        out.close();
+        if (!out) throw IoError(fmt::format("{}: cannot write", file.string()));
+        target.commit();
+    }
+};
+
+void RunStats::write_json(const std::filesystem::path& file, const std::string& scene) const {
+    StatsJson::Json json = StatsJson::begin(scene);
+    StatsJson::add(*this, json);
+    StatsJson::write(file, std::move(json));
+}
+
 void RunStats::write_json(const std::filesystem::path& file, const std::string& scene,
-                          const std::string& output) const {
-    nlohmann::ordered_json json;
-    json["uwvdb"] = program_version();
-    json["scene"] = scene;
-    json["output"] = output;
-    for (const auto& [name, seconds] : stages_) json["seconds"][name] = seconds;
-    json["seconds"]["total"] = total_seconds();
-    for (const auto& [name, value] : counts_) json[name] = value;
-    json["peak_memory_bytes"] = peak_memory_bytes();
-    AtomicFile target(file);
-    std::ofstream out(target.temporary_path());
-    out << json.dump(2) << "\n";
-    out.close();
-    if (!out) throw IoError(fmt::format("{}: cannot write", file.string()));
-    target.commit();
+                          std::span<const RunStats> images) {
+    StatsJson::Json json = StatsJson::begin(scene);
+    json["frames"] = StatsJson::Json::array();
+    for (const RunStats& stats : images) StatsJson::add(stats, json["frames"].emplace_back());
+    StatsJson::write(file, std::move(json));
 }
 
 }  // namespace uw

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,13 +26,22 @@ class RunStats {
     /// Largest resident memory of the process so far [bytes].
     static std::uint64_t peak_memory_bytes();
 
+    /// Says which image this is about: its name, and its number in a sequence.
+    void set_output(const std::string& name, std::optional<int> frame);
+
     /// Writes everything as JSON. Throws IoError.
-    void write_json(const std::filesystem::path& file, const std::string& scene,
-                    const std::string& output) const;
+    void write_json(const std::filesystem::path& file, const std::string& scene) const;
+    /// Writes one JSON about several images, whose figures stand in the list `frames`.
+    static void write_json(const std::filesystem::path& file, const std::string& scene,
+                           std::span<const RunStats> images);
 
   private:
+    friend struct StatsJson;
+
     std::vector<std::pair<std::string, double>> stages_;
     std::vector<std::pair<std::string, std::uint64_t>> counts_;
+    std::string output_;
+    std::optional<int> frame_;
     std::string stage_;
     std::chrono::steady_clock::time_point stage_start_;
 };

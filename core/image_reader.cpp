@@ -104,7 +104,7 @@ PixelImage read_image(std::span<const std::byte> encoded, const std::string& nam
     return decode(*input, name, static_cast<std::int64_t>(encoded.size()));
 }
 
-bool has_header_of(const std::filesystem::path& file, const Film& film,
+bool has_header_of(const std::filesystem::path& file, const ImageLayout& layout,
                    const ImageMetadata& metadata) {
     std::error_code status;
     if (!std::filesystem::is_regular_file(file, status)) return false;
@@ -116,9 +116,9 @@ bool has_header_of(const std::filesystem::path& file, const Film& film,
     const OIIO::ImageSpec& spec = input->spec();
     const PixelWindow window{spec.x, spec.y, spec.x + spec.width, spec.y + spec.height};
     // Readers put the channels in an order of their own.
-    if (window != film.window() || spec.full_width != film.width() ||
-        spec.full_height != film.height() ||
-        !std::ranges::is_permutation(spec.channelnames, film.channel_names()))
+    if (window != layout.window || spec.full_width != layout.width ||
+        spec.full_height != layout.height ||
+        !std::ranges::is_permutation(spec.channelnames, layout.channel_names))
         return false;
     return std::ranges::all_of(metadata, [&](const auto& entry) {
         const auto& [name, value] = entry;

@@ -1,0 +1,157 @@
+#include "cli/frame_sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "cli/frame_list.h"
+#include "core/config_text.h"
+#include "core/error.h"
+#include "core/frame_pattern.h"
+#include "media/volume_sequence.h"
+
+namespace uw {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored);
+}
+
+void require_place(const char* option, const fs::path& name) {
+    if (name.empty() || differs_by_frame(name)) return;
+    throw UsageError(
+        fmt::format("{} {}: all frames would be written to one file; put the place of the "
+                    "number into its name, such as out.####{}",
+                    option, printable(name.string(), 300), name.extension().string()));
+}
+
+fs::path expanded(const fs::path& name, int frame) {
+    return name.empty() ? name : file_of_frame(name, frame);
+}
+
+// The frames that lack the file of a sequence of the scene.
+class MissingFrames {
+  public:
+    void look(const SourceLocation& where, const fs::path& name, const FrameSequence& sequence) {
+        std::vector<int> missing;
+        for (const Frame& frame : sequence.frames)
+            if (!is_file(file_of_frame(name, *frame.number))) missing.push_back(*frame.number);
+        if (missing.empty()) return;
+        text_ += fmt::format("{}{}.file: '{}' has no file for {} {}", text_.empty() ? "" : "; ",
+                             where, printable(name.string(), 300),
+                             missing.size() == 1 ? "frame" : "frames", format_frame_list(missing));
+    }
+    void refuse() const {
+        if (!text_.empty())
+            throw IoError(text_ + "; give the --frames there are, or add the files");
+    }
+
+  private:
+    std::string text_;
+};
+
+void check_volumes(const FrameSequence& sequence, const SceneDesc& scene) {
+    for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
+        if (!scene.volumes[v].is_sequence) continue;
+        VolumeSequenceCheck check;
+        for (const Frame& frame : sequence.frames)
+            check.take(scene_of_frame(scene, frame).volumes[v]);
+    }
+}
+
+bool has_sequence(const SceneDesc& scene) {
+    return std::ranges::any_of(scene.volumes, &VolumeDesc::is_sequence) ||
+           std::ranges::any_of(scene.geometry, &GeometryDesc::is_sequence);
+}
+
+}  // namespace
+
+FrameSequence frames_of(const RenderArguments& a) {
+    const OutputFiles names = output_files(a);
+    if (a.frames.empty()) return {{{std::nullopt, names}}, {}};
+    if (a.frames.size() > 1) {
+        require_place("-o", names.image);
+        require_place("--irradiance-vdb", names.irradiance_vdb);
+    }
+    FrameSequence sequence;
+    const bool one_each = !names.stats.empty() && differs_by_frame(names.stats);
+    if (!one_each) sequence.stats = names.stats;
+    for (const int number : a.frames) {
+        OutputFiles files;
+        files.image = expanded(names.image, number);
+        files.preview = expanded(names.preview, number);
+        if (one_each) files.stats = expanded(names.stats, number);
+        files.irradiance_vdb = expanded(names.irradiance_vdb, number);
+        sequence.frames.push_back({number, std::move(files)});
+    }
+    return sequence;
+}
+
+SceneDesc scene_of_frame(const SceneDesc& scene, const Frame& frame) {
+    SceneDesc result = scene;
+    if (!frame.number) return result;
+    const auto choose = [&](auto& input) {
+        if (!input.is_sequence) return;
+        input.file = file_of_frame(input.file, *frame.number);
+        input.is_sequence = false;
+    };
+    std::ranges::for_each(result.volumes, choose);
+    std::ranges::for_each(result.geometry, choose);
+    return result;
+}
+
+void check_frames(const FrameSequence& sequence, const SceneDesc& scene) {
+    const bool numbered = !sequence.frames.empty() && sequence.frames.front().number;
+    if (numbered) {
+        MissingFrames missing;
+        for (const VolumeDesc& volume : scene.volumes)
+            if (volume.is_sequence) missing.look(volume.where, volume.file, sequence);
+        for (const GeometryDesc& mesh : scene.geometry)
+            if (mesh.is_sequence) missing.look(mesh.where, mesh.file, sequence);
+        missing.refuse();
+        check_volumes(sequence, scene);
+    }
+    OutputCheck outputs;
+    for (const Frame& frame : sequence.frames) outputs.take_inputs(scene_of_frame(scene, frame));
+    for (const Frame& frame : sequence.frames) outputs.take_outputs(frame.files);
+    if (!sequence.stats.empty()) outputs.take_outputs({{}, {}, sequence.stats, {}});
+}
+
+bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
+                 const std::function<bool(const fs::path&)>& is_image_of) {
+    const OutputFiles& files = frame.files;
+    if (!is_file(files.image) || !is_file(files.preview)) return false;
+    if (!files.irradiance_vdb.empty() && !is_file(files.irradiance_vdb)) return false;
+    std::error_code error;
+    const auto rendered = fs::last_write_time(files.image, error);
+    if (error) return false;
+    const auto is_newer = [&](const fs::path& input) {
+        const auto written = fs::last_write_time(input, error);
+        return !error && written > rendered;
+    };
+    for (const VolumeDesc& volume : scene_of_frame.volumes)
+        if (is_newer(volume.file)) return false;
+    for (const GeometryDesc& mesh : scene_of_frame.geometry)
+        if (mesh.type == GeometryDesc::Type::file && is_newer(mesh.file)) return false;
+    return is_image_of(files.image);
+}
+
+std::optional<std::string> frame_warning(const RenderArguments& a, const SceneDesc& scene) {
+    if (a.frames.size() > 1 && !has_sequence(scene))
+        return "--frames: all frames are alike, for no file of the scene has a place for the "
+               "frame's number, such as file: smoke_####.vdb";
+    if (!a.frames.empty()) return std::nullopt;
+    for (const fs::path* name : {&a.output, &a.stats, &a.irradiance_vdb})
+        if (!name->empty() && !is_file(*name) && differs_by_frame(*name))
+            return fmt::format("{}: taken as it is written; give --frames to render a sequence",
+                               printable(name->string(), 300));
+    return std::nullopt;
+}
+
+}  // namespace uw

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "cli/output_files.h"
+#include "core/scene_desc.h"
+
+namespace uw {
+
+/// One image of a run.
+struct Frame {
+    std::optional<int> number;  // none: the run renders the scene as it is, without --frames
+    OutputFiles files;
+};
+
+/// The images of a run, in the order they are rendered.
+struct FrameSequence {
+    std::vector<Frame> frames;
+    std::filesystem::path stats;  // one file about all of them; empty: none, or one each
+};
+
+/// What the arguments ask for. Throws UsageError for several frames to one name, and for a name
+/// whose ending is not that of its format.
+FrameSequence frames_of(const RenderArguments& arguments);
+
+/// `scene` with the frame's files in place of its sequences.
+SceneDesc scene_of_frame(const SceneDesc& scene, const Frame& frame);
+
+/// Looks at what all frames read and write before the first is rendered. Throws IoError that names
+/// all frames whose files are missing; InputError for a frame that does not go with the others (see
+/// VolumeSequenceCheck); what OutputCheck does.
+void check_frames(const FrameSequence& sequence, const SceneDesc& scene);
+
+/// Whether `frame`, one of a sequence, is there: all its files but the statistics are, the image is
+/// one that `is_image_of` accepts, and none of the frame's volumes and meshes is newer than it.
+bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
+                 const std::function<bool(const std::filesystem::path& image)>& is_image_of);
+
+/// A line of warning where names and frames do not go together though they can be rendered:
+/// frames that are all alike, or names with a place for a number where there are no frames.
+std::optional<std::string> frame_warning(const RenderArguments& arguments, const SceneDesc& scene);
+
+}  // namespace uw
