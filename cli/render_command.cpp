@@ -73,7 +73,7 @@ void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const Im
     }
     sequence.frames = std::move(left);
     if (!there.empty() && !quiet)
-        print_message(fmt::format("resume: {} {} {} there already, {} to render\n",
+        print_message(fmt::format("resume: {} {} {} there already, {} left\n",
                                   there.size() == 1 ? "frame" : "frames", format_frame_list(there),
                                   there.size() == 1 ? "is" : "are", sequence.frames.size()));
 }

@@ -29,8 +29,8 @@ TEST_F(CommandLine, HelpOfRenderNamesEveryOptionWithExamples) {
     EXPECT_NE(help.out.find("Usage: uwvdb render [OPTIONS] SCENE"), std::string::npos) << help.out;
     EXPECT_NE(help.out.find("Examples:\n  uwvdb render "), std::string::npos) << help.out;
     for (const char* option :
-         {"-o", "--set", "--size", "--crop", "--integrator", "--layers", "--samples", "--threads",
-          "--stats", "--irradiance-vdb", "--quiet"}) {
+         {"-o", "--frames", "--resume", "--set", "--size", "--crop", "--integrator", "--layers",
+          "--samples", "--threads", "--stats", "--irradiance-vdb", "--quiet"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
         // The page in docs is the other place to look.
         std::ifstream page(std::string(UWVDB_SOURCE_DIR) + "/docs/command-line.md");
