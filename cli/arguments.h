@@ -19,6 +19,7 @@ struct RenderArguments {
     std::string integrator;                  // empty: the scene's
     std::string layers;                      // empty: the default set
     std::optional<int> samples;
+    std::string quality;  // draft or final; empty: final
     int threads = 0;  // 0: all
     std::filesystem::path stats;
     std::filesystem::path irradiance_vdb;

@@ -16,6 +16,7 @@
 #include "cli/stats.h"
 #include "cli/stop_signal.h"
 #include "cli/version.h"
+#include "core/config_text.h"
 #include "core/error.h"
 #include "core/image_writer.h"
 #include "core/parallel.h"
@@ -32,6 +33,12 @@ RenderDesc::Integrator integrator_named(const std::string& name) {
         fmt::format("--integrator: unknown '{}'; use volume, planes or reference", name));
 }
 
+RenderDesc::Quality quality_named(const std::string& name) {
+    if (name == "final") return RenderDesc::Quality::final;
+    if (name == "draft") return RenderDesc::Quality::draft;
+    throw UsageError(fmt::format("--quality: unknown '{}'; use draft or final", printable(name)));
+}
+
 std::string name_of(RenderDesc::Integrator integrator) {
     return std::string(
         std::ranges::find(k_integrator_names, integrator,
@@ -40,6 +47,8 @@ std::string name_of(RenderDesc::Integrator integrator) {
 }
 
 void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
+    if (!a.quality.empty()) desc.render.quality = quality_named(a.quality);
+    if (desc.render.quality == RenderDesc::Quality::draft) desc.render.samples = 1;
     if (a.samples) desc.render.samples = *a.samples;
     if (!a.integrator.empty()) desc.render.integrator = integrator_named(a.integrator);
     if (!a.size) return;
@@ -68,10 +77,13 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
     for (const auto& phase : medium.phase_functions)
         phases += (phases.empty() ? "" : "; ") + phase->description();
     const std::string quantity = SensorModel(scene.desc).description();
+    const bool draft = scene.desc.render.quality == RenderDesc::Quality::draft;
+    const char* const quality = draft ? "draft" : "final";
     ImageMetadata m{{"software", "uwvdb " + program_version()},
                     {"uwvdb/scene", scene.desc.file.filename().string()},
                     {"uwvdb/scene_hash", scene.desc.hash},
                     {"uwvdb/integrator", name_of(scene.desc.render.integrator)},
+                    {"uwvdb/quality", std::string(quality)},
                     {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
                     {"uwvdb/seed", std::string("none: deterministic")},
                     {"uwvdb/rgb_quantity", quantity},
@@ -256,7 +268,7 @@ void run_render(const RenderArguments& a) {
     if (volume || !files.irradiance_vdb.empty()) {
         Progress progress("splat", "lamps", static_cast<double>(scene.lamps.size()), a.quiet);
         light_fields =
-            splat_lamps(scene, LightFieldOptions{}, [&](double share) { progress.update(share); });
+            splat_lamps(scene, light_field_options(desc.render.quality), [&](double share) { progress.update(share); });
     }
 
     stats.begin_stage("render");

@@ -18,6 +18,7 @@ constexpr double k_offset_depth = 0.6;  // optical depth
 // How far water mixed from pixels around may be from its own (WaterLattice), relative, where the
 // lattice is confirmed; what is shown is mixed from nearer ones: a quarter of it.
 constexpr double k_water_tolerance = 1e-3;
+constexpr double k_draft_tolerance = 0.04;
 
 // Parts of such a layer that the middle of its light is found from.
 constexpr int k_cells = 2;
@@ -109,6 +110,14 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     return setup;
 }
 
+LightFieldOptions light_field_options(RenderDesc::Quality quality) {
+    LightFieldOptions options;
+    if (quality == RenderDesc::Quality::final) return options;
+    options.shadow_resolution = 128;
+    options.columns_per_voxel = 0.75;
+    return options;
+}
+
 void render_scene(const AssembledScene& scene, const LightFields& light_fields,
                   const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const PassProgress& progress) {
@@ -119,7 +128,8 @@ void render_scene(const AssembledScene& scene, const LightFields& light_fields,
                                  scene.slabs, SensorModel(scene.desc), parts);
     // The others are for comparison: every pixel by itself.
     const bool volume = scene.desc.render.integrator == RenderDesc::Integrator::volume;
-    const double tolerance = volume ? k_water_tolerance : 0;
+    const bool draft = scene.desc.render.quality == RenderDesc::Quality::draft;
+    const double tolerance = !volume ? 0 : draft ? k_draft_tolerance : k_water_tolerance;
     const auto told = [&progress](const std::string& pass) {
         return [&progress, pass](double fraction) { return progress(pass, fraction); };
     };

@@ -19,6 +19,9 @@ using LightFields = std::vector<std::shared_ptr<const LampLightField>>;
 /// Told how far a pass over the image is (0..1), from any thread; returns false to stop.
 using PassProgress = std::function<bool(const std::string& pass, double fraction)>;
 
+/// How finely lamps are splatted for an image of this quality.
+LightFieldOptions light_field_options(RenderDesc::Quality quality);
+
 /// Renders `scene` into `film` by `integrator`: the pass "render", and, with forward scatter on,
 /// the pass "forward scatter", for which the film's window must be the whole image.
 /// Throws Interrupted if `progress` returned false; InputError if there is not enough memory.

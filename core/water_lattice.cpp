@@ -7,9 +7,12 @@ namespace uw {
 
 namespace {
 
-// A node's distances may reach this far from the nearest to the farthest: over them a parabola
-// follows the in-scatter to 1e-4.
-constexpr double k_distance_ratio = 1.12;
+// How far a node's distances may reach beyond the nearest, relative: over them a parabola follows
+// the in-scatter to a tenth of the tolerance.
+double distance_reach(double tolerance) {
+    return 0.12 * std::cbrt(tolerance / 1e-3);
+}
+
 // Light darker than this share of the tile's mean is compared with that.
 constexpr double k_dark = 0.02;
 
@@ -25,6 +28,7 @@ WaterLattice::WaterLattice(const RaySource& rays, const RayWater& water, double 
     : rays_(rays),
       water_(water),
       tolerance_(tolerance),
+      distance_reach_(distance_reach(tolerance)),
       row_size_(water.row_size()),
       floor_(water.band_count()),
       mixed_(row_size_),
@@ -72,7 +76,7 @@ void WaterLattice::find_distances(int i, int j, Node& node) const {
             }
         }
         if (greatest == 0) return;
-        if (greatest > k_distance_ratio * least) continue;
+        if (greatest > (1 + distance_reach_) * least) continue;
         node.reach = reach;
         const bool alike = greatest <= (1 + 1e-9) * least;
         node.stops = alike ? 1 : k_stops;

@@ -70,6 +70,7 @@ class WaterLattice {
     const RaySource& rays_;
     const RayWater& water_;
     double tolerance_;
+    double distance_reach_;
     std::size_t row_size_;
 
     PixelWindow tile_;

@@ -9,6 +9,7 @@ namespace uw {
 /// How finely lamps are splatted.
 struct LightFieldOptions {
     int shadow_resolution = 512;               // texels along an edge of a cube face
+    double columns_per_voxel = 2;              // texels and steps of columns to a voxel's edge
     std::size_t column_budget = 256ull << 20;  // bytes of columns, all lamps of a scene together
 };
 
@@ -20,7 +21,7 @@ class LampLightField : public LightField {
     LampLightField(const ConcentrationField& field, const Surfaces& surfaces, const Point3& lamp,
                    const LightFieldOptions& options)
         : shadows_(surfaces, lamp, options.shadow_resolution),
-          columns_(field, lamp, options.column_budget) {}
+          columns_(field, lamp, options.columns_per_voxel, options.column_budget) {}
 
     void lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const override {
         shadows_.lit_intervals(ray, s_end, lit);
