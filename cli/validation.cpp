@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "camera/image_size.h"
+#include "cli/direct_sum.h"
 #include "core/planes_integrator.h"
 #include "core/quadrature_integrator.h"
 #include "core/reference_integrator.h"
@@ -22,6 +23,9 @@ constexpr double k_dark = 0.01;
 // lines between a ray's knots leave 0.2 %; this many tolerances.
 constexpr double k_rough_water = 3;
 
+// Slabs of the sum with forward scatter, which has no Richardson limit: TODO.
+constexpr int k_forward_planes = 512;
+
 const char* const k_volume = "volume";
 const char* const k_planes_limit = "planes, limit";
 const char* const k_constant_grid = "constant VDB";
@@ -29,8 +33,19 @@ const char* const k_quadrature = "quadrature";
 const char* const k_reference = "reference";
 const char* const k_volume_on_grids = "volume, own grids";
 const char* const k_reference_on_grids = "reference, own grids";
+const char* const k_direct_sum = "direct sum";
 
-using Component = std::vector<Spectrum> MethodImage::*;
+struct Component {
+    const char* name;
+    std::vector<Spectrum> MethodImage::*image;
+};
+const Component k_direct{"direct", &MethodImage::direct};
+const Component k_forward{"forward", &MethodImage::forward};
+const Component k_backscatter{"backscatter", &MethodImage::backscatter};
+
+std::string forward_scattered(const std::string& method) {
+    return method + ", forward scatter";
+}
 
 SceneDesc small_image(const SceneDesc& desc, int longest_side) {
     SceneDesc small = desc;
@@ -41,8 +56,10 @@ SceneDesc small_image(const SceneDesc& desc, int longest_side) {
     const int height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
     resize_image(camera, width, height);
     small.render.integrator = RenderDesc::Integrator::volume;
-    small.water.forward_scatter.K = 0;  // what is compared is the light before it is blurred
+    small.render.samples = 1;
+    // What is compared is the radiance in the water.
     small.render.output = RenderDesc::Output::radiance;
+    if (camera.port) camera.port->fresnel = camera.port->radiance_in_air = false;
     return small;
 }
 
@@ -82,31 +99,65 @@ class SceneTrial {
     SceneValidation run() {
         const auto start = std::chrono::steady_clock::now();
         const TrialScene trial = make_trial(desc_);
-        const TrialScene uniform =
-            desc_.volumes.empty() ? make_trial(desc_) : homogenised(trial, desc_);
+        TrialScene uniform = desc_.volumes.empty() ? make_trial(desc_) : homogenised(trial, desc_);
         result_.smooth = smooth_pixels(uniform);
-        render(k_volume, uniform, *on_trial(uniform));
-        render(k_quadrature, uniform,
-               QuadratureIntegrator(uniform.scene.lit(), k_quadrature_tolerance));
-        compare(k_volume, k_quadrature, k_all);
-        sum_planes(uniform);
-        compare(k_volume, k_planes_limit, k_smooth);
-        const TrialScene grid = with_constant_grid(uniform, desc_);
-        render(k_constant_grid, grid, *on_trial(grid));
-        compare(k_constant_grid, k_volume, k_all);
-        render(k_reference, uniform, ReferenceIntegrator(uniform.scene.lit()));
-        compare(k_volume, k_reference, k_smooth);
-        if (!desc_.volumes.empty()) {
-            render(k_volume_on_grids, trial, *on_trial(trial));
-            render(k_reference_on_grids, trial, ReferenceIntegrator(trial.scene.lit()));
-            compare(k_volume_on_grids, k_reference_on_grids, k_smooth, k_rough_water);
-        }
+        compare_before_forward_scatter(trial, uniform);
+        if (desc_.water.forward_scatter.K > 0) compare_forward_scatter(trial, std::move(uniform));
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         result_.seconds = elapsed.count();
         return std::move(result_);
     }
 
   private:
+    void compare_before_forward_scatter(const TrialScene& trial, const TrialScene& uniform) {
+        const std::vector<Component> components{k_direct, k_backscatter};
+        render(k_volume, uniform, *on_trial(uniform));
+        render(k_quadrature, uniform,
+               QuadratureIntegrator(uniform.scene.lit(), k_quadrature_tolerance));
+        compare(k_volume, k_quadrature, components, k_all);
+        sum_planes(uniform);
+        compare(k_volume, k_planes_limit, components, k_smooth);
+        const TrialScene grid = with_constant_grid(uniform, desc_, 1);
+        render(k_constant_grid, grid, *on_trial(grid));
+        compare(k_constant_grid, k_volume, components, k_all);
+        render(k_reference, uniform, ReferenceIntegrator(uniform.scene.lit()));
+        compare(k_volume, k_reference, components, k_smooth);
+        if (desc_.volumes.empty()) return;
+        render(k_volume_on_grids, trial, *on_trial(trial));
+        render(k_reference_on_grids, trial, ReferenceIntegrator(trial.scene.lit()));
+        compare(k_volume_on_grids, k_reference_on_grids, components, k_smooth, k_rough_water);
+    }
+
+    void compare_forward_scatter(const TrialScene& trial, TrialScene uniform) {
+        const std::vector<Component> components{k_forward, k_backscatter};
+        const std::string volume = forward_scattered(k_volume);
+        render_forward(volume, uniform, uniform.light_fields, *on_trial(uniform));
+        const std::string direct_sum = forward_scattered(k_direct_sum);
+        options_.say(result_.name + ": " + direct_sum);
+        result_.images[direct_sum] = forward_by_direct_sum(
+            uniform, QuadratureIntegrator(uniform.scene.lit(), k_quadrature_tolerance),
+            options_.proceed);
+        compare(volume, direct_sum, {k_forward}, k_all);
+        const TrialScene grid = with_constant_grid(uniform, desc_, 0.5);
+        const std::string constant_grid = forward_scattered(k_constant_grid);
+        render_forward(constant_grid, grid, grid.light_fields, *on_trial(grid));
+        compare(constant_grid, volume, components, k_all, 3);
+        const std::string reference = forward_scattered(k_reference);
+        render_forward(reference, uniform, {}, ReferenceIntegrator(uniform.scene.lit()));
+        compare(volume, reference, components, k_smooth);
+        if (!desc_.volumes.empty()) {
+            const std::string own = forward_scattered(k_volume_on_grids);
+            render_forward(own, trial, trial.light_fields, *on_trial(trial));
+            const std::string reference_own = forward_scattered(k_reference_on_grids);
+            render_forward(reference_own, trial, {}, ReferenceIntegrator(trial.scene.lit()));
+            compare(own, reference_own, components, k_smooth, k_rough_water);
+        }
+        const TrialScene planes = with_planes(std::move(uniform), desc_, k_forward_planes);
+        const std::string sum = forward_scattered("planes, " + std::to_string(k_forward_planes));
+        render_forward(sum, planes, {}, *make_integrator(planes.scene, {}));
+        compare(volume, sum, components, k_smooth, 3);
+    }
+
     std::unique_ptr<Integrator> on_trial(const TrialScene& trial) const {
         if (options_.volume) return options_.volume(trial.scene, trial.light_fields);
         return make_integrator(trial.scene, trial.light_fields);
@@ -117,18 +168,25 @@ class SceneTrial {
         result_.images[method] = render_method(trial, integrator, options_.proceed);
     }
 
+    void render_forward(const std::string& method, const TrialScene& trial,
+                        const std::vector<std::shared_ptr<const LampLightField>>& light_fields,
+                        const Integrator& integrator) {
+        options_.say(result_.name + ": " + method);
+        result_.images[method] =
+            render_forward_scatter(trial, light_fields, integrator, options_.proceed);
+    }
+
     // Methods that step over a shadow's edge are held to the largest difference where there is
     // none.
     enum Where { k_all, k_smooth };
 
-    void compare(const std::string& left, const std::string& right, Where where, double share = 1) {
+    void compare(const std::string& left, const std::string& right,
+                 const std::vector<Component>& components, Where where, double share = 1) {
         const std::vector<char> counted =
             where == k_smooth ? result_.smooth : std::vector<char>(result_.smooth.size(), 1);
         const auto count = static_cast<std::size_t>(std::count(counted.begin(), counted.end(), 1));
         const MethodImage& a = result_.images.at(left);
         const MethodImage& b = result_.images.at(right);
-        const std::pair<const char*, Component> components[] = {
-            {"direct", &MethodImage::direct}, {"backscatter", &MethodImage::backscatter}};
         for (const auto& [name, component] : components) {
             for (std::size_t band = 0; band < result_.bands_nm.size(); ++band) {
                 Check check{left,
@@ -153,9 +211,7 @@ class SceneTrial {
     void sum_planes(const TrialScene& uniform) {
         std::vector<MethodImage> sums;
         for (int count = k_fewest_planes; count <= options_.most_planes; count *= 2) {
-            PlanesDesc planes = desc_.render.planes;
-            planes.count = count;
-            const Slabs slabs = place_slabs(planes, *uniform.scene.camera, uniform.scene.lit());
+            const Slabs slabs = planes_of(uniform, desc_, count);
             const PlanesIntegrator integrator(uniform.scene.lit(),
                                               uniform.scene.camera->world_from_camera(), slabs);
             const std::string method = "planes, " + std::to_string(count);
