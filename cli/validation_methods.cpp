@@ -162,7 +162,9 @@ TrialScene with_planes(TrialScene trial, const SceneDesc& desc, int count) {
 MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
                           const std::function<bool()>& proceed) {
     const auto pixels = static_cast<std::size_t>(trial.width() * trial.height());
-    MethodImage image{std::vector<Spectrum>(pixels), {}, std::vector<Spectrum>(pixels)};
+    MethodImage image;
+    image.direct.resize(pixels);
+    image.backscatter.resize(pixels);
     const PixelRenderer renderer(*trial.scene.camera, trial.scene.lit(), integrator, 1,
                                  trial.scene.slabs);
     parallel_for(static_cast<std::size_t>(trial.height()), [&](std::size_t row) {
@@ -179,30 +181,30 @@ MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
     return image;
 }
 
-MethodImage render_forward_scatter(
-    const TrialScene& trial, const std::vector<std::shared_ptr<const LampLightField>>& light_fields,
-    const Integrator& integrator, const std::function<bool()>& proceed) {
+void render_forward_scatter(const TrialScene& trial,
+                            const std::vector<std::shared_ptr<const LampLightField>>& light_fields,
+                            const Integrator& integrator, const std::function<bool()>& proceed,
+                            MethodImage& image) {
     const SceneDesc& desc = trial.scene.desc;
     std::vector<std::string> lamps;  // not asked for by name
     for (std::size_t j = 0; j < desc.lamps.size(); ++j) lamps.push_back(std::to_string(j));
-    const LayerPlan plan("direct,forward,backscatter", desc.water.bands_nm, lamps);
+    const LayerPlan plan("forward,backscatter", desc.water.bands_nm, lamps);
     Film film(trial.width(), trial.height(), {0, 0, trial.width(), trial.height()},
               plan.channel_names());
     render_scene(trial.scene, light_fields, integrator, plan, BandColour(desc.water.bands_nm), film,
                  [&](const std::string&, double) { return proceed(); });
-    const auto layer = [&](Layer which) {
-        const auto first = static_cast<std::size_t>(plan.first_channel(which));
-        std::vector<Spectrum> image;
+    const auto read = [&](Layer layer, std::vector<Spectrum>& component) {
+        const auto first = static_cast<std::size_t>(plan.first_channel(layer));
         for (int y = 0; y < film.height(); ++y) {
             for (int x = 0; x < film.width(); ++x) {
-                Spectrum& pixel = image.emplace_back();
+                Spectrum& pixel = component.emplace_back();
                 for (std::size_t band = 0; band < desc.water.bands_nm.size(); ++band)
                     pixel[band] = static_cast<double>(film.pixel(x, y)[first + band]);
             }
         }
-        return image;
     };
-    return {layer(Layer::direct), layer(Layer::forward), layer(Layer::backscatter)};
+    read(Layer::forward, image.forward);
+    read(Layer::backscatter, image.blurred_backscatter);
 }
 
 std::vector<char> smooth_pixels(const TrialScene& trial) {

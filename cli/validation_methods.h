@@ -10,11 +10,11 @@
 namespace uw {
 
 /// What a method says of every pixel of a scene, row by row, one sample at each pixel's centre
-/// [W m^-2 sr^-1]. A component that the method says nothing of is empty.
+/// [W m^-2 sr^-1]. Components that the method says nothing of are empty.
 struct MethodImage {
-    std::vector<Spectrum> direct;
-    std::vector<Spectrum> forward;  // what forward scatter adds to it
-    std::vector<Spectrum> backscatter;
+    std::vector<Spectrum> direct, backscatter;  // before forward scatter
+    std::vector<Spectrum> forward;              // what forward scatter adds to `direct`
+    std::vector<Spectrum> blurred_backscatter;  // with forward scatter
 };
 
 /// Makes the integrator that is on trial; tests slip in wrong ones here.
@@ -52,16 +52,17 @@ Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count);
 /// `trial`, whose water is uniform, to be rendered by a sum over planes_of.
 TrialScene with_planes(TrialScene trial, const SceneDesc& desc, int count);
 
-/// Renders every pixel with `integrator` before forward scatter: `forward` stays empty. Stops with
-/// Interrupted when `proceed` says no.
+/// Renders every pixel with `integrator` before forward scatter. Stops with Interrupted when
+/// `proceed` says no.
 MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
                           const std::function<bool()>& proceed);
 
-/// Likewise with forward scatter, the way `uwvdb render` does it: `forward` is filled, and
-/// `backscatter` blurred. `light_fields` are those that `integrator` gathers from, if any.
-MethodImage render_forward_scatter(
-    const TrialScene& trial, const std::vector<std::shared_ptr<const LampLightField>>& light_fields,
-    const Integrator& integrator, const std::function<bool()>& proceed);
+/// Likewise with forward scatter, as `uwvdb render` does it: fills the other two components of
+/// `image`. `light_fields` are those that `integrator` gathers from, if any.
+void render_forward_scatter(const TrialScene& trial,
+                            const std::vector<std::shared_ptr<const LampLightField>>& light_fields,
+                            const Integrator& integrator, const std::function<bool()>& proceed,
+                            MethodImage& image);
 
 /// Pixels whose water ray meets no shadow edge and no hard edge of a lamp's beam, row by row: where
 /// a sum over slabs converges as their thickness squared.

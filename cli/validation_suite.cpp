@@ -42,9 +42,14 @@ WaterDesc kopelevich() {
     return water;
 }
 
-// A blur of up to a tenth of the picture's width.
+// Strong, and some pixels wide at the wall.
 ForwardScatterDesc forward_scatter(ForwardScatterDesc::Shape shape) {
-    return {.K = 1, .G = 0.02, .B = 0.15, .shape = shape};
+    ForwardScatterDesc desc;
+    desc.K = 1;
+    desc.G = 0.02;
+    desc.B = 0.1;
+    desc.shape = shape;
+    return desc;
 }
 
 LampDesc lamp(const std::string& name, const Point3& position, double intensity) {
