@@ -163,16 +163,15 @@ class DirectSum {
         const double per_pixel = desc_.B * range / (2 * std::numbers::pi);
         const Kernel kernel(desc_.shape, plane_.focal_x * per_pixel, plane_.focal_y * per_pixel,
                             reach);
-        std::vector<int> columns;
+        std::vector<std::size_t> columns;
         for (int across = -reach; across <= reach; ++across)
-            columns.push_back(mirrored(x + across, trial_.width()));
+            columns.push_back(static_cast<std::size_t>(mirrored(x + across, trial_.width())));
         std::vector<double> shares(pixels_, kernel.outside() / static_cast<double>(pixels_));
         for (int down = -reach; down <= reach; ++down) {
-            const int row = mirrored(y + down, trial_.height()) * trial_.width();
-            for (int across = -reach; across <= reach; ++across)
-                shares[static_cast<std::size_t>(
-                    row + columns[static_cast<std::size_t>(across + reach)])] +=
-                    kernel.share(across, down);
+            const auto row = static_cast<std::size_t>(mirrored(y + down, trial_.height()));
+            double* const into = shares.data() + row * static_cast<std::size_t>(trial_.width());
+            for (std::size_t i = 0; i < columns.size(); ++i)
+                into[columns[i]] += kernel.share(static_cast<int>(i) - reach, down);
         }
         for (std::size_t i = 0; i < pixels_; ++i)
             for (std::size_t b = 0; b < bands_; ++b) image[i][b] += shares[i] * scattered[b];

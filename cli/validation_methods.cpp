@@ -161,7 +161,8 @@ TrialScene with_planes(TrialScene trial, const SceneDesc& desc, int count) {
 
 MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
                           const std::function<bool()>& proceed) {
-    const auto pixels = static_cast<std::size_t>(trial.width() * trial.height());
+    const auto pixels =
+        static_cast<std::size_t>(trial.width()) * static_cast<std::size_t>(trial.height());
     MethodImage image;
     image.direct.resize(pixels);
     image.backscatter.resize(pixels);

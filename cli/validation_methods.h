@@ -34,7 +34,8 @@ struct TrialScene {
 /// Assembles `desc` and splats its lamps.
 TrialScene make_trial(const SceneDesc& desc);
 
-/// `trial` with its grids replaced by their mean over the field's bounds: uniform water.
+/// `trial` with its grids replaced by their mean over the field's bounds: uniform water, which
+/// scatters forward with the scene's K, G and B.
 /// `desc` is the description that `trial` was made from.
 TrialScene homogenised(const TrialScene& trial, const SceneDesc& desc);
 

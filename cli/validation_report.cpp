@@ -24,7 +24,8 @@ constexpr int k_picture_width = 288;  // of one picture on the page [CSS pixels]
 constexpr const char* k_style =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;"
     "color:#222}table{border-collapse:collapse;margin:1em 0}td,th{padding:.15em .8em;"
-    "border-bottom:1px solid #ddd;text-align:left}td.n{text-align:right;font-variant-numeric:"
+    "border-bottom:1px solid "
+    "#ddd;text-align:left}td.n{text-align:right;white-space:nowrap;font-variant-numeric:"
     "tabular-nums}.failed{color:#c00;font-weight:bold}.passed{color:#070}figure{display:"
     "inline-block;margin:0 1em 1em "
     "0;vertical-align:top}figcaption{font-size:13px;max-width:288px}img{image-"
@@ -220,7 +221,7 @@ std::string section_of(const SceneValidation& scene, Pictures& pictures) {
         100 * static_cast<double>(smooth) / static_cast<double>(scene.smooth.size()),
         scene.seconds);
     html += table_of(scene);
-    html += pictures_of(scene, k_before, "Pictures before forward scatter", pictures);
+    html += pictures_of(scene, k_before, "Pictures", pictures);
     html += pictures_of(scene, k_scattered, "Pictures with forward scatter", pictures);
     html +=
         pictures_of(scene, {k_forward}, "What forward scatter adds to the direct light", pictures);
@@ -261,7 +262,7 @@ void write_validation_report(const std::filesystem::path& file,
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>uwvdb validate"
         "</title><style>{}</style></head><body>\n<h1>uwvdb validate</h1>\n<p>uwvdb {}. Every way "
         "of computing a scene against the others; tolerances are of the largest relative "
-        "difference, the RMS may be three times as much.</p>\n",
+        "difference, the RMS may be three times what was asked for.</p>\n",
         k_style, program_version());
     for (const SceneValidation& scene : scenes) html += section_of(scene, pictures);
     html += "</body></html>\n";
