@@ -75,7 +75,7 @@ ImageMetadata metadata_of(const AssembledScene& scene) {
                     {"uwvdb/samples", static_cast<double>(scene.desc.render.samples)},
                     {"uwvdb/seed", std::string("none: deterministic")},
                     {"uwvdb/rgb_quantity", quantity},
-                    {"uwvdb/units", quantity + ", irradiance W m^-2, metres"},
+                    {"uwvdb/units", quantity + ", irradiance and exitance W m^-2, metres"},
                     {"uwvdb/bands_nm", band_list(medium.wavelengths_nm)},
                     {"uwvdb/water_absorption_per_m", band_list(a)},
                     {"uwvdb/water_scattering_per_m", band_list(b)},

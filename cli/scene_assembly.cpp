@@ -39,17 +39,9 @@ void warn_of_lamps_at_the_camera(AssembledScene& scene) {
     }
 }
 
-// The blur is that of radiance in water; factors that the port or the lens puts on each pixel would
-// have to follow it.
 void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
     const ForwardScatterDesc& desc = scene.water.forward_scatter;
     if (desc.K == 0) return;
-    const bool port =
-        scene.camera.port && (scene.camera.port->fresnel || scene.camera.port->radiance_in_air);
-    if (port || scene.render.output != RenderDesc::Output::radiance)
-        throw InputError(fmt::format(
-            "{}: not supported yet together with {}; set one of the two off", desc.where,
-            port ? "camera.port.fresnel and radiance_in: air" : "render.output"));
     std::vector<double> attenuation;
     for (int band = 0; band < medium.band_count(); ++band)
         attenuation.push_back(medium.uniform.attenuation(band));

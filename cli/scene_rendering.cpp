@@ -17,6 +17,9 @@ namespace {
 constexpr double k_growth = 0.06;
 constexpr double k_offset = 0.3;        // m
 constexpr double k_offset_depth = 0.6;  // optical depth
+// How far water mixed from pixels around may be from its own (WaterLattice), relative, where the
+// lattice is confirmed; what is shown is mixed from nearer ones: a quarter of it.
+constexpr double k_water_tolerance = 1e-3;
 
 std::vector<double> growing_layers(double near, double far, double attenuation) {
     double offset = k_offset;
@@ -88,6 +91,7 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     setup.desc = scene.desc.water.forward_scatter;
     setup.plane = scatter_plane(*scene.camera);
     setup.faces = layer_faces(scene);
+    setup.sensor = SensorModel(scene.desc);
     setup.first = {scene.slabs.boundary(0), scene.slabs.boundary(1)};
     const ConcentrationField* field = scene.field.get();
     const std::vector<Lamp>* lamps = &scene.lamps;
@@ -104,20 +108,28 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
 void render_scene(const AssembledScene& scene, const LightFields& light_fields,
                   const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const PassProgress& progress) {
+    WaterParts parts{false, plan.has(Layer::backscatter_first)};
+    for (std::size_t j = 0; j < scene.lamps.size(); ++j)
+        if (plan.first_channel_of_lamp(j) >= 0) parts.lamps = true;
     const PixelRenderer renderer(*scene.camera, scene.lit(), integrator, scene.desc.render.samples,
-                                 scene.slabs, SensorModel(scene.desc));
+                                 scene.slabs, SensorModel(scene.desc), parts);
+    // The others are for comparison: every pixel by itself.
+    const bool volume = scene.desc.render.integrator == RenderDesc::Integrator::volume;
+    const double tolerance = volume ? k_water_tolerance : 0;
     const auto told = [&progress](const std::string& pass) {
         return [&progress, pass](double fraction) { return progress(pass, fraction); };
     };
     if (scene.desc.water.forward_scatter.K == 0) {
-        render_film(renderer, plan, colour, film, told("render"));
+        render_film(renderer, tolerance, plan, colour, film, told("render"));
         return;
     }
     const ForwardScatterSetup setup = forward_scatter_setup(scene, light_fields);
     ForwardPass forward(renderer, scene.lit(), integrator, scene.camera->world_from_camera(), setup,
                         plan);
-    render_film(renderer, plan, colour, film, told("render"),
-                [&](int x, int y, const PixelResult& result) { forward.keep(x, y, result); });
+    render_film(renderer, tolerance, plan, colour, film, told("render"),
+                [&](int x, int y, const PixelView& view, const PixelResult& result) {
+                    forward.keep(x, y, view, result);
+                });
     forward.run(told("forward scatter"));
     forward.write(plan, colour, film);
 }

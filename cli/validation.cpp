@@ -29,9 +29,12 @@ constexpr double k_rough_water = 3;
 // mean are compared with it.
 constexpr double k_mixed_kernels = 10;
 constexpr double k_dark_in_mixtures = 1;
-// Water that a surface cuts in the middle of a layer lights the whole layer of its neighbours; at
-// the edge of a box this leaves 0.25 %, which is of first order in the thickness of the layers.
-constexpr double k_cut_layers = 3;
+// Water that a surface cuts in the middle of a layer lights the whole layer of its neighbours: at
+// depth edges this leaves an error of first order in the layers' thickness, 0.23 % in the suite
+// and 0.4 % in assets/scenes/plume with K = 1. Slabs are thin and make nearly all of it visible;
+// water that is half in a VDB has layers of the same kind in other places.
+constexpr double k_cut_layers = 5;
+constexpr double k_other_layers = 3;
 // Pixels darker than this share of the mean are compared with it, otherwise.
 constexpr double k_dark = 0.01;
 
@@ -109,11 +112,12 @@ class SceneTrial {
 
     SceneValidation run() {
         const auto start = std::chrono::steady_clock::now();
-        const TrialScene trial = make_trial(desc_);
+        TrialScene trial = make_trial(desc_);
         TrialScene uniform = desc_.volumes.empty() ? make_trial(desc_) : homogenised(trial, desc_);
         result_.smooth = smooth_pixels(uniform);
         compare_before_forward_scatter(trial, uniform);
-        if (desc_.water.forward_scatter.K > 0) compare_forward_scatter(trial, std::move(uniform));
+        if (desc_.water.forward_scatter.K > 0)
+            compare_forward_scatter(std::move(trial), std::move(uniform));
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         result_.seconds = elapsed.count();
         return std::move(result_);
@@ -140,7 +144,7 @@ class SceneTrial {
                 {.where = k_smooth, .tolerances = k_rough_water});
     }
 
-    void compare_forward_scatter(const TrialScene& trial, TrialScene uniform) {
+    void compare_forward_scatter(TrialScene trial, TrialScene uniform) {
         const std::vector<Component> both{k_forward, k_blurred_backscatter};
         scatter(k_volume, uniform, uniform.light_fields, *on_trial(uniform));
         options_.say(result_.name + ": " + k_direct_sum);
@@ -150,18 +154,18 @@ class SceneTrial {
         compare(k_volume, k_direct_sum, {k_forward},
                 {.tolerances = k_mixed_kernels, .dark = k_dark_in_mixtures});
         compare_half_constant_grid(uniform);
-        scatter(k_reference, uniform, {}, ReferenceIntegrator(uniform.scene.lit()));
+        scatter_without_splats(k_reference, uniform, RenderDesc::Integrator::reference);
         compare(k_volume, k_reference, both, {.where = k_smooth});
         if (!desc_.volumes.empty()) {
             scatter(k_volume_on_grids, trial, trial.light_fields, *on_trial(trial));
-            scatter(k_reference_on_grids, trial, {}, ReferenceIntegrator(trial.scene.lit()));
+            scatter_without_splats(k_reference_on_grids, trial, RenderDesc::Integrator::reference);
             compare(k_volume_on_grids, k_reference_on_grids, both,
                     {.where = k_smooth, .tolerances = k_rough_water});
         }
         const int finest = result_.planes.back().count;
-        const TrialScene planes = with_planes(std::move(uniform), desc_, finest);
+        uniform.scene.slabs = planes_of(uniform, desc_, finest);
         const std::string sum = planes_name(finest);
-        scatter(sum, planes, {}, *make_integrator(planes.scene, {}));
+        scatter_without_splats(sum, uniform, RenderDesc::Integrator::planes);
         compare(k_volume, sum, both, {.where = k_smooth, .tolerances = k_cut_layers});
     }
 
@@ -176,7 +180,7 @@ class SceneTrial {
         const TrialScene grid = with_constant_grid(uniform, desc_, 0.5);
         scatter(k_constant_grid, grid, grid.light_fields, *on_trial(grid));
         compare(k_constant_grid, k_volume, {k_forward, k_blurred_backscatter},
-                {.tolerances = k_cut_layers});
+                {.tolerances = k_other_layers});
     }
 
     std::unique_ptr<Integrator> on_trial(const TrialScene& trial) const {
@@ -195,6 +199,13 @@ class SceneTrial {
         options_.say(result_.name + ": " + method + ", forward scatter");
         render_forward_scatter(trial, light_fields, integrator, options_.proceed,
                                result_.images[method]);
+    }
+
+    // Likewise by an integrator that takes light and columns from no splats.
+    void scatter_without_splats(const std::string& method, TrialScene& trial,
+                                RenderDesc::Integrator which) {
+        trial.scene.desc.render.integrator = which;
+        scatter(method, trial, {}, *make_integrator(trial.scene, {}));
     }
 
     // Methods that step over a shadow's edge are held to the largest difference where there is

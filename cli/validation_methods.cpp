@@ -153,12 +153,6 @@ Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count) {
     return place_slabs(planes, *trial.scene.camera, trial.scene.lit());
 }
 
-TrialScene with_planes(TrialScene trial, const SceneDesc& desc, int count) {
-    trial.scene.slabs = planes_of(trial, desc, count);
-    trial.scene.desc.render.integrator = RenderDesc::Integrator::planes;
-    return trial;
-}
-
 MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
                           const std::function<bool()>& proceed) {
     const auto pixels =

@@ -50,9 +50,6 @@ TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc, do
 /// `count` of McGlamery's planes in the water of `trial`, placed as `desc` says.
 Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count);
 
-/// `trial`, whose water is uniform, to be rendered by a sum over planes_of.
-TrialScene with_planes(TrialScene trial, const SceneDesc& desc, int count);
-
 /// Renders every pixel with `integrator` before forward scatter. Stops with Interrupted when
 /// `proceed` says no.
 MethodImage render_method(const TrialScene& trial, const Integrator& integrator,

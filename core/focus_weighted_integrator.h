@@ -16,10 +16,18 @@ class FocusWeightedIntegrator final : public Integrator {
     FocusWeightedIntegrator(std::unique_ptr<Integrator> integrator, double focal_length);
 
     void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
+    void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                         InScatter& result) const override;
     /// The other integrator's, unweighted: see SensorModel::surface_factor.
     void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
 
   private:
+    // The ends and the slices' faces between `begin` and the last of them, ascending.
+    void find_stops(double begin, std::span<const double> ends, std::vector<double>& stops) const;
+    // Sums what `unweighted` holds up to each of `stops`, weighted, up to each of `ends`.
+    void weigh(double begin, std::span<const double> stops, const InScatter& unweighted,
+               std::span<const double> ends, InScatter& result) const;
+
     std::unique_ptr<Integrator> integrator_;
     double focal_length_;
     std::vector<double> faces_;  // of the slices [m], ascending

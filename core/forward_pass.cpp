@@ -47,7 +47,7 @@ void check_memory(const ScatterPlane& plane, std::size_t values_per_pixel) {
 /// One layer of water as images.
 struct ForwardPass::Layer {
     std::vector<std::vector<ImagePlane>> light;  // [component][band]: E_s
-    std::vector<ImagePlane> weight;              // per band [m]
+    std::vector<ImagePlane> weight;              // per band [m]: light at the camera per E_s
     PathImage from_lamps, to_camera;
 };
 
@@ -59,7 +59,8 @@ ForwardPass::ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
       integrator_(integrator),
       setup_(setup),
       lamp_paths_(scene, setup.lamp_column),
-      water_(scene, integrator, lamp_paths_, world_from_camera, setup.faces, setup.cells),
+      water_(scene, integrator, lamp_paths_, world_from_camera, setup.faces, setup.cells,
+             setup.sensor),
       bands_(static_cast<std::size_t>(renderer.band_count())),
       pixels_(static_cast<std::size_t>(setup.plane.width) *
               static_cast<std::size_t>(setup.plane.height)),
@@ -72,25 +73,27 @@ ForwardPass::ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
     for (const std::size_t j : lamps)
         if (plan.first_channel_of_lamp(j) >= 0) groups.push_back({j});
     const std::size_t constituents = scene.medium->constituents.size();
-    check_memory(setup.plane, 5 + groups.size() * 4 * bands_ + 3 * bands_ + 4 * constituents);
+    check_memory(setup.plane, 7 + groups.size() * 4 * bands_ + 3 * bands_ + 4 * constituents);
     for (const auto& group : groups)
         components_.push_back(
             {group, planes(bands_, pixels_), planes(bands_, pixels_), planes(bands_, pixels_)});
     first_ = planes(bands_, pixels_);
     response_ = planes(bands_, pixels_);
     alpha_.resize(pixels_);
+    pixel_factor_.resize(pixels_, 1.0);
     from_lamps_ = PathImage(pixels_, constituents);
     to_camera_ = PathImage(pixels_, constituents);
     added_.resize(pixels_);
     light_.resize(pixels_);
 }
 
-void ForwardPass::keep(int x, int y, const PixelResult& result) {
+void ForwardPass::keep(int x, int y, const PixelView& view, const PixelResult& result) {
     const std::size_t i = pixel(x, y);
     alpha_[i] = static_cast<float>(result.alpha);
+    pixel_factor_[i] = result.pixel_factor;
     for (std::size_t b = 0; b < bands_; ++b)
-        components_[0].water[b][i] = static_cast<float>(result.backscatter[b]);
-    keep_surfaces(x, y, result);
+        components_[0].water[b][i] = static_cast<float>(result.backscatter[b] * factor_before(i));
+    if (!view.samples.empty()) keep_surfaces(i, view, result);
 }
 
 /// Sums over the samples of one pixel.
@@ -98,39 +101,36 @@ struct ForwardPass::SurfaceSums {
     Spectrum response{};
     std::vector<Spectrum> irradiance, direct;  // per component
     WaterPath from_lamps, to_camera;
-    int hits = 0;
 };
 
-void ForwardPass::keep_surfaces(int x, int y, const PixelResult& result) {
+void ForwardPass::keep_surfaces(std::size_t i, const PixelView& view, const PixelResult& result) {
     SurfaceSums sums;
     sums.irradiance.resize(components_.size());
     sums.direct.resize(components_.size());
     sums.from_lamps.reset(scene_.medium->constituents.size());
     sums.to_camera.reset(scene_.medium->constituents.size());
-    renderer_.visit_hits(
-        x, y, [&](const Ray& ray, const SurfaceHit& hit) { add_surface(ray, hit, sums); });
-    if (sums.hits == 0) return;
-    const std::size_t i = pixel(x, y);
+    for (const PixelView::Sample& sample : view.samples) add_surface(sample, sums);
+    const double factor = factor_before(i);
     for (std::size_t b = 0; b < bands_; ++b) {
-        response_[b][i] = as_light(sums.response[b]);
+        response_[b][i] = as_light(sums.response[b] * factor);
         for (std::size_t c = 0; c < components_.size(); ++c) {
             components_[c].forward[b][i] = as_light(sums.irradiance[c][b]);
-            components_[c].direct[b][i] = as_light(sums.direct[c][b]);
+            components_[c].direct[b][i] = as_light(sums.direct[c][b] * factor);
         }
-        // The very number that the first pass has written.
-        components_[0].direct[b][i] = as_light(result.direct[b]);
+        components_[0].direct[b][i] = as_light(result.direct[b] * factor);
     }
     const auto set_mean = [&](const WaterPath& sum, PathImage& image) {
         WaterPath mean;
         mean.reset(sum.columns.size());
-        mean.add(1.0 / sums.hits, sum.length, sum.columns);
+        mean.add(1.0 / static_cast<double>(view.samples.size()), sum.length, sum.columns);
         image.set(i, mean);
     };
     set_mean(sums.from_lamps, from_lamps_);
     set_mean(sums.to_camera, to_camera_);
 }
 
-void ForwardPass::add_surface(const Ray& ray, const SurfaceHit& hit, SurfaceSums& sums) const {
+void ForwardPass::add_surface(const PixelView::Sample& sample, SurfaceSums& sums) const {
+    const auto& [ray, hit] = sample;
     thread_local SurfaceLight light;
     thread_local std::vector<double> column;
     integrator_.surface_light(ray, hit, light);
@@ -138,10 +138,11 @@ void ForwardPass::add_surface(const Ray& ray, const SurfaceHit& hit, SurfaceSums
     if (!column.empty()) scene_.field->column(ray.origin, hit.position, column);
     sums.to_camera.add(1, hit.distance, column);
     lamp_paths_.add_mean(1, hit.position, sums.from_lamps);
-    ++sums.hits;
     const double share = 1.0 / renderer_.samples();
+    const double seen = setup_.sensor.surface_factor(hit.distance);
     for (std::size_t b = 0; b < bands_; ++b) {
-        const double factor = hit.reflectance[b] * std::numbers::inv_pi * light.transmittance[b];
+        const double factor =
+            hit.reflectance[b] * std::numbers::inv_pi * seen * light.transmittance[b];
         sums.response[b] += share * factor;
         for (std::size_t c = 0; c < components_.size(); ++c) {
             for (const std::size_t j : components_[c].lamps) {
@@ -197,23 +198,26 @@ void ForwardPass::scatter_surfaces() {
 
 void ForwardPass::gather(std::size_t first, std::vector<Layer>& layers) const {
     for_each_row(setup_.plane, [&](std::size_t y) {
-        thread_local PixelRenderer::WaterEnds ends;
+        thread_local PixelView view;
         thread_local std::vector<LayerLight> lights;
         for (int x = 0; x < setup_.plane.width; ++x) {
-            const std::optional<Ray> ray = renderer_.water(x, static_cast<int>(y), ends);
-            if (ray)
-                water_.gather(*ray, ends.ends, ends.shares, first, first + layers.size(), lights);
+            renderer_.look(x, static_cast<int>(y), view);
+            if (view.ray)
+                water_.gather(*view.ray, view.ends, view.shares, first, first + layers.size(),
+                              lights);
             const std::size_t i = pixel(x, static_cast<int>(y));
             for (std::size_t n = 0; n < layers.size(); ++n)
-                store(ray ? &lights[n] : nullptr, i, layers[n]);
+                store(view.ray ? &lights[n] : nullptr, i, layers[n]);
         }
     });
 }
 
 void ForwardPass::store(const LayerLight* from, std::size_t i, Layer& layer) const {
+    constexpr double k_least = std::numeric_limits<float>::min();
+    const double factor = factor_before(i);
     for (std::size_t b = 0; b < bands_; ++b) {
-        layer.weight[b][i] = from != nullptr ? static_cast<float>(from->weight[b]) : 0.0F;
-        const bool seen = layer.weight[b][i] > std::numeric_limits<float>::min();
+        layer.weight[b][i] = from != nullptr ? static_cast<float>(from->weight[b] * factor) : 0.0F;
+        const bool seen = from != nullptr && from->weight[b] > k_least;
         for (std::size_t c = 0; c < components_.size(); ++c) {
             double sum = 0;
             for (const std::size_t j : components_[c].lamps)
@@ -251,6 +255,10 @@ void ForwardPass::write(const LayerPlan& plan, const BandColour& colour, Film& f
     for_each_row(setup_.plane, [&](std::size_t y) {
         for (int x = 0; x < setup_.plane.width; ++x) {
             const std::size_t i = pixel(x, static_cast<int>(y));
+            const double factor = factor_after(i);
+            const auto seen = [factor](float light) {
+                return static_cast<float>(static_cast<double>(light) * factor);
+            };
             const std::span<float> channels = film.pixel(x, static_cast<int>(y));
             const auto set = [&](uw::Layer which, std::size_t b, float value, bool add) {
                 if (!plan.has(which)) return;
@@ -260,16 +268,20 @@ void ForwardPass::write(const LayerPlan& plan, const BandColour& colour, Film& f
             Spectrum total{};
             for (std::size_t b = 0; b < bands_; ++b) {
                 const Component& all = components_[0];
-                const float sum = all.direct[b][i] + all.forward[b][i] + all.water[b][i];
+                // Rounded before they are added: their sum is the total to the bit.
+                const float direct = seen(all.direct[b][i]), forward = seen(all.forward[b][i]);
+                const float water = seen(all.water[b][i]);
+                const float sum = direct + forward + water;
                 total[b] = static_cast<double>(sum);
                 set(uw::Layer::total, b, sum, false);
-                set(uw::Layer::forward, b, all.forward[b][i], false);
-                set(uw::Layer::backscatter, b, all.water[b][i], false);
-                set(uw::Layer::backscatter_first, b, first_[b][i], true);
+                set(uw::Layer::direct, b, direct, false);
+                set(uw::Layer::forward, b, forward, false);
+                set(uw::Layer::backscatter, b, water, false);
+                set(uw::Layer::backscatter_first, b, seen(first_[b][i]), true);
                 for (std::size_t c = 1; c < components_.size(); ++c) {
                     const int first = plan.first_channel_of_lamp(components_[c].lamps[0]);
                     channels[static_cast<std::size_t>(first) + b] +=
-                        components_[c].forward[b][i] + components_[c].water[b][i];
+                        seen(components_[c].forward[b][i]) + seen(components_[c].water[b][i]);
                 }
             }
             const LinearRgb rgb = colour(total);

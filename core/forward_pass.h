@@ -9,6 +9,7 @@
 #include "core/layers.h"
 #include "core/pixel_renderer.h"
 #include "core/render_film.h"
+#include "core/sensor.h"
 #include "core/water_layers.h"
 
 namespace uw {
@@ -22,6 +23,7 @@ struct ForwardScatterSetup {
     int cells = 1;   // WaterLayers
     Interval first;  // camera z of the water of `backscatter_first`; its ends are faces
     LampPaths::PointColumn lamp_column;
+    SensorModel sensor;  // the renderer's
 };
 
 /// Forward scatter of a rendered image in the paper's four places (physics section 6), a second
@@ -33,6 +35,9 @@ struct ForwardScatterSetup {
 ///     (18)  L_b   = sum_i L_i + L_i * g(R_i)  each layer's way to the camera, with (17) in it
 ///
 /// What (14) and (16) add is the layer `forward`; what (17) and (18) add belongs to `backscatter`.
+/// It is radiance in water that is blurred, and the pixel where it lands has its factor
+/// (PixelResult::pixel_factor); in the paper's output (16) and (18) blur what has the factors of
+/// the pixel it comes from.
 /// Layers of water are taken a few at a time: memory does not grow with their number. The result
 /// does not depend on the number of threads.
 class ForwardPass {
@@ -43,7 +48,7 @@ class ForwardPass {
                 const LayerPlan& plan);
 
     /// Keeps what pixel (x, y) of the first pass needs in the second. From any thread.
-    void keep(int x, int y, const PixelResult& result);
+    void keep(int x, int y, const PixelView& view, const PixelResult& result);
 
     /// Scatters all that was kept. Throws Interrupted if `progress` returned false.
     void run(const ProgressCallback& progress);
@@ -62,10 +67,17 @@ class ForwardPass {
     struct Layer;
     struct SurfaceSums;
 
-    void keep_surfaces(int x, int y, const PixelResult& result);
-    void add_surface(const Ray& ray, const SurfaceHit& hit, SurfaceSums& sums) const;
+    void keep_surfaces(std::size_t i, const PixelView& view, const PixelResult& result);
+    void add_surface(const PixelView::Sample& sample, SurfaceSums& sums) const;
     void scatter_surfaces();
     void gather(std::size_t first, std::vector<Layer>& layers) const;
+    // What light of pixel `i` is multiplied by before and after its blur on the way to the camera.
+    double factor_before(std::size_t i) const {
+        return setup_.sensor.factors_before_blur() ? pixel_factor_[i] : 1.0;
+    }
+    double factor_after(std::size_t i) const {
+        return setup_.sensor.factors_before_blur() ? 1.0 : pixel_factor_[i];
+    }
     // Puts one pixel's light into the layer; none where no ray enters the water.
     void store(const LayerLight* from, std::size_t i, Layer& layer) const;
     void scatter_layer(std::size_t index, Layer& layer);
@@ -83,8 +95,9 @@ class ForwardPass {
     std::size_t bands_, pixels_;
     std::vector<Component> components_;  // the first: all lamps
     std::vector<ImagePlane> first_;      // per band: added to backscatter_first
-    std::vector<ImagePlane> response_;   // per band: radiance at the camera per irradiance [1/sr]
+    std::vector<ImagePlane> response_;   // per band: direct light per irradiance [1/sr]
     ImagePlane alpha_;
+    std::vector<double> pixel_factor_;
     PathImage from_lamps_, to_camera_;  // of the surfaces
     PathScatter scatter_;
     ImagePlane added_, light_;

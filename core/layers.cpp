@@ -24,6 +24,7 @@ constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {"backscatter", ""},
     {"backscatter_first", ""},
     {"irradiance", ""},
+    {"exitance", ""},
     {"lit", "V"},
     {"clean", ""},
     {"transmittance", ""},

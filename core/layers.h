@@ -18,6 +18,7 @@ enum class Layer {
     backscatter,
     backscatter_first,
     irradiance,
+    exitance,
     lit,
     clean,
     transmittance,
@@ -29,7 +30,7 @@ enum class Layer {
     position,
     id,
 };
-inline constexpr std::size_t k_layer_count = 16;
+inline constexpr std::size_t k_layer_count = 17;
 
 /// Which channels an image has, what they are called, and where each layer begins.
 ///

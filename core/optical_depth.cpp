@@ -1,5 +1,7 @@
 #include "core/optical_depth.h"
 
+#include "core/fast_exp.h"
+
 namespace uw {
 
 namespace {
@@ -23,7 +25,7 @@ AttenuationTable::AttenuationTable(const Medium& medium)
 Spectrum AttenuationTable::transmittance(double length, std::span<const double> columns) const {
     Spectrum t{};
     for (int band = 0; band < band_count; ++band)
-        t[static_cast<std::size_t>(band)] = std::exp(-optical_depth(band, length, columns));
+        t[static_cast<std::size_t>(band)] = exp_of_minus(optical_depth(band, length, columns));
     return t;
 }
 

@@ -1,6 +1,7 @@
 #include "core/pixel_renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -34,39 +35,14 @@ ImageOffset sample_offset(int i, int count) {
     return {static_cast<double>(i) / count + half_step, count == 1 ? 0.5 : y};
 }
 
-}  // namespace
+constexpr std::array k_parts{&PixelResult::direct,       &PixelResult::backscatter,
+                             &PixelResult::irradiance,   &PixelResult::backscatter_first,
+                             &PixelResult::exitance,     &PixelResult::clean,
+                             &PixelResult::transmittance};
 
-struct PixelRenderer::Workspace {
-    std::vector<double> distances;  // to the surface, of each sample that entered the water
-    std::vector<double> ends;
-    std::vector<double> shares;  // of the samples that end there; 0 at faces of the first slab
-    SurfaceLight light;
-    InScatter in_scatter;
-    int hits = 0;
-    ImageOffset water_at{0.5, 0.5};  // where in the pixel the water's ray passes
-
-    // Makes `ends` and `shares` of the distances; those that agree become one.
-    void group(const PixelResult& result, int samples);
-    // Makes `distance` one of the ends unless it lies behind them all.
-    void add_end(double distance) {
-        const auto at = std::lower_bound(ends.begin(), ends.end(), distance);
-        if (at == ends.end() || *at == distance) return;
-        shares.insert(shares.begin() + (at - ends.begin()), 0.0);
-        ends.insert(at, distance);
-    }
-    // In-scatter by lamp `lamp` up to `distance`, one of the ends, or to end `last` if it is
-    // nearer.
-    Spectrum in_scatter_up_to(double distance, std::size_t last, std::size_t lamp) const {
-        if (distance <= 0) return {};
-        const auto at = std::lower_bound(ends.begin(), ends.end(), distance) - ends.begin();
-        return in_scatter.at(std::min(last, static_cast<std::size_t>(at)), lamp);
-    }
-};
-
-void PixelRenderer::Workspace::group(const PixelResult& result, int samples) {
+// Makes ends and shares of the samples' distances; those that agree become one.
+void group_ends(std::vector<double>& distances, int samples, PixelView& view) {
     std::sort(distances.begin(), distances.end());
-    ends.clear();
-    shares.clear();
     for (std::size_t first = 0; first < distances.size();) {
         std::size_t last = first;
         double sum = 0;
@@ -75,157 +51,142 @@ void PixelRenderer::Workspace::group(const PixelResult& result, int samples) {
             sum += distances[last++];
         const auto count = static_cast<double>(last - first);
         const bool at_center =
-            result.has_hit && distances[first] <= result.path && result.path <= distances[last - 1];
-        ends.push_back(at_center ? result.path : sum / count);
-        shares.push_back(count / samples);
+            view.has_hit && distances[first] <= view.path && view.path <= distances[last - 1];
+        view.ends.push_back(at_center ? view.path : sum / count);
+        view.shares.push_back(count / samples);
         first = last;
     }
 }
 
+}  // namespace
+
 PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
                              const Integrator& integrator, int samples, const Slabs& slabs,
-                             const SensorModel& sensor)
+                             const SensorModel& sensor, const WaterParts& parts)
     : rays_(rays),
       scene_(scene),
       integrator_(integrator),
       samples_(samples),
-      slabs_(slabs),
       sensor_(sensor),
+      water_(integrator, rays.world_from_camera(), slabs, lamp_count(), band_count(), parts),
       camera_from_world_(rays.world_from_camera().inverse()) {}
 
-void PixelRenderer::render(int x, int y, PixelResult& result) const {
-    thread_local Workspace w;
-    w.hits = 0;
-    std::vector<Spectrum> lamps = std::move(result.lamps);
-    result = PixelResult{};
-    result.lamps = std::move(lamps);
-    result.lamps.assign(scene_.lamps->size(), Spectrum{});
-
-    const std::optional<Ray> water = trace(
-        x, y, w, result,
-        [&](const Ray& ray, const SurfaceHit& hit) { add_surface_sample(ray, hit, w, result); });
-    if (w.hits > 0)
-        for (double& t : result.transmittance) t /= w.hits;
-    if (water && !w.distances.empty()) {
-        w.group(result, samples_);
-        add_water(*water, w, result);
-    }
-    if (water) expose(x + w.water_at.x, y + w.water_at.y, result);
-}
-
-std::optional<Ray> PixelRenderer::trace(int x, int y, Workspace& w, PixelResult& result,
-                                        const HitVisitor& on_hit) const {
-    w.distances.clear();
-    w.water_at = {0.5, 0.5};
-    std::optional<Ray> water = rays_.water_ray(x + w.water_at.x, y + w.water_at.y);
-    if (water) record_ground_truth(*water, result);
+void PixelRenderer::look(int x, int y, PixelView& view) const {
+    thread_local std::vector<double> distances;
+    distances.clear();
+    view.alpha = 0;
+    view.ends.clear();
+    view.shares.clear();
+    view.samples.clear();
+    view.x = x + 0.5;
+    view.y = y + 0.5;
+    view.has_hit = false;
+    view.ray = rays_.water_ray(view.x, view.y);
+    if (view.ray) record_ground_truth(*view.ray, view);
     for (int i = 0; i < samples_; ++i) {
         const ImageOffset offset = sample_offset(i, samples_);
-        const std::optional<Ray> ray = rays_.water_ray(x + offset.x, y + offset.y);
+        // A single sample's ray is that of the ground truth.
+        const std::optional<Ray> ray =
+            samples_ == 1 ? view.ray : rays_.water_ray(x + offset.x, y + offset.y);
         if (!ray) continue;
-        if (!water) {
-            water = ray;
-            w.water_at = offset;
+        if (!view.ray) {
+            view.ray = ray;
+            view.x = x + offset.x;
+            view.y = y + offset.y;
         }
-        result.alpha += 1.0 / samples_;
-        SurfaceHit hit = result.hit;  // a single sample's ray is that of the ground truth
-        if (!(samples_ == 1 ? result.has_hit : scene_.surfaces->closest_hit(*ray, k_far, hit))) {
-            w.distances.push_back(k_far);
+        view.alpha += 1.0 / samples_;
+        PixelView::Sample& sample = view.samples.emplace_back();
+        sample.ray = *ray;
+        if (samples_ == 1) sample.hit = view.hit;
+        if (!(samples_ == 1 ? view.has_hit
+                            : scene_.surfaces->closest_hit(*ray, k_far, sample.hit))) {
+            view.samples.pop_back();
+            distances.push_back(k_far);
             continue;
         }
-        const bool at_center = result.has_hit && hit.object_id == result.hit.object_id &&
-                               std::abs(hit.distance / result.path - 1) < k_same_surface;
-        w.distances.push_back(at_center ? result.path : hit.distance);
-        on_hit(*ray, hit);
+        const bool at_center = view.has_hit && sample.hit.object_id == view.hit.object_id &&
+                               std::abs(sample.hit.distance / view.path - 1) < k_same_surface;
+        distances.push_back(at_center ? view.path : sample.hit.distance);
     }
-    return water;
+    group_ends(distances, samples_, view);
 }
 
-void PixelRenderer::visit_hits(int x, int y, const HitVisitor& visit) const {
-    thread_local Workspace w;
-    PixelResult result;
-    trace(x, y, w, result, visit);
+void PixelRenderer::light(const PixelView& view, std::span<const double> water,
+                          PixelResult& result) const {
+    const auto bands = static_cast<std::size_t>(band_count());
+    for (Spectrum PixelResult::*part : k_parts) std::fill_n((result.*part).begin(), bands, 0.0);
+    result.lamps.assign(water_.parts().lamps ? scene_.lamps->size() : 0, Spectrum{});
+    result.lit = 0;
+    result.pixel_factor = 1;
+    result.alpha = view.alpha;
+    result.has_hit = view.has_hit;
+    result.hit = view.has_hit ? view.hit : SurfaceHit{};
+    result.depth_z = view.has_hit ? view.depth_z : 0;
+    result.range = view.has_hit ? view.range : 0;
+    result.path = view.has_hit ? view.path : 0;
+    for (const PixelView::Sample& sample : view.samples) add_surface(sample, result);
+    if (!view.samples.empty())
+        for (std::size_t b = 0; b < bands; ++b)
+            result.transmittance[b] /= static_cast<double>(view.samples.size());
+    if (!view.ray) return;
+    add_water(water, result);
+    result.pixel_factor = sensor_.pixel_factor(rays_.lens_ray(view.x, view.y),
+                                               view.has_hit ? view.range : k_infinitely_far);
 }
 
-std::optional<Ray> PixelRenderer::water(int x, int y, WaterEnds& ends) const {
-    thread_local Workspace w;
-    PixelResult result;
-    const std::optional<Ray> ray = trace(x, y, w, result, [](const Ray&, const SurfaceHit&) {});
-    if (w.distances.empty()) return std::nullopt;
-    w.group(result, samples_);
-    ends.ends = w.ends;
-    ends.shares = w.shares;
-    return ray;
+void PixelRenderer::render(int x, int y, PixelResult& result) const {
+    thread_local PixelView view;
+    thread_local std::vector<double> row;
+    look(x, y, view);
+    row.resize(water_.row_size());
+    water_.gather(view, row);
+    light(view, row, result);
 }
 
-void PixelRenderer::add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
-                                       PixelResult& result) const {
-    integrator_.surface_light(ray, hit, w.light);
-    ++w.hits;
+void PixelRenderer::add_surface(const PixelView::Sample& sample, PixelResult& result) const {
+    thread_local SurfaceLight light;
+    const SurfaceHit& hit = sample.hit;
+    integrator_.surface_light(sample.ray, hit, light);
     const double share = 1.0 / samples_;
     const double seen = sensor_.surface_factor(hit.distance);
     const auto bands = static_cast<std::size_t>(band_count());
-    for (std::size_t b = 0; b < bands; ++b) result.transmittance[b] += w.light.transmittance[b];
-    for (std::size_t j = 0; j < w.light.lamps.size(); ++j) {
-        const LampIrradiance& lamp = w.light.lamps[j];
+    for (std::size_t b = 0; b < bands; ++b) result.transmittance[b] += light.transmittance[b];
+    for (std::size_t j = 0; j < light.lamps.size(); ++j) {
+        const LampIrradiance& lamp = light.lamps[j];
         if (!lamp.visible) continue;
-        result.lit += share / static_cast<double>(w.light.lamps.size());
+        result.lit += share / static_cast<double>(light.lamps.size());
         for (std::size_t b = 0; b < bands; ++b) {
             const double brdf = hit.reflectance[b] * std::numbers::inv_pi * seen;
-            const double direct = share * lamp.irradiance[b] * brdf * w.light.transmittance[b];
+            const double direct = share * lamp.irradiance[b] * brdf * light.transmittance[b];
             result.irradiance[b] += share * lamp.irradiance[b];
+            result.exitance[b] += share * lamp.irradiance[b] * hit.reflectance[b];
             result.clean[b] += share * lamp.clean[b] * brdf;
             result.direct[b] += direct;
-            result.lamps[j][b] += direct;
+            if (!result.lamps.empty()) result.lamps[j][b] += direct;
         }
     }
 }
 
-void PixelRenderer::add_water(const Ray& ray, Workspace& w, PixelResult& result) const {
-    const Interval first = first_slab(ray);
-    for (const double face : {first.begin, first.end})
-        if (face > 0) w.add_end(face);
-    integrator_.in_scatter(ray, w.ends, w.in_scatter);
-    for (std::size_t end = 0; end < w.ends.size(); ++end) {
-        for (std::size_t j = 0; j < result.lamps.size(); ++j) {
-            const Spectrum before = w.in_scatter_up_to(first.begin, end, j);
-            const Spectrum behind = w.in_scatter_up_to(first.end, end, j);
-            for (std::size_t b = 0; b < static_cast<std::size_t>(band_count()); ++b) {
-                const double radiance = w.shares[end] * w.in_scatter.at(end, j)[b];
-                result.backscatter[b] += radiance;
-                result.lamps[j][b] += radiance;
-                result.backscatter_first[b] += w.shares[end] * (behind[b] - before[b]);
-            }
+void PixelRenderer::add_water(std::span<const double> row, PixelResult& result) const {
+    for (std::size_t group = 0; group < water_.group_count(); ++group) {
+        const std::span<const double> in = water_.group(row, group);
+        for (std::size_t b = 0; b < in.size(); ++b) {
+            result.backscatter[b] += in[b];
+            if (!result.lamps.empty()) result.lamps[group][b] += in[b];
         }
     }
+    if (!water_.parts().first_slab) return;
+    const std::span<const double> first = water_.first_slab(row);
+    std::copy(first.begin(), first.end(), result.backscatter_first.begin());
 }
 
-void PixelRenderer::expose(double x, double y, PixelResult& result) const {
-    const double factor = sensor_.pixel_factor(rays_.lens_ray(x, y),
-                                               result.has_hit ? result.range : k_infinitely_far);
-    const auto scale = [&](Spectrum& spectrum) {
-        for (double& value : spectrum) value *= factor;
-    };
-    scale(result.direct);
-    scale(result.backscatter);
-    scale(result.backscatter_first);
-    scale(result.clean);
-    for (Spectrum& lamp : result.lamps) scale(lamp);
-}
-
-Interval PixelRenderer::first_slab(const Ray& ray) const {
-    const RayDepth depth(camera_from_world_, ray);
-    if (depth.cosine() <= 0) return {};
-    return {depth.distance(slabs_.boundary(0)), depth.distance(slabs_.boundary(1))};
-}
-
-void PixelRenderer::record_ground_truth(const Ray& center, PixelResult& result) const {
-    result.has_hit = scene_.surfaces->closest_hit(center, k_far, result.hit);
-    if (!result.has_hit) return;
-    const Point3 in_camera = camera_from_world_ * result.hit.position;
-    result.depth_z = in_camera.z;
-    result.range = glm::length(from_origin(in_camera));
-    result.path = result.hit.distance;
+void PixelRenderer::record_ground_truth(const Ray& center, PixelView& view) const {
+    view.has_hit = scene_.surfaces->closest_hit(center, k_far, view.hit);
+    if (!view.has_hit) return;
+    const Point3 in_camera = camera_from_world_ * view.hit.position;
+    view.depth_z = in_camera.z;
+    view.range = glm::length(from_origin(in_camera));
+    view.path = view.hit.distance;
 }
 
 }  // namespace uw

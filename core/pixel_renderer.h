@@ -1,11 +1,12 @@
 #pragma once
 
-#include <functional>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/integrator.h"
 #include "core/lit_scene.h"
+#include "core/pixel_view.h"
+#include "core/ray_water.h"
 #include "core/sensor.h"
 #include "core/slabs.h"
 #include "core/water_ray.h"
@@ -14,18 +15,22 @@ namespace uw {
 
 /// Everything one pixel holds. Radiometric values are means over the pixel's samples; ground truth
 /// (`hit` and the depths) belongs to the pixel's centre. W m^-2, metres, world space. Radiance
-/// (direct, backscatter, clean, lamps) is in W m^-2 sr^-1, or what the sensor model makes of it.
+/// (direct, backscatter, clean, lamps) is that in water, W m^-2 sr^-1; in the paper's output light
+/// has its factor by distance besides (SensorModel::surface_factor).
 struct PixelResult {
-    double alpha = 0;  // share of samples whose ray enters the water
+    double alpha = 0;         // share of samples whose ray enters the water
+    double pixel_factor = 1;  // what radiance is multiplied by in images: SensorModel::pixel_factor
     Spectrum direct{};
     Spectrum backscatter{};
     Spectrum backscatter_first{};  // of the first slab
     Spectrum irradiance{};         // on the surface, 0 where there is none
+    Spectrum exitance{};           // of the surface: what it reflects of the irradiance
     Spectrum clean{};              // radiance of the surface without water
     Spectrum transmittance{};      // surface to port, mean over samples that meet a surface
     double lit = 0;                // mean fraction of lamps that see the surface
-    std::vector<Spectrum> lamps;   // radiance due to each lamp: direct + backscatter
-    bool has_hit = false;          // whether the centre's ray meets a surface
+    /// Radiance due to each lamp: direct + backscatter. Empty unless WaterParts::lamps.
+    std::vector<Spectrum> lamps;
+    bool has_hit = false;  // whether the centre's ray meets a surface
     SurfaceHit hit;
     double depth_z = 0;  // camera-frame z of the hit
     double range = 0;    // from the camera's centre to the hit
@@ -36,53 +41,37 @@ struct PixelResult {
 class PixelRenderer {
   public:
     /// All references outlive the renderer. `samples` >= 1 per pixel; one lies at the centre. The
-    /// first of `slabs` is the water of `backscatter_first`. `sensor` says what the image holds:
-    /// the radiance itself if left out.
+    /// first of `slabs` is the water of `backscatter_first`. `sensor` says what the image is to
+    /// hold: the radiance itself if left out.
     PixelRenderer(const RaySource& rays, const LitScene& scene, const Integrator& integrator,
-                  int samples, const Slabs& slabs, const SensorModel& sensor = {});
+                  int samples, const Slabs& slabs, const SensorModel& sensor = {},
+                  const WaterParts& parts = {});
 
     int lamp_count() const { return static_cast<int>(scene_.lamps->size()); }
     int band_count() const { return scene_.medium->band_count(); }
+    int samples() const { return samples_; }
+    const RaySource& rays() const { return rays_; }
+    const RayWater& water() const { return water_; }
 
-    /// Renders pixel (x, y); `result` is reused storage. Thread safe.
+    /// Traces the samples of pixel (x, y). Thread safe.
+    void look(int x, int y, PixelView& view) const;
+    /// What a pixel holds: `water` is its row of in-scatter (RayWater). `result` is reused storage.
+    /// Thread safe.
+    void light(const PixelView& view, std::span<const double> water, PixelResult& result) const;
+    /// Both for one pixel, with its own water.
     void render(int x, int y, PixelResult& result) const;
 
-    /// Told of a surface that one of a pixel's samples meets.
-    using HitVisitor = std::function<void(const Ray& ray, const SurfaceHit& hit)>;
-    /// The surfaces that `render` of pixel (x, y) takes the mean of, `samples()` at most.
-    void visit_hits(int x, int y, const HitVisitor& visit) const;
-    int samples() const { return samples_; }
-
-    /// Where the water of a pixel ends [m along its water ray, ascending; k_far without a surface],
-    /// and the shares of the samples that end there.
-    struct WaterEnds {
-        std::vector<double> ends, shares;
-    };
-    /// The water ray of pixel (x, y), if one enters the water, and its ends, as `render` has them.
-    std::optional<Ray> water(int x, int y, WaterEnds& ends) const;
-
   private:
-    struct Workspace;
-
-    // Traces the samples of a pixel: fills result.alpha, its ground truth and w.distances. Returns
-    // the water ray.
-    std::optional<Ray> trace(int x, int y, Workspace& w, PixelResult& result,
-                             const HitVisitor& on_hit) const;
-    void add_surface_sample(const Ray& ray, const SurfaceHit& hit, Workspace& w,
-                            PixelResult& result) const;
-    void add_water(const Ray& ray, Workspace& w, PixelResult& result) const;
-    // The first slab's stretch of `ray`; it may begin before the ray does.
-    Interval first_slab(const Ray& ray) const;
-    // Turns the pixel's radiance into what the sensor model says; its ray is that at (x, y).
-    void expose(double x, double y, PixelResult& result) const;
-    void record_ground_truth(const Ray& center, PixelResult& result) const;
+    void add_surface(const PixelView::Sample& sample, PixelResult& result) const;
+    void add_water(std::span<const double> row, PixelResult& result) const;
+    void record_ground_truth(const Ray& center, PixelView& view) const;
 
     const RaySource& rays_;
     LitScene scene_;
     const Integrator& integrator_;
     int samples_;
-    Slabs slabs_;
     SensorModel sensor_;
+    RayWater water_;
     Affine camera_from_world_;
 };
 

@@ -9,7 +9,8 @@
 
 namespace uw {
 
-/// Writes one pixel's result into the channels of `plan`. `film` was made with the plan's channels.
+/// Writes one pixel's result into the channels of `plan`, radiance times its factor. `channels`
+/// are those of a film made with the plan's names.
 void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandColour& colour,
                  int band_count, std::span<float> channels);
 
@@ -17,11 +18,14 @@ void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandCol
 using ProgressCallback = std::function<bool(double fraction)>;
 
 /// Shown each pixel that is done, from any thread.
-using PixelCallback = std::function<void(int x, int y, const PixelResult& result)>;
+using PixelCallback =
+    std::function<void(int x, int y, const PixelView& view, const PixelResult& result)>;
 
-/// Renders every pixel of the film's window on all threads allowed. The result does not depend on
-/// their number. Throws Interrupted if `progress` returned false.
-void render_film(const PixelRenderer& renderer, const LayerPlan& plan, const BandColour& colour,
-                 Film& film, const ProgressCallback& progress, const PixelCallback& done = {});
+/// Renders every pixel of the film's window on all threads allowed. The result depends neither on
+/// their number nor on the window. `water_tolerance`: of WaterLattice; 0 gathers the water of every
+/// pixel by itself. Throws Interrupted if `progress` returned false.
+void render_film(const PixelRenderer& renderer, double water_tolerance, const LayerPlan& plan,
+                 const BandColour& colour, Film& film, const ProgressCallback& progress,
+                 const PixelCallback& done = {});
 
 }  // namespace uw

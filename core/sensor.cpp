@@ -1,5 +1,7 @@
 #include "core/sensor.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace uw {
@@ -25,6 +27,17 @@ double SensorModel::pixel_factor(const LensRay& lens_ray, double range) const {
 
 double SensorModel::surface_factor(double path) const {
     return output_ == RenderDesc::Output::paper ? focus_factor(path, lens_.focal_length) : 1.0;
+}
+
+double SensorModel::mean_surface_factor(double begin, double end) const {
+    if (output_ != RenderDesc::Output::paper) return 1;
+    const double focal = lens_.focal_length;
+    const double from = std::max(begin, focal);
+    if (from >= end) return 0;
+    // int (1 - F/s)^2 ds = s - 2 F ln s - F^2 / s
+    const double integral =
+        (end - from) - 2 * focal * std::log(end / from) - focal * focal * (1 / end - 1 / from);
+    return std::max(0.0, integral) / (end - begin);
 }
 
 std::string SensorModel::description() const {

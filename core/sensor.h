@@ -37,6 +37,13 @@ class SensorModel {
     /// What light of a surface after `path` metres in water is multiplied by besides. In-scatter
     /// has the same factor by its own distance from FocusWeightedIntegrator.
     double surface_factor(double path) const;
+    /// Mean of surface_factor over the paths from `begin` to `end` [m], begin < end.
+    double mean_surface_factor(double begin, double end) const;
+
+    /// Whether light that the water scatters forward on its way to the camera has the factors of
+    /// the pixel it comes from, as in equations (16) and (18) of the paper, which blur the
+    /// irradiance of pixels. Else the pixel where it lands gives them.
+    bool factors_before_blur() const { return output_ == RenderDesc::Output::paper; }
 
     /// The quantity and its unit, for image headers: "radiance W m^-2 sr^-1".
     std::string description() const;

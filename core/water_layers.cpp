@@ -27,14 +27,15 @@ struct WaterLayers::Cells {
 
 WaterLayers::WaterLayers(const LitScene& scene, const Integrator& integrator,
                          const LampPaths& paths, const Affine& world_from_camera,
-                         std::vector<double> faces, int cells)
+                         std::vector<double> faces, int cells, const SensorModel& sensor)
     : scene_(scene),
       integrator_(integrator),
       paths_(paths),
       camera_from_world_(world_from_camera.inverse()),
       faces_(std::move(faces)),
       cells_(cells),
-      attenuation_(*scene.medium) {}
+      attenuation_(*scene.medium),
+      sensor_(sensor) {}
 
 void WaterLayers::gather(const Ray& ray, std::span<const double> ends,
                          std::span<const double> shares, std::size_t first, std::size_t last,
@@ -128,12 +129,14 @@ void WaterLayers::fill_layers(const Ray& ray, const Cells& cells,
 
 void WaterLayers::add_weight(const WaterPath& path, const WaterPath& part, double share,
                              Spectrum& weight) const {
+    const double end = path.length + part.length;
+    const double stretch = share * part.length * sensor_.mean_surface_factor(path.length, end);
     for (int band = 0; band < attenuation_.band_count; ++band) {
         const double tau = attenuation_.optical_depth(band, path.length, path.columns);
         const double more = attenuation_.optical_depth(band, part.length, part.columns);
         // As if e^-tau fell exponentially across the cell: exact where the water is uniform.
         const double mean = more > 0 ? -std::expm1(-more) / more : 1.0;
-        weight[static_cast<std::size_t>(band)] += share * part.length * std::exp(-tau) * mean;
+        weight[static_cast<std::size_t>(band)] += stretch * std::exp(-tau) * mean;
     }
 }
 

@@ -7,6 +7,7 @@
 #include "core/integrator.h"
 #include "core/lit_scene.h"
 #include "core/optical_depth.h"
+#include "core/sensor.h"
 #include "core/slabs.h"
 
 namespace uw {
@@ -48,8 +49,9 @@ class LampPaths {
 /// In-scatter of one layer of water in one pixel.
 struct LayerLight {
     std::vector<Spectrum> lamps;  // radiance at the camera by each lamp [W m^-2 sr^-1]
-    /// int e^-tau ds over what the pixel sees of the layer [m]: the radiance over this is the light
-    /// that the layer scatters to the camera, E_s of the paper's equation 17.
+    /// int e^-tau ds over what the pixel sees of the layer [m], in the paper's output weighted by
+    /// distance as the radiance is (SensorModel::surface_factor): the radiance over this is the
+    /// light that the layer scatters to the camera, E_s of the paper's equation 17.
     Spectrum weight{};
     /// From the lamps to the middle of the light in the layer, and from there to the glass.
     WaterPath to_lamps, to_camera;
@@ -59,9 +61,11 @@ struct LayerLight {
 class WaterLayers {
   public:
     /// `faces`: camera z of the layers' faces [m], ascending. Inside a layer, the middle of its
-    /// light is found from `cells` parts of it. All references outlive this.
+    /// light is found from `cells` parts of it. `sensor` says how `integrator` weights light by
+    /// distance. All references outlive this.
     WaterLayers(const LitScene& scene, const Integrator& integrator, const LampPaths& paths,
-                const Affine& world_from_camera, std::vector<double> faces, int cells);
+                const Affine& world_from_camera, std::vector<double> faces, int cells,
+                const SensorModel& sensor);
 
     std::size_t count() const { return faces_.size() - 1; }
     /// Camera z in the middle of layer `i` [m].
@@ -69,7 +73,7 @@ class WaterLayers {
     const AttenuationTable& attenuation() const { return attenuation_; }
 
     /// Layers `first` to `last` - 1 of the water along `ray`, of which `shares[i]` ends at
-    /// `ends[i]` (PixelRenderer::WaterEnds). Thread safe.
+    /// `ends[i]` (PixelView). Thread safe.
     void gather(const Ray& ray, std::span<const double> ends, std::span<const double> shares,
                 std::size_t first, std::size_t last, std::vector<LayerLight>& layers) const;
 
@@ -78,7 +82,7 @@ class WaterLayers {
     void place_cells(const Ray& ray, std::span<const double> ends, std::span<const double> shares,
                      std::size_t first, std::size_t last, Cells& cells) const;
     void fill_layers(const Ray& ray, const Cells& cells, std::vector<LayerLight>& layers) const;
-    // Adds share * int e^-tau ds over `part`, which goes on where `path` ends.
+    // Adds `share` of the weight of `part`, which goes on where `path` ends.
     void add_weight(const WaterPath& path, const WaterPath& part, double share,
                     Spectrum& weight) const;
     // Adds the light of cell `i` and returns its sum over lamps and bands.
@@ -91,6 +95,7 @@ class WaterLayers {
     std::vector<double> faces_;
     int cells_;
     AttenuationTable attenuation_;
+    SensorModel sensor_;
 };
 
 }  // namespace uw

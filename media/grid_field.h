@@ -18,6 +18,7 @@ class GridField final : public ConcentrationField {
   public:
     GridField(std::vector<GridVolume> volumes, int constituent_count);
 
+    const std::vector<GridVolume>& volumes() const { return volumes_; }
     int constituent_count() const override { return constituent_count_; }
     Bounds bounds() const override { return bounds_; }
     double finest_voxel() const override { return finest_voxel_; }

@@ -46,6 +46,9 @@ class NanoGrid {
     /// disjoint, touching ones of a kind joined.
     void append_stretches(const LatticeLine& line, double begin, double end,
                           std::vector<GridStretch>& stretches) const;
+    /// The sum of all values but those of regions that are one value throughout (tiles): the least
+    /// that touching every voxel in memory takes, on all threads allowed.
+    double stored_sum() const;
 
   private:
     std::shared_ptr<const void> storage_;

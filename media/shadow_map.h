@@ -17,7 +17,8 @@ class ShadowMap {
     ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution);
 
     /// The stretches of `ray` within [0, s_end] that the lamp sees, ascending and disjoint. Edges
-    /// lie within 1/256 texel of the exact ones. A shadow narrower than a texel may be missed.
+    /// lie within 2e-4 of their distance from the lamp. A shadow narrower than a texel may be
+    /// missed.
     void lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const;
 
     std::uint64_t rays_traced() const { return rays_traced_; }
@@ -36,7 +37,7 @@ class ShadowMap {
     class Search;
 
     void trace_face(int face);
-    Level neighbourhood_ranges(const std::vector<float>& padded_depth) const;
+    Level cell_ranges(const std::vector<float>& padded_depth) const;
     static Level halved(const Level& fine);
 
     const Surfaces* surfaces_;

@@ -24,7 +24,7 @@ TEST_F(ImageLayers, ThreeBandsAreRedGreenBlue) {
     const ImageFile image = render({"--layers", "all"});
     Names expected{"R", "G", "B", "A"};
     for (const char* layer : {"direct", "forward", "backscatter", "backscatter_first", "irradiance",
-                              "clean", "transmittance", "albedo", "lamp.left"})
+                              "exitance", "clean", "transmittance", "albedo", "lamp.left"})
         for (const char* band : {".R", ".G", ".B"}) expected.push_back(std::string(layer) + band);
     for (const char* name : {"lit.V", "depth.Z", "range.V", "path.V", "normal.X", "normal.Y",
                              "normal.Z", "position.X", "position.Y", "position.Z", "id.V"})
@@ -86,7 +86,8 @@ TEST_F(ImageLayers, ComponentsSumToTheTotalToTheBit) {
 TEST_F(ImageLayers, TwiceTheLampDoublesEveryRadianceToTheBit) {
     const ImageFile once = render();
     const ImageFile twice = render({"--set", "lamps.left.intensity=[100, 80, 60]"});
-    for (const char* layer : {"", "direct.", "backscatter.", "clean.", "irradiance."}) {
+    for (const char* layer :
+         {"", "direct.", "backscatter.", "clean.", "irradiance.", "exitance."}) {
         for (const char* band : {"R", "G", "B"}) {
             const std::string name = std::string(layer) + band;
             for (std::size_t i = 0; i < once.channels.at(name).size(); ++i)

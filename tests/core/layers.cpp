@@ -46,6 +46,9 @@ TEST(Layers, DefaultIsEverythingButLamps) {
                       "irradiance.R",
                       "irradiance.G",
                       "irradiance.B",
+                      "exitance.R",
+                      "exitance.G",
+                      "exitance.B",
                       "lit.V",
                       "clean.R",
                       "clean.G",
@@ -69,18 +72,18 @@ TEST(Layers, DefaultIsEverythingButLamps) {
     EXPECT_EQ(plan.channel_names(), truth);
     EXPECT_EQ(plan.first_channel(Layer::total), -1);  // R G B
     EXPECT_EQ(plan.first_channel(Layer::direct), 4);
-    EXPECT_EQ(plan.first_channel(Layer::position), 35);
+    EXPECT_EQ(plan.first_channel(Layer::position), 38);
     EXPECT_EQ(plan.first_channel_of_lamp(0), -1);
     EXPECT_EQ(LayerPlan("default", k_rgb, k_lamps).channel_names(), truth);
 }
 
 TEST(Layers, AllAddsTheLamps) {
     const LayerPlan plan("all", k_rgb, k_lamps);
-    ASSERT_EQ(plan.channel_names().size(), 39u + 6u);
-    EXPECT_EQ(plan.first_channel_of_lamp(0), 39);
-    EXPECT_EQ(plan.first_channel_of_lamp(1), 42);
-    EXPECT_EQ(plan.channel_names()[39], "lamp.left.R");
-    EXPECT_EQ(plan.channel_names()[44], "lamp.right.top.B");
+    ASSERT_EQ(plan.channel_names().size(), 42u + 6u);
+    EXPECT_EQ(plan.first_channel_of_lamp(0), 42);
+    EXPECT_EQ(plan.first_channel_of_lamp(1), 45);
+    EXPECT_EQ(plan.channel_names()[42], "lamp.left.R");
+    EXPECT_EQ(plan.channel_names()[47], "lamp.right.top.B");
 }
 
 TEST(Layers, ListInAnyOrderWithSpacesAndRepetition) {
@@ -118,7 +121,7 @@ TEST(Layers, ManyBandsAndLamps) {
     Names lamps;
     for (int i = 0; i < 40; ++i) lamps.push_back("lamp" + std::to_string(i));
     const LayerPlan plan("all", bands, lamps);
-    EXPECT_EQ(plan.channel_names().size(), 4u + 9u * 32u + 11u + 40u * 32u);
+    EXPECT_EQ(plan.channel_names().size(), 4u + 10u * 32u + 11u + 40u * 32u);
     EXPECT_EQ(plan.channel_names()[static_cast<std::size_t>(plan.first_channel_of_lamp(39)) + 31],
               "lamp.lamp39.710nm");
 }

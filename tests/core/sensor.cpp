@@ -56,5 +56,20 @@ TEST(SensorModel, PaperIsNTimesOurs) {
     EXPECT_NEAR(paper.surface_factor(0.085), 0.81, k_rounding);
 }
 
+TEST(SensorModel, MeanOverAStretchIsThatOfManyPoints) {
+    const SensorModel paper = sensor(RenderDesc::Output::paper);
+    constexpr int k_points = 100000;
+    for (const auto& [begin, end] :
+         {std::pair{0.0, 0.02}, {0.002, 0.004}, {0.0085, 0.009}, {0.03, 0.05}, {2.0, 5.0}}) {
+        double sum = 0;
+        for (int i = 0; i < k_points; ++i)
+            sum += paper.surface_factor(begin + (end - begin) * (i + 0.5) / k_points);
+        // The midpoint rule's error falls as 1e-10.
+        EXPECT_NEAR(paper.mean_surface_factor(begin, end), sum / k_points, 1e-8) << begin;
+    }
+    EXPECT_EQ(SensorModel().mean_surface_factor(0, 1), 1);
+    EXPECT_EQ(sensor(RenderDesc::Output::sensor_irradiance).mean_surface_factor(0.001, 0.02), 1);
+}
+
 }  // namespace
 }  // namespace uw

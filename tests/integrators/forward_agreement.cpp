@@ -78,11 +78,15 @@ TEST(ForwardScatter, OfTheReferenceIntegratorIsThatOfTheVolume) {
 }
 
 // Large images take few layers at a time, and their water from a distance on.
-TEST(InScatterFrom, IsTheDifferenceOfTwo) {
+class InScatterFrom : public ::testing::TestWithParam<RenderDesc::Output> {};
+
+TEST_P(InScatterFrom, IsTheDifferenceOfTwo) {
     using Integrators = RenderDesc::Integrator;
     for (const auto which : {Integrators::volume, Integrators::planes, Integrators::reference}) {
         SceneDesc desc = with_planes(uniform_scene({1, -0.5, 0}), 10, 0, 5);
         desc.render.integrator = which;
+        desc.render.output = GetParam();
+        desc.camera.lens = LensDesc{2.8, 0.4, 0.95};
         const TestScene scene(desc);
         const Ray ray{{0, 0, 0}, {0, 0, 1}};
         InScatter whole, rest;
@@ -97,6 +101,12 @@ TEST(InScatterFrom, IsTheDifferenceOfTwo) {
             }
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Outputs, InScatterFrom,
+                         ::testing::Values(RenderDesc::Output::radiance, RenderDesc::Output::paper),
+                         [](const auto& test) {
+                             return test.param == RenderDesc::Output::paper ? "paper" : "radiance";
+                         });
 
 }  // namespace
 }  // namespace uw::test

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "tests/support/blur_shares.h"
+#include "tests/support/forward_direct_sum.h"
 #include "tests/support/forward_scenes.h"
 
 namespace uw::test {
@@ -131,22 +131,8 @@ TEST_P(ForwardScatterOfShape, OfOneSlabIsTheDirectSum) {
     off.water.forward_scatter.K = 0;
     const RenderedFilm plain(off);
     const double c = attenuation(1);
-    const auto gained = [&](double range) {
-        return std::exp(-0.05 * range) - std::exp(-c * range);
-    };
-    // What `light` adds to each pixel when every one spreads its own over its own range.
     const auto blurred = [&](const std::vector<double>& light, const std::vector<double>& range) {
-        std::vector<double> sum(light.size());
-        for (int i = 0; i < 16 * 12; ++i) {
-            const auto from = static_cast<std::size_t>(i);
-            const double s = k.fx * 0.3 * range[from] / (2 * std::numbers::pi);
-            const BlurShares shares(GetParam(), s, 200);
-            for (int j = 0; j < 16 * 12; ++j)
-                sum[static_cast<std::size_t>(j)] +=
-                    light[from] * gained(range[from]) *
-                    shares.mirrored(i % 16, i / 16, j % 16, j / 16, 16, 12);
-        }
-        return sum;
+        return direct_sum(desc.water.forward_scatter, c, k.fx, 16, light, range);
     };
     std::vector<double> e, weight, radius, path;
     for (int i = 0; i < 16 * 12; ++i) {

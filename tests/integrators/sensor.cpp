@@ -33,6 +33,35 @@ SceneDesc plane_behind_port(Output output) {
     return desc;
 }
 
+// A scene whose pixels are as images hold them: radiance times the pixel's factor.
+class SeenScene {
+  public:
+    explicit SeenScene(const SceneDesc& desc) : scene_(desc) {}
+
+    const AssembledScene& assembled() const { return scene_.assembled(); }
+    PixelResult pixel(int x, int y) const { return seen(scene_.pixel(x, y)); }
+    std::vector<PixelResult> image() const {
+        std::vector<PixelResult> pixels = scene_.image();
+        for (PixelResult& pixel : pixels) pixel = seen(std::move(pixel));
+        return pixels;
+    }
+
+  private:
+    static PixelResult seen(PixelResult pixel) {
+        const auto scale = [&](Spectrum& radiance) {
+            for (double& value : radiance) value *= pixel.pixel_factor;
+        };
+        scale(pixel.direct);
+        scale(pixel.backscatter);
+        scale(pixel.backscatter_first);
+        scale(pixel.clean);
+        for (Spectrum& lamp : pixel.lamps) scale(lamp);
+        return pixel;
+    }
+
+    TestScene scene_;
+};
+
 bool same_bits(const Spectrum& a, const Spectrum& b) {
     return std::memcmp(&a, &b, sizeof(Spectrum)) == 0;
 }
@@ -54,7 +83,7 @@ void expect_scaled(const PixelResult& found, const PixelResult& radiance, double
 
 TEST(SensorIrradiance, OneFactorForAllLightOfAPixel) {
     const SceneDesc desc = plane_behind_port(Output::sensor_irradiance);
-    const TestScene radiance(plane_behind_port(Output::radiance)), sensor(desc);
+    const SeenScene radiance(plane_behind_port(Output::radiance)), sensor(desc);
     const IntrinsicsDesc& k = desc.camera.intrinsics;
     for (int y = 0; y < desc.camera.height; ++y) {
         for (int x = 0; x < desc.camera.width; ++x) {
@@ -80,9 +109,9 @@ TEST(SensorIrradiance, WaterWithoutSurfaceIsFocusedAtInfinity) {
     desc.geometry.clear();
     desc.camera.width = desc.camera.height = 1;
     desc.camera.intrinsics = {1, 1, 0.5, 0.5};  // the pixel's centre is the axis
-    const PixelResult found = TestScene(desc).pixel(0, 0);
+    const PixelResult found = SeenScene(desc).pixel(0, 0);
     desc.render.output = Output::radiance;
-    expect_scaled(found, TestScene(desc).pixel(0, 0),
+    expect_scaled(found, SeenScene(desc).pixel(0, 0),
                   std::numbers::pi / (4 * k_f_number * k_f_number) * k_transmission);
 }
 
@@ -90,10 +119,10 @@ TEST(Outputs, LampsAddUpAndTwiceTheLampsIsTwiceTheImage) {
     for (const Output output : {Output::radiance, Output::sensor_irradiance, Output::paper}) {
         SceneDesc desc = plane_behind_port(output);
         desc.camera.port->fresnel = true;
-        const TestScene dim(desc);
+        const SeenScene dim(desc);
         for (LampDesc& lamp : desc.lamps)
             for (double& intensity : lamp.intensity.value()) intensity *= 2;
-        const TestScene bright(desc);
+        const SeenScene bright(desc);
         for (int x = 0; x < desc.camera.width; ++x) {
             const PixelResult one = dim.pixel(x, 3), two = bright.pixel(x, 3);
             for (std::size_t b = 0; b < 3; ++b) {
@@ -120,8 +149,11 @@ TEST(Outputs, StoredComponentsAddUpToTheBit) {
             store_pixel(pixel, plan, colour, 3, stored);
             const auto direct = static_cast<std::size_t>(plan.first_channel(Layer::direct));
             const auto back = static_cast<std::size_t>(plan.first_channel(Layer::backscatter));
-            for (std::size_t b = 0; b < 3; ++b)
+            for (std::size_t b = 0; b < 3; ++b) {
                 EXPECT_EQ(stored[b], stored[direct + b] + stored[back + b]);
+                EXPECT_EQ(stored[direct + b],
+                          static_cast<float>(pixel.direct[b] * pixel.pixel_factor));
+            }
         }
     }
 }
@@ -131,16 +163,16 @@ TEST(Outputs, CleanIsDirectLightInClearWater) {
         SceneDesc desc = plane_behind_port(output);
         desc.water.absorption = PerBand{0, 0, 0};
         desc.water.scattering->b = {0, 0, 0};
-        for (const PixelResult& pixel : TestScene(desc).image())
+        for (const PixelResult& pixel : SeenScene(desc).image())
             EXPECT_NEAR(pixel.clean[1], pixel.direct[1], k_rounding * pixel.clean[1]);
     }
 }
 
 TEST(Fresnel, MultipliesRadianceAndNothingElse) {
     SceneDesc desc = plane_behind_port(Output::radiance);
-    const TestScene off(desc);
+    const SeenScene off(desc);
     desc.camera.port->fresnel = true;
-    const TestScene on(desc);
+    const SeenScene on(desc);
     const double inner = std::pow((1.49 - 1) / (1.49 + 1), 2);
     const double outer = std::pow((1.49 - 1.334) / (1.49 + 1.334), 2);
     const PixelResult a = off.pixel(6, 4), b = on.pixel(6, 4);
@@ -162,10 +194,10 @@ TEST(PaperOutput, EqualsQuadratureOfItsEquations) {
         SceneDesc desc = pinhole_scene(8, 6);
         desc.geometry = {plane_at_z(k_plane_z)};
         desc.lamps = {isotropic_lamp(lamp, 50)};
-        const TestScene radiance(desc);
+        const SeenScene radiance(desc);
         desc.camera.lens = LensDesc{k_f_number, k_focal_length, k_transmission};
         desc.render.output = Output::paper;
-        const TestScene scene(desc);
+        const SeenScene scene(desc);
         const Medium& medium = scene.assembled().water.medium;
         const IntrinsicsDesc& k = desc.camera.intrinsics;
         double worst = 0;
@@ -206,10 +238,10 @@ TEST(PaperOutput, EqualsQuadratureOfItsEquations) {
 TEST(PaperOutput, PlanesAndVolumeAgree) {
     SceneDesc desc = plane_behind_port(Output::paper);
     desc.render.samples = 1;
-    const TestScene volume(desc);
+    const SeenScene volume(desc);
     desc.render.integrator = RenderDesc::Integrator::planes;
     desc.render.planes.count = 1024;
-    const TestScene planes(desc);
+    const SeenScene planes(desc);
     for (int x = 0; x < desc.camera.width; ++x) {
         const double truth = volume.pixel(x, 1).backscatter[1];
         // Shadows of the box are cut off at slabs; without them planes agree to 0.1 %.

@@ -20,12 +20,14 @@ class RenderedFilm {
         LightFields fields;
         if (desc.render.integrator == RenderDesc::Integrator::volume)
             fields = splat_lamps(scene, {});
+        warnings_ = scene.warnings;
         const auto integrator = make_integrator(scene, fields);
         render_scene(scene, fields, *integrator, plan_, BandColour(desc.water.bands_nm), film_,
                      [](const std::string&, double) { return true; });
     }
 
     const Film& film() const { return film_; }
+    const std::vector<std::string>& warnings() const { return warnings_; }
     double value(Layer layer, int x, int y, int band) const {
         return at(plan_.first_channel(layer) + band, x, y);
     }
@@ -52,6 +54,7 @@ class RenderedFilm {
 
     LayerPlan plan_;
     Film film_;
+    std::vector<std::string> warnings_;
 };
 
 /// The largest difference of two images in one layer, over the pixels and three bands, relative to

@@ -1,0 +1,213 @@
+// Each stage of a render alone, on the plume scene at 640 x 360 unless its name says otherwise.
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/support/measure.h"
+#include "bench/support/process.h"
+#include "bench/support/scenes.h"
+#include "cli/scene_rendering.h"
+#include "core/geometry_scene.h"
+#include "core/image_writer.h"
+#include "core/parallel.h"
+#include "core/render_film.h"
+#include "core/scratch_folder.h"
+
+namespace uw::bench {
+namespace {
+
+using Kind = SceneCase::Kind;
+
+/// A loaded scene with its light, and what the stages after it work on.
+class StageRun {
+  public:
+    StageRun(const SceneCase& scene, bool forward_scatter) : threads_(scene.threads) {
+        SceneDesc desc = files_.read(scene);
+        if (forward_scatter) desc.water.forward_scatter = {.K = 1, .G = 0.02, .B = 0.005};
+        reset_peak_memory();
+        scene_ = assemble_scene(desc, [](const std::string&) {});
+    }
+
+    const AssembledScene& scene() const { return scene_; }
+    const SceneDesc& desc() const { return scene_.desc; }
+    const LightFields& light_fields() {
+        if (light_fields_.empty()) light_fields_ = splat_lamps(scene_, LightFieldOptions{});
+        return light_fields_;
+    }
+    const Integrator& integrator() {
+        if (!integrator_) integrator_ = make_integrator(scene_, light_fields());
+        return *integrator_;
+    }
+    PixelRenderer renderer() {
+        return {*scene_.camera, scene_.lit(), integrator(), 1, scene_.slabs, SensorModel(desc())};
+    }
+    LayerPlan plan() const { return {"default", desc().water.bands_nm, lamp_names(desc())}; }
+    Film film() const {
+        const CameraDesc& camera = desc().camera;
+        return {camera.width,
+                camera.height,
+                {0, 0, camera.width, camera.height},
+                plan().channel_names()};
+    }
+
+    /// Times `work` and takes the memory down that the scene and it need.
+    void measure(benchmark::State& state, const std::function<void()>& work) const {
+        double peak_mb = 0;
+        bench::measure(state, Floor(scene_), threads_, [&] {
+            work();
+            peak_mb = peak_memory_mb();
+        });
+        state.counters["peak_MB"] = peak_mb;
+    }
+
+  private:
+    int threads_;
+    SceneFiles files_;
+    AssembledScene scene_;
+    LightFields light_fields_;
+    std::unique_ptr<Integrator> integrator_;
+};
+
+void load_volumes(StageRun& run, benchmark::State& state) {
+    const AssembledScene& scene = run.scene();
+    run.measure(state, [&] {
+        std::vector<VolumeReport> reports;
+        std::vector<std::string> warnings;
+        benchmark::DoNotOptimize(uw::load_volumes(run.desc().volumes, scene.water.loads,
+                                                  scene.water.medium.constituent_count(), reports,
+                                                  warnings));
+    });
+}
+
+void load_geometry(StageRun& run, benchmark::State& state) {
+    run.measure(state, [&] {
+        std::vector<std::string> warnings;
+        benchmark::DoNotOptimize(
+            build_surfaces(run.desc().geometry, run.scene().water.medium.wavelengths_nm, warnings));
+    });
+}
+
+void splat(StageRun& run, benchmark::State& state) {
+    run.measure(state,
+                [&] { benchmark::DoNotOptimize(splat_lamps(run.scene(), LightFieldOptions{})); });
+}
+
+// Every pixel's values, none kept.
+void march(StageRun& run, benchmark::State& state) {
+    const PixelRenderer renderer = run.renderer();
+    const CameraDesc& camera = run.desc().camera;
+    run.measure(state, [&] {
+        parallel_for(static_cast<std::size_t>(camera.height), [&](std::size_t y) {
+            PixelResult result;
+            for (int x = 0; x < camera.width; ++x) {
+                renderer.render(x, static_cast<int>(y), result);
+                benchmark::DoNotOptimize(result.backscatter);
+            }
+        });
+    });
+}
+
+// The second pass alone: what it adds to a render.
+void forward_scatter(StageRun& run, benchmark::State& state) {
+    const PixelRenderer renderer = run.renderer();
+    const AssembledScene& scene = run.scene();
+    const LayerPlan plan = run.plan();
+    Film film = run.film();
+    const auto setup = forward_scatter_setup(scene, run.light_fields());
+    const auto go_on = [](double) { return true; };
+    ForwardPass pass(renderer, scene.lit(), run.integrator(), scene.camera->world_from_camera(),
+                     setup, plan);
+    const BandColour colour(run.desc().water.bands_nm);
+    render_film(renderer, plan, colour, film, go_on,
+                [&](int x, int y, const PixelResult& result) { pass.keep(x, y, result); });
+    run.measure(state, [&] { pass.run(go_on); });
+}
+
+// One pixel's values into every pixel of a film of all default layers.
+void store_film(StageRun& run, benchmark::State& state) {
+    const PixelRenderer renderer = run.renderer();
+    const LayerPlan plan = run.plan();
+    const BandColour colour(run.desc().water.bands_nm);
+    const CameraDesc& camera = run.desc().camera;
+    PixelResult result;
+    renderer.render(camera.width / 2, camera.height / 2, result);
+    run.measure(state, [&] {
+        Film film = run.film();
+        for (int y = 0; y < camera.height; ++y)
+            for (int x = 0; x < camera.width; ++x)
+                store_pixel(result, plan, colour, renderer.band_count(), film.pixel(x, y));
+        benchmark::DoNotOptimize(film.values().data());
+    });
+}
+
+void write_image(StageRun& run, benchmark::State& state) {
+    Film film = run.film();
+    render_film(run.renderer(), run.plan(), BandColour(run.desc().water.bands_nm), film,
+                [](double) { return true; });
+    const ScratchFolder folder;
+    run.measure(state, [&] { write_exr(folder.path() / "image.exr", film, {}); });
+}
+
+SceneCase plume(int width = 640, int height = 360) {
+    SceneCase scene;
+    scene.kind = Kind::plume;
+    scene.width = width;
+    scene.height = height;
+    return scene;
+}
+
+SceneCase fog(int voxels, bool dense) {
+    SceneCase scene = plume(320, 180);
+    scene.kind = Kind::fog;
+    scene.voxels = voxels;
+    scene.dense = dense;
+    return scene;
+}
+
+struct Stage {
+    std::string name;
+    void (*run)(StageRun&, benchmark::State&);
+    SceneCase scene;
+};
+
+std::vector<Stage> all_stages() {
+    SceneCase uniform = plume(), many_triangles = plume();
+    uniform.kind = many_triangles.kind = Kind::uniform;
+    many_triangles.triangles = 10'000'000;
+    std::vector<Stage> stages{{"load_vdb", load_volumes, plume()}};
+    for (const int voxels : {128, 256, 512})
+        for (const bool dense : {true, false})
+            stages.push_back({"load_vdb", load_volumes, fog(voxels, dense)});
+    for (const SceneCase& scene : {uniform, many_triangles}) {
+        stages.push_back({"load_mesh", load_geometry, scene});
+        stages.push_back({"splat", splat, scene});
+    }
+    stages.push_back({"splat", splat, plume()});
+    stages.push_back({"march", march, uniform});
+    stages.push_back({"march", march, plume()});
+    stages.push_back({"forward_scatter", forward_scatter, uniform});
+    stages.push_back({"forward_scatter", forward_scatter, plume()});
+    stages.push_back({"store_film", store_film, plume()});
+    stages.push_back({"write_exr", write_image, plume()});
+    return stages;
+}
+
+std::vector<Benchmark> all_benchmarks() {
+    std::vector<Benchmark> benchmarks;
+    for (const Stage& stage : all_stages())
+        benchmarks.push_back(
+            {stage.name + "/" + stage.scene.name(), [stage] {
+                 const auto run =
+                     std::make_shared<StageRun>(stage.scene, stage.run == forward_scatter);
+                 return [stage, run](benchmark::State& state) { stage.run(*run, state); };
+             }});
+    return benchmarks;
+}
+
+}  // namespace
+}  // namespace uw::bench
+
+int main(int argc, char** argv) {
+    return uw::bench::run_benchmarks(argc, argv, uw::bench::all_benchmarks());
+}

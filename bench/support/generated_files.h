@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+/// Inputs made by formula: the same on every machine.
+namespace uw::bench {
+
+/// Writes a seabed, x -6..6, z -10..4, rough around y = 0, and 24 rocks that hang in the water
+/// above it and throw shadows: about `triangles` in all, half of each. Binary PLY, y up, metres.
+void write_seabed(const std::filesystem::path& file, int triangles);
+
+/// Side of the box of fog [m]: x -1.35..1.05, y 0..2.4, z -1.2..1.2.
+inline constexpr double k_fog_side = 2.4;
+
+/// Writes a grid "density" of `voxels`^3 values of about 0 to 1. Dense: noise that is above 0
+/// everywhere. Sparse: clouds of it, with nothing between them.
+void write_fog(const std::filesystem::path& file, int voxels, bool dense);
+
+}  // namespace uw::bench

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "cli/scene_rendering.h"
+
+namespace uw::bench {
+
+/// How far a scene's image is from the reference integrator's, on a lattice of its pixels. All
+/// bands of the total radiance, divided by their mean over these pixels.
+struct ReferenceError {
+    int pixels = 0;
+    double rmse = 0;       // root of the mean square difference
+    double largest = 0;    // difference of any band of any pixel
+    double reference = 0;  // what the reference itself is uncertain by, as an RMSE
+};
+
+/// Renders about `pixels` pixels with the scene's integrator and with the reference. `step`: of the
+/// reference integrator; its own uncertainty is taken from a second one of twice the step, whose
+/// error is about double. On all cores.
+ReferenceError compare_with_reference(const AssembledScene& scene, const LightFields& light_fields,
+                                      int pixels, double step);
+
+}  // namespace uw::bench

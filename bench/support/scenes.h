@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/scene_desc.h"
+#include "core/scratch_folder.h"
+
+namespace uw::bench {
+
+/// A scene to measure. The scenes but S1 share one camera and one rig of spot lamps around it.
+struct SceneCase {
+    enum class Kind {
+        s1,       // of docs/performance.md: a plane, a box, one isotropic lamp; nothing else counts
+        uniform,  // uniform water above write_seabed's mesh
+        plume,    // the same with the Blender plume of 128^3 in it
+        fog,      // the same with write_fog's box in it
+    };
+    Kind kind = Kind::uniform;
+    int width = 640, height = 360;
+    int lamps = 3;
+    int bands = 3;
+    int triangles = 100'000;
+    int voxels = 0;  // of fog, along an edge
+    bool dense = true;
+    int threads = 1;
+
+    /// "plume/640x360/lamps:3/bands:3/threads:1", and what else sets the case apart.
+    std::string name() const;
+};
+
+/// Where the inputs of scenes are kept once made: the environment's UWVDB_BENCH_FILES, or else a
+/// folder that goes with the object.
+class SceneFiles {
+  public:
+    SceneFiles();
+
+    /// Makes what the scene needs unless it is there, and reads the scene. Throws as read_scene.
+    SceneDesc read(const SceneCase& scene) const;
+    const std::filesystem::path& folder() const { return folder_; }
+
+  private:
+    std::unique_ptr<const ScratchFolder> scratch_;
+    std::filesystem::path folder_;
+};
+
+/// The lamps' names, for a LayerPlan.
+std::vector<std::string> lamp_names(const SceneDesc& scene);
+
+}  // namespace uw::bench

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/pixel_renderer.h"
+#include "core/water_lattice.h"
+
+namespace uw {
+
+/// Renders one tile after another: what its pixels look at, the water between, and both together.
+class TileRenderer {
+  public:
+    /// `water_tolerance`: of WaterLattice; 0 gathers the water of every pixel by itself.
+    TileRenderer(const PixelRenderer& renderer, double water_tolerance);
+
+    /// Looks at the whole of a tile, whatever part of it is rendered: its lattice depends on it.
+    void begin(const PixelWindow& tile);
+
+    /// Renders a pixel of the tile.
+    const PixelResult& render(int x, int y);
+    /// Of the pixel rendered last.
+    const PixelView& view() const { return *view_; }
+
+  private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>((y - tile_.y0) * tile_.width() + x - tile_.x0);
+    }
+
+    const PixelRenderer& renderer_;
+    std::optional<WaterLattice> lattice_;  // none: every pixel by itself
+    PixelWindow tile_;
+    std::vector<PixelView> views_;  // of the tile; one that is reused without a lattice
+    const PixelView* view_ = nullptr;
+    std::vector<double> row_;
+    PixelResult result_;
+};
+
+}  // namespace uw

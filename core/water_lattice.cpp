@@ -1,0 +1,219 @@
+#include "core/water_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uw {
+
+namespace {
+
+// A node's distances may reach this far from the nearest to the farthest: over them a parabola
+// follows the in-scatter to 1e-4.
+constexpr double k_distance_ratio = 1.12;
+// Light darker than this share of the tile's mean is compared with that.
+constexpr double k_dark = 0.02;
+
+}  // namespace
+
+/// Where in a cell something is mixed, and up to which distances.
+struct WaterLattice::Place {
+    double u, v;  // 0..1 across and down the cell
+    std::span<const double> ends, shares;
+};
+
+WaterLattice::WaterLattice(const RaySource& rays, const RayWater& water, double tolerance)
+    : rays_(rays),
+      water_(water),
+      tolerance_(tolerance),
+      row_size_(water.row_size()),
+      floor_(water.band_count()),
+      mixed_(row_size_),
+      own_(row_size_) {}
+
+const PixelView* WaterLattice::view(int x, int y) const {
+    if (x < 0 || y < 0 || x >= tile_.width() || y >= tile_.height()) return nullptr;
+    const PixelView& view = views_[static_cast<std::size_t>(y * tile_.width() + x)];
+    return view.ends.empty() ? nullptr : &view;
+}
+
+void WaterLattice::gather(const PixelWindow& tile, std::span<const PixelView> views) {
+    tile_ = tile;
+    views_ = views;
+    rows_.assign(views.size() * row_size_, 0.0);
+    nodes_.assign(static_cast<std::size_t>(k_side) * k_side, Node{});
+    node_rows_.clear();
+    set_floor();
+    for (int j = 0; j < tile.height(); j += k_coarsest)
+        for (int i = 0; i < tile.width(); i += k_coarsest) fill_cell(i, j, k_coarsest);
+}
+
+const WaterLattice::Node& WaterLattice::node(int i, int j) {
+    Node& node = nodes_[static_cast<std::size_t>(j / k_finest * k_side + i / k_finest)];
+    if (node.state == Node::State::unknown) {
+        find_distances(i, j, node);
+        const bool ready = node.reach > 0 && gather_node(i, j, node);
+        node.state = ready ? Node::State::ready : Node::State::unusable;
+    }
+    return node;
+}
+
+/// The distances at which the water ends around a node, as far around it as they are alike.
+void WaterLattice::find_distances(int i, int j, Node& node) const {
+    int reach = k_coarsest;
+    while (i % reach != 0 || j % reach != 0) reach /= 2;
+    for (; reach >= k_finest; reach /= 2) {
+        double least = k_far, greatest = 0;
+        for (int y = j - reach; y <= j + reach; ++y) {
+            for (int x = i - reach; x <= i + reach; ++x) {
+                const PixelView* near = view(x, y);
+                if (near == nullptr) continue;
+                least = std::min(least, near->ends.front());
+                greatest = std::max(greatest, near->ends.back());
+            }
+        }
+        if (greatest == 0) return;
+        if (greatest > k_distance_ratio * least) continue;
+        node.reach = reach;
+        const bool alike = greatest <= (1 + 1e-9) * least;
+        node.stops = alike ? 1 : k_stops;
+        node.distances = {least, 0.5 * (least + greatest), greatest};
+        return;
+    }
+}
+
+bool WaterLattice::gather_node(int i, int j, Node& node) {
+    const auto ray = rays_.water_ray(tile_.x0 + i + 0.5, tile_.y0 + j + 0.5);
+    if (!ray) return false;
+    node.rows = node_rows_.size();
+    node_rows_.resize(node.rows + node.stops * row_size_);
+    water_.gather(*ray, std::span(node.distances).first(node.stops),
+                  std::span(node_rows_).subspan(node.rows));
+    return true;
+}
+
+void WaterLattice::set_floor() {
+    std::fill(floor_.begin(), floor_.end(), 0.0);
+    std::size_t count = 0;
+    for (int j = 0; j < tile_.height(); j += k_coarsest) {
+        for (int i = 0; i < tile_.width(); i += k_coarsest) {
+            const Node& at = node(i, j);
+            if (at.state != Node::State::ready) continue;
+            ++count;
+            for (std::size_t k = 0; k < water_.group_count() * floor_.size(); ++k)
+                floor_[k % floor_.size()] += node_rows_[at.rows + k];
+        }
+    }
+    for (double& value : floor_)
+        if (count > 0) value *= k_dark / static_cast<double>(count);
+}
+
+bool WaterLattice::corners(int i, int j, int spacing, Corners& found) {
+    for (std::size_t c = 0; c < found.size(); ++c) {
+        const int right = c % 2 != 0 ? spacing : 0, below = c / 2 != 0 ? spacing : 0;
+        const Node& corner = node(i + right, j + below);
+        if (corner.state != Node::State::ready || corner.reach < spacing) return false;
+        found[c] = &corner;
+    }
+    return true;
+}
+
+bool WaterLattice::confirmed(int i, int j, int spacing) {
+    // Pointers stay: all nodes have their place from the start.
+    Corners from{};
+    if (!corners(i, j, spacing, from)) return false;
+    const int half = spacing / 2;
+    for (int v = 0; v <= 2; ++v) {
+        for (int u = 0; u <= 2; ++u) {
+            if (u != 1 && v != 1) continue;
+            const Node& middle = node(i + u * half, j + v * half);
+            if (middle.state != Node::State::ready || middle.reach < half) return false;
+            const PixelView* seen = view(i + u * half, j + v * half);
+            constexpr std::array<double, 1> k_whole{1.0};
+            const Place place =
+                seen != nullptr
+                    ? Place{0.5 * u, 0.5 * v, seen->ends, seen->shares}
+                    : Place{0.5 * u, 0.5 * v, std::span(middle.distances).first(1), k_whole};
+            if (!agree(from, place, middle)) return false;
+        }
+    }
+    return true;
+}
+
+bool WaterLattice::agree(const Corners& from, const Place& place, const Node& node) {
+    std::fill(mixed_.begin(), mixed_.end(), 0.0);
+    std::fill(own_.begin(), own_.end(), 0.0);
+    for (std::size_t c = 0; c < from.size(); ++c) {
+        const double across = c % 2 != 0 ? place.u : 1 - place.u;
+        const double down = c / 2 != 0 ? place.v : 1 - place.v;
+        if (across * down > 0) add(*from[c], across * down, place.ends, place.shares, mixed_);
+    }
+    add(node, 1, place.ends, place.shares, own_);
+    const std::size_t bands = floor_.size();
+    for (std::size_t b = 0; b < bands; ++b) {
+        double difference = 0, light = 0;
+        for (std::size_t k = b; k < water_.group_count() * bands; k += bands) {
+            difference += mixed_[k] - own_[k];
+            light += own_[k];
+        }
+        if (!(std::abs(difference) <= tolerance_ * std::max(light, floor_[b]))) return false;
+    }
+    return true;
+}
+
+void WaterLattice::fill_cell(int i, int j, int spacing) {
+    if (i >= tile_.width() || j >= tile_.height()) return;
+    const int half = spacing / 2;
+    const bool mix = confirmed(i, j, spacing);
+    if (!mix && half >= k_finest * 2) {
+        for (const int v : {0, half})
+            for (const int u : {0, half}) fill_cell(i + u, j + v, half);
+        return;
+    }
+    for (int y = j; y < std::min(j + spacing, tile_.height()); ++y)
+        for (int x = i; x < std::min(i + spacing, tile_.width()); ++x)
+            fill_pixel(x, y, mix ? half : 0);
+}
+
+/// `spacing` of the lattice that the pixel is mixed from; 0: from none.
+void WaterLattice::fill_pixel(int x, int y, int spacing) {
+    const PixelView* seen = view(x, y);
+    if (seen == nullptr) return;
+    const auto pixel = static_cast<std::size_t>(y * tile_.width() + x);
+    const std::span row = std::span(rows_).subspan(pixel * row_size_, row_size_);
+    Corners from{};
+    if (spacing == 0 || !corners(x - x % spacing, y - y % spacing, spacing, from)) {
+        water_.gather(*seen, row);
+        return;
+    }
+    const double u = static_cast<double>(x % spacing) / spacing;
+    const double v = static_cast<double>(y % spacing) / spacing;
+    for (std::size_t c = 0; c < from.size(); ++c) {
+        const double weight = (c % 2 != 0 ? u : 1 - u) * (c / 2 != 0 ? v : 1 - v);
+        if (weight > 0) add(*from[c], weight, seen->ends, seen->shares, row);
+    }
+}
+
+/// Adds `weight` times what the node's parabola says of the mean over the ends.
+void WaterLattice::add(const Node& node, double weight, std::span<const double> ends,
+                       std::span<const double> shares, std::span<double> row) const {
+    std::array<double, k_stops> of_stop{};
+    for (std::size_t end = 0; end < ends.size(); ++end) {
+        const double share = weight * shares[end];
+        if (node.stops == 1) {
+            of_stop[0] += share;
+            continue;
+        }
+        // -1..1 from the nearest to the farthest distance.
+        const double t =
+            2 * (ends[end] - node.distances[1]) / (node.distances[2] - node.distances[0]);
+        of_stop[0] += share * 0.5 * t * (t - 1);
+        of_stop[1] += share * (1 - t * t);
+        of_stop[2] += share * 0.5 * t * (t + 1);
+    }
+    for (std::size_t stop = 0; stop < node.stops; ++stop) {
+        const double* from = &node_rows_[node.rows + stop * row_size_];
+        for (std::size_t k = 0; k < row_size_; ++k) row[k] += of_stop[stop] * from[k];
+    }
+}
+
+}  // namespace uw
