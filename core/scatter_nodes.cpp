@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/fast_exp.h"
+#include "core/vector_clones.h"
 
 namespace uw {
 
@@ -50,7 +51,7 @@ ScatterSum::ScatterSum(const Medium& medium)
     }
 }
 
-void ScatterSum::add(const ScatterNodes& nodes, const Spectrum& intensity,
+UWVDB_VECTOR_CLONES void ScatterSum::add(const ScatterNodes& nodes, const Spectrum& intensity,
                      std::span<Spectrum> radiance) const {
     thread_local std::vector<double> tau, beta;
     // Band by band, so that each loop runs over contiguous nodes without a branch.
@@ -66,7 +67,7 @@ void ScatterSum::add(const ScatterNodes& nodes, const Spectrum& intensity,
     }
 }
 
-void ScatterSum::add_depth(const ScatterNodes& nodes, std::size_t band,
+UWVDB_VECTOR_CLONES void ScatterSum::add_depth(const ScatterNodes& nodes, std::size_t band,
                            std::span<double> tau) const {
     const std::size_t count = nodes.size();
     const double c = attenuation_.uniform[band];
@@ -78,7 +79,7 @@ void ScatterSum::add_depth(const ScatterNodes& nodes, std::size_t band,
     }
 }
 
-void ScatterSum::add_scattering(const ScatterNodes& nodes, std::size_t band,
+UWVDB_VECTOR_CLONES void ScatterSum::add_scattering(const ScatterNodes& nodes, std::size_t band,
                                 std::span<double> beta) const {
     const std::size_t count = nodes.size();
     for (std::size_t m = 0; m < uniform_.size(); ++m) {
