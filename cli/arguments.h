@@ -20,7 +20,7 @@ struct RenderArguments {
     std::string layers;                      // empty: the default set
     std::optional<int> samples;
     std::string quality;  // draft or final; empty: final
-    int threads = 0;  // 0: all
+    int threads = 0;      // 0: all
     std::filesystem::path stats;
     std::filesystem::path irradiance_vdb;
     bool quiet = false;

@@ -267,8 +267,8 @@ void run_render(const RenderArguments& a) {
     const bool volume = desc.render.integrator == RenderDesc::Integrator::volume;
     if (volume || !files.irradiance_vdb.empty()) {
         Progress progress("splat", "lamps", static_cast<double>(scene.lamps.size()), a.quiet);
-        light_fields =
-            splat_lamps(scene, light_field_options(desc.render.quality), [&](double share) { progress.update(share); });
+        light_fields = splat_lamps(scene, light_field_options(desc.render.quality),
+                                   [&](double share) { progress.update(share); });
     }
 
     stats.begin_stage("render");

@@ -114,6 +114,11 @@ LightFieldOptions light_field_options(RenderDesc::Quality quality) {
     return options;
 }
 
+double water_tolerance(const RenderDesc& render) {
+    if (render.integrator != RenderDesc::Integrator::volume) return 0;
+    return render.quality == RenderDesc::Quality::draft ? k_draft_tolerance : k_water_tolerance;
+}
+
 void render_scene(const AssembledScene& scene, const LightFields& light_fields,
                   const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const PassProgress& progress) {
@@ -122,10 +127,7 @@ void render_scene(const AssembledScene& scene, const LightFields& light_fields,
         if (plan.first_channel_of_lamp(j) >= 0) parts.lamps = true;
     const PixelRenderer renderer(*scene.camera, scene.lit(), integrator, scene.desc.render.samples,
                                  scene.slabs, SensorModel(scene.desc), parts);
-    // The others are for comparison: every pixel by itself.
-    const bool volume = scene.desc.render.integrator == RenderDesc::Integrator::volume;
-    const bool draft = scene.desc.render.quality == RenderDesc::Quality::draft;
-    const double tolerance = !volume ? 0 : draft ? k_draft_tolerance : k_water_tolerance;
+    const double tolerance = water_tolerance(scene.desc.render);
     const auto told = [&progress](const std::string& pass) {
         return [&progress, pass](double fraction) { return progress(pass, fraction); };
     };

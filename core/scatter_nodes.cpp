@@ -52,7 +52,7 @@ ScatterSum::ScatterSum(const Medium& medium)
 }
 
 UWVDB_VECTOR_CLONES void ScatterSum::add(const ScatterNodes& nodes, const Spectrum& intensity,
-                     std::span<Spectrum> radiance) const {
+                                         std::span<Spectrum> radiance) const {
     thread_local std::vector<double> tau, beta;
     // Band by band, so that each loop runs over contiguous nodes without a branch.
     for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation_.band_count); ++b) {
@@ -68,7 +68,7 @@ UWVDB_VECTOR_CLONES void ScatterSum::add(const ScatterNodes& nodes, const Spectr
 }
 
 UWVDB_VECTOR_CLONES void ScatterSum::add_depth(const ScatterNodes& nodes, std::size_t band,
-                           std::span<double> tau) const {
+                                               std::span<double> tau) const {
     const std::size_t count = nodes.size();
     const double c = attenuation_.uniform[band];
     for (std::size_t i = 0; i < count; ++i) tau[i] = c * (nodes.s[i] + nodes.radius[i]);
@@ -80,7 +80,7 @@ UWVDB_VECTOR_CLONES void ScatterSum::add_depth(const ScatterNodes& nodes, std::s
 }
 
 UWVDB_VECTOR_CLONES void ScatterSum::add_scattering(const ScatterNodes& nodes, std::size_t band,
-                                std::span<double> beta) const {
+                                                    std::span<double> beta) const {
     const std::size_t count = nodes.size();
     for (std::size_t m = 0; m < uniform_.size(); ++m) {
         const double b = uniform_[m][band];

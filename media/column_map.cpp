@@ -42,7 +42,9 @@ void clip(double a, double b, int size, Interval& part) {
 
 ColumnMap::ColumnMap(const ConcentrationField& field, const Point3& lamp, double per_voxel,
                      std::size_t memory_budget)
-    : lamp_(lamp), per_voxel_(per_voxel), constituents_(static_cast<std::size_t>(field.constituent_count())) {
+    : lamp_(lamp),
+      per_voxel_(per_voxel),
+      constituents_(static_cast<std::size_t>(field.constituent_count())) {
     const Bounds bounds = field.bounds();
     if (bounds.empty() || constituents_ == 0) return;
     const double voxel = field.finest_voxel();
