@@ -132,14 +132,13 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<c
         if (smallest_attenuation_ > 0)
             reach = std::min(
                 reach, passage.radius(0) + k_negligible_optical_depth / smallest_attenuation_);
-        light_fields_[j]->lit_intervals(ray, reach, w.lit);
+        light_fields_[j]->lit_intervals(ray, lamps[j].beam(ray, {begin, reach}), w.lit);
         w.nodes.clear();
-        for (Interval interval : w.lit) {
-            interval.begin = std::max(interval.begin, begin);
-            if (interval.length() <= 0) continue;
+        for (const Interval& interval : w.lit) {
             const std::vector<double>& breaks = find_breaks(ray, j, passage, interval, ends, w);
             add_panels(ray, j, passage, ends, breaks, w.profile, w.nodes);
         }
+        w.nodes.pad();
         w.nodes.lamp_column.resize(w.nodes.size() *
                                    static_cast<std::size_t>(w.profile.constituent_count));
         light_fields_[j]->columns(w.nodes.position, w.nodes.lamp_column);

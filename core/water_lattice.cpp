@@ -180,8 +180,7 @@ bool WaterLattice::agree(const Corners& from, const Place& place, const Node& no
     for (std::size_t c = 0; c < from.size(); ++c) {
         const double across = c % 2 != 0 ? place.u : 1 - place.u;
         const double down = c / 2 != 0 ? place.v : 1 - place.v;
-        if (across * down > 0 &&
-            !add(*from[c], across * down, place.ends, place.shares, mixed_))
+        if (across * down > 0 && !add(*from[c], across * down, place.ends, place.shares, mixed_))
             return false;
     }
     if (!add(node, 1, place.ends, place.shares, own_)) return false;

@@ -89,7 +89,7 @@ class WaterLattice {
     std::span<const PixelView> views_;
     std::vector<double> ends_;             // of all views, one after another
     std::vector<std::size_t> first_ends_;  // of each view in ends_, and their number
-    std::vector<double> rows_;  // of pixels
+    std::vector<double> rows_;             // of pixels
     std::vector<Node> nodes_;
     std::vector<double> node_rows_;
     std::vector<double> floor_;  // per band: what dark light is compared with [W m^-2 sr^-1]

@@ -23,8 +23,9 @@ class LampLightField : public LightField {
         : shadows_(surfaces, lamp, options.shadow_resolution),
           columns_(field, lamp, options.columns_per_voxel, options.column_budget) {}
 
-    void lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const override {
-        shadows_.lit_intervals(ray, s_end, lit);
+    void lit_intervals(const Ray& ray, const Interval& stretch,
+                       std::vector<Interval>& lit) const override {
+        shadows_.lit_intervals(ray, stretch, lit);
     }
     void append_column_breaks(const Ray& ray, const Interval& interval,
                               std::vector<double>& s) const override {
