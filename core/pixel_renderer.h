@@ -29,7 +29,7 @@ struct PixelResult {
     double lit = 0;                // mean fraction of lamps that see the surface
     /// Radiance due to each lamp: direct + backscatter. Empty unless WaterParts::lamps.
     std::vector<Spectrum> lamps;
-    bool has_hit = false;          // whether the centre's ray meets a surface
+    bool has_hit = false;  // whether the centre's ray meets a surface
     SurfaceHit hit;
     double depth_z = 0;  // camera-frame z of the hit
     double range = 0;    // from the camera's centre to the hit

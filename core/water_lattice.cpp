@@ -204,8 +204,8 @@ void WaterLattice::add(const Node& node, double weight, std::span<const double> 
             continue;
         }
         // -1..1 from the nearest to the farthest distance.
-        const double t = 2 * (ends[end] - node.distances[1]) /
-                         (node.distances[2] - node.distances[0]);
+        const double t =
+            2 * (ends[end] - node.distances[1]) / (node.distances[2] - node.distances[0]);
         of_stop[0] += share * 0.5 * t * (t - 1);
         of_stop[1] += share * (1 - t * t);
         of_stop[2] += share * 0.5 * t * (t + 1);

@@ -178,8 +178,8 @@ class ShadowMap::Search {
     bool visible_at_end(double s, double into) {
         if (s == last_seen_.s) return last_seen_.visible;
         const bool is_end = s == whole_.begin || s == whole_.end;
-        const double inset = std::min(0.25 * std::abs(into - s),
-                                      3e-5 * distance(map_.lamp_, ray_.at(s)));
+        const double inset =
+            std::min(0.25 * std::abs(into - s), 3e-5 * distance(map_.lamp_, ray_.at(s)));
         last_seen_ = {s, visible(is_end ? s + std::copysign(inset, into - s) : s)};
         return last_seen_.visible;
     }
