@@ -14,10 +14,12 @@ float search_end(float nearest) {
     return nearest * (1 + k_tie_margin);
 }
 
-Query& query_of(RTCIntersectContext* context, const RTCRayN* rays, unsigned count, unsigned i) {
-    // RTCRayN_id takes no constant rays, though it reads only.
-    const unsigned id = RTCRayN_id(const_cast<RTCRayN*>(rays), count, i);
-    return reinterpret_cast<QueryContext*>(context)->queries[id];
+const QueryContext& context_of(const RTCIntersectContext* context) {
+    return *reinterpret_cast<const QueryContext*>(context);
+}
+
+Query& query_of(const RTCIntersectContext* context, RTCRayN* rays, unsigned count, unsigned i) {
+    return context_of(context).queries[RTCRayN_id(rays, count, i)];
 }
 
 }  // namespace
@@ -44,11 +46,16 @@ void filter_occluder(const RTCFilterFunctionNArguments* args) {
     const unsigned count = args->N;
     for (unsigned i = 0; i < count; ++i) {
         if (args->valid[i] != -1) continue;
-        const Query& query = query_of(args->context, args->ray, count, i);
+        Query& query = query_of(args->context, args->ray, count, i);
         const auto crossing = cross_triangle(object, RTCHitN_primID(args->hit, count, i),
                                              query.origin, query.direction);
         const double t = crossing ? crossing->t : RTCRayN_tfar(args->ray, count, i);
-        if (!between_ends(t)) args->valid[i] = 0;
+        if (!between_ends(t)) {
+            args->valid[i] = 0;
+        } else if (context_of(args->context).is_packet && !(crossing && crossing->well_inside())) {
+            query.has_doubt = true;
+            args->valid[i] = 0;
+        }
     }
 }
 

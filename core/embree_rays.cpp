@@ -5,9 +5,6 @@
 namespace uw {
 namespace {
 
-constexpr auto k_single = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-constexpr auto k_packet = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-
 /// A little far, so that nothing is lost to rounding; the double distance decides.
 float embree_end(double end) {
     return end < 1e30 ? static_cast<float>(end * (1 + 1e-6)) : 1e30F;
@@ -50,7 +47,7 @@ void put(RTCRay8& rays, Places& places, std::size_t i, const Query& query, doubl
 }  // namespace
 
 void trace(RTCScene scene, Query& query, float begin, double end) {
-    QueryContext context(&query, k_single);
+    QueryContext context(&query, false);
     RTCRayHit rayhit{};
     rayhit.ray = embree_ray(query, begin, end);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -59,7 +56,7 @@ void trace(RTCScene scene, Query& query, float begin, double end) {
 
 void trace_packet(RTCScene scene, std::span<Query> queries, std::span<const double> ends) {
     assert(queries.size() <= k_packet_size && queries.size() == ends.size());
-    QueryContext context(queries.data(), k_packet);
+    QueryContext context(queries.data(), true);
     RTCRayHit8 rayhits{};
     Places places;
     for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -70,7 +67,7 @@ void trace_packet(RTCScene scene, std::span<Query> queries, std::span<const doub
 }
 
 bool is_occluded(RTCScene scene, Query& query) {
-    QueryContext context(&query, k_single);
+    QueryContext context(&query, false);
     RTCRay ray = embree_ray(query, 0, 1);
     rtcOccluded1(scene, &context.context, &ray);
     return ray.tfar < 0;
@@ -78,14 +75,16 @@ bool is_occluded(RTCScene scene, Query& query) {
 
 unsigned occluded_packet(RTCScene scene, std::span<Query> queries) {
     assert(queries.size() <= k_packet_size);
-    QueryContext context(queries.data(), k_packet);
+    QueryContext context(queries.data(), true);
     RTCRay8 rays{};
     Places places;
     for (std::size_t i = 0; i < queries.size(); ++i) put(rays, places, i, queries[i], 1);
     rtcOccluded8(places.taken, scene, &context.context, &rays);
     unsigned occluded = 0;
     for (std::size_t i = 0; i < queries.size(); ++i) {
-        if (rays.tfar[i] < 0) occluded |= 1U << i;
+        const bool is =
+            rays.tfar[i] < 0 || (queries[i].has_doubt && is_occluded(scene, queries[i]));
+        if (is) occluded |= 1U << i;
     }
     return occluded;
 }

@@ -122,6 +122,7 @@ class EmbreeSurfaces final : public Surfaces {
         const PlaneObject* plane = nullptr;  // if set, the rest means nothing
         unsigned geometry = 0, primitive = 0;
         TriangleCrossing crossing;  // of meshes
+        bool is_sure = true;        // that a single ray meets it, too (QueryContext::is_packet)
     };
 
     void check(const char* doing) const {
@@ -205,6 +206,7 @@ class EmbreeSurfaces final : public Surfaces {
                                query.origin, query.direction);
             candidate.crossing = crossing ? *crossing : TriangleCrossing{coarse, query.u, query.v};
             candidate.distance = candidate.crossing.t;
+            candidate.is_sure = candidate.distance > 0 && crossing && crossing->well_inside();
             return candidate;
         }
         const auto roots =
@@ -212,6 +214,7 @@ class EmbreeSurfaces final : public Surfaces {
         // The callback found these roots; the one it took is the nearer to what it wrote.
         const bool near = std::abs(roots->near - coarse) <= std::abs(roots->far - coarse);
         candidate.distance = near ? roots->near : roots->far;
+        candidate.is_sure = candidate.distance > 0;
         return candidate;
     }
 
@@ -247,8 +250,7 @@ class EmbreeSurfaces final : public Surfaces {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             if (!queries[i].has_candidate()) continue;
             Candidate traced = refine(queries[i]);
-            // At or behind the origin: the long way, which passes over such.
-            if (!(traced.distance > 0)) traced = trace_past_origin(rays[i], ends[i]);
+            if (!traced.is_sure) traced = trace_past_origin(rays[i], ends[i]);
             if (traced.distance < nearest[i].distance) nearest[i] = traced;
         }
     }
