@@ -52,7 +52,8 @@ void filter_occluder(const RTCFilterFunctionNArguments* args) {
         const double t = crossing ? crossing->t : RTCRayN_tfar(args->ray, count, i);
         if (!between_ends(t)) {
             args->valid[i] = 0;
-        } else if (context_of(args->context).is_packet && !(crossing && crossing->well_inside())) {
+        } else if (!context_of(args->context).edges_count &&
+                   !(crossing && crossing->well_inside())) {
             query.has_doubt = true;
             args->valid[i] = 0;
         }

@@ -27,7 +27,7 @@ struct Query {
     float t = std::numeric_limits<float>::infinity();
     float u = 0, v = 0;  // of meshes
     unsigned geometry = RTC_INVALID_GEOMETRY_ID, primitive = RTC_INVALID_GEOMETRY_ID;
-    bool has_doubt = false;  // an occluder was passed over, see QueryContext::is_packet
+    bool has_doubt = false;  // an occluder was passed over
 
     bool has_candidate() const { return geometry != RTC_INVALID_GEOMETRY_ID; }
 
@@ -48,12 +48,11 @@ struct Query {
 struct QueryContext {
     RTCIntersectContext context{};  // first, so that a pointer to one is a pointer to the other
     Query* queries = nullptr;
-    /// A packet tries a ray on triangles in whose boxes it does not come, and near their edges
-    /// rounding may find more there than a single ray would. The callbacks pass over occluders met
-    /// there; a single query is to decide.
-    bool is_packet = false;
+    /// Whether occluders met near the edge of a triangle count (embree_rays.h); without this they
+    /// are passed over.
+    bool edges_count = false;
 
-    QueryContext(Query* first, bool packet) : queries(first), is_packet(packet) {
+    QueryContext(Query* first, bool packet) : queries(first) {
         rtcInitIntersectContext(&context);
         if (packet) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     }

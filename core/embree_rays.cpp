@@ -29,8 +29,9 @@ struct alignas(32) Places {
     int taken[k_packet_size] = {};
 };
 
-void put(RTCRay8& rays, Places& places, std::size_t i, const Query& query, double end) {
-    const RTCRay ray = embree_ray(query, 0, end);
+void put(RTCRay8& rays, Places& places, std::size_t i, const Query& query, float begin,
+         double end) {
+    const RTCRay ray = embree_ray(query, begin, end);
     rays.org_x[i] = ray.org_x;
     rays.org_y[i] = ray.org_y;
     rays.org_z[i] = ray.org_z;
@@ -44,6 +45,34 @@ void put(RTCRay8& rays, Places& places, std::size_t i, const Query& query, doubl
     places.taken[i] = -1;
 }
 
+void trace_packet(RTCScene scene, std::span<Query> queries, float begin,
+                  std::span<const double> ends) {
+    assert(queries.size() <= k_packet_size && queries.size() == ends.size());
+    QueryContext context(queries.data(), true);
+    RTCRayHit8 rayhits{};
+    Places places;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        put(rayhits.ray, places, i, queries[i], begin, ends[i]);
+        rayhits.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect8(places.taken, scene, &context.context, &rayhits);
+}
+
+unsigned occluded_packet(RTCScene scene, std::span<Query> queries, bool edges_count) {
+    assert(queries.size() <= k_packet_size);
+    QueryContext context(queries.data(), true);
+    context.edges_count = edges_count;
+    RTCRay8 rays{};
+    Places places;
+    for (std::size_t i = 0; i < queries.size(); ++i) put(rays, places, i, queries[i], 0, 1);
+    rtcOccluded8(places.taken, scene, &context.context, &rays);
+    unsigned occluded = 0;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        if (rays.tfar[i] < 0) occluded |= 1U << i;
+    }
+    return occluded;
+}
+
 }  // namespace
 
 void trace(RTCScene scene, Query& query, float begin, double end) {
@@ -54,37 +83,28 @@ void trace(RTCScene scene, Query& query, float begin, double end) {
     rtcIntersect1(scene, &context.context, &rayhit);
 }
 
+void trace_edges(RTCScene scene, Query& query, float begin, double end) {
+    trace_packet(scene, std::span(&query, 1), begin, std::span(&end, 1));
+}
+
 void trace_packet(RTCScene scene, std::span<Query> queries, std::span<const double> ends) {
-    assert(queries.size() <= k_packet_size && queries.size() == ends.size());
-    QueryContext context(queries.data(), true);
-    RTCRayHit8 rayhits{};
-    Places places;
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-        put(rayhits.ray, places, i, queries[i], ends[i]);
-        rayhits.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    }
-    rtcIntersect8(places.taken, scene, &context.context, &rayhits);
+    trace_packet(scene, queries, 0, ends);
 }
 
 bool is_occluded(RTCScene scene, Query& query) {
+    query.has_doubt = false;
     QueryContext context(&query, false);
     RTCRay ray = embree_ray(query, 0, 1);
     rtcOccluded1(scene, &context.context, &ray);
-    return ray.tfar < 0;
+    if (ray.tfar < 0 || !query.has_doubt) return ray.tfar < 0;
+    return occluded_packet(scene, std::span(&query, 1), true) != 0;
 }
 
 unsigned occluded_packet(RTCScene scene, std::span<Query> queries) {
-    assert(queries.size() <= k_packet_size);
-    QueryContext context(queries.data(), true);
-    RTCRay8 rays{};
-    Places places;
-    for (std::size_t i = 0; i < queries.size(); ++i) put(rays, places, i, queries[i], 1);
-    rtcOccluded8(places.taken, scene, &context.context, &rays);
-    unsigned occluded = 0;
+    unsigned occluded = occluded_packet(scene, queries, false);
     for (std::size_t i = 0; i < queries.size(); ++i) {
-        const bool is =
-            rays.tfar[i] < 0 || (queries[i].has_doubt && is_occluded(scene, queries[i]));
-        if (is) occluded |= 1U << i;
+        const bool open = (occluded >> i & 1U) == 0 && queries[i].has_doubt;
+        if (open && is_occluded(scene, queries[i])) occluded |= 1U << i;
     }
     return occluded;
 }

@@ -122,7 +122,7 @@ class EmbreeSurfaces final : public Surfaces {
         const PlaneObject* plane = nullptr;  // if set, the rest means nothing
         unsigned geometry = 0, primitive = 0;
         TriangleCrossing crossing;  // of meshes
-        bool is_sure = true;        // that a single ray meets it, too (QueryContext::is_packet)
+        bool near_edge = false;     // of a triangle, where rounding decides (embree_rays.h)
     };
 
     void check(const char* doing) const {
@@ -187,7 +187,13 @@ class EmbreeSurfaces final : public Surfaces {
             Query query{ray.origin, ray.direction};
             trace(scene_.get(), query, begin, s_end);
             if (!query.has_candidate()) break;
-            const Candidate candidate = refine(query);
+            Candidate candidate = refine(query);
+            if (candidate.near_edge) {
+                query = {ray.origin, ray.direction};
+                trace_edges(scene_.get(), query, begin, s_end);
+                if (!query.has_candidate()) break;
+                candidate = refine(query);
+            }
             if (candidate.distance > 0) return candidate;
             begin = std::nextafter(query.t, std::numeric_limits<float>::infinity());
         }
@@ -206,7 +212,7 @@ class EmbreeSurfaces final : public Surfaces {
                                query.origin, query.direction);
             candidate.crossing = crossing ? *crossing : TriangleCrossing{coarse, query.u, query.v};
             candidate.distance = candidate.crossing.t;
-            candidate.is_sure = candidate.distance > 0 && crossing && crossing->well_inside();
+            candidate.near_edge = !(crossing && crossing->well_inside());
             return candidate;
         }
         const auto roots =
@@ -214,7 +220,6 @@ class EmbreeSurfaces final : public Surfaces {
         // The callback found these roots; the one it took is the nearer to what it wrote.
         const bool near = std::abs(roots->near - coarse) <= std::abs(roots->far - coarse);
         candidate.distance = near ? roots->near : roots->far;
-        candidate.is_sure = candidate.distance > 0;
         return candidate;
     }
 
@@ -250,7 +255,9 @@ class EmbreeSurfaces final : public Surfaces {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             if (!queries[i].has_candidate()) continue;
             Candidate traced = refine(queries[i]);
-            if (!traced.is_sure) traced = trace_past_origin(rays[i], ends[i]);
+            if (traced.near_edge || !(traced.distance > 0)) {
+                traced = trace_past_origin(rays[i], ends[i]);
+            }
             if (traced.distance < nearest[i].distance) nearest[i] = traced;
         }
     }
