@@ -188,6 +188,25 @@ TEST(SurfacesPackets, TiesAndEdgesGoTheSameWay) {
     EXPECT_GT(hits, rays_sent / 2);
 }
 
+TEST(SurfacesPackets, ManyEqualSheetsTie) {
+    const test::MeshFolder folder;
+    GeometryDesc sheet;
+    sheet.file = folder.write("sheet.obj", sheet_text());
+    // More than one box of Embree holds, so that a tie goes across boxes.
+    const auto surfaces = build(std::vector<GeometryDesc>(20, sheet));
+    Random random;
+    for (int bundle = 0; bundle < 2000; ++bundle) {
+        const Point3 origin{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, -1)};
+        const Vector3 direction =
+            glm::normalize(Point3{random.uniform(-1, 1), random.uniform(-1, 1), 0} - origin);
+        std::vector<Ray> rays(1 + static_cast<std::size_t>(bundle) % 9, {origin, direction});
+        EXPECT_EQ(compare_hits(*surfaces, rays, 1e6), static_cast<int>(rays.size()));
+        SurfaceHit hit;
+        surfaces->closest_hit(rays[0], 1e6, hit);
+        EXPECT_EQ(hit.object_id, 1U);
+    }
+}
+
 TEST(SurfacesPackets, RaysFromWithinASurfacePassOverIt) {
     const auto surfaces = build({box({-1, -1, -1}, {1, 1, 1}), sphere({3, 0, 0}, 1),
                                  plane({0, -4, 0}, {0, 1, 0}), seabed()});
