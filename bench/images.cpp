@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bench/support/measure.h"
@@ -55,13 +56,17 @@ class ImageRun {
         });
         if (error_.pixels == 0) {
             const ReferenceEffort effort = reference_effort(case_);
-            error_ = compare_with_reference(scene_, light_fields, effort.pixels, effort.step);
+            error_ = compare_with_reference(scene_, plan(), *film_, effort.pixels, effort.step);
         }
         state.counters["splat_s"] = splat_s;
         count(state);
     }
 
   private:
+    LayerPlan plan() const {
+        return {"total", scene_.desc.water.bands_nm, lamp_names(scene_.desc)};
+    }
+
     // Returns the CPU time of the splat [s].
     double render(LightFields& light_fields) {
         light_fields.clear();
@@ -69,14 +74,13 @@ class ImageRun {
         light_fields = splat_lamps(scene_, LightFieldOptions{});
         const double splat_s = process_cpu_seconds() - begin;
         const CameraDesc& camera = scene_.desc.camera;
-        const LayerPlan plan("total", scene_.desc.water.bands_nm, lamp_names(scene_.desc));
-        Film film(camera.width, camera.height, {0, 0, camera.width, camera.height},
-                  plan.channel_names());
-        film_bytes_ = film.values().size_bytes();
-        render_scene(scene_, light_fields, *make_integrator(scene_, light_fields), plan,
-                     BandColour(scene_.desc.water.bands_nm), film,
+        film_.emplace(camera.width, camera.height, PixelWindow{0, 0, camera.width, camera.height},
+                      plan().channel_names());
+        film_bytes_ = film_->values().size_bytes();
+        render_scene(scene_, light_fields, *make_integrator(scene_, light_fields), plan(),
+                     BandColour(scene_.desc.water.bands_nm), *film_,
                      [](const std::string&, double) { return true; });
-        benchmark::DoNotOptimize(film.values().data());
+        benchmark::DoNotOptimize(film_->values().data());
         return splat_s;
     }
 
@@ -105,6 +109,7 @@ class ImageRun {
     AssembledScene scene_;
     std::size_t film_bytes_ = 0;
     double peak_mb_ = 0;
+    std::optional<Film> film_;  // of the last render
     ReferenceError error_;
 };
 

@@ -1,4 +1,5 @@
 // Each stage of a render alone, on the plume scene at 640 x 360 unless its name says otherwise.
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include "core/parallel.h"
 #include "core/render_film.h"
 #include "core/scratch_folder.h"
+#include "core/tile_renderer.h"
 
 namespace uw::bench {
 namespace {
@@ -40,7 +42,8 @@ class StageRun {
         return *integrator_;
     }
     PixelRenderer renderer() {
-        return {*scene_.camera, scene_.lit(), integrator(), 1, scene_.slabs, SensorModel(desc())};
+        return {*scene_.camera, scene_.lit(),        integrator(), 1,
+                scene_.slabs,   SensorModel(desc()), {false, true}};
     }
     LayerPlan plan() const { return {"default", desc().water.bands_nm, lamp_names(desc())}; }
     Film film() const {
@@ -97,13 +100,20 @@ void splat(StageRun& run, benchmark::State& state) {
 void march(StageRun& run, benchmark::State& state) {
     const PixelRenderer renderer = run.renderer();
     const CameraDesc& camera = run.desc().camera;
+    constexpr int k_tile = WaterLattice::k_tile;
+    const int columns = (camera.width + k_tile - 1) / k_tile;
+    const int rows = (camera.height + k_tile - 1) / k_tile;
     run.measure(state, [&] {
-        parallel_for(static_cast<std::size_t>(camera.height), [&](std::size_t y) {
-            PixelResult result;
-            for (int x = 0; x < camera.width; ++x) {
-                renderer.render(x, static_cast<int>(y), result);
-                benchmark::DoNotOptimize(result.backscatter);
-            }
+        parallel_for(static_cast<std::size_t>(columns * rows), [&](std::size_t i) {
+            TileRenderer tile(renderer, water_tolerance(run.desc().render));
+            const int x0 = static_cast<int>(i) % columns * k_tile;
+            const int y0 = static_cast<int>(i) / columns * k_tile;
+            const int x1 = std::min(x0 + k_tile, camera.width);
+            const int y1 = std::min(y0 + k_tile, camera.height);
+            tile.begin({x0, y0, x1, y1});
+            for (int y = y0; y < y1; ++y)
+                for (int x = x0; x < x1; ++x)
+                    benchmark::DoNotOptimize(tile.render(x, y).backscatter);
         });
     });
 }
@@ -119,8 +129,10 @@ void forward_scatter(StageRun& run, benchmark::State& state) {
     ForwardPass pass(renderer, scene.lit(), run.integrator(), scene.camera->world_from_camera(),
                      setup, plan);
     const BandColour colour(run.desc().water.bands_nm);
-    render_film(renderer, plan, colour, film, go_on,
-                [&](int x, int y, const PixelResult& result) { pass.keep(x, y, result); });
+    render_film(renderer, water_tolerance(run.desc().render), plan, colour, film, go_on,
+                [&](int x, int y, const PixelView& view, const PixelResult& result) {
+                    pass.keep(x, y, view, result);
+                });
     run.measure(state, [&] { pass.run(go_on); });
 }
 
@@ -143,8 +155,8 @@ void store_film(StageRun& run, benchmark::State& state) {
 
 void write_image(StageRun& run, benchmark::State& state) {
     Film film = run.film();
-    render_film(run.renderer(), run.plan(), BandColour(run.desc().water.bands_nm), film,
-                [](double) { return true; });
+    render_film(run.renderer(), water_tolerance(run.desc().render), run.plan(),
+                BandColour(run.desc().water.bands_nm), film, [](double) { return true; });
     const ScratchFolder folder;
     run.measure(state, [&] { write_exr(folder.path() / "image.exr", film, {}); });
 }

@@ -21,7 +21,8 @@ struct RenderArguments {
     std::string integrator;                  // empty: the scene's
     std::string layers;                      // empty: the default set
     std::optional<int> samples;
-    int threads = 0;  // 0: all
+    std::string quality;  // draft or final; empty: final
+    int threads = 0;      // 0: all
     std::filesystem::path stats;
     std::filesystem::path irradiance_vdb;
     bool quiet = false;

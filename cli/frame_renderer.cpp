@@ -103,10 +103,11 @@ LightFields FrameRenderer::splat(bool with_irradiance) {
     if (!volume && !with_irradiance) return {};
     Progress progress(clock_.label("splat"), "lamps", static_cast<double>(scene_.lamps.size()),
                       arguments_.quiet, clock_.seconds_left());
-    return splatter_.splat(scene_, LightFieldOptions{}, [&](double share) {
-        stop_if_requested();
-        progress.update(share);
-    });
+    return splatter_.splat(scene_, light_field_options(scene_.desc.render.quality),
+                           [&](double share) {
+                               stop_if_requested();
+                               progress.update(share);
+                           });
 }
 
 void FrameRenderer::render_image(const LightFields& light_fields) {

@@ -52,10 +52,13 @@ void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
 
 ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame) {
     const std::string quantity = SensorModel(scene).description();
+    const bool draft = scene.render.quality == RenderDesc::Quality::draft;
+    const char* const quality = draft ? "draft" : "final";
     ImageMetadata m{{"software", "uwvdb " + program_version()},
                     {"uwvdb/scene", scene.file.filename().string()},
                     {"uwvdb/scene_hash", scene.hash},
                     {"uwvdb/integrator", name_of(scene.render.integrator)},
+                    {"uwvdb/quality", std::string(quality)},
                     {"uwvdb/samples", static_cast<double>(scene.render.samples)},
                     {"uwvdb/seed", std::string("none: deterministic")},
                     {"uwvdb/rgb_quantity", quantity},

@@ -18,9 +18,9 @@ struct SplatCounts {
 
 /// Splats the light of a scene's lamps and keeps it for the next render. A shadow map hangs on the
 /// lamp's position, the surfaces and the map's resolution; a column map on the lamp's position, the
-/// concentration field and the memory given to it. Where these are the same as at the splat before
-/// it is taken over: another camera, intensity, colour, beam or direction of a lamp needs no splat,
-/// a lamp that moved one, and another frame of a volume new columns only.
+/// concentration field, the map's fineness and the memory given to it. Where these are the same as
+/// at the splat before it is taken over: another camera, intensity, colour, beam or direction of a
+/// lamp needs no splat, a lamp that moved one, and another frame of a volume new columns only.
 class LightSplatter {
   public:
     /// The light of every lamp of `scene`, to the bit what splat_lamps makes. Surfaces and field

@@ -13,6 +13,7 @@
 #include "cli/image_output.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
+#include "core/config_text.h"
 #include "core/error.h"
 #include "core/image_reader.h"
 #include "core/parallel.h"
@@ -29,7 +30,15 @@ RenderDesc::Integrator integrator_named(const std::string& name) {
         fmt::format("--integrator: unknown '{}'; use volume, planes or reference", name));
 }
 
+RenderDesc::Quality quality_named(const std::string& name) {
+    if (name == "final") return RenderDesc::Quality::final;
+    if (name == "draft") return RenderDesc::Quality::draft;
+    throw UsageError(fmt::format("--quality: unknown '{}'; use draft or final", printable(name)));
+}
+
 void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
+    if (!a.quality.empty()) desc.render.quality = quality_named(a.quality);
+    if (desc.render.quality == RenderDesc::Quality::draft) desc.render.samples = 1;
     if (a.samples) desc.render.samples = *a.samples;
     if (!a.integrator.empty()) desc.render.integrator = integrator_named(a.integrator);
     if (!a.size) return;

@@ -15,6 +15,7 @@ namespace {
 constexpr const char* k_render_examples = R"(Examples:
   uwvdb render assets/scenes/plume.yaml
   uwvdb render plume.yaml -o out/plume.exr --size 960x540 --samples 1
+  uwvdb render plume.yaml --quality draft --size 480x270
   uwvdb render plume.yaml --set lamps.left.intensity='[80, 80, 80]' --layers direct,depth
   uwvdb render plume.yaml --integrator reference --crop 100,80,140,120 --stats stats.json
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.exr --resume
@@ -77,6 +78,10 @@ Command add_render_command(CLI::App& app) {
     render.add_option("--samples", p->arguments.samples, "surface samples per pixel, 1 to 4096")
         ->check(in_range(1, 4096))
         ->type_name("N");
+    render
+        .add_option("--quality", p->arguments.quality,
+                    "draft: within 3 %, one sample, for looking; or final")
+        ->type_name("NAME");
     add_threads_option(render, p->arguments.threads);
     render
         .add_option("--stats", p->arguments.stats, "write times, rays, voxels and memory as JSON")

@@ -159,9 +159,12 @@ static std::unique_ptr<Integrator> make_unweighted_integrator(
     if (scene.desc.render.integrator == RenderDesc::Integrator::planes)
         return std::make_unique<PlanesIntegrator>(scene.lit(), scene.desc.camera.world_from_camera,
                                                   scene.slabs);
+    VolumeQuadrature quadrature;
+    if (scene.desc.render.quality == RenderDesc::Quality::draft) quadrature.voxels_per_panel = 6;
     return std::make_unique<VolumeIntegrator>(
         scene.lit(),
-        std::vector<std::shared_ptr<const LightField>>(light_fields.begin(), light_fields.end()));
+        std::vector<std::shared_ptr<const LightField>>(light_fields.begin(), light_fields.end()),
+        quadrature);
 }
 
 std::unique_ptr<Integrator> make_integrator(

@@ -19,6 +19,13 @@ using LightFields = std::vector<std::shared_ptr<const LampLightField>>;
 /// Told how far a pass over the image is (0..1), from any thread; returns false to stop.
 using PassProgress = std::function<bool(const std::string& pass, double fraction)>;
 
+/// How finely lamps are splatted for an image of this quality.
+LightFieldOptions light_field_options(RenderDesc::Quality quality);
+
+/// How closely pixels' water is to be mixed (WaterLattice); 0 for integrators that are there for
+/// comparison: every pixel by itself.
+double water_tolerance(const RenderDesc& render);
+
 /// Renders `scene` into `film` by `integrator`: the pass "render", and, with forward scatter on,
 /// the pass "forward scatter", for which the film's window must be the whole image.
 /// Throws Interrupted if `progress` returned false; InputError if there is not enough memory.

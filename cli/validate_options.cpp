@@ -18,7 +18,9 @@ constexpr const char* k_validate_examples = R"(Examples:
 Computes a scene in every way there is and compares them, per component and band: McGlamery's
 planes and their limit, adaptive quadrature, the reference integrator and a VDB of constant value
 against the volume integrator in uniform water (grids replaced by their mean), and on the scene's
-own grids the volume against the reference integrator. Without a scene: a built-in suite.
+own grids the volume against the reference integrator. Where the scene has forward scatter, what
+it makes of the light as well, and against a sum over all pairs of pixels. Without a scene: a
+built-in suite.
 Exit codes: 0 all within the tolerance, 5 not; 1 internal fault, 2 wrong usage, 3 bad input,
 4 cannot read or write, 130 interrupted.)";
 

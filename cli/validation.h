@@ -18,14 +18,26 @@ struct ValidationOptions {
     std::function<void(const std::string&)> say = [](const std::string&) {};
 };
 
+/// What of a picture is compared.
+struct Component {
+    const char* name;
+    std::vector<Spectrum> MethodImage::*image;
+};
+inline constexpr Component k_direct{"direct", &MethodImage::direct};
+inline constexpr Component k_backscatter{"backscatter", &MethodImage::backscatter};
+inline constexpr Component k_forward{"forward", &MethodImage::forward};
+inline constexpr Component k_blurred_backscatter{"blurred backscatter",
+                                                 &MethodImage::blurred_backscatter};
+
 /// How two methods differ in one component and band.
 struct Check {
     std::string left, right;  // names of the methods, keys of SceneValidation::images
-    std::string component;    // "direct" or "backscatter"
+    Component component;
     std::size_t band = 0;
     bool everywhere = true;    // false: `largest` is over smooth pixels only
     std::size_t pixels = 0;    // how many that is
-    double largest = 0;        // relative, over these pixels; dark ones count as 1 % of the mean
+    double dark = 0;           // darker pixels count as this share of the mean
+    double largest = 0;        // relative, over these pixels
     double rms = 0;            // over all pixels, of the image's mean
     double tolerance = 0;      // of `largest`
     double rms_tolerance = 0;  // of `rms`
@@ -59,7 +71,10 @@ double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band);
 /// Compares every way of computing `desc`: sums over McGlamery's planes and their limit, adaptive
 /// quadrature, the reference integrator and a VDB of constant value against the volume integrator,
 /// all in uniform water (a scene with volumes is homogenised: its grids replaced by their mean),
-/// and on the scene's own grids the volume against the reference integrator.
+/// and on the scene's own grids the volume against the reference integrator. With forward scatter
+/// also what it makes of each method's light: the finest sum over planes, the reference integrator,
+/// a VDB that holds half of the water, and a sum over all pairs of pixels against the volume
+/// integrator.
 SceneValidation validate_scene(const SceneDesc& desc, const std::string& name,
                                const ValidationOptions& options);
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "cli/scene_rendering.h"
 #include "core/error.h"
 #include "core/optical_depth.h"
 #include "core/parallel.h"
@@ -104,14 +105,14 @@ TrialScene homogenised(const TrialScene& trial, const SceneDesc& desc) {
     return result;
 }
 
-TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc) {
+TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc, double share) {
     Medium medium = trial.scene.water.medium;
-    Constituent water;
-    water.name = "water";
-    water.unit = "1";
-    water.per_unit = medium.uniform;
-    medium.uniform =
-        OpticalCoefficients{{}, std::vector<Spectrum>(water.per_unit.scattering.size())};
+    const OpticalCoefficients whole = medium.uniform;
+    const OpticalCoefficients none{{}, std::vector<Spectrum>(whole.scattering.size())};
+    Constituent water{.name = "water", .unit = "1", .per_unit = none};
+    add_scaled(water.per_unit, whole, share);
+    medium.uniform = none;
+    add_scaled(medium.uniform, whole, 1 - share);
     medium.constituents = {water};
 
     const Bounds bounds = reach_of(trial);
@@ -139,14 +140,26 @@ TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc) {
     TrialScene result = in_water(desc, std::move(medium));
     result.scene.field = load_volumes({volume}, {{{GridLoad{0, 1.0}}}}, 1,
                                       result.scene.volume_reports, result.scene.warnings);
+    ForwardScatterDesc& forward = result.scene.desc.water.forward_scatter;
+    forward.G *= 1 - share;
+    forward.B *= 1 - share;
     splat(result);
     return result;
 }
 
+Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count) {
+    PlanesDesc planes = desc.render.planes;
+    planes.count = count;
+    return place_slabs(planes, *trial.scene.camera, trial.scene.lit());
+}
+
 MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
                           const std::function<bool()>& proceed) {
-    const auto pixels = static_cast<std::size_t>(trial.width() * trial.height());
-    MethodImage image{std::vector<Spectrum>(pixels), std::vector<Spectrum>(pixels)};
+    const auto pixels =
+        static_cast<std::size_t>(trial.width()) * static_cast<std::size_t>(trial.height());
+    MethodImage image;
+    image.direct.resize(pixels);
+    image.backscatter.resize(pixels);
     const PixelRenderer renderer(*trial.scene.camera, trial.scene.lit(), integrator, 1,
                                  trial.scene.slabs);
     parallel_for(static_cast<std::size_t>(trial.height()), [&](std::size_t row) {
@@ -163,6 +176,32 @@ MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
     return image;
 }
 
+void render_forward_scatter(const TrialScene& trial,
+                            const std::vector<std::shared_ptr<const LampLightField>>& light_fields,
+                            const Integrator& integrator, const std::function<bool()>& proceed,
+                            MethodImage& image) {
+    const SceneDesc& desc = trial.scene.desc;
+    std::vector<std::string> lamps;  // not asked for by name
+    for (std::size_t j = 0; j < desc.lamps.size(); ++j) lamps.push_back(std::to_string(j));
+    const LayerPlan plan("forward,backscatter", desc.water.bands_nm, lamps);
+    Film film(trial.width(), trial.height(), {0, 0, trial.width(), trial.height()},
+              plan.channel_names());
+    render_scene(trial.scene, light_fields, integrator, plan, BandColour(desc.water.bands_nm), film,
+                 [&](const std::string&, double) { return proceed(); });
+    const auto read = [&](Layer layer, std::vector<Spectrum>& component) {
+        const auto first = static_cast<std::size_t>(plan.first_channel(layer));
+        for (int y = 0; y < film.height(); ++y) {
+            for (int x = 0; x < film.width(); ++x) {
+                Spectrum& pixel = component.emplace_back();
+                for (std::size_t band = 0; band < desc.water.bands_nm.size(); ++band)
+                    pixel[band] = static_cast<double>(film.pixel(x, y)[first + band]);
+            }
+        }
+    };
+    read(Layer::forward, image.forward);
+    read(Layer::backscatter, image.blurred_backscatter);
+}
+
 std::vector<char> smooth_pixels(const TrialScene& trial) {
     constexpr double k_edge = 1e-3;  // of the ray's length: nearer to its ends is no edge
     std::vector<char> smooth(static_cast<std::size_t>(trial.width() * trial.height()), 1);
@@ -176,7 +215,7 @@ std::vector<char> smooth_pixels(const TrialScene& trial) {
         std::vector<Interval> lit;
         std::vector<double> edges;
         for (std::size_t j = 0; j < trial.scene.lamps.size(); ++j) {
-            trial.light_fields[j]->lit_intervals(*ray, end, lit);
+            trial.light_fields[j]->lit_intervals(*ray, {0, end}, lit);
             edges.clear();
             for (const Interval& interval : lit) {
                 edges.push_back(interval.begin);

@@ -9,10 +9,12 @@
 
 namespace uw {
 
-/// What a method says of every pixel of a scene, row by row, one sample at each pixel's centre.
+/// What a method says of every pixel of a scene, row by row, one sample at each pixel's centre
+/// [W m^-2 sr^-1]. Components that the method says nothing of are empty.
 struct MethodImage {
-    std::vector<Spectrum> direct;       // W m^-2 sr^-1
-    std::vector<Spectrum> backscatter;  // W m^-2 sr^-1
+    std::vector<Spectrum> direct, backscatter;  // before forward scatter
+    std::vector<Spectrum> forward;              // what forward scatter adds to `direct`
+    std::vector<Spectrum> blurred_backscatter;  // with forward scatter
 };
 
 /// Makes the integrator that is on trial; tests slip in wrong ones here.
@@ -32,18 +34,33 @@ struct TrialScene {
 /// Assembles `desc` and splats its lamps.
 TrialScene make_trial(const SceneDesc& desc);
 
-/// `trial` with its grids replaced by their mean over the field's bounds: uniform water.
+/// `trial` with its grids replaced by their mean over the field's bounds: uniform water, which
+/// scatters forward with the scene's K, G and B.
 /// `desc` is the description that `trial` was made from.
 TrialScene homogenised(const TrialScene& trial, const SceneDesc& desc);
 
-/// `trial`, whose water is uniform, with that water moved into a VDB grid of constant value: the
-/// grid is written to a file and read back, and what stays outside it is vacuum. It reaches from
-/// all cameras, lamps and surfaces to where 15 optical depths have passed.
-TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc);
+/// `trial`, whose water is uniform, with a `share` of that water (above 0, at most 1) moved into a
+/// VDB grid of constant value: the grid is written to a file and read back, and outside it is only
+/// the rest. It reaches from all cameras, lamps and surfaces to where 15 optical depths have
+/// passed. G and B of forward scatter are measured by the uniform water that they stand for
+/// (physics section 6): where some of it stays, they are made less with it, so that the blur is the
+/// same.
+TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc, double share);
 
-/// Renders every pixel with `integrator`; stops with Interrupted when `proceed` says no.
+/// `count` of McGlamery's planes in the water of `trial`, placed as `desc` says.
+Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count);
+
+/// Renders every pixel with `integrator` before forward scatter. Stops with Interrupted when
+/// `proceed` says no.
 MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
                           const std::function<bool()>& proceed);
+
+/// Likewise with forward scatter, as `uwvdb render` does it: fills the other two components of
+/// `image`. `light_fields` are those that `integrator` gathers from, if any.
+void render_forward_scatter(const TrialScene& trial,
+                            const std::vector<std::shared_ptr<const LampLightField>>& light_fields,
+                            const Integrator& integrator, const std::function<bool()>& proceed,
+                            MethodImage& image);
 
 /// Pixels whose water ray meets no shadow edge and no hard edge of a lamp's beam, row by row: where
 /// a sum over slabs converges as their thickness squared.

@@ -24,9 +24,11 @@ constexpr int k_picture_width = 288;  // of one picture on the page [CSS pixels]
 constexpr const char* k_style =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;"
     "color:#222}table{border-collapse:collapse;margin:1em 0}td,th{padding:.15em .8em;"
-    "border-bottom:1px solid #ddd;text-align:left}td.n{text-align:right;font-variant-numeric:"
+    "border-bottom:1px solid "
+    "#ddd;text-align:left}td.n{text-align:right;white-space:nowrap;font-variant-numeric:"
     "tabular-nums}.failed{color:#c00;font-weight:bold}.passed{color:#070}figure{display:"
-    "inline-block;margin:0 1em 1em 0;vertical-align:top}figcaption{font-size:13px}img{image-"
+    "inline-block;margin:0 1em 1em "
+    "0;vertical-align:top}figcaption{font-size:13px;max-width:288px}img{image-"
     "rendering:pixelated;display:block;border:1px solid #ccc}";
 
 std::string base64(const std::string& bytes) {
@@ -63,31 +65,42 @@ class Pictures {
     ScratchFolder folder_;
 };
 
-Preview picture_of(const SceneValidation& scene, const MethodImage& image, double exposure) {
+using Components = std::vector<Component>;
+const Components k_before{k_direct, k_backscatter};
+const Components k_scattered{k_direct, k_forward, k_blurred_backscatter};
+
+// The sum of `components` in one pixel.
+Spectrum sum_of(const MethodImage& image, const Components& components, std::size_t pixel) {
+    Spectrum sum{};
+    for (const Component& component : components)
+        for (std::size_t b = 0; b < k_max_bands; ++b) sum[b] += (image.*component.image)[pixel][b];
+    return sum;
+}
+
+Preview picture_of(const SceneValidation& scene, const MethodImage& image,
+                   const Components& components, double exposure) {
     const BandColour colour(scene.bands_nm);
     Preview picture{scene.width, scene.height, {}};
-    for (std::size_t i = 0; i < image.direct.size(); ++i) {
-        Spectrum total{};
-        for (std::size_t b = 0; b < scene.bands_nm.size(); ++b)
-            total[b] = image.direct[i][b] + image.backscatter[i][b];
-        for (const double value : colour(total))
+    for (std::size_t i = 0; i < scene.smooth.size(); ++i)
+        for (const double value : colour(sum_of(image, components, i)))
             picture.rgb.push_back(
                 static_cast<std::uint8_t>(std::lround(255 * srgb_encode(exposure * value))));
-    }
     return picture;
 }
 
-double exposure_of(const SceneValidation& scene, const MethodImage& image) {
+double exposure_of(const SceneValidation& scene, const MethodImage& image,
+                   const Components& components) {
     std::vector<double> values;
-    for (std::size_t i = 0; i < image.direct.size(); ++i)
-        for (std::size_t b = 0; b < scene.bands_nm.size(); ++b)
-            values.push_back(image.direct[i][b] + image.backscatter[i][b]);
+    for (std::size_t i = 0; i < scene.smooth.size(); ++i) {
+        const Spectrum sum = sum_of(image, components, i);
+        for (std::size_t b = 0; b < scene.bands_nm.size(); ++b) values.push_back(sum[b]);
+    }
     std::sort(values.begin(), values.end());
     const double bright = values.empty() ? 0 : values[values.size() * 98 / 100];
     return bright > 0 ? 0.8 / bright : 1;
 }
 
-/// The relative differences of the backscatter, the band that differs most at each pixel.
+/// The relative differences of one component, the band that differs most at each pixel.
 struct DifferenceMap {
     Preview picture;
     double full_colour = 0;  // the difference that is shown in full colour
@@ -96,13 +109,13 @@ struct DifferenceMap {
 // Blue where `left` is darker, red where it is brighter; grey where a shadow edge or hard beam edge
 // crosses the ray of a method that steps over it.
 DifferenceMap difference_map(const SceneValidation& scene, const Check& check) {
-    const std::vector<Spectrum>& a = scene.images.at(check.left).backscatter;
-    const std::vector<Spectrum>& b = scene.images.at(check.right).backscatter;
+    const std::vector<Spectrum>& a = scene.images.at(check.left).*check.component.image;
+    const std::vector<Spectrum>& b = scene.images.at(check.right).*check.component.image;
     const auto counts = [&](std::size_t i) { return check.everywhere || scene.smooth[i] != 0; };
     std::vector<double> worst(a.size());
     DifferenceMap map{{scene.width, scene.height, {}}, 0};
     for (std::size_t band = 0; band < scene.bands_nm.size(); ++band) {
-        const double dark = 0.01 * mean_over_pixels(b, band);
+        const double dark = check.dark * mean_over_pixels(b, band);
         for (std::size_t i = 0; i < a.size(); ++i) {
             const double reference = std::max(b[i][band], dark);
             const double d = reference > 0 ? (a[i][band] - b[i][band]) / reference : 0;
@@ -139,7 +152,7 @@ std::string table_of(const SceneValidation& scene) {
             "<tr><td>{} ↔ {}</td><td>{}</td><td class=n>{:g} nm</td><td class=n>{}</td>"
             "<td class=n>{:.4f} %</td><td class=n>{:.4f} %</td><td class=n>{:g} %</td><td "
             "class={}>{}</td></tr>\n",
-            c.left, c.right, c.component, scene.bands_nm[c.band], c.pixels, 100 * c.largest,
+            c.left, c.right, c.component.name, scene.bands_nm[c.band], c.pixels, 100 * c.largest,
             100 * c.rms, 100 * c.tolerance, c.passed() ? "passed" : "failed",
             c.passed() ? "passed" : "FAILED");
     return html + "</table>\n";
@@ -167,6 +180,34 @@ std::string convergence_plot(const SceneValidation& scene) {
     return svg_document(figure);
 }
 
+// One picture per method that tells all of `components`; empty if none does.
+std::string pictures_of(const SceneValidation& scene, const Components& components,
+                        const std::string& title, Pictures& pictures) {
+    std::string html;
+    double exposure = 0;
+    for (const auto& [name, image] : scene.images) {
+        const auto told = [&image = image](const Component& c) {
+            return !(image.*c.image).empty();
+        };
+        if (!std::all_of(components.begin(), components.end(), told)) continue;
+        if (html.empty()) exposure = exposure_of(scene, image, components);
+        html += pictures.figure(picture_of(scene, image, components, exposure), name);
+    }
+    return html.empty() ? html : fmt::format("<h3>{}</h3>\n{}", title, html);
+}
+
+std::string differences_of(const SceneValidation& scene, const Component& component,
+                           Pictures& pictures) {
+    std::string html;
+    for (const Check& check : scene.checks) {
+        if (check.component.image != component.image || check.band != 0) continue;
+        const DifferenceMap map = difference_map(scene, check);
+        html += pictures.figure(map.picture, fmt::format("{} − {}: {:.2g} %", check.left,
+                                                         check.right, 100 * map.full_colour));
+    }
+    return html.empty() ? html : fmt::format("<h4>{}</h4>\n{}", component.name, html);
+}
+
 std::string section_of(const SceneValidation& scene, Pictures& pictures) {
     std::string html =
         fmt::format("<h2>{}: <span class={}>{}</span></h2>\n", scene.name,
@@ -180,19 +221,14 @@ std::string section_of(const SceneValidation& scene, Pictures& pictures) {
         100 * static_cast<double>(smooth) / static_cast<double>(scene.smooth.size()),
         scene.seconds);
     html += table_of(scene);
-    html += "<h3>Pictures</h3>\n";
-    const double exposure = exposure_of(scene, scene.images.begin()->second);
-    for (const auto& [name, image] : scene.images)
-        if (name.find("planes, ") != 0 || name == "planes, limit")
-            html += pictures.figure(picture_of(scene, image, exposure), name);
-    html += "<h3>Differences of the backscatter</h3>\n";
+    html += pictures_of(scene, k_before, "Pictures", pictures);
+    html += pictures_of(scene, k_scattered, "Pictures with forward scatter", pictures);
+    html +=
+        pictures_of(scene, {k_forward}, "What forward scatter adds to the direct light", pictures);
+    html += "<h3>Differences</h3>\n";
     html += k_colour_scale;
-    for (const Check& check : scene.checks) {
-        if (check.component != "backscatter" || check.band != 0) continue;
-        const DifferenceMap map = difference_map(scene, check);
-        html += pictures.figure(map.picture, fmt::format("{} − {}: {:.2g} %", check.left,
-                                                         check.right, 100 * map.full_colour));
-    }
+    for (const Component& component : {k_backscatter, k_forward, k_blurred_backscatter})
+        html += differences_of(scene, component, pictures);
     html += "<h3>Convergence</h3>\n";
     return html + convergence_plot(scene);
 }
@@ -202,12 +238,12 @@ std::string section_of(const SceneValidation& scene, Pictures& pictures) {
 std::string validation_table(const SceneValidation& scene, bool colour) {
     std::string text = fmt::format("{} ({} x {} pixels, {:.1f} s)\n", scene.name, scene.width,
                                    scene.height, scene.seconds);
-    text += fmt::format("  {:<44} {:<12} {:>8} {:>7} {:>11} {:>11} {:>9}\n", "methods", "component",
+    text += fmt::format("  {:<44} {:<20} {:>8} {:>7} {:>11} {:>11} {:>9}\n", "methods", "component",
                         "band", "pixels", "largest", "RMS", "tolerance");
     for (const Check& c : scene.checks) {
         const std::string line = fmt::format(
-            "  {:<44} {:<12} {:>5g} nm {:>7} {:>9.4f} % {:>9.4f} % {:>7g} %  {}",
-            c.left + " - " + c.right, c.component, scene.bands_nm[c.band], c.pixels,
+            "  {:<44} {:<20} {:>5g} nm {:>7} {:>9.4f} % {:>9.4f} % {:>7g} %  {}",
+            c.left + " - " + c.right, c.component.name, scene.bands_nm[c.band], c.pixels,
             100 * c.largest, 100 * c.rms, 100 * c.tolerance, c.passed() ? "passed" : "FAILED");
         text += colour && !c.passed() ? "\033[31m" + line + "\033[0m\n" : line + "\n";
     }
@@ -226,7 +262,7 @@ void write_validation_report(const std::filesystem::path& file,
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>uwvdb validate"
         "</title><style>{}</style></head><body>\n<h1>uwvdb validate</h1>\n<p>uwvdb {}. Every way "
         "of computing a scene against the others; tolerances are of the largest relative "
-        "difference, the RMS may be three times as much.</p>\n",
+        "difference, the RMS may be three times what was asked for.</p>\n",
         k_style, program_version());
     for (const SceneValidation& scene : scenes) html += section_of(scene, pictures);
     html += "</body></html>\n";

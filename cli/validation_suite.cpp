@@ -42,6 +42,16 @@ WaterDesc kopelevich() {
     return water;
 }
 
+// Strong, and some pixels wide at the wall.
+ForwardScatterDesc forward_scatter(ForwardScatterDesc::Shape shape) {
+    ForwardScatterDesc desc;
+    desc.K = 1;
+    desc.G = 0.02;
+    desc.B = 0.1;
+    desc.shape = shape;
+    return desc;
+}
+
 LampDesc lamp(const std::string& name, const Point3& position, double intensity) {
     LampDesc desc;
     desc.name = name;
@@ -74,6 +84,7 @@ SceneDesc through_a_port() {
     desc.camera.port->distance = 0.02;
     desc.camera.port->thickness = 0.04;
     desc.lamps = {lamp("beside", {1, -0.5, 0}, 50)};
+    desc.water.forward_scatter = forward_scatter(ForwardScatterDesc::Shape::exponential);
     return desc;
 }
 
@@ -87,6 +98,7 @@ SceneDesc shadow_and_spot() {
     spot.profile.edge = 20;
     spot.direction = glm::normalize(Vector3(0.4, 0.1, 1));
     desc.lamps = {lamp("bare", {1, -0.5, 0}, 50), spot};
+    desc.water.forward_scatter = forward_scatter(ForwardScatterDesc::Shape::gaussian);
     return desc;
 }
 
@@ -106,6 +118,7 @@ SceneDesc plume(const std::filesystem::path& file) {
     write_vdb(file, {grid}, {{"creator", "uwvdb validate"}});
     SceneDesc desc = shadow_and_spot();
     desc.water = kopelevich();
+    desc.water.forward_scatter = forward_scatter(ForwardScatterDesc::Shape::exponential);
     VolumeDesc volume;
     volume.file = file;
     volume.where = "plume";

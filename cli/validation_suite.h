@@ -11,7 +11,8 @@ namespace uw {
 
 /// The scenes that `uwvdb validate` looks at by itself: lamps beside, far from, behind and in view
 /// of the camera, both kinds of phase function, a port, a shadow, a spot, and a plume in a grid
-/// that is written to a folder of its own for as long as the suite lives.
+/// that is written to a folder of its own for as long as the suite lives. The last three scatter
+/// forward, by both kernels.
 class ValidationSuite {
   public:
     ValidationSuite();

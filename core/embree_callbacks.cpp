@@ -3,22 +3,61 @@
 #include <cmath>
 
 namespace uw {
+namespace {
+
+/// How far behind the nearest candidate Embree goes on looking, as a share of the distance: farther
+/// than its boxes round, so that it finds all candidates of a tie, whatever their order and however
+/// many rays it follows at once.
+constexpr float k_tie_margin = 4e-6F;
+
+float search_end(float nearest) {
+    return nearest * (1 + k_tie_margin);
+}
+
+const QueryContext& context_of(const RTCIntersectContext* context) {
+    return *reinterpret_cast<const QueryContext*>(context);
+}
+
+Query& query_of(const RTCIntersectContext* context, RTCRayN* rays, unsigned count, unsigned i) {
+    return context_of(context).queries[RTCRayN_id(rays, count, i)];
+}
+
+}  // namespace
 
 void filter_closest(const RTCFilterFunctionNArguments* args) {
-    auto* query = reinterpret_cast<Query*>(args->context);
-    if (!query->take(RTCRayN_tfar(args->ray, 1, 0), RTCHitN_geomID(args->hit, 1, 0),
-                     RTCHitN_primID(args->hit, 1, 0))) {
-        args->valid[0] = 0;
+    const unsigned count = args->N;
+    for (unsigned i = 0; i < count; ++i) {
+        if (args->valid[i] != -1) continue;
+        Query& query = query_of(args->context, args->ray, count, i);
+        float& end = RTCRayN_tfar(args->ray, count, i);  // here the candidate's own
+        if (query.take(end, RTCHitN_geomID(args->hit, count, i),
+                       RTCHitN_primID(args->hit, count, i))) {
+            query.u = RTCHitN_u(args->hit, count, i);
+            query.v = RTCHitN_v(args->hit, count, i);
+            end = search_end(end);
+        } else {
+            args->valid[i] = 0;
+        }
     }
 }
 
 void filter_occluder(const RTCFilterFunctionNArguments* args) {
-    const auto* query = reinterpret_cast<const Query*>(args->context);
     const auto& object = *static_cast<const MeshObject*>(args->geometryUserPtr);
-    const auto crossing =
-        cross_triangle(object, RTCHitN_primID(args->hit, 1, 0), query->origin, query->direction);
-    const double t = crossing ? crossing->t : RTCRayN_tfar(args->ray, 1, 0);
-    if (!between_ends(t)) args->valid[0] = 0;
+    const unsigned count = args->N;
+    for (unsigned i = 0; i < count; ++i) {
+        if (args->valid[i] != -1) continue;
+        Query& query = query_of(args->context, args->ray, count, i);
+        const auto crossing = cross_triangle(object, RTCHitN_primID(args->hit, count, i),
+                                             query.origin, query.direction);
+        const double t = crossing ? crossing->t : RTCRayN_tfar(args->ray, count, i);
+        if (!between_ends(t)) {
+            args->valid[i] = 0;
+        } else if (!context_of(args->context).edges_count &&
+                   !(crossing && crossing->well_inside())) {
+            query.has_doubt = true;
+            args->valid[i] = 0;
+        }
+    }
 }
 
 void sphere_bounds(const RTCBoundsFunctionArguments* args) {
@@ -36,30 +75,33 @@ void sphere_bounds(const RTCBoundsFunctionArguments* args) {
 }
 
 void intersect_sphere(const RTCIntersectFunctionNArguments* args) {
-    if (args->valid[0] == 0) return;
-    auto* query = reinterpret_cast<Query*>(args->context);
     const auto& spheres = *static_cast<const std::vector<SphereObject>*>(args->geometryUserPtr);
-    RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, 1);
-    RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, 1);
-    const auto roots = cross_sphere(spheres[args->primID], query->origin, query->direction);
-    if (!roots) return;
-    const double begin = RTCRayN_tnear(ray, 1, 0);
-    const double t = roots->near > begin ? roots->near : roots->far;
-    const auto candidate = static_cast<float>(t);
-    if (!(t > begin) || candidate > RTCRayN_tfar(ray, 1, 0)) return;
-    if (!query->take(candidate, args->geomID, args->primID)) return;
-    RTCRayN_tfar(ray, 1, 0) = candidate;
-    RTCHitN_geomID(hit, 1, 0) = args->geomID;
-    RTCHitN_primID(hit, 1, 0) = args->primID;
+    const unsigned count = args->N;
+    RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, count);
+    for (unsigned i = 0; i < count; ++i) {
+        if (args->valid[i] != -1) continue;
+        Query& query = query_of(args->context, rays, count, i);
+        const auto roots = cross_sphere(spheres[args->primID], query.origin, query.direction);
+        if (!roots) continue;
+        const double begin = RTCRayN_tnear(rays, count, i);
+        const double t = roots->near > begin ? roots->near : roots->far;
+        const auto candidate = static_cast<float>(t);
+        float& end = RTCRayN_tfar(rays, count, i);
+        if (!(t > begin) || candidate > end) continue;
+        if (query.take(candidate, args->geomID, args->primID)) end = search_end(candidate);
+    }
 }
 
 void occlude_sphere(const RTCOccludedFunctionNArguments* args) {
-    if (args->valid[0] == 0) return;
-    const auto* query = reinterpret_cast<const Query*>(args->context);
     const auto& spheres = *static_cast<const std::vector<SphereObject>*>(args->geometryUserPtr);
-    const auto roots = cross_sphere(spheres[args->primID], query->origin, query->direction);
-    if (roots && (between_ends(roots->near) || between_ends(roots->far))) {
-        RTCRayN_tfar(args->ray, 1, 0) = -std::numeric_limits<float>::infinity();
+    const unsigned count = args->N;
+    for (unsigned i = 0; i < count; ++i) {
+        if (args->valid[i] != -1) continue;
+        const Query& query = query_of(args->context, args->ray, count, i);
+        const auto roots = cross_sphere(spheres[args->primID], query.origin, query.direction);
+        if (roots && (between_ends(roots->near) || between_ends(roots->far))) {
+            RTCRayN_tfar(args->ray, count, i) = -std::numeric_limits<float>::infinity();
+        }
     }
 }
 

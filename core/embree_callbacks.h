@@ -2,14 +2,15 @@
 
 #include <embree3/rtcore.h>
 
+#include <cstddef>
 #include <limits>
 #include <tuple>
 #include <type_traits>
 
 #include "core/scene_objects.h"
 
-/// What Embree calls back while it follows a ray; with Embree's header in it, this is for
-/// embree_*.cpp only. Rays go one at a time (N == 1).
+/// What Embree calls back while it follows rays, one or several at a time; with Embree's header in
+/// it, this is for embree_*.cpp only.
 namespace uw {
 
 /// Share of a shadow ray at either end that belongs to the surfaces it joins.
@@ -18,30 +19,45 @@ inline bool between_ends(double t) {
     return t > k_end_margin && t < 1 - k_end_margin;
 }
 
-/// A ray on its way through Embree; callbacks get it back as their context.
+/// A ray on its way through Embree, and the nearest candidate that the callbacks took for it. The
+/// candidate is to be read from here: Embree's own record may be of a farther one.
 struct Query {
-    RTCIntersectContext context{};  // first, so that a pointer to one is a pointer to the other
     Point3 origin;
-    Vector3 direction;
-    float best_t = std::numeric_limits<float>::infinity();
-    unsigned best_geometry = RTC_INVALID_GEOMETRY_ID, best_primitive = RTC_INVALID_GEOMETRY_ID;
+    Vector3 direction{0.0};
+    float t = std::numeric_limits<float>::infinity();
+    float u = 0, v = 0;  // of meshes
+    unsigned geometry = RTC_INVALID_GEOMETRY_ID, primitive = RTC_INVALID_GEOMETRY_ID;
+    bool has_doubt = false;  // an occluder was passed over
 
-    Query(const Point3& from, const Vector3& along) : origin(from), direction(along) {
-        rtcInitIntersectContext(&context);
-    }
+    bool has_candidate() const { return geometry != RTC_INVALID_GEOMETRY_ID; }
 
     /// Takes a candidate unless a nearer one, or an equally near one of lower number, is known.
-    bool take(float t, unsigned geometry, unsigned primitive) {
-        if (std::tie(t, geometry, primitive) >= std::tie(best_t, best_geometry, best_primitive)) {
+    bool take(float its_t, unsigned its_geometry, unsigned its_primitive) {
+        if (std::tie(its_t, its_geometry, its_primitive) >= std::tie(t, geometry, primitive)) {
             return false;
         }
-        best_t = t;
-        best_geometry = geometry;
-        best_primitive = primitive;
+        t = its_t;
+        geometry = its_geometry;
+        primitive = its_primitive;
         return true;
     }
 };
-static_assert(std::is_standard_layout_v<Query>);
+
+/// What the callbacks get back as their context: the queries under way. The id of each of Embree's
+/// rays is the place of its query.
+struct QueryContext {
+    RTCIntersectContext context{};  // first, so that a pointer to one is a pointer to the other
+    Query* queries = nullptr;
+    /// Whether occluders met near the edge of a triangle count (embree_rays.h); without this they
+    /// are passed over.
+    bool edges_count = false;
+
+    QueryContext(Query* first, bool packet) : queries(first) {
+        rtcInitIntersectContext(&context);
+        if (packet) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    }
+};
+static_assert(std::is_standard_layout_v<QueryContext>);
 
 /// Filter of triangles for the closest hit; settles ties.
 void filter_closest(const RTCFilterFunctionNArguments* args);

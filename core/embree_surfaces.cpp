@@ -1,6 +1,8 @@
 #include "core/embree_surfaces.h"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -9,7 +11,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/embree_callbacks.h"
+#include "core/embree_rays.h"
 
 namespace uw {
 namespace {
@@ -21,21 +23,6 @@ constexpr int k_max_restarts = 16;
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, decltype(&rtcReleaseDevice)>;
 using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcReleaseScene)>;
 using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, decltype(&rtcReleaseGeometry)>;
-
-RTCRay embree_ray(const Point3& origin, const Vector3& direction, float begin, double end) {
-    RTCRay ray{};
-    ray.org_x = static_cast<float>(origin.x);
-    ray.org_y = static_cast<float>(origin.y);
-    ray.org_z = static_cast<float>(origin.z);
-    ray.dir_x = static_cast<float>(direction.x);
-    ray.dir_y = static_cast<float>(direction.y);
-    ray.dir_z = static_cast<float>(direction.z);
-    ray.tnear = begin;
-    // A little far, so that nothing is lost to rounding; the double distance decides.
-    ray.tfar = end < 1e30 ? static_cast<float>(end * (1 + 1e-6)) : 1e30F;
-    ray.mask = ~0U;
-    return ray;
-}
 
 class EmbreeSurfaces final : public Surfaces {
   public:
@@ -54,19 +41,7 @@ class EmbreeSurfaces final : public Surfaces {
     }
 
     bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const override {
-        const Candidate nearest = find_nearest(ray, s_end);
-        if (!(nearest.distance <= s_end) || nearest.distance == k_infinity) return false;
-        hit.distance = nearest.distance;
-        hit.position = ray.at(nearest.distance);
-        if (nearest.plane != nullptr) {
-            shade_plane(*nearest.plane, ray.direction, hit);
-        } else if (nearest.geometry < objects_.meshes.size()) {
-            shade_mesh(*objects_.meshes[nearest.geometry], nearest.primitive, nearest.crossing,
-                       objects_.bands, ray.direction, hit);
-        } else {
-            shade_sphere(objects_.spheres[nearest.primitive], ray.direction, hit);
-        }
-        return true;
+        return shade(find_nearest(ray, s_end), ray, s_end, hit);
     }
 
     double hit_distance(const Ray& ray) const override {
@@ -74,19 +49,59 @@ class EmbreeSurfaces final : public Surfaces {
     }
 
     bool occluded(const Point3& from, const Point3& to) const override {
-        // One order of the ends for both directions, so that light and view rays agree exactly.
-        const bool forward = std::tie(from.x, from.y, from.z) < std::tie(to.x, to.y, to.z);
-        const Point3& begin = forward ? from : to;
-        const Vector3 along = (forward ? to : from) - begin;
-        if (along == Vector3(0.0)) return false;
-        for (const PlaneObject& plane : objects_.planes) {
-            const auto t = cross_plane(plane, begin, along);
-            if (t && between_ends(*t)) return true;
+        Query query = shadow_query(from, to);
+        if (query.direction == Vector3(0.0)) return false;
+        return blocked_by_plane(query) || is_occluded(scene_.get(), query);
+    }
+
+    void closest_hits(std::span<const Ray> rays, double s_end, std::span<SurfaceHit> hits,
+                      std::span<char> found) const override {
+        assert(hits.size() == rays.size() && found.size() == rays.size());
+        std::array<Candidate, k_packet_size> nearest;
+        for (std::size_t begin = 0; begin < rays.size(); begin += k_packet_size) {
+            const auto packet = rays.subspan(begin, std::min(k_packet_size, rays.size() - begin));
+            find_nearest(packet, s_end, nearest);
+            for (std::size_t i = 0; i < packet.size(); ++i) {
+                found[begin + i] = shade(nearest[i], packet[i], s_end, hits[begin + i]) ? 1 : 0;
+            }
         }
-        Query query(begin, along);
-        RTCRay ray = embree_ray(begin, along, 0, 1);
-        rtcOccluded1(scene_.get(), &query.context, &ray);
-        return ray.tfar < 0;
+    }
+
+    void hit_distances(const Point3& origin, std::span<const Vector3> directions,
+                       std::span<double> distances) const override {
+        assert(distances.size() == directions.size());
+        std::array<Ray, k_packet_size> rays;
+        std::array<Candidate, k_packet_size> nearest;
+        for (std::size_t begin = 0; begin < directions.size(); begin += k_packet_size) {
+            const std::size_t count = std::min(k_packet_size, directions.size() - begin);
+            for (std::size_t i = 0; i < count; ++i) rays[i] = {origin, directions[begin + i]};
+            find_nearest(std::span(rays).first(count), k_infinity, nearest);
+            for (std::size_t i = 0; i < count; ++i) distances[begin + i] = nearest[i].distance;
+        }
+    }
+
+    void occluded_many(const Point3& from, std::span<const Point3> to,
+                       std::span<char> blocked) const override {
+        assert(blocked.size() == to.size());
+        std::array<Query, k_packet_size> queries;
+        std::array<std::size_t, k_packet_size> places{};
+        std::size_t count = 0;
+        const auto follow = [&] {
+            const unsigned occluded =
+                occluded_packet(scene_.get(), std::span(queries).first(count));
+            for (std::size_t i = 0; i < count; ++i) blocked[places[i]] = (occluded >> i & 1U) != 0;
+            count = 0;
+        };
+        for (std::size_t i = 0; i < to.size(); ++i) {
+            const Query query = shadow_query(from, to[i]);
+            const bool some_way = query.direction != Vector3(0.0);
+            blocked[i] = some_way && blocked_by_plane(query) ? 1 : 0;
+            if (!some_way || blocked[i] != 0) continue;
+            queries[count] = query;
+            places[count++] = i;
+            if (count == k_packet_size) follow();
+        }
+        if (count > 0) follow();
     }
 
     Bounds bounds() const override { return objects_.bounds; }
@@ -107,6 +122,7 @@ class EmbreeSurfaces final : public Surfaces {
         const PlaneObject* plane = nullptr;  // if set, the rest means nothing
         unsigned geometry = 0, primitive = 0;
         TriangleCrossing crossing;  // of meshes
+        bool near_edge = false;     // of a triangle, where rounding decides (embree_rays.h)
     };
 
     void check(const char* doing) const {
@@ -148,46 +164,66 @@ class EmbreeSurfaces final : public Surfaces {
         check("taking over the spheres");
     }
 
+    /// Fills `hit` unless `nearest` is none or beyond `s_end`.
+    bool shade(const Candidate& nearest, const Ray& ray, double s_end, SurfaceHit& hit) const {
+        if (!(nearest.distance <= s_end) || nearest.distance == k_infinity) return false;
+        hit.distance = nearest.distance;
+        hit.position = ray.at(nearest.distance);
+        if (nearest.plane != nullptr) {
+            shade_plane(*nearest.plane, ray.direction, hit);
+        } else if (nearest.geometry < objects_.meshes.size()) {
+            shade_mesh(*objects_.meshes[nearest.geometry], nearest.primitive, nearest.crossing,
+                       objects_.bands, ray.direction, hit);
+        } else {
+            shade_sphere(objects_.spheres[nearest.primitive], ray.direction, hit);
+        }
+        return true;
+    }
+
     /// The nearest mesh or sphere, not necessarily within `s_end`.
-    Candidate trace(const Ray& ray, double s_end) const {
+    Candidate trace_past_origin(const Ray& ray, double s_end) const {
         float begin = 0;
         for (int restart = 0; restart < k_max_restarts; ++restart) {
-            Query query(ray.origin, ray.direction);
-            RTCRayHit rayhit{};
-            rayhit.ray = embree_ray(ray.origin, ray.direction, begin, s_end);
-            rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            rtcIntersect1(scene_.get(), &query.context, &rayhit);
-            if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
-            const Candidate candidate = refine(ray, rayhit);
+            Query query{ray.origin, ray.direction};
+            trace(scene_.get(), query, begin, s_end);
+            if (!query.has_candidate()) break;
+            Candidate candidate = refine(query);
+            if (candidate.near_edge) {
+                query = {ray.origin, ray.direction};
+                trace_edges(scene_.get(), query, begin, s_end);
+                if (!query.has_candidate()) break;
+                candidate = refine(query);
+            }
             if (candidate.distance > 0) return candidate;
-            begin = std::nextafter(rayhit.ray.tfar, std::numeric_limits<float>::infinity());
+            begin = std::nextafter(query.t, std::numeric_limits<float>::infinity());
         }
         return {};
     }
 
-    /// Embree's hit, measured in double.
-    Candidate refine(const Ray& ray, const RTCRayHit& rayhit) const {
+    /// Embree's candidate, measured in double.
+    Candidate refine(const Query& query) const {
         Candidate candidate;
-        candidate.geometry = rayhit.hit.geomID;
-        candidate.primitive = rayhit.hit.primID;
-        const double coarse = rayhit.ray.tfar;
+        candidate.geometry = query.geometry;
+        candidate.primitive = query.primitive;
+        const double coarse = query.t;
         if (candidate.geometry < objects_.meshes.size()) {
-            const auto crossing = cross_triangle(*objects_.meshes[candidate.geometry],
-                                                 candidate.primitive, ray.origin, ray.direction);
-            candidate.crossing =
-                crossing ? *crossing : TriangleCrossing{coarse, rayhit.hit.u, rayhit.hit.v};
+            const auto crossing =
+                cross_triangle(*objects_.meshes[candidate.geometry], candidate.primitive,
+                               query.origin, query.direction);
+            candidate.crossing = crossing ? *crossing : TriangleCrossing{coarse, query.u, query.v};
             candidate.distance = candidate.crossing.t;
+            candidate.near_edge = !(crossing && crossing->well_inside());
             return candidate;
         }
         const auto roots =
-            cross_sphere(objects_.spheres[candidate.primitive], ray.origin, ray.direction);
+            cross_sphere(objects_.spheres[candidate.primitive], query.origin, query.direction);
         // The callback found these roots; the one it took is the nearer to what it wrote.
         const bool near = std::abs(roots->near - coarse) <= std::abs(roots->far - coarse);
         candidate.distance = near ? roots->near : roots->far;
         return candidate;
     }
 
-    Candidate find_nearest(const Ray& ray, double s_end) const {
+    Candidate nearest_plane(const Ray& ray) const {
         Candidate nearest;
         for (const PlaneObject& plane : objects_.planes) {
             const auto t = cross_plane(plane, ray.origin, ray.direction);
@@ -195,8 +231,50 @@ class EmbreeSurfaces final : public Surfaces {
             nearest.distance = *t;
             nearest.plane = &plane;
         }
-        const Candidate traced = trace(ray, std::min(s_end, nearest.distance));
-        return traced.distance < nearest.distance ? traced : nearest;
+        return nearest;
+    }
+
+    Candidate find_nearest(const Ray& ray, double s_end) const {
+        const Candidate plane = nearest_plane(ray);
+        const Candidate traced = trace_past_origin(ray, std::min(s_end, plane.distance));
+        return traced.distance < plane.distance ? traced : plane;
+    }
+
+    /// The same for up to a packet of rays.
+    void find_nearest(std::span<const Ray> rays, double s_end,
+                      std::array<Candidate, k_packet_size>& nearest) const {
+        std::array<Query, k_packet_size> queries;
+        std::array<double, k_packet_size> ends{};
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            nearest[i] = nearest_plane(rays[i]);
+            queries[i] = {rays[i].origin, rays[i].direction};
+            ends[i] = std::min(s_end, nearest[i].distance);
+        }
+        trace_packet(scene_.get(), std::span(queries).first(rays.size()),
+                     std::span(ends).first(rays.size()));
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (!queries[i].has_candidate()) continue;
+            Candidate traced = refine(queries[i]);
+            if (traced.near_edge || !(traced.distance > 0)) {
+                traced = trace_past_origin(rays[i], ends[i]);
+            }
+            if (traced.distance < nearest[i].distance) nearest[i] = traced;
+        }
+    }
+
+    static Query shadow_query(const Point3& from, const Point3& to) {
+        // One order of the ends for both directions, so that light and view rays agree exactly.
+        const bool forward = std::tie(from.x, from.y, from.z) < std::tie(to.x, to.y, to.z);
+        const Point3& begin = forward ? from : to;
+        return {begin, (forward ? to : from) - begin};
+    }
+
+    bool blocked_by_plane(const Query& shadow) const {
+        return std::any_of(objects_.planes.begin(), objects_.planes.end(),
+                           [&](const PlaneObject& plane) {
+                               const auto t = cross_plane(plane, shadow.origin, shadow.direction);
+                               return t && between_ends(*t);
+                           });
     }
 
     SceneObjects objects_;

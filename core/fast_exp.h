@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <span>
 
 namespace uw {
 
@@ -27,5 +28,8 @@ inline double exp_of_minus(double x) {
     const double scale = std::bit_cast<double>((exponent + 1023) << 52);
     return x > 700 ? 0.0 : p * scale;
 }
+
+/// e^-x of every x >= 0, in place.
+void exp_of_minus(std::span<double> x);
 
 }  // namespace uw

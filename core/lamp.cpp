@@ -1,5 +1,6 @@
 #include "core/lamp.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -63,8 +64,16 @@ Lamp::Lamp(const LampDesc& desc, const Affine& world_from_camera, int band_count
         dark_angle_ = glm::radians(std::min(180.0, 0.5 * (profile_.beam + profile_.edge)));
         cos_full_ = std::cos(full_angle_);
         cos_dark_ = std::cos(dark_angle_);
+        cones_.push_back(cos_full_);
+        // Within the edge as well: a ray that grazes the beam sees a narrow bump of it.
+        if (cos_dark_ != cos_full_)
+            for (const double part : {0.25, 0.5, 0.75, 1.0})
+                cones_.push_back(std::cos(full_angle_ + part * (dark_angle_ - full_angle_)));
     } else if (profile_.type == LampProfileDesc::Type::cosine) {
         exponent_ = std::log(0.5) / std::log(std::cos(glm::radians(0.5 * profile_.fwhm)));
+        // A cosine beam is smooth but may be narrow: cones of equal intensity follow it.
+        for (const double level : {0.95, 0.75, 0.5, 0.25, 0.1, 0.03, 0.003, 1e-4})
+            cones_.push_back(std::pow(level, 1 / exponent_));
     }
     const double per_watt = desc.power ? 1.0 / beam_solid_angle() : 1.0;
     const PerBand& values = desc.power ? *desc.power : *desc.intensity;
@@ -92,20 +101,30 @@ double Lamp::relative_intensity(const Vector3& v) const {
     return smoothstep((dark_angle_ - angle) / (dark_angle_ - full_angle_));
 }
 
-void Lamp::append_profile_breaks(const Ray& ray, std::vector<double>& s) const {
-    if (profile_.type == LampProfileDesc::Type::isotropic) return;
-    if (profile_.type == LampProfileDesc::Type::spot) {
-        append_cone_crossings(ray, position_, axis_, cos_full_, s);
-        if (cos_dark_ == cos_full_) return;
-        // Within the edge as well: a ray that grazes the beam sees a narrow bump of it.
-        for (const double part : {0.25, 0.5, 0.75, 1.0})
-            append_cone_crossings(ray, position_, axis_,
-                                  std::cos(full_angle_ + part * (dark_angle_ - full_angle_)), s);
-        return;
+Interval Lamp::beam(const Ray& ray, const Interval& stretch) const {
+    const Interval none{stretch.begin, stretch.begin};
+    if (!(stretch.length() > 0) || profile_.type != LampProfileDesc::Type::spot) return stretch;
+    thread_local std::vector<double> cuts;
+    cuts.clear();
+    append_cone_crossings(ray, position_, axis_, cos_dark_, cuts);
+    std::erase_if(cuts, [&](double s) { return s <= stretch.begin || s >= stretch.end; });
+    cuts.push_back(stretch.begin);
+    cuts.push_back(stretch.end);
+    std::sort(cuts.begin(), cuts.end());
+    // No more than the cone is crossed between two cuts: all of it is inside, or none.
+    Interval lit = none;
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        const Vector3 middle = ray.at(0.5 * (cuts[i] + cuts[i + 1])) - position_;
+        if (glm::dot(middle, axis_) < cos_dark_ * glm::length(middle)) continue;
+        if (lit.length() == 0) lit.begin = cuts[i];
+        lit.end = cuts[i + 1];
     }
-    // A cosine beam is smooth but may be narrow: cones of equal intensity follow it.
-    for (const double level : {0.95, 0.75, 0.5, 0.25, 0.1, 0.03, 0.003, 1e-4})
-        append_cone_crossings(ray, position_, axis_, std::pow(level, 1 / exponent_), s);
+    return lit;
+}
+
+void Lamp::append_profile_breaks(const Ray& ray, std::vector<double>& s) const {
+    for (const double cosine : cones_) append_cone_crossings(ray, position_, axis_, cosine, s);
+    if (profile_.type != LampProfileDesc::Type::cosine) return;
     const double along = glm::dot(ray.direction, axis_);
     const double root = -glm::dot(ray.origin - position_, axis_) / along;
     if (std::isfinite(root) && root > 0) s.push_back(root);

@@ -32,6 +32,10 @@ class Lamp {
     /// Power of the lamp for 1 W/sr on its axis: its relative intensity over the sphere [sr].
     double beam_solid_angle() const;
 
+    /// The part of a stretch of `ray` outside which the lamp shines nothing; of length 0 where it
+    /// misses the beam. What is left may have dark parts.
+    Interval beam(const Ray& ray, const Interval& stretch) const;
+
     /// Appends the distances along `ray` where the profile is not smooth or changes much: the edges
     /// of its beam and cones of equal intensity within.
     void append_profile_breaks(const Ray& ray, std::vector<double>& s) const;
@@ -44,6 +48,7 @@ class Lamp {
     double full_angle_ = 0, cos_full_ = 1;   // a spot shines fully inside this angle [rad]
     double dark_angle_ = 0, cos_dark_ = -1;  // and is dark outside this one
     double exponent_ = 0;                    // of cos^m
+    std::vector<double> cones_;              // cosines of the cones that break the profile
     Spectrum axis_intensity_{};
 };
 

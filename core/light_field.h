@@ -13,8 +13,9 @@ class LightField {
   public:
     virtual ~LightField() = default;
 
-    /// The stretches of `ray` within [0, s_end] that the lamp sees, ascending and disjoint.
-    virtual void lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const = 0;
+    /// The parts of a stretch of `ray` that the lamp sees, ascending and disjoint.
+    virtual void lit_intervals(const Ray& ray, const Interval& stretch,
+                               std::vector<Interval>& lit) const = 0;
 
     /// Appends distances along `ray` inside `interval` such that between neighbours the lamp's
     /// columns are close to linear. Nothing where the light has met no grid.

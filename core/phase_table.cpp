@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/vector_clones.h"
+
 namespace uw {
 
 namespace {
@@ -42,7 +44,8 @@ PhaseTable::PhaseTable(const Medium& medium)
     }
 }
 
-void PhaseTable::evaluate(std::span<const double> half_tangent, std::span<double> p) const {
+UWVDB_VECTOR_CLONES void PhaseTable::evaluate(std::span<const double> half_tangent,
+                                              std::span<double> p) const {
     if (phases_ == 0) return;  // water that scatters nothing has no table
     constexpr std::uint64_t k_offset_mask = (std::uint64_t{1} << k_offset_bits) - 1;
     constexpr double k_offset_unit = 1.0 / (std::uint64_t{1} << k_offset_bits);

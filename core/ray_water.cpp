@@ -28,8 +28,9 @@ void RayWater::gather(const Ray& ray, std::span<const double> distances,
     thread_local InScatter light;
     const Interval slab = parts_.first_slab ? first_slab_along(ray) : Interval{};
     stops.assign(distances.begin(), distances.end());
+    const double last = *std::max_element(distances.begin(), distances.end());
     for (const double face : {slab.begin, slab.end})
-        if (face > 0 && face < distances.back()) stops.push_back(face);
+        if (face > 0 && face < last) stops.push_back(face);
     std::sort(stops.begin(), stops.end());
     stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
     integrator_.in_scatter(ray, stops, light);

@@ -37,7 +37,7 @@ class RayWater {
         return row.subspan(groups_ * bands_, bands_);
     }
 
-    /// Writes a row for each of `distances` [m, ascending, > 0]. Thread safe.
+    /// Writes a row for each of `distances` [m, > 0]. Thread safe.
     void gather(const Ray& ray, std::span<const double> distances, std::span<double> rows) const;
 
     /// Writes the row of a pixel: the mean over its ends, zeros without a ray. Thread safe.

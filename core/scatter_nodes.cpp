@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/fast_exp.h"
+#include "core/vector_clones.h"
 
 namespace uw {
 
@@ -13,6 +14,18 @@ void ScatterNodes::clear() {
     half_tangent.clear();
     end.clear();
     position.clear();
+}
+
+void ScatterNodes::pad() {
+    constexpr std::size_t k_register = 8;
+    while (size() % k_register != 0) {
+        s.push_back(s.back());
+        weight.push_back(0);
+        radius.push_back(radius.back());
+        half_tangent.push_back(half_tangent.back());
+        end.push_back(end.back());
+        position.push_back(position.back());
+    }
 }
 
 void ScatterNodes::look_up(const ConcentrationProfile& profile) {
@@ -50,8 +63,8 @@ ScatterSum::ScatterSum(const Medium& medium)
     }
 }
 
-void ScatterSum::add(const ScatterNodes& nodes, const Spectrum& intensity,
-                     std::span<Spectrum> radiance) const {
+UWVDB_VECTOR_CLONES void ScatterSum::add(const ScatterNodes& nodes, const Spectrum& intensity,
+                                         std::span<Spectrum> radiance) const {
     thread_local std::vector<double> tau, beta;
     // Band by band, so that each loop runs over contiguous nodes without a branch.
     for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation_.band_count); ++b) {
@@ -66,8 +79,8 @@ void ScatterSum::add(const ScatterNodes& nodes, const Spectrum& intensity,
     }
 }
 
-void ScatterSum::add_depth(const ScatterNodes& nodes, std::size_t band,
-                           std::span<double> tau) const {
+UWVDB_VECTOR_CLONES void ScatterSum::add_depth(const ScatterNodes& nodes, std::size_t band,
+                                               std::span<double> tau) const {
     const std::size_t count = nodes.size();
     const double c = attenuation_.uniform[band];
     for (std::size_t i = 0; i < count; ++i) tau[i] = c * (nodes.s[i] + nodes.radius[i]);
@@ -78,8 +91,8 @@ void ScatterSum::add_depth(const ScatterNodes& nodes, std::size_t band,
     }
 }
 
-void ScatterSum::add_scattering(const ScatterNodes& nodes, std::size_t band,
-                                std::span<double> beta) const {
+UWVDB_VECTOR_CLONES void ScatterSum::add_scattering(const ScatterNodes& nodes, std::size_t band,
+                                                    std::span<double> beta) const {
     const std::size_t count = nodes.size();
     for (std::size_t m = 0; m < uniform_.size(); ++m) {
         const double b = uniform_[m][band];

@@ -182,6 +182,9 @@ struct RenderDesc {
     Output output = Output::radiance;  // all but radiance need camera.lens
     SourceLocation output_where;
     int samples = 4;
+    /// A draft is for looking: within 3 % of the final image, at a tenth of its cost.
+    enum class Quality { draft, final };
+    Quality quality = Quality::final;
 };
 
 /// The integrators by the names that users write.

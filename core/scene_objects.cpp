@@ -6,9 +6,6 @@
 namespace uw {
 namespace {
 
-/// How far outside, in barycentric units, a crossing still counts as rounding of Embree's floats.
-constexpr double k_outside = 1e-3;
-
 Vector3 toward_viewer(const Vector3& normal, const Vector3& direction) {
     return glm::dot(normal, direction) > 0 ? -normal : normal;
 }
@@ -92,6 +89,7 @@ std::optional<TriangleCrossing> cross_triangle(const MeshObject& object, std::ui
     const Vector3 q = glm::cross(s, ab);
     const TriangleCrossing crossing{glm::dot(ac, q) / determinant, glm::dot(s, p) / determinant,
                                     glm::dot(direction, q) / determinant};
+    constexpr double k_outside = TriangleCrossing::k_edge_margin;
     const bool inside = crossing.u >= -k_outside && crossing.v >= -k_outside &&
                         crossing.u + crossing.v <= 1 + k_outside;
     return inside ? std::optional(crossing) : std::nullopt;

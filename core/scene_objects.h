@@ -58,10 +58,17 @@ struct SceneObjects {
 struct TriangleCrossing {
     double t = 0;
     double u = 0, v = 0;  // barycentric: (1 - u - v) a + u b + v c
+
+    /// Whether the crossing lies in the triangle and off its edges by more than floats round.
+    bool well_inside() const {
+        return u > k_edge_margin && v > k_edge_margin && u + v < 1 - k_edge_margin;
+    }
+    /// Share of the triangle's size that single precision may err by.
+    static constexpr double k_edge_margin = 1e-3;
 };
 
 /// The crossing of a line with the plane of a triangle (Moeller & Trumbore 1997) in double
-/// precision. Nothing if it misses the triangle by more than 1e-3 of its size, as happens to lines
+/// precision. Nothing if it misses the triangle by more than k_edge_margin, as happens to lines
 /// nearly in its plane.
 std::optional<TriangleCrossing> cross_triangle(const MeshObject& object, std::uint32_t triangle,
                                                const Point3& origin, const Vector3& direction);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/bands.h"
 #include "core/ray.h"
@@ -32,6 +33,21 @@ class Surfaces {
     /// Whether something stands between `from` and `to`. Surfaces that hold either end (within
     /// 1e-5 of the distance) do not count.
     virtual bool occluded(const Point3& from, const Point3& to) const = 0;
+
+    /// The three queries above for many rays at once, with the same results to the bit (but for
+    /// triangles as small as 1000 times the rounding of their coordinates to floats, where rounding
+    /// may differ). Faster where rays that follow one another in steps of 8 go much the same way;
+    /// slower where they do not. All spans of a call have the same length.
+    ///
+    /// `found[i]` is closest_hit(rays[i], s_end, hits[i]), as 0 or 1.
+    virtual void closest_hits(std::span<const Ray> rays, double s_end, std::span<SurfaceHit> hits,
+                              std::span<char> found) const;
+    /// `distances[i]` is hit_distance({origin, directions[i]}); unit directions.
+    virtual void hit_distances(const Point3& origin, std::span<const Vector3> directions,
+                               std::span<double> distances) const;
+    /// `blocked[i]` is occluded(from, to[i]), as 0 or 1.
+    virtual void occluded_many(const Point3& from, std::span<const Point3> to,
+                               std::span<char> blocked) const;
 
     /// World bounds of everything finite; empty if there is nothing.
     virtual Bounds bounds() const = 0;

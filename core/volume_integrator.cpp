@@ -17,9 +17,8 @@ constexpr double k_panel_optical_depth = 1.5;
 constexpr double k_negligible_optical_depth = 15;
 
 // A break that only marks a change of scale is left out where the one before it is nearer than
-// this: relative to the distance from the lamp, and in voxels.
+// this, relative to the distance from the lamp.
 constexpr double k_least_relative_panel = 0.35;
-constexpr double k_least_voxels = 2;
 
 std::vector<double> cotangents_of_breakpoints(const Medium& medium) {
     std::vector<double> all;
@@ -69,18 +68,18 @@ void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, con
     }
 }
 
-// Adds the knots of a profile at the pace of its voxels: every second one, and where particles
-// begin and end.
-void add_knots(const ConcentrationProfile& profile, PanelBreaks& breaks) {
-    constexpr std::size_t k_pace = 2;
-    constexpr double k_least_knots = 1.9;
+// Adds the knots of a profile, which follow each other from voxel to voxel: every `voxels` one, and
+// where particles begin and end.
+void add_knots(const ConcentrationProfile& profile, int voxels, PanelBreaks& breaks) {
+    const auto pace = static_cast<std::size_t>(voxels);
+    const double least_knots = voxels - 0.1;
     bool was_empty = true;
     for (std::size_t i = 0; i + 1 < profile.s.size(); ++i) {
         const bool is_empty = profile.empty_between(i);
         if (is_empty != was_empty)
             breaks.add_edge(profile.s[i]);
-        else if (!is_empty && i % k_pace == 0)
-            breaks.add_mark(profile.s[i], k_least_knots * (profile.s[i + 1] - profile.s[i]));
+        else if (!is_empty && i % pace == 0)
+            breaks.add_mark(profile.s[i], least_knots * (profile.s[i + 1] - profile.s[i]));
         was_empty = is_empty;
     }
 }
@@ -101,8 +100,10 @@ struct VolumeIntegrator::Workspace {
 };
 
 VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
-                                   std::vector<std::shared_ptr<const LightField>> light_fields)
+                                   std::vector<std::shared_ptr<const LightField>> light_fields,
+                                   const VolumeQuadrature& quadrature)
     : scene_(scene),
+      quadrature_(quadrature),
       light_fields_(std::move(light_fields)),
       phase_cotangents_(cotangents_of_breakpoints(*scene.medium)),
       phases_(*scene.medium),
@@ -131,14 +132,13 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<c
         if (smallest_attenuation_ > 0)
             reach = std::min(
                 reach, passage.radius(0) + k_negligible_optical_depth / smallest_attenuation_);
-        light_fields_[j]->lit_intervals(ray, reach, w.lit);
+        light_fields_[j]->lit_intervals(ray, lamps[j].beam(ray, {begin, reach}), w.lit);
         w.nodes.clear();
-        for (Interval interval : w.lit) {
-            interval.begin = std::max(interval.begin, begin);
-            if (interval.length() <= 0) continue;
+        for (const Interval& interval : w.lit) {
             const std::vector<double>& breaks = find_breaks(ray, j, passage, interval, ends, w);
             add_panels(ray, j, passage, ends, breaks, w.profile, w.nodes);
         }
+        w.nodes.pad();
         w.nodes.lamp_column.resize(w.nodes.size() *
                                    static_cast<std::size_t>(w.profile.constituent_count));
         light_fields_[j]->columns(w.nodes.position, w.nodes.lamp_column);
@@ -177,10 +177,10 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     for (const double cotangent : phase_cotangents_)
         w.breaks.add_edge(passage.foot - passage.distance * cotangent);
     if (w.profile.constituent_count > 0) {
-        add_knots(w.profile, w.breaks);
+        add_knots(w.profile, quadrature_.voxels_per_panel, w.breaks);
         w.marks.clear();
         light_fields_[lamp]->append_column_breaks(ray, interval, w.marks);
-        const double spacing = k_least_voxels * scene_.field->finest_voxel();
+        const double spacing = quadrature_.voxels_per_panel * scene_.field->finest_voxel();
         for (const double s : w.marks) w.breaks.add_mark(s, spacing);
     }
     return w.breaks.kept();

@@ -12,6 +12,11 @@
 
 namespace uw {
 
+/// How finely VolumeIntegrator follows what varies from voxel to voxel.
+struct VolumeQuadrature {
+    int voxels_per_panel = 2;  // two nodes each; many are for drafts
+};
+
 /// Deterministic quadrature of single scattering (physics section 5) on light splatted ahead of
 /// time: Gauss rules on panels that follow the lamp's octaves, the phase functions' breakpoints,
 /// lit intervals, voxels and the lamp's columns.
@@ -19,7 +24,8 @@ class VolumeIntegrator : public Integrator {
   public:
     /// `light_fields`: one per lamp of `scene`.
     VolumeIntegrator(const LitScene& scene,
-                     std::vector<std::shared_ptr<const LightField>> light_fields);
+                     std::vector<std::shared_ptr<const LightField>> light_fields,
+                     const VolumeQuadrature& quadrature = {});
 
     void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
     void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
@@ -38,6 +44,7 @@ class VolumeIntegrator : public Integrator {
                     const ConcentrationProfile& profile, ScatterNodes& nodes) const;
 
     LitScene scene_;
+    VolumeQuadrature quadrature_;
     std::vector<std::shared_ptr<const LightField>> light_fields_;
     std::vector<double> phase_cotangents_;  // of all phase functions' breakpoints
     PhaseTable phases_;

@@ -7,9 +7,12 @@ namespace uw {
 
 namespace {
 
-// A node's distances may reach this far from the nearest to the farthest: over them a parabola
-// follows the in-scatter to 1e-4.
-constexpr double k_distance_ratio = 1.12;
+// How far a node's distances may reach beyond the nearest, relative: over them a parabola follows
+// the in-scatter to a tenth of the tolerance.
+double distance_reach(double tolerance) {
+    return 0.12 * std::cbrt(tolerance / 1e-3);
+}
+
 // Light darker than this share of the tile's mean is compared with that.
 constexpr double k_dark = 0.02;
 
@@ -25,6 +28,7 @@ WaterLattice::WaterLattice(const RaySource& rays, const RayWater& water, double 
     : rays_(rays),
       water_(water),
       tolerance_(tolerance),
+      distance_reach_(distance_reach(tolerance)),
       row_size_(water.row_size()),
       floor_(water.band_count()),
       mixed_(row_size_),
@@ -40,6 +44,7 @@ void WaterLattice::gather(const PixelWindow& tile, std::span<const PixelView> vi
     tile_ = tile;
     views_ = views;
     rows_.assign(views.size() * row_size_, 0.0);
+    collect_ends();
     nodes_.assign(static_cast<std::size_t>(k_side) * k_side, Node{});
     node_rows_.clear();
     set_floor();
@@ -47,46 +52,76 @@ void WaterLattice::gather(const PixelWindow& tile, std::span<const PixelView> vi
         for (int i = 0; i < tile.width(); i += k_coarsest) fill_cell(i, j, k_coarsest);
 }
 
+void WaterLattice::collect_ends() {
+    ends_.clear();
+    first_ends_.clear();
+    for (const PixelView& view : views_) {
+        first_ends_.push_back(ends_.size());
+        ends_.insert(ends_.end(), view.ends.begin(), view.ends.end());
+    }
+    first_ends_.push_back(ends_.size());
+}
+
 const WaterLattice::Node& WaterLattice::node(int i, int j) {
     Node& node = nodes_[static_cast<std::size_t>(j / k_finest * k_side + i / k_finest)];
     if (node.state == Node::State::unknown) {
-        find_distances(i, j, node);
+        find_depths(i, j, node);
         const bool ready = node.reach > 0 && gather_node(i, j, node);
         node.state = ready ? Node::State::ready : Node::State::unusable;
     }
     return node;
 }
 
-/// The distances at which the water ends around a node, as far around it as they are alike.
-void WaterLattice::find_distances(int i, int j, Node& node) const {
+/// The depths at which the water ends around a node, as far around it as there are few.
+void WaterLattice::find_depths(int i, int j, Node& node) const {
     int reach = k_coarsest;
     while (i % reach != 0 || j % reach != 0) reach /= 2;
     for (; reach >= k_finest; reach /= 2) {
-        double least = k_far, greatest = 0;
-        for (int y = j - reach; y <= j + reach; ++y) {
-            for (int x = i - reach; x <= i + reach; ++x) {
-                const PixelView* near = view(x, y);
-                if (near == nullptr) continue;
-                least = std::min(least, near->ends.front());
-                greatest = std::max(greatest, near->ends.back());
-            }
+        node.depth_count = 0;
+        bool few = true;
+        const int x0 = std::max(0, i - reach), x1 = std::min(i + reach, tile_.width() - 1);
+        const int y0 = std::max(0, j - reach), y1 = std::min(j + reach, tile_.height() - 1);
+        for (int y = y0; y <= y1 && few; ++y) {
+            const std::size_t* first = &first_ends_[static_cast<std::size_t>(y * tile_.width())];
+            for (std::size_t end = first[x0]; end < first[x1 + 1] && few; ++end)
+                few = include(ends_[end], node);
         }
-        if (greatest == 0) return;
-        if (greatest > k_distance_ratio * least) continue;
-        node.reach = reach;
-        const bool alike = greatest <= (1 + 1e-9) * least;
-        node.stops = alike ? 1 : k_stops;
-        node.distances = {least, 0.5 * (least + greatest), greatest};
+        if (!few) continue;
+        if (node.depth_count > 0) node.reach = reach;
         return;
     }
+}
+
+/// Makes `end` part of one of the node's depths; false if it has too many already.
+bool WaterLattice::include(double end, Node& node) const {
+    for (std::size_t d = 0; d < node.depth_count; ++d) {
+        Depth& depth = node.depths[d];
+        if (end >= depth.least && end <= depth.greatest) return true;
+        const double least = std::min(depth.least, end), greatest = std::max(depth.greatest, end);
+        if (greatest > (1 + distance_reach_) * least) continue;
+        depth = {least, greatest};
+        return true;
+    }
+    if (node.depth_count == k_depths) return false;
+    node.depths[node.depth_count++] = {end, end};
+    return true;
 }
 
 bool WaterLattice::gather_node(int i, int j, Node& node) {
     const auto ray = rays_.water_ray(tile_.x0 + i + 0.5, tile_.y0 + j + 0.5);
     if (!ray) return false;
+    std::array<double, k_depths * k_stops> distances{};
+    std::size_t count = 0;
+    for (std::size_t d = 0; d < node.depth_count; ++d) {
+        const Depth& depth = node.depths[d];
+        distances[count++] = depth.least;
+        if (depth.alike()) continue;
+        distances[count++] = depth.middle();
+        distances[count++] = depth.greatest;
+    }
     node.rows = node_rows_.size();
-    node_rows_.resize(node.rows + node.stops * row_size_);
-    water_.gather(*ray, std::span(node.distances).first(node.stops),
+    node_rows_.resize(node.rows + count * row_size_);
+    water_.gather(*ray, std::span(distances).first(count),
                   std::span(node_rows_).subspan(node.rows));
     return true;
 }
@@ -132,7 +167,7 @@ bool WaterLattice::confirmed(int i, int j, int spacing) {
             const Place place =
                 seen != nullptr
                     ? Place{0.5 * u, 0.5 * v, seen->ends, seen->shares}
-                    : Place{0.5 * u, 0.5 * v, std::span(middle.distances).first(1), k_whole};
+                    : Place{0.5 * u, 0.5 * v, std::span(&middle.depths[0].least, 1), k_whole};
             if (!agree(from, place, middle)) return false;
         }
     }
@@ -145,9 +180,10 @@ bool WaterLattice::agree(const Corners& from, const Place& place, const Node& no
     for (std::size_t c = 0; c < from.size(); ++c) {
         const double across = c % 2 != 0 ? place.u : 1 - place.u;
         const double down = c / 2 != 0 ? place.v : 1 - place.v;
-        if (across * down > 0) add(*from[c], across * down, place.ends, place.shares, mixed_);
+        if (across * down > 0 && !add(*from[c], across * down, place.ends, place.shares, mixed_))
+            return false;
     }
-    add(node, 1, place.ends, place.shares, own_);
+    if (!add(node, 1, place.ends, place.shares, own_)) return false;
     const std::size_t bands = floor_.size();
     for (std::size_t b = 0; b < bands; ++b) {
         double difference = 0, light = 0;
@@ -189,31 +225,38 @@ void WaterLattice::fill_pixel(int x, int y, int spacing) {
     const double v = static_cast<double>(y % spacing) / spacing;
     for (std::size_t c = 0; c < from.size(); ++c) {
         const double weight = (c % 2 != 0 ? u : 1 - u) * (c / 2 != 0 ? v : 1 - v);
+        // Corners know the depths of all pixels within their reach.
         if (weight > 0) add(*from[c], weight, seen->ends, seen->shares, row);
     }
 }
 
-/// Adds `weight` times what the node's parabola says of the mean over the ends.
-void WaterLattice::add(const Node& node, double weight, std::span<const double> ends,
+/// Adds `weight` times what the node's parabolas say of the mean over the ends.
+bool WaterLattice::add(const Node& node, double weight, std::span<const double> ends,
                        std::span<const double> shares, std::span<double> row) const {
-    std::array<double, k_stops> of_stop{};
     for (std::size_t end = 0; end < ends.size(); ++end) {
+        const double* rows = &node_rows_[node.rows];
+        std::size_t d = 0;
+        for (; d < node.depth_count; ++d) {
+            const Depth& depth = node.depths[d];
+            if (ends[end] >= depth.least && ends[end] <= depth.greatest) break;
+            rows += depth.stops() * row_size_;
+        }
+        if (d == node.depth_count) return false;
+        const Depth& depth = node.depths[d];
         const double share = weight * shares[end];
-        if (node.stops == 1) {
-            of_stop[0] += share;
+        if (depth.alike()) {
+            for (std::size_t k = 0; k < row_size_; ++k) row[k] += share * rows[k];
             continue;
         }
-        // -1..1 from the nearest to the farthest distance.
-        const double t =
-            2 * (ends[end] - node.distances[1]) / (node.distances[2] - node.distances[0]);
-        of_stop[0] += share * 0.5 * t * (t - 1);
-        of_stop[1] += share * (1 - t * t);
-        of_stop[2] += share * 0.5 * t * (t + 1);
+        // -1..1 from the nearest to the farthest.
+        const double t = 2 * (ends[end] - depth.middle()) / (depth.greatest - depth.least);
+        const double of_least = share * 0.5 * t * (t - 1), of_middle = share * (1 - t * t);
+        const double of_greatest = share * 0.5 * t * (t + 1);
+        for (std::size_t k = 0; k < row_size_; ++k)
+            row[k] += of_least * rows[k] + of_middle * rows[row_size_ + k] +
+                      of_greatest * rows[2 * row_size_ + k];
     }
-    for (std::size_t stop = 0; stop < node.stops; ++stop) {
-        const double* from = &node_rows_[node.rows + stop * row_size_];
-        for (std::size_t k = 0; k < row_size_; ++k) row[k] += of_stop[stop] * from[k];
-    }
+    return true;
 }
 
 }  // namespace uw

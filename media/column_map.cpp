@@ -11,9 +11,6 @@ namespace {
 
 constexpr int k_max_resolution = 1 << 16;
 constexpr int k_min_resolution = 16;
-// Columns bend where their rays pass from voxel to voxel: two texels and two steps to each keep
-// what interpolation adds below 0.2 % of the image for plumes with edges of a voxel or two.
-constexpr double k_per_voxel = 2;
 
 std::array<Point3, 8> corners(const Bounds& b) {
     std::array<Point3, 8> result;
@@ -43,15 +40,18 @@ void clip(double a, double b, int size, Interval& part) {
 
 }  // namespace
 
-ColumnMap::ColumnMap(const ConcentrationField& field, const Point3& lamp, std::size_t memory_budget)
-    : lamp_(lamp), constituents_(static_cast<std::size_t>(field.constituent_count())) {
+ColumnMap::ColumnMap(const ConcentrationField& field, const Point3& lamp, double per_voxel,
+                     std::size_t memory_budget)
+    : lamp_(lamp),
+      per_voxel_(per_voxel),
+      constituents_(static_cast<std::size_t>(field.constituent_count())) {
     const Bounds bounds = field.bounds();
     if (bounds.empty() || constituents_ == 0) return;
     const double voxel = field.finest_voxel();
     // From inside a volume its centre may be at hand; its far parts still want voxel-wide texels.
     const double typical = std::max(distance(bounds.center(), lamp), 0.25 * bounds.diagonal());
-    const double texels = k_per_voxel * 2 * typical / voxel;  // along a face, which is 2 wide
-    const double steps = k_per_voxel / voxel;                 // per metre
+    const double texels = per_voxel_ * 2 * typical / voxel;  // along a face, which is 2 wide
+    const double steps = per_voxel_ / voxel;                 // per metre
 
     std::array<FaceRectangle, 6> rectangles;
     double rays = 0, samples = 0;  // that this would take
@@ -213,7 +213,7 @@ void ColumnMap::append_breaks(const Ray& ray, const Interval& interval,
         const double va = texel_u(projection.v(a)) - face.v0,
                      vb = texel_u(projection.v(b)) - face.v0;
         const int steps = static_cast<int>(
-            std::ceil(std::max(std::abs(ub - ua), std::abs(vb - va)) / k_per_voxel));
+            std::ceil(std::max(std::abs(ub - ua), std::abs(vb - va)) / std::max(1.0, per_voxel_)));
         s.push_back(segment.stretch.begin);
         Interval stored{0, 1};  // the part of the line on texels that are stored
         clip(ua, ub, face.width, stored);

@@ -12,6 +12,7 @@ namespace uw {
 /// How finely lamps are splatted.
 struct LightFieldOptions {
     int shadow_resolution = 512;               // texels along an edge of a cube face
+    double columns_per_voxel = 2;              // texels and steps of columns to a voxel's edge
     std::size_t column_budget = 256ull << 20;  // bytes of columns, all lamps of a scene together
 };
 
@@ -24,15 +25,17 @@ class LampLightField : public LightField {
     LampLightField(const ConcentrationField& field, const Surfaces& surfaces, const Point3& lamp,
                    const LightFieldOptions& options)
         : LampLightField(std::make_shared<ShadowMap>(surfaces, lamp, options.shadow_resolution),
-                         std::make_shared<ColumnMap>(field, lamp, options.column_budget)) {}
+                         std::make_shared<ColumnMap>(field, lamp, options.columns_per_voxel,
+                                                     options.column_budget)) {}
 
     /// Of maps made before, both of the same lamp position.
     LampLightField(std::shared_ptr<const ShadowMap> shadows,
                    std::shared_ptr<const ColumnMap> columns)
         : shadows_(std::move(shadows)), columns_(std::move(columns)) {}
 
-    void lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const override {
-        shadows_->lit_intervals(ray, s_end, lit);
+    void lit_intervals(const Ray& ray, const Interval& stretch,
+                       std::vector<Interval>& lit) const override {
+        shadows_->lit_intervals(ray, stretch, lit);
     }
     void append_column_breaks(const Ray& ray, const Interval& interval,
                               std::vector<double>& s) const override {

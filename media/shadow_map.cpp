@@ -219,10 +219,12 @@ class ShadowMap::Search {
     Seen last_seen_;
 };
 
-void ShadowMap::lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const {
+void ShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
+                              std::vector<Interval>& lit) const {
     lit.clear();
+    if (!(stretch.length() > 0)) return;
     if (surfaces_->empty()) {
-        lit.push_back({0, s_end});
+        lit.push_back(stretch);
         return;
     }
     Search search(*this, ray, lit);
@@ -231,14 +233,15 @@ void ShadowMap::lit_intervals(const Ray& ray, double s_end, std::vector<Interval
     const double offset = distance(lamp_, ray.at(foot));
     const double half =
         offset < k_lamp_radius ? std::sqrt(k_lamp_radius * k_lamp_radius - offset * offset) : 0.0;
-    const Interval core{std::clamp(foot - half, 0.0, s_end), std::clamp(foot + half, 0.0, s_end)};
+    const Interval core{std::clamp(foot - half, stretch.begin, stretch.end),
+                        std::clamp(foot + half, stretch.begin, stretch.end)};
     if (half == 0 || core.length() == 0) {
-        search.run({0, s_end});
+        search.run(stretch);
         return;
     }
-    search.run({0, core.begin});
+    search.run({stretch.begin, core.begin});
     search.append(core);
-    search.run({core.end, s_end});
+    search.run({core.end, stretch.end});
 }
 
 }  // namespace uw

@@ -16,10 +16,10 @@ class ShadowMap {
     /// Traces `resolution`^2 rays on each face. `surfaces` outlives the map.
     ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution);
 
-    /// The stretches of `ray` within [0, s_end] that the lamp sees, ascending and disjoint. Edges
+    /// The parts of a stretch of `ray` that the lamp sees, ascending and disjoint. Edges
     /// lie within 2e-4 of their distance from the lamp. A shadow narrower than a texel may be
     /// missed.
-    void lit_intervals(const Ray& ray, double s_end, std::vector<Interval>& lit) const;
+    void lit_intervals(const Ray& ray, const Interval& stretch, std::vector<Interval>& lit) const;
 
     std::uint64_t rays_traced() const { return rays_traced_; }
     std::size_t bytes() const;

@@ -39,6 +39,19 @@ std::vector<double> radiance(const AssembledScene& scene, const Integrator& inte
     return values;
 }
 
+std::vector<double> radiance(const LayerPlan& plan, const Film& film, std::size_t bands,
+                             const std::vector<Pixel>& pixels) {
+    // With three bands the total is R G B.
+    const int first = std::max(0, plan.first_channel(Layer::total));
+    std::vector<double> values;
+    for (const Pixel& at : pixels) {
+        const std::span<const float> channels = film.pixel(at.x, at.y);
+        for (std::size_t band = 0; band < bands; ++band)
+            values.push_back(channels[static_cast<std::size_t>(first) + band]);
+    }
+    return values;
+}
+
 double mean(const std::vector<double>& values) {
     double sum = 0;
     for (const double value : values) sum += value;
@@ -59,10 +72,11 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 
 }  // namespace
 
-ReferenceError compare_with_reference(const AssembledScene& scene, const LightFields& light_fields,
-                                      int pixels, double step) {
+ReferenceError compare_with_reference(const AssembledScene& scene, const LayerPlan& plan,
+                                      const Film& film, int pixels, double step) {
     const auto chosen = lattice(scene.camera->width(), scene.camera->height(), pixels);
-    const auto measured = radiance(scene, *make_integrator(scene, light_fields), chosen);
+    const auto measured =
+        radiance(plan, film, static_cast<std::size_t>(scene.water.medium.band_count()), chosen);
     const auto truth = radiance(scene, ReferenceIntegrator(scene.lit(), step), chosen);
     const auto coarse = radiance(scene, ReferenceIntegrator(scene.lit(), 2 * step), chosen);
     const double scale = 1 / mean(truth);

@@ -13,10 +13,10 @@ struct ReferenceError {
     double reference = 0;  // what the reference itself is uncertain by, as an RMSE
 };
 
-/// Renders about `pixels` pixels with the scene's integrator and with the reference. `step`: of the
-/// reference integrator; its own uncertainty is taken from a second one of twice the step, whose
-/// error is about double. On all cores.
-ReferenceError compare_with_reference(const AssembledScene& scene, const LightFields& light_fields,
-                                      int pixels, double step);
+/// Compares about `pixels` pixels of a rendered film, which has the layer `total` of `plan`, with
+/// the reference. `step`: of the reference integrator; its own uncertainty is taken from a second
+/// one of twice the step, whose error is about double. On all cores.
+ReferenceError compare_with_reference(const AssembledScene& scene, const LayerPlan& plan,
+                                      const Film& film, int pixels, double step);
 
 }  // namespace uw::bench

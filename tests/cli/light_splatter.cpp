@@ -71,7 +71,7 @@ class LightReuse : public testing::Test {
         EXPECT_GT(brightest, 0);
     }
 
-    static constexpr LightFieldOptions k_options{64, std::size_t{32} << 20};
+    static constexpr LightFieldOptions k_options{64, 2, std::size_t{32} << 20};
     FieldMaker maker_;
     SceneDesc desc_;
     AssembledScene scene_;
@@ -126,11 +126,13 @@ TEST_F(LightReuse, AnotherFieldNeedsColumnsAndOtherSurfacesNeedShadows) {
 
 TEST_F(LightReuse, OtherOptionsNeedTheirOwn) {
     expect_splat(2, 2);
-    expect_splat(2, 0, {32, k_options.column_budget});
-    expect_splat(0, 2, {32, k_options.column_budget / 64});
+    expect_splat(2, 0, {32, 2, k_options.column_budget});
+    expect_splat(0, 2, {32, 2, k_options.column_budget / 64});
+    expect_splat(0, 2, {32, 1, k_options.column_budget});
+    expect_splat(0, 2, {32, 2, k_options.column_budget / 64});
     // The budget is shared out among the lamps.
     change([](SceneDesc& d) { d.lamps.pop_back(); });
-    expect_splat(0, 1, {32, k_options.column_budget / 64});
+    expect_splat(0, 1, {32, 2, k_options.column_budget / 64});
 }
 
 TEST_F(LightReuse, ScenesTakeOverWhatIsTheSame) {

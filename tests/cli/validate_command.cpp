@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "tests/support/temp_dir.h"
@@ -42,12 +44,73 @@ IntegratorFactory faulty(double in_scatter, double direct) {
     };
 }
 
+/// Honest before forward scatter, which alone asks for the light from a distance on, and for what
+/// falls on surfaces apart from what they send back.
+class FaultyInForwardScatter : public Integrator {
+  public:
+    enum class Fault { layers, irradiance };
+    FaultyInForwardScatter(std::unique_ptr<Integrator> honest, Fault fault)
+        : honest_(std::move(honest)), fault_(fault) {}
+
+    void in_scatter(const Ray& ray, std::span<const double> ends,
+                    InScatter& result) const override {
+        honest_->in_scatter(ray, ends, result);
+    }
+    // Each layer's light is its neighbour's.
+    void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                         InScatter& result) const override {
+        honest_->in_scatter_from(ray, begin, ends, result);
+        if (fault_ != Fault::layers) return;
+        for (std::size_t lamp = 0; lamp < result.lamp_count(); ++lamp)
+            for (std::size_t end = 0; end + 1 < ends.size(); ++end)
+                result.at(end, lamp) = result.at(end + 1, lamp);
+    }
+    // Where more falls on a surface, as much less of it comes to the camera.
+    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override {
+        honest_->surface_light(ray, hit, light);
+        if (fault_ != Fault::irradiance) return;
+        const double more = 1 + 0.3 * std::sin(3 * hit.position.x);
+        for (double& value : light.transmittance) value /= more;
+        for (LampIrradiance& lamp : light.lamps)
+            for (double& value : lamp.irradiance) value *= more;
+    }
+
+  private:
+    std::unique_ptr<Integrator> honest_;
+    Fault fault_;
+};
+
+IntegratorFactory faulty_in_forward_scatter(FaultyInForwardScatter::Fault fault) {
+    return [=](const AssembledScene& scene,
+               const std::vector<std::shared_ptr<const LampLightField>>& light_fields) {
+        return std::make_unique<FaultyInForwardScatter>(make_integrator(scene, light_fields),
+                                                        fault);
+    };
+}
+
+// The components of the checks in `table` that failed.
+std::set<std::string> failed_components(const std::string& table) {
+    std::set<std::string> failed;
+    std::istringstream lines(table);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.find("FAILED") == std::string::npos || line.find(" nm ") == std::string::npos)
+            continue;
+        for (const char* name : {"direct", "forward", "blurred backscatter", "  backscatter"})
+            if (line.find(name + std::string("  ")) != std::string::npos) failed.insert(name);
+    }
+    return failed;
+}
+
 class Validate : public ::testing::Test {
   protected:
     Validate() {
         arguments_.quiet = true;
         arguments_.scene = std::string(UWVDB_SOURCE_DIR) + "/assets/scenes/uniform.yaml";
         arguments_.overrides = {"camera.resolution=[24,14]"};
+    }
+    void scatter_forward(const std::string& shape) {
+        arguments_.overrides.push_back(
+            "water.forward_scatter={K: 1, G: 0.02, B: 0.1, shape: " + shape + "}");
     }
     TempDir dir_;
     ValidateArguments arguments_;
@@ -85,13 +148,50 @@ TEST_F(Validate, FailsOnWrongDirectLight) {
     EXPECT_TRUE(named);
 }
 
+TEST_F(Validate, PassesWithForwardScatterOfBothShapes) {
+    arguments_.quiet = false;
+    for (const char* shape : {"gaussian", "exponential"}) {
+        scatter_forward(shape);
+        EXPECT_TRUE(run_validate(arguments_, false, out_)) << out_.str();
+    }
+    EXPECT_NE(out_.str().find("volume - direct sum"), std::string::npos);
+    EXPECT_NE(out_.str().find("blurred backscatter"), std::string::npos);
+}
+
+TEST_F(Validate, FailsOnWrongLayersOfWaterThatOnlyForwardScatterSees) {
+    scatter_forward("gaussian");
+    EXPECT_FALSE(run_validate(arguments_, true, out_,
+                              faulty_in_forward_scatter(FaultyInForwardScatter::Fault::layers)));
+    EXPECT_EQ(failed_components(out_.str()), std::set<std::string>{"blurred backscatter"})
+        << out_.str();
+    EXPECT_NE(out_.str().find("\033[31m"), std::string::npos);
+}
+
+TEST_F(Validate, FailsOnWrongIrradianceThatOnlyForwardScatterSees) {
+    scatter_forward("exponential");
+    EXPECT_FALSE(
+        run_validate(arguments_, false, out_,
+                     faulty_in_forward_scatter(FaultyInForwardScatter::Fault::irradiance)));
+    EXPECT_EQ(failed_components(out_.str()), std::set<std::string>{"forward"}) << out_.str();
+}
+
+// How much the water scatters cannot measure the blur in a VDB then.
+TEST_F(Validate, WorksWithForwardScatterInWaterThatDoesNotScatterInOneBand) {
+    scatter_forward("gaussian");
+    arguments_.overrides.emplace_back(
+        "water.scattering={b: [0.2, 0, 0.25], phase: {type: hg, g: 0.9}}");
+    EXPECT_TRUE(run_validate(arguments_, false, out_)) << out_.str();
+}
+
 TEST_F(Validate, WritesOnePageThatNeedsNothingElse) {
     arguments_.report = dir_ / "report.html";
+    scatter_forward("gaussian");
     EXPECT_TRUE(run_validate(arguments_, false, out_));
     std::ifstream in(arguments_.report);
     const std::string html{std::istreambuf_iterator<char>(in), {}};
     EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
     EXPECT_NE(html.find("<svg"), std::string::npos);
+    EXPECT_NE(html.find("Pictures with forward scatter"), std::string::npos);
     EXPECT_EQ(html.find("<script"), std::string::npos);
     EXPECT_EQ(html.find("src=\"http"), std::string::npos);
     EXPECT_EQ(html.find("href="), std::string::npos);

@@ -37,7 +37,7 @@ TEST(ShadowMap, LitIntervalsEndAtTheClosedFormShadowOfASphere) {
         const Point3 target{0.8 + 2 * offset(rng), 2 * offset(rng), 2.3 + offset(rng)};
         const Ray ray{origin, glm::normalize(target - origin)};
         const double end = std::min(6.0, sphere.hit_distance(ray));
-        map.lit_intervals(ray, end, lit);
+        map.lit_intervals(ray, {0, end}, lit);
         edges += static_cast<int>(lit.size());
         constexpr int k_samples = 4000;
         for (int i = 0; i < k_samples; ++i) {
@@ -58,7 +58,7 @@ TEST(ShadowMap, RayThroughTheLampIsHandled) {
     const SphereSurface sphere({0, 0, 5}, 1);
     const ShadowMap map(sphere, {0, 0, 1}, 64);
     std::vector<Interval> lit;
-    map.lit_intervals({{0, 0, 0}, {0, 0, 1}}, 4.0, lit);
+    map.lit_intervals({{0, 0, 0}, {0, 0, 1}}, {0, 4}, lit);
     ASSERT_EQ(lit.size(), 1u);
     EXPECT_EQ(lit[0].begin, 0);
     EXPECT_NEAR(lit[0].end, 4.0, 1e-9);
