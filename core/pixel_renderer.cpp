@@ -72,8 +72,42 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
       camera_from_world_(rays.world_from_camera().inverse()) {}
 
 void PixelRenderer::look(int x, int y, PixelView& view) const {
-    thread_local std::vector<double> distances;
-    distances.clear();
+    begin_view(x, y, view);
+    view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
+    finish_ground_truth(view);
+    add_samples(x, y, view);
+}
+
+void PixelRenderer::look(const PixelWindow& window, std::span<PixelView> views) const {
+    thread_local std::vector<Ray> rays;
+    thread_local std::vector<SurfaceHit> hits;
+    thread_local std::vector<char> found;
+    const auto width = static_cast<std::size_t>(window.width());
+    for (int y = window.y0; y < window.y1; ++y) {
+        const std::span row = views.subspan(static_cast<std::size_t>(y - window.y0) * width, width);
+        rays.clear();
+        for (std::size_t i = 0; i < width; ++i) {
+            begin_view(window.x0 + static_cast<int>(i), y, row[i]);
+            if (row[i].ray) rays.push_back(*row[i].ray);
+        }
+        hits.resize(rays.size());
+        found.resize(rays.size());
+        scene_.surfaces->closest_hits(rays, k_far, hits, found);
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < width; ++i) {
+            PixelView& view = row[i];
+            if (view.ray) {
+                view.has_hit = found[next] != 0;
+                if (view.has_hit) view.hit = hits[next];
+                ++next;
+            }
+            finish_ground_truth(view);
+            add_samples(window.x0 + static_cast<int>(i), y, view);
+        }
+    }
+}
+
+void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
     view.alpha = 0;
     view.ends.clear();
     view.shares.clear();
@@ -82,7 +116,11 @@ void PixelRenderer::look(int x, int y, PixelView& view) const {
     view.y = y + 0.5;
     view.has_hit = false;
     view.ray = rays_.water_ray(view.x, view.y);
-    if (view.ray) record_ground_truth(*view.ray, view);
+}
+
+void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
+    thread_local std::vector<double> distances;
+    distances.clear();
     for (int i = 0; i < samples_; ++i) {
         const ImageOffset offset = sample_offset(i, samples_);
         // A single sample's ray is that of the ground truth.
@@ -180,8 +218,7 @@ void PixelRenderer::add_water(std::span<const double> row, PixelResult& result) 
     std::copy(first.begin(), first.end(), result.backscatter_first.begin());
 }
 
-void PixelRenderer::record_ground_truth(const Ray& center, PixelView& view) const {
-    view.has_hit = scene_.surfaces->closest_hit(center, k_far, view.hit);
+void PixelRenderer::finish_ground_truth(PixelView& view) const {
     if (!view.has_hit) return;
     const Point3 in_camera = camera_from_world_ * view.hit.position;
     view.depth_z = in_camera.z;

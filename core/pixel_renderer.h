@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/film.h"
 #include "core/integrator.h"
 #include "core/lit_scene.h"
 #include "core/pixel_view.h"
@@ -55,6 +56,8 @@ class PixelRenderer {
 
     /// Traces the samples of pixel (x, y). Thread safe.
     void look(int x, int y, PixelView& view) const;
+    /// Likewise of all pixels of a window, row by row: faster than one after another.
+    void look(const PixelWindow& window, std::span<PixelView> views) const;
     /// What a pixel holds: `water` is its row of in-scatter (RayWater). `result` is reused storage.
     /// Thread safe.
     void light(const PixelView& view, std::span<const double> water, PixelResult& result) const;
@@ -64,7 +67,12 @@ class PixelRenderer {
   private:
     void add_surface(const PixelView::Sample& sample, PixelResult& result) const;
     void add_water(std::span<const double> row, PixelResult& result) const;
-    void record_ground_truth(const Ray& center, PixelView& view) const;
+    // Begins a view with the ray at the pixel's centre.
+    void begin_view(int x, int y, PixelView& view) const;
+    // Makes the ray's hit, if it has one, the view's ground truth.
+    void finish_ground_truth(PixelView& view) const;
+    // Traces the samples: all but a single one, which is the pixel's centre.
+    void add_samples(int x, int y, PixelView& view) const;
 
     const RaySource& rays_;
     LitScene scene_;

@@ -16,18 +16,6 @@ void ScatterNodes::clear() {
     position.clear();
 }
 
-void ScatterNodes::pad() {
-    constexpr std::size_t k_register = 8;
-    while (size() % k_register != 0) {
-        s.push_back(s.back());
-        weight.push_back(0);
-        radius.push_back(radius.back());
-        half_tangent.push_back(half_tangent.back());
-        end.push_back(end.back());
-        position.push_back(position.back());
-    }
-}
-
 void ScatterNodes::look_up(const ConcentrationProfile& profile) {
     const auto constituents = static_cast<std::size_t>(profile.constituent_count);
     concentration.resize(size() * constituents);

@@ -26,8 +26,6 @@ struct ScatterNodes {
 
     std::size_t size() const { return s.size(); }
     void clear();
-    /// Adds nodes of no weight up to a whole number of registers: loops then have no rest.
-    void pad();
     /// Fills column and concentration from the ray's profile and lamp_column.
     void look_up(const ConcentrationProfile& profile);
     /// Fills phase from half_tangent; `phases` is how many the table has.

@@ -14,8 +14,7 @@ void TileRenderer::begin(const PixelWindow& tile) {
     tile_ = tile;
     if (!lattice_) return;
     views_.resize(static_cast<std::size_t>(tile.width()) * static_cast<std::size_t>(tile.height()));
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x) renderer_.look(x, y, views_[index(x, y)]);
+    renderer_.look(tile, views_);
     lattice_->gather(tile, views_);
 }
 

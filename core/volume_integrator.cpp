@@ -138,7 +138,6 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<c
             const std::vector<double>& breaks = find_breaks(ray, j, passage, interval, ends, w);
             add_panels(ray, j, passage, ends, breaks, w.profile, w.nodes);
         }
-        w.nodes.pad();
         w.nodes.lamp_column.resize(w.nodes.size() *
                                    static_cast<std::size_t>(w.profile.constituent_count));
         light_fields_[j]->columns(w.nodes.position, w.nodes.lamp_column);

@@ -37,15 +37,19 @@ void ShadowMap::trace_face(int face_index) {
     const int padded = n + 2;  // one texel beyond each edge, so that neighbours always exist
     std::vector<float> depth(square(padded));
     parallel_for(static_cast<std::size_t>(padded), [&](std::size_t row) {
-        for (int column = 0; column < padded; ++column) {
-            const double u = (2.0 * column - 1.0) / n - 1.0;
-            const double v = (2.0 * static_cast<double>(row) - 1.0) / n - 1.0;
-            const Vector3 direction = face.direction(u, v);
-            const double length = glm::length(direction);
-            const double hit = surfaces_->hit_distance({lamp_, direction / length});
-            depth[row * static_cast<std::size_t>(padded) + static_cast<std::size_t>(column)] =
-                static_cast<float>(hit / length);
-        }
+        thread_local std::vector<Vector3> directions;
+        thread_local std::vector<double> hits;
+        directions.clear();
+        hits.resize(static_cast<std::size_t>(padded));
+        const double v = (2.0 * static_cast<double>(row) - 1.0) / n - 1.0;
+        for (int column = 0; column < padded; ++column)
+            directions.push_back(
+                glm::normalize(face.direction((2.0 * column - 1.0) / n - 1.0, v)));
+        surfaces_->hit_distances(lamp_, directions, hits);
+        // Depth is along the face's axis.
+        for (std::size_t column = 0; column < hits.size(); ++column)
+            depth[row * hits.size() + column] =
+                static_cast<float>(hits[column] * face.depth(directions[column]));
     });
     rays_traced_ += depth.size();
 
