@@ -71,7 +71,7 @@ TEST(ColumnMap, MatchesTheClosedFormAndErrorFallsWithTheSquareOfTheVoxel) {
     double peak = 0;
     for (int level = 0; level < 2; ++level) {
         const GaussianField field(center, 0.3, 2.0, level == 0 ? 0.08 : 0.04);
-        const ColumnMap map(field, lamp, 1 << 28);
+        const ColumnMap map(field, lamp, 2, 1 << 28);
         std::mt19937 rng(3);
         std::vector<Point3> points(4000);
         for (Point3& p : points)
@@ -95,7 +95,7 @@ TEST(ColumnMap, MatchesTheClosedFormAndErrorFallsWithTheSquareOfTheVoxel) {
 TEST(ColumnMap, LampInsideTheCloudSeesAllDirections) {
     const GaussianField field({0, 0, 0}, 0.5, 1.0, 0.05);
     const Point3 lamp{0.1, 0.2, -0.1};
-    const ColumnMap map(field, lamp, 1 << 28);
+    const ColumnMap map(field, lamp, 2, 1 << 28);
     std::mt19937 rng(5);
     for (int n = 0; n < 2000; ++n) {
         const Point3 x =
@@ -110,14 +110,14 @@ TEST(ColumnMap, LampInsideTheCloudSeesAllDirections) {
 TEST(ColumnMap, MemoryBudgetIsKept) {
     const GaussianField field({0, 0, 2}, 0.3, 1.0, 0.01);
     const std::size_t budget = 4 << 20;
-    const ColumnMap map(field, {0, 0, 0}, budget);
+    const ColumnMap map(field, {0, 0, 0}, 2, budget);
     EXPECT_GT(map.bytes(), budget / 8);
     EXPECT_LT(map.bytes(), 2 * budget);
 }
 
 TEST(ColumnMap, BreaksFallOnlyWhereTheLightHasMetParticles) {
     const GaussianField field({0, 0, 2}, 0.1, 1.0, 0.05);
-    const ColumnMap map(field, {0, 0, 0}, 1 << 26);
+    const ColumnMap map(field, {0, 0, 0}, 2, 1 << 26);
     std::vector<double> s;
     map.append_breaks({{-1, 0, 4}, {1, 0, 0}}, {0, 2}, s);  // across the cloud's shadow
     EXPECT_GT(s.size(), 10u);
