@@ -157,6 +157,8 @@ bool WaterLattice::confirmed(int i, int j, int spacing) {
     Corners from{};
     if (!corners(i, j, spacing, from)) return false;
     const int half = spacing / 2;
+    // What five nodes do not see of a large cell is seen of a small one.
+    const double allowed = tolerance_ * k_coarsest / spacing;
     for (int v = 0; v <= 2; ++v) {
         for (int u = 0; u <= 2; ++u) {
             if (u != 1 && v != 1) continue;
@@ -168,13 +170,14 @@ bool WaterLattice::confirmed(int i, int j, int spacing) {
                 seen != nullptr
                     ? Place{0.5 * u, 0.5 * v, seen->ends, seen->shares}
                     : Place{0.5 * u, 0.5 * v, std::span(&middle.depths[0].least, 1), k_whole};
-            if (!agree(from, place, middle)) return false;
+            if (!agree(from, place, middle, allowed)) return false;
         }
     }
     return true;
 }
 
-bool WaterLattice::agree(const Corners& from, const Place& place, const Node& node) {
+bool WaterLattice::agree(const Corners& from, const Place& place, const Node& node,
+                         double allowed) {
     std::fill(mixed_.begin(), mixed_.end(), 0.0);
     std::fill(own_.begin(), own_.end(), 0.0);
     for (std::size_t c = 0; c < from.size(); ++c) {
@@ -191,7 +194,7 @@ bool WaterLattice::agree(const Corners& from, const Place& place, const Node& no
             difference += mixed_[k] - own_[k];
             light += own_[k];
         }
-        if (!(std::abs(difference) <= tolerance_ * std::max(light, floor_[b]))) return false;
+        if (!(std::abs(difference) <= allowed * std::max(light, floor_[b]))) return false;
     }
     return true;
 }

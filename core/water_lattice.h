@@ -22,7 +22,8 @@ class WaterLattice {
     static constexpr int k_tile = 32;
 
     /// `tolerance`: largest relative difference allowed between the mixture and what a node says
-    /// halfway between its neighbours; what is mixed from that node too is closer.
+    /// halfway between its neighbours, of the coarsest lattice; twice that of the next finer one,
+    /// and so on. What is mixed from the halfway nodes too is closer.
     /// All references outlive this.
     WaterLattice(const RaySource& rays, const RayWater& water, double tolerance);
 
@@ -69,7 +70,7 @@ class WaterLattice {
     bool corners(int i, int j, int spacing, Corners& found);
     // Whether the cell's corners say the same as the nodes halfway between them.
     bool confirmed(int i, int j, int spacing);
-    bool agree(const Corners& from, const Place& place, const Node& node);
+    bool agree(const Corners& from, const Place& place, const Node& node, double allowed);
     void collect_ends();
     void fill_cell(int i, int j, int spacing);
     void fill_pixel(int x, int y, int spacing);

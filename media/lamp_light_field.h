@@ -13,7 +13,7 @@ namespace uw {
 struct LightFieldOptions {
     int shadow_resolution = 512;               // texels along an edge of a cube face
     double columns_per_voxel = 2;              // texels and steps of columns to a voxel's edge
-    std::size_t column_budget = 256ull << 20;  // bytes of columns, all lamps of a scene together
+    std::size_t column_budget = 80ull << 20;  // bytes of columns, all lamps of a scene together
 };
 
 /// One lamp's light splatted into the scene (docs/design.md): a shadow map and a column map, which

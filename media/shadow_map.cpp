@@ -43,8 +43,7 @@ void ShadowMap::trace_face(int face_index) {
         hits.resize(static_cast<std::size_t>(padded));
         const double v = (2.0 * static_cast<double>(row) - 1.0) / n - 1.0;
         for (int column = 0; column < padded; ++column)
-            directions.push_back(
-                glm::normalize(face.direction((2.0 * column - 1.0) / n - 1.0, v)));
+            directions.push_back(glm::normalize(face.direction((2.0 * column - 1.0) / n - 1.0, v)));
         surfaces_->hit_distances(lamp_, directions, hits);
         // Depth is along the face's axis.
         for (std::size_t column = 0; column < hits.size(); ++column)
