@@ -21,6 +21,12 @@ std::string name_of(RenderDesc::Integrator integrator) {
             ->first);
 }
 
+std::string name_of(RenderDesc::Quality quality) {
+    return std::string(std::ranges::find(k_quality_names, quality,
+                                         &std::pair<std::string_view, RenderDesc::Quality>::second)
+                           ->first);
+}
+
 std::string band_list(std::span<const double> values) {
     std::string text;
     for (const double value : values)
@@ -52,13 +58,11 @@ void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
 
 ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame) {
     const std::string quantity = SensorModel(scene).description();
-    const bool draft = scene.render.quality == RenderDesc::Quality::draft;
-    const char* const quality = draft ? "draft" : "final";
     ImageMetadata m{{"software", "uwvdb " + program_version()},
                     {"uwvdb/scene", scene.file.filename().string()},
                     {"uwvdb/scene_hash", scene.hash},
                     {"uwvdb/integrator", name_of(scene.render.integrator)},
-                    {"uwvdb/quality", std::string(quality)},
+                    {"uwvdb/quality", name_of(scene.render.quality)},
                     {"uwvdb/samples", static_cast<double>(scene.render.samples)},
                     {"uwvdb/seed", std::string("none: deterministic")},
                     {"uwvdb/rgb_quantity", quantity},

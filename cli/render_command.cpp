@@ -31,9 +31,10 @@ RenderDesc::Integrator integrator_named(const std::string& name) {
 }
 
 RenderDesc::Quality quality_named(const std::string& name) {
-    if (name == "final") return RenderDesc::Quality::final;
-    if (name == "draft") return RenderDesc::Quality::draft;
-    throw UsageError(fmt::format("--quality: unknown '{}'; use draft or final", printable(name)));
+    for (const auto& [known, quality] : k_quality_names)
+        if (name == known) return quality;
+    throw UsageError(
+        fmt::format("--quality: unknown '{}'; use draft, final or exact", printable(name)));
 }
 
 void apply_arguments(const RenderArguments& a, SceneDesc& desc) {

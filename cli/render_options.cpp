@@ -80,7 +80,8 @@ Command add_render_command(CLI::App& app) {
         ->type_name("N");
     render
         .add_option("--quality", p->arguments.quality,
-                    "draft: within 3 %, one sample, for looking; or final")
+                    "draft: within 3 %, one sample, for looking; final; or exact: "
+                    "every pixel's water by itself")
         ->type_name("NAME");
     add_threads_option(render, p->arguments.threads);
     render

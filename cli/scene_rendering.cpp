@@ -108,14 +108,15 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
 
 LightFieldOptions light_field_options(RenderDesc::Quality quality) {
     LightFieldOptions options;
-    if (quality == RenderDesc::Quality::final) return options;
+    if (quality != RenderDesc::Quality::draft) return options;
     options.shadow_resolution = 128;
     options.columns_per_voxel = 0.75;
     return options;
 }
 
 double water_tolerance(const RenderDesc& render) {
-    if (render.integrator != RenderDesc::Integrator::volume) return 0;
+    const bool exact = render.quality == RenderDesc::Quality::exact;
+    if (exact || render.integrator != RenderDesc::Integrator::volume) return 0;
     return render.quality == RenderDesc::Quality::draft ? k_draft_tolerance : k_water_tolerance;
 }
 

@@ -60,6 +60,7 @@ SceneDesc small_image(const SceneDesc& desc, int longest_side) {
     const int height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
     resize_image(camera, width, height);
     small.render.integrator = RenderDesc::Integrator::volume;
+    small.render.quality = RenderDesc::Quality::exact;
     small.render.samples = 1;
     // What is compared is the radiance in the water.
     small.render.output = RenderDesc::Output::radiance;

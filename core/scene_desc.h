@@ -182,10 +182,17 @@ struct RenderDesc {
     Output output = Output::radiance;  // all but radiance need camera.lens
     SourceLocation output_where;
     int samples = 4;
-    /// A draft is for looking: within 3 % of the final image, at a tenth of its cost.
-    enum class Quality { draft, final };
+    /// A draft is for looking: within 3 % of the final image, at a fraction of its cost. Exact is
+    /// for comparison: every pixel's water has a ray of its own (WaterLattice).
+    enum class Quality { draft, final, exact };
     Quality quality = Quality::final;
 };
+
+/// The qualities by the names that users write.
+inline constexpr std::array<std::pair<std::string_view, RenderDesc::Quality>, 3> k_quality_names{
+    {{"draft", RenderDesc::Quality::draft},
+     {"final", RenderDesc::Quality::final},
+     {"exact", RenderDesc::Quality::exact}}};
 
 /// The integrators by the names that users write.
 inline constexpr std::array<std::pair<std::string_view, RenderDesc::Integrator>, 3>

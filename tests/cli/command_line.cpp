@@ -59,6 +59,7 @@ TEST_F(CommandLine, ValuesThatMakeNoSense) {
     refused({"--size", "640x360x2"}, "expected WxH");
     refused({"--size", "0x360"}, "1 to 32768 pixels");
     refused({"--size", "99999999999x1"}, "expected WxH");
+    refused({"--quality", "high"}, "--quality: unknown 'high'; use draft, final or exact");
     refused({"--crop", "1,2,3"}, "expected x0,y0,x1,y1, found '1,2,3'");
     refused({"--crop", "0,0,34,19"}, "not a window of the image of 33 x 19 pixels");
     refused({"--crop", "5,5,5,9"}, "not a window");

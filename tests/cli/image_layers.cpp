@@ -113,9 +113,33 @@ TEST_F(ImageLayers, CropHoldsThePixelsOfTheWholeToTheBit) {
                 ASSERT_EQ(part.at(name, x, y), whole.at(name, x, y)) << name;
 }
 
+TEST_F(ImageLayers, DraftsAreWithinThreePerCentAndFinalImagesCloseToExact) {
+    const std::vector<std::string> size{"--samples", "1", "--size", "132x76", "--quality"};
+    const auto render_as = [&](const char* quality) {
+        std::vector<std::string> options = size;
+        options.emplace_back(quality);
+        return render(options);
+    };
+    const ImageFile exact = render_as("exact");
+    // Of the mean, RMS: what `--help` says of drafts; what the lattice of rays allows (design).
+    for (const auto& [quality, tolerance] : {std::pair("draft", 0.03), std::pair("final", 1e-3)}) {
+        const ImageFile image = render_as(quality);
+        double squares = 0, mean = 0;
+        for (std::size_t i = 0; i < exact.channels.at("G").size(); ++i) {
+            const auto truth = static_cast<double>(exact.channels.at("G")[i]);
+            const double difference = static_cast<double>(image.channels.at("G")[i]) - truth;
+            squares += difference * difference;
+            mean += truth;
+        }
+        const auto count = static_cast<double>(exact.channels.at("G").size());
+        EXPECT_LT(std::sqrt(squares / count), tolerance * mean / count) << quality;
+        EXPECT_EQ(image.channels.at("depth.Z"), exact.channels.at("depth.Z"));
+    }
+}
+
 TEST_F(ImageLayers, SizeScalesTheIntrinsics) {
-    const ImageFile small = render({"--samples", "1"});
-    const ImageFile large = render({"--samples", "1", "--size", "99x57"});
+    const ImageFile small = render({"--samples", "1", "--quality", "exact"});
+    const ImageFile large = render({"--samples", "1", "--quality", "exact", "--size", "99x57"});
     // Pixel (x, y) of the small image has its centre at that of (3x + 1, 3y + 1) of the large one:
     // the same rays to rounding, which places shadow edges to a part in a thousand.
     for (const char* name : {"R", "B", "direct.G", "backscatter.G", "depth.Z", "position.X"})
