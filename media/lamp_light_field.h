@@ -11,8 +11,8 @@ namespace uw {
 
 /// How finely lamps are splatted.
 struct LightFieldOptions {
-    int shadow_resolution = 512;               // texels along an edge of a cube face
-    double columns_per_voxel = 2;              // texels and steps of columns to a voxel's edge
+    int shadow_resolution = 512;              // texels along an edge of a cube face
+    double columns_per_voxel = 2;             // texels and steps of columns to a voxel's edge
     std::size_t column_budget = 80ull << 20;  // bytes of columns, all lamps of a scene together
 };
 
