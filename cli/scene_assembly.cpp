@@ -43,6 +43,7 @@ void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
     const ForwardScatterDesc& desc = scene.water.forward_scatter;
     if (desc.K == 0) return;
     std::vector<double> attenuation;
+    attenuation.reserve(medium.wavelengths_nm.size());
     for (int band = 0; band < medium.band_count(); ++band)
         attenuation.push_back(medium.uniform.attenuation(band));
     check_forward_scatter(desc, attenuation, desc.where);
