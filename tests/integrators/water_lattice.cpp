@@ -11,7 +11,8 @@
 namespace uw::test {
 namespace {
 
-// What WaterLattice allows halfway between the nodes that it mixes.
+// What WaterLattice allows halfway between the nodes of its coarsest cells; four times that in the
+// finest.
 constexpr double k_tolerance = 1e-3;
 
 /// The backscatter of a scene's image, mixed and by itself.
@@ -78,10 +79,10 @@ void expect_like_exact(const MixedImage& image) {
         // Surfaces are every pixel's own in both.
         for (std::size_t b = 0; b < 3; ++b) ASSERT_EQ(mixed[i].direct[b], exact[i].direct[b]);
     }
-    // A smooth function is four times nearer than the tolerance; past the kink at a shadow's edge
-    // that runs between nodes it may be twice as far off as halfway, where it was confirmed.
-    EXPECT_LT(worst, 2 * k_tolerance);
-    EXPECT_LT(std::sqrt(squares / static_cast<double>(exact.size())) / mean, 0.1 * k_tolerance);
+    // A smooth function is four times nearer than what was confirmed, four tolerances at most; past
+    // the kink at a shadow's edge that runs between nodes it may be twice as far off as halfway.
+    EXPECT_LT(worst, 8 * k_tolerance);
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(exact.size())) / mean, k_tolerance);
 }
 
 TEST(WaterLattice, ShadowsAndSurfacesAreLikeEveryPixelByItself) {
