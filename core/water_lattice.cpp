@@ -16,6 +16,12 @@ double distance_reach(double tolerance) {
 // Light darker than this share of the tile's mean is compared with that.
 constexpr double k_dark = 0.02;
 
+// Place of (x, y) in rows of `width`.
+std::size_t place_of(int x, int y, int width) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+}
+
 }  // namespace
 
 /// Where in a cell something is mixed, and up to which distances.
@@ -36,7 +42,7 @@ WaterLattice::WaterLattice(const RaySource& rays, const RayWater& water, double 
 
 const PixelView* WaterLattice::view(int x, int y) const {
     if (x < 0 || y < 0 || x >= tile_.width() || y >= tile_.height()) return nullptr;
-    const PixelView& view = views_[static_cast<std::size_t>(y * tile_.width() + x)];
+    const PixelView& view = views_[place_of(x, y, tile_.width())];
     return view.ends.empty() ? nullptr : &view;
 }
 
@@ -63,7 +69,7 @@ void WaterLattice::collect_ends() {
 }
 
 const WaterLattice::Node& WaterLattice::node(int i, int j) {
-    Node& node = nodes_[static_cast<std::size_t>(j / k_finest * k_side + i / k_finest)];
+    Node& node = nodes_[place_of(i / k_finest, j / k_finest, k_side)];
     if (node.state == Node::State::unknown) {
         find_depths(i, j, node);
         const bool ready = node.reach > 0 && gather_node(i, j, node);
@@ -82,7 +88,7 @@ void WaterLattice::find_depths(int i, int j, Node& node) const {
         const int x0 = std::max(0, i - reach), x1 = std::min(i + reach, tile_.width() - 1);
         const int y0 = std::max(0, j - reach), y1 = std::min(j + reach, tile_.height() - 1);
         for (int y = y0; y <= y1 && few; ++y) {
-            const std::size_t* first = &first_ends_[static_cast<std::size_t>(y * tile_.width())];
+            const std::size_t* first = &first_ends_[place_of(0, y, tile_.width())];
             for (std::size_t end = first[x0]; end < first[x1 + 1] && few; ++end)
                 few = include(ends_[end], node);
         }
@@ -217,7 +223,7 @@ void WaterLattice::fill_cell(int i, int j, int spacing) {
 void WaterLattice::fill_pixel(int x, int y, int spacing) {
     const PixelView* seen = view(x, y);
     if (seen == nullptr) return;
-    const auto pixel = static_cast<std::size_t>(y * tile_.width() + x);
+    const std::size_t pixel = place_of(x, y, tile_.width());
     const std::span row = std::span(rows_).subspan(pixel * row_size_, row_size_);
     Corners from{};
     if (spacing == 0 || !corners(x - x % spacing, y - y % spacing, spacing, from)) {

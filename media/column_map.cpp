@@ -145,7 +145,9 @@ void ColumnMap::append_samples(const ConcentrationProfile& profile, double step,
 void ColumnMap::add_texel(const Face& face, int u, int v, double distance, double weight,
                           std::span<double> column) const {
     if (u < 0 || v < 0 || u >= face.width || v >= face.height) return;
-    const TexelRay& ray = face.rays[static_cast<std::size_t>(v * face.width + u)];
+    const TexelRay& ray =
+        face.rays[static_cast<std::size_t>(v) * static_cast<std::size_t>(face.width) +
+                  static_cast<std::size_t>(u)];
     const double at = (distance - static_cast<double>(ray.begin)) / step_;
     if (ray.count == 0 || at <= 0) return;
     const auto last = static_cast<double>(ray.count - 1);
@@ -188,7 +190,9 @@ bool ColumnMap::any_particles(const Face& face, double u, double v) const {
     for (int j = v0; j <= v0 + 1; ++j) {
         for (int i = u0; i <= u0 + 1; ++i) {
             if (i >= 0 && j >= 0 && i < face.width && j < face.height &&
-                face.rays[static_cast<std::size_t>(j * face.width + i)].count > 0)
+                face.rays[static_cast<std::size_t>(j) * static_cast<std::size_t>(face.width) +
+                          static_cast<std::size_t>(i)]
+                        .count > 0)
                 return true;
         }
     }

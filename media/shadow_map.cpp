@@ -23,6 +23,12 @@ std::size_t square(int n) {
     return static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
 }
 
+// Place of a value in rows of `width`.
+std::size_t place_of(int row, int column, int width) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(column);
+}
+
 }  // namespace
 
 ShadowMap::ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution)
@@ -63,9 +69,9 @@ ShadowMap::Level ShadowMap::cell_ranges(const std::vector<float>& padded_depth) 
     Level level{n, std::vector<DepthRange>(square(n))};
     for (int row = 0; row < n; ++row) {
         for (int column = 0; column < n; ++column) {
-            const float* above = &padded_depth[static_cast<std::size_t>(row * (n + 1) + column)];
+            const float* above = &padded_depth[place_of(row, column, n + 1)];
             const float* below = above + n + 1;
-            level.texels[static_cast<std::size_t>(row * n + column)] = {
+            level.texels[place_of(row, column, n)] = {
                 std::min({above[0], above[1], below[0], below[1]}),
                 std::max({above[0], above[1], below[0], below[1]})};
         }
@@ -78,9 +84,8 @@ ShadowMap::Level ShadowMap::halved(const Level& fine) {
     Level coarse{size, std::vector<DepthRange>(square(size), DepthRange{k_nothing, 0})};
     for (int row = 0; row < fine.size; ++row) {
         for (int column = 0; column < fine.size; ++column) {
-            const DepthRange& in = fine.texels[static_cast<std::size_t>(row * fine.size + column)];
-            DepthRange& out =
-                coarse.texels[static_cast<std::size_t>((row / 2) * size + column / 2)];
+            const DepthRange& in = fine.texels[place_of(row, column, fine.size)];
+            DepthRange& out = coarse.texels[place_of(row / 2, column / 2, size)];
             out.nearest = std::min(out.nearest, in.nearest);
             out.farthest = std::max(out.farthest, in.farthest);
         }
@@ -155,7 +160,7 @@ class ShadowMap::Search {
     // Nearest and farthest surface over the texels that the stretch touches.
     DepthRange bound(const MapPoint& a, const MapPoint& b) const {
         const auto texel = [&](double t) {  // the cell between the samples around t
-            return std::clamp(static_cast<int>(t + 0.5), 0, map_.resolution_);
+            return std::clamp(static_cast<int>(std::floor(t + 0.5)), 0, map_.resolution_);
         };
         int u0 = texel(std::min(a.u, b.u)), u1 = texel(std::max(a.u, b.u));
         int v0 = texel(std::min(a.v, b.v)), v1 = texel(std::max(a.v, b.v));
@@ -168,7 +173,7 @@ class ShadowMap::Search {
         DepthRange range{k_nothing, 0};
         for (int v = v0; v <= v1; ++v) {
             for (int u = u0; u <= u1; ++u) {
-                const DepthRange& t = texels.texels[static_cast<std::size_t>(v * texels.size + u)];
+                const DepthRange& t = texels.texels[place_of(v, u, texels.size)];
                 range.nearest = std::min(range.nearest, t.nearest);
                 range.farthest = std::max(range.farthest, t.farthest);
             }
