@@ -85,7 +85,9 @@ void WaterLattice::find_depths(int i, int j, Node& node) const {
     for (; reach >= k_finest; reach /= 2) {
         node.depth_count = 0;
         bool few = true;
-        const int x0 = std::max(0, i - reach), x1 = std::min(i + reach, tile_.width() - 1);
+        // A node beyond the image's edge may reach none of its pixels.
+        const int x0 = std::clamp(i - reach, 0, tile_.width());
+        const int x1 = std::min(i + reach, tile_.width() - 1);
         const int y0 = std::max(0, j - reach), y1 = std::min(j + reach, tile_.height() - 1);
         for (int y = y0; y <= y1 && few; ++y) {
             const std::size_t* first = &first_ends_[place_of(0, y, tile_.width())];
@@ -170,13 +172,14 @@ bool WaterLattice::confirmed(int i, int j, int spacing) {
             if (u != 1 && v != 1) continue;
             const Node& middle = node(i + u * half, j + v * half);
             if (middle.state != Node::State::ready || middle.reach < half) return false;
-            const PixelView* seen = view(i + u * half, j + v * half);
+            // Up to all that is seen around it, not only what the node itself looks at.
             constexpr std::array<double, 1> k_whole{1.0};
-            const Place place =
-                seen != nullptr
-                    ? Place{0.5 * u, 0.5 * v, seen->ends, seen->shares}
-                    : Place{0.5 * u, 0.5 * v, std::span(&middle.depths[0].least, 1), k_whole};
-            if (!agree(from, place, middle, allowed)) return false;
+            for (std::size_t d = 0; d < middle.depth_count; ++d) {
+                for (const double& end : {middle.depths[d].least, middle.depths[d].greatest}) {
+                    const Place place{0.5 * u, 0.5 * v, std::span(&end, 1), k_whole};
+                    if (!agree(from, place, middle, allowed)) return false;
+                }
+            }
         }
     }
     return true;
