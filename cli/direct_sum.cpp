@@ -116,7 +116,7 @@ class DirectSum {
             const std::optional<Ray> ray = trial_.scene.camera->water_ray(x + 0.5, y + 0.5);
             if (!ray) return;
             seen.in_water[i] = 1;
-            SurfaceSample sample{*ray, {}};
+            SurfaceSample sample{*ray, {}, x + 0.5, y + 0.5};
             const SurfaceHit& hit = sample.hit;
             if (!trial_.scene.surfaces->closest_hit(*ray, k_far, sample.hit)) return;
             SurfaceLight light;

@@ -20,10 +20,10 @@ void LightSplatter::drop_outdated(const AssembledScene& scene, const LightFieldO
     options_ = share;
 }
 
-void LightSplatter::complete(Maps& maps, const AssembledScene& scene) {
+void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam) {
     if (!maps.shadows) {
-        maps.shadows =
-            std::make_shared<ShadowMap>(*scene.surfaces, maps.lamp, options_.shadow_resolution);
+        maps.shadows = std::make_shared<ShadowMap>(*scene.surfaces, maps.lamp,
+                                                   options_.shadow_resolution, beam);
         ++counts_.shadow_maps;
         counts_.rays += maps.shadows->rays_traced();
     }
@@ -44,16 +44,18 @@ std::vector<std::shared_ptr<const LampLightField>> LightSplatter::splat(
     std::vector<Maps> before = std::exchange(maps_, {});
     std::vector<std::shared_ptr<const LampLightField>> fields;
     for (const Lamp& lamp : scene.lamps) {
-        const auto stands_there = [&](const Maps& maps) { return maps.lamp == lamp.position(); };
+        const DirectionCone beam = lamp.cone();
         Maps maps{lamp.position(), nullptr, nullptr};
         // Lamps that stand in one place share their maps.
         for (const std::vector<Maps>* known : {&maps_, &before}) {
-            const auto found = std::ranges::find_if(*known, stands_there);
-            if (found == known->end()) continue;
-            maps = *found;
-            break;
+            for (const Maps& other : *known) {
+                if (other.lamp != maps.lamp) continue;
+                if (!maps.columns) maps.columns = other.columns;
+                if (!maps.shadows && other.shadows && other.shadows->beam().includes(beam))
+                    maps.shadows = other.shadows;
+            }
         }
-        complete(maps, scene);
+        complete(maps, scene, beam);
         fields.push_back(std::make_shared<LampLightField>(maps.shadows, maps.columns));
         maps_.push_back(std::move(maps));
         progress(static_cast<double>(fields.size()) / static_cast<double>(scene.lamps.size()));

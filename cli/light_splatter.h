@@ -19,8 +19,9 @@ struct SplatCounts {
 /// Splats the light of a scene's lamps and keeps it for the next render. A shadow map hangs on the
 /// lamp's position, the surfaces and the map's resolution; a column map on the lamp's position, the
 /// concentration field, the map's fineness and the memory given to it. Where these are the same as
-/// at the splat before it is taken over: another camera, intensity, colour, beam or direction of a
-/// lamp needs no splat, a lamp that moved one, and another frame of a volume new columns only.
+/// at the splat before it is taken over: another camera, intensity or colour of a lamp needs no
+/// splat, a lamp that moved one, another frame of a volume new columns only, and a lamp that turned
+/// or widened its beam new shadows only, of its beam.
 class LightSplatter {
   public:
     /// The light of every lamp of `scene`, to the bit what splat_lamps makes. Surfaces and field
@@ -41,7 +42,7 @@ class LightSplatter {
     };
 
     void drop_outdated(const AssembledScene& scene, const LightFieldOptions& share);
-    void complete(Maps& maps, const AssembledScene& scene);
+    void complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam);
 
     std::shared_ptr<const Surfaces> surfaces_;
     std::weak_ptr<const ConcentrationField> field_;

@@ -16,6 +16,12 @@ namespace uw {
 
 namespace {
 
+// Of what a path through a volume to a surface lets through: far below what an eye or a camera of
+// 12 bits tells apart.
+constexpr double k_column_tolerance = 1e-3;
+constexpr double k_draft_column_tolerance = 0.01;
+constexpr int k_draft_voxels_per_panel = 6;
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
@@ -161,7 +167,10 @@ static std::unique_ptr<Integrator> make_unweighted_integrator(
         return std::make_unique<PlanesIntegrator>(scene.lit(), scene.desc.camera.world_from_camera,
                                                   scene.slabs);
     VolumeQuadrature quadrature;
-    if (scene.desc.render.quality == RenderDesc::Quality::draft) quadrature.voxels_per_panel = 6;
+    if (scene.desc.render.quality == RenderDesc::Quality::final)
+        quadrature.column_tolerance = k_column_tolerance;
+    if (scene.desc.render.quality == RenderDesc::Quality::draft)
+        quadrature = {k_draft_voxels_per_panel, k_draft_column_tolerance};
     return std::make_unique<VolumeIntegrator>(
         scene.lit(),
         std::vector<std::shared_ptr<const LightField>>(light_fields.begin(), light_fields.end()),

@@ -19,7 +19,7 @@ constexpr double k_offset = 0.3;        // m
 constexpr double k_offset_depth = 0.6;  // optical depth
 // How far water mixed from pixels around may be from its own (WaterLattice), relative, where the
 // lattice is confirmed; what is shown is mixed from nearer ones: a quarter of it.
-constexpr double k_water_tolerance = 1e-3;
+constexpr double k_water_tolerance = 2e-3;
 constexpr double k_draft_tolerance = 0.05;
 
 std::vector<double> growing_layers(double near, double far, double attenuation) {

@@ -215,7 +215,8 @@ std::vector<char> smooth_pixels(const TrialScene& trial) {
         std::vector<Interval> lit;
         std::vector<double> edges;
         for (std::size_t j = 0; j < trial.scene.lamps.size(); ++j) {
-            trial.light_fields[j]->lit_intervals(*ray, {0, end}, lit);
+            const Interval in_beam = trial.scene.lamps[j].beam(*ray, {0, end});
+            trial.light_fields[j]->lit_intervals(*ray, in_beam, lit);
             edges.clear();
             for (const Interval& interval : lit) {
                 edges.push_back(interval.begin);

@@ -130,7 +130,7 @@ void ForwardPass::keep_surfaces(std::size_t i, const PixelView& view, const Pixe
 }
 
 void ForwardPass::add_surface(const SurfaceSample& sample, SurfaceSums& sums) const {
-    const auto& [ray, hit] = sample;
+    const auto& [ray, hit, x, y] = sample;
     thread_local SurfaceLight light;
     thread_local std::vector<double> column;
     integrator_.surface_light(sample, light);

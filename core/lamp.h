@@ -13,6 +13,20 @@ namespace uw {
 /// would grow without bound [m].
 inline constexpr double k_lamp_radius = 1e-3;
 
+/// The directions within an angle of an axis.
+struct DirectionCone {
+    Vector3 axis{0, 0, 1};  // unit
+    double cosine = -1;     // of the angle; -1: all directions
+
+    bool has_all() const { return cosine <= -1; }
+    bool has(const Vector3& direction) const {
+        return has_all() || glm::dot(direction, axis) >= cosine * glm::length(direction);
+    }
+    /// All directions within `angle` [rad] of this cone's.
+    DirectionCone widened(double angle) const;
+    bool includes(const DirectionCone& other) const;
+};
+
 /// A point-like lamp in the world: radiant intensity I(w, lambda) = intensity * profile(w) [W/sr].
 class Lamp {
   public:
@@ -31,6 +45,9 @@ class Lamp {
     bool has_even_core() const { return profile_.type != LampProfileDesc::Type::cosine; }
     /// Power of the lamp for 1 W/sr on its axis: its relative intensity over the sphere [sr].
     double beam_solid_angle() const;
+
+    /// Directions beyond which the lamp shines nothing.
+    DirectionCone cone() const { return {axis_, cos_dark_}; }
 
     /// The part of a stretch of `ray` outside which the lamp shines nothing; of length 0 where it
     /// misses the beam. What is left may have dark parts.

@@ -13,7 +13,8 @@ class LightField {
   public:
     virtual ~LightField() = default;
 
-    /// The parts of a stretch of `ray` that the lamp sees, ascending and disjoint.
+    /// The parts of a stretch of `ray` that the lamp sees, ascending and disjoint. Precondition:
+    /// the stretch lies in the lamp's beam (Lamp::beam); elsewhere nobody has looked.
     virtual void lit_intervals(const Ray& ray, const Interval& stretch,
                                std::vector<Interval>& lit) const = 0;
 

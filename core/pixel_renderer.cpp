@@ -135,6 +135,8 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
         view.alpha += 1.0 / samples_;
         SurfaceSample& sample = view.samples.emplace_back();
         sample.ray = *ray;
+        sample.x = samples_ == 1 ? view.x : x + offset.x;
+        sample.y = samples_ == 1 ? view.y : y + offset.y;
         if (samples_ == 1) sample.hit = view.hit;
         if (!(samples_ == 1 ? view.has_hit
                             : scene_.surfaces->closest_hit(*ray, k_far, sample.hit))) {

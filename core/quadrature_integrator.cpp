@@ -137,7 +137,7 @@ void QuadratureIntegrator::surface_lights(std::span<const SurfaceSample* const> 
     const Spectrum& c = attenuation_.uniform;
     light.reset(samples.size(), *scene_.lamps, bands);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const auto& [ray, hit] = *samples[i];
+        const auto& [ray, hit, x, y] = *samples[i];
         for (std::size_t b = 0; b < bands; ++b)
             light.to_camera(i)[b] = std::exp(-c[b] * distance(ray.origin, hit.position));
         for (std::size_t j = 0; j < scene_.lamps->size(); ++j) {

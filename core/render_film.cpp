@@ -27,12 +27,15 @@ class LayerWriter {
     LayerWriter(const LayerPlan& plan, int band_count, std::span<float> channels)
         : plan_(plan), bands_(static_cast<std::size_t>(band_count)), channels_(channels) {}
 
-    void bands(int first_channel, const Spectrum& values) {
+    void bands(int first_channel, const Spectrum& values, double factor = 1) {
         if (first_channel < 0) return;
         for (std::size_t b = 0; b < bands_; ++b)
-            channels_[static_cast<std::size_t>(first_channel) + b] = static_cast<float>(values[b]);
+            channels_[static_cast<std::size_t>(first_channel) + b] =
+                static_cast<float>(factor * values[b]);
     }
-    void bands(Layer layer, const Spectrum& values) { bands(plan_.first_channel(layer), values); }
+    void bands(Layer layer, const Spectrum& values, double factor = 1) {
+        bands(plan_.first_channel(layer), values, factor);
+    }
     void scalar(Layer layer, double value) {
         if (plan_.has(layer))
             channels_[static_cast<std::size_t>(plan_.first_channel(layer))] =
@@ -52,38 +55,32 @@ class LayerWriter {
     std::span<float> channels_;
 };
 
-Spectrum scaled(Spectrum radiance, double factor) {
-    for (double& value : radiance) value *= factor;
-    return radiance;
-}
-
 }  // namespace
 
 void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandColour& colour,
                  int band_count, std::span<float> channels) {
-    const Spectrum direct = scaled(result.direct, result.pixel_factor);
-    const Spectrum backscatter = scaled(result.backscatter, result.pixel_factor);
+    const double factor = result.pixel_factor;
     // Components are rounded to float before they are added: their sum is the total to the bit.
     Spectrum total{};
     for (std::size_t b = 0; b < static_cast<std::size_t>(band_count); ++b)
-        total[b] =
-            static_cast<double>(static_cast<float>(direct[b]) + static_cast<float>(backscatter[b]));
+        total[b] = static_cast<double>(static_cast<float>(factor * result.direct[b]) +
+                                       static_cast<float>(factor * result.backscatter[b]));
     const LinearRgb rgb = colour(total);
     for (std::size_t i = 0; i < 3; ++i) channels[i] = static_cast<float>(rgb[i]);
     channels[k_alpha] = static_cast<float>(result.alpha);
 
     LayerWriter out(plan, band_count, channels);
     out.bands(Layer::total, total);
-    out.bands(Layer::direct, direct);
-    out.bands(Layer::backscatter, backscatter);
-    out.bands(Layer::backscatter_first, scaled(result.backscatter_first, result.pixel_factor));
+    out.bands(Layer::direct, result.direct, factor);
+    out.bands(Layer::backscatter, result.backscatter, factor);
+    out.bands(Layer::backscatter_first, result.backscatter_first, factor);
     out.bands(Layer::irradiance, result.irradiance);
     out.bands(Layer::exitance, result.exitance);
     out.scalar(Layer::lit, result.lit);
-    out.bands(Layer::clean, scaled(result.clean, result.pixel_factor));
+    out.bands(Layer::clean, result.clean, factor);
     out.bands(Layer::transmittance, result.transmittance);
     for (std::size_t j = 0; j < result.lamps.size(); ++j)
-        out.bands(plan.first_channel_of_lamp(j), scaled(result.lamps[j], result.pixel_factor));
+        out.bands(plan.first_channel_of_lamp(j), result.lamps[j], factor);
     if (!result.has_hit) return;
     out.bands(Layer::albedo, result.hit.reflectance);
     out.scalar(Layer::depth, result.depth_z);

@@ -14,6 +14,7 @@ namespace uw {
 struct SurfaceSample {
     Ray ray;
     SurfaceHit hit;
+    double x = 0, y = 0;  // image position of the ray [pixels]
 };
 
 /// Light of every lamp on surface points, and what the water leaves of it on its ways.

@@ -41,33 +41,34 @@ struct Facing {
 }  // namespace
 
 void light_surfaces(const LitScene& scene, const AttenuationTable& attenuation,
-                    std::span<const SurfaceSample* const> samples, SurfaceLight& light) {
+                    std::span<const SurfaceSample* const> samples, SurfaceLight& light,
+                    const ColumnMixing& mixing) {
     const auto bands = static_cast<std::size_t>(attenuation.band_count);
     thread_local std::vector<double> column;
     thread_local Facing facing;
+    thread_local SurfaceColumns columns;
     column.resize(attenuation.constituents.size());
     light.reset(samples.size(), *scene.lamps, bands);
     // Optical depths first; all become transmittances at once.
-    const auto set_depths = [&](const Point3& from, const Point3& to, double length,
-                                std::span<double> depths) {
-        scene.field->column(from, to, column);
+    const auto set_depths = [&](std::size_t sample, double length, std::span<double> depths) {
+        columns.column(sample, column);
         for (std::size_t b = 0; b < bands; ++b)
             depths[b] = attenuation.optical_depth(static_cast<int>(b), length, column);
     };
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const auto& [ray, hit] = *samples[i];
-        set_depths(ray.origin, hit.position, hit.distance, light.to_camera(i));
-    }
+    columns.begin(scene, attenuation, mixing, samples);
+    columns.take_camera();
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        set_depths(i, samples[i]->hit.distance, light.to_camera(i));
     for (std::size_t j = 0; j < scene.lamps->size(); ++j) {
         const Lamp& lamp = (*scene.lamps)[j];
         facing.find(lamp, samples);
         scene.surfaces->occluded_many(lamp.position(), facing.positions, facing.hidden);
+        columns.take_lamp(j);
         for (std::size_t n = 0; n < facing.samples.size(); ++n) {
             if (facing.hidden[n] != 0) continue;
             const std::size_t i = facing.samples[n];
             light.arrival(i, j) = facing.arrivals[n];
-            set_depths(lamp.position(), facing.positions[n], facing.radii[n],
-                       light.from_lamp(i, j));
+            set_depths(i, facing.radii[n], light.from_lamp(i, j));
         }
     }
     exp_of_minus(light.transmittances());

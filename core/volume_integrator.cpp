@@ -217,7 +217,8 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
 
 void VolumeIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
                                       SurfaceLight& light) const {
-    light_surfaces(scene_, sum_.attenuation(), samples, light);
+    light_surfaces(scene_, sum_.attenuation(), samples, light,
+                   {&light_fields_, quadrature_.column_tolerance});
 }
 
 }  // namespace uw

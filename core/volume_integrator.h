@@ -15,6 +15,8 @@ namespace uw {
 /// How finely VolumeIntegrator follows what varies from voxel to voxel.
 struct VolumeQuadrature {
     int voxels_per_panel = 2;  // two nodes each; many are for drafts
+    /// Of the columns between surfaces, camera and lamps (ColumnMixing).
+    double column_tolerance = 0;
 };
 
 /// Deterministic quadrature of single scattering (physics section 5) on light splatted ahead of

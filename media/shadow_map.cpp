@@ -1,6 +1,7 @@
 #include "media/shadow_map.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,9 @@ namespace uw {
 namespace {
 
 constexpr float k_nothing = std::numeric_limits<float>::infinity();
+constexpr float k_untraced = -1;
+// A cell reaches this far from a direction in it: its diagonal, and as much again.
+constexpr double k_beam_margin_texels = 3;
 // The map's depths are float and its texels are compared with points between their centres; a
 // decision needs this relative margin, or the search goes on to exact shadow rays.
 constexpr double k_margin = 1e-3;
@@ -31,8 +35,9 @@ std::size_t place_of(int row, int column, int width) {
 
 }  // namespace
 
-ShadowMap::ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution)
-    : surfaces_(&surfaces), lamp_(lamp), resolution_(resolution) {
+ShadowMap::ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution,
+                     const DirectionCone& beam)
+    : surfaces_(&surfaces), lamp_(lamp), resolution_(resolution), beam_(beam) {
     if (surfaces.empty()) return;
     for (int face = 0; face < 6; ++face) trace_face(face);
 }
@@ -41,22 +46,33 @@ void ShadowMap::trace_face(int face_index) {
     const CubeFace face(face_index);
     const int n = resolution_;
     const int padded = n + 2;  // one texel beyond each edge, so that neighbours always exist
-    std::vector<float> depth(square(padded));
+    // Cells that the beam touches have all their samples within this.
+    const DirectionCone wide = beam_.widened(k_beam_margin_texels * 2.0 / n);
+    std::vector<float> depth(square(padded), k_untraced);
+    std::atomic<std::uint64_t> traced = 0;
     parallel_for(static_cast<std::size_t>(padded), [&](std::size_t row) {
         thread_local std::vector<Vector3> directions;
         thread_local std::vector<double> hits;
+        thread_local std::vector<std::size_t> columns;
         directions.clear();
-        hits.resize(static_cast<std::size_t>(padded));
+        columns.clear();
         const double v = (2.0 * static_cast<double>(row) - 1.0) / n - 1.0;
-        for (int column = 0; column < padded; ++column)
-            directions.push_back(glm::normalize(face.direction((2.0 * column - 1.0) / n - 1.0, v)));
+        for (int column = 0; column < padded; ++column) {
+            const Vector3 direction = face.direction((2.0 * column - 1.0) / n - 1.0, v);
+            if (!wide.has(direction)) continue;
+            directions.push_back(glm::normalize(direction));
+            columns.push_back(static_cast<std::size_t>(column));
+        }
+        hits.resize(directions.size());
         surfaces_->hit_distances(lamp_, directions, hits);
         // Depth is along the face's axis.
-        for (std::size_t column = 0; column < hits.size(); ++column)
-            depth[row * hits.size() + column] =
-                static_cast<float>(hits[column] * face.depth(directions[column]));
+        for (std::size_t i = 0; i < hits.size(); ++i)
+            depth[row * static_cast<std::size_t>(padded) + columns[i]] =
+                static_cast<float>(hits[i] * face.depth(directions[i]));
+        traced += hits.size();
     });
-    rays_traced_ += depth.size();
+    if (traced == 0) return;
+    rays_traced_ += traced;
 
     Pyramid& pyramid = faces_[static_cast<std::size_t>(face_index)];
     pyramid.push_back(cell_ranges(depth));
@@ -71,9 +87,12 @@ ShadowMap::Level ShadowMap::cell_ranges(const std::vector<float>& padded_depth) 
         for (int column = 0; column < n; ++column) {
             const float* above = &padded_depth[place_of(row, column, n + 1)];
             const float* below = above + n + 1;
-            level.texels[place_of(row, column, n)] = {
-                std::min({above[0], above[1], below[0], below[1]}),
-                std::max({above[0], above[1], below[0], below[1]})};
+            const float nearest = std::min({above[0], above[1], below[0], below[1]});
+            // Cells that the beam does not touch have no say.
+            level.texels[place_of(row, column, n)] =
+                nearest == k_untraced
+                    ? DepthRange{k_nothing, 0}
+                    : DepthRange{nearest, std::max({above[0], above[1], below[0], below[1]})};
         }
     }
     return level;
@@ -113,6 +132,7 @@ class ShadowMap::Search {
         for (const FaceSegment& segment : segments) {
             face_ = CubeFace(segment.face);
             pyramid_ = &map_.faces_[static_cast<std::size_t>(segment.face)];
+            if (pyramid_->empty()) continue;  // beside the beam, but for rounding
             descend(project(segment.stretch.begin), project(segment.stretch.end));
         }
     }

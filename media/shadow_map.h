@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "core/lamp.h"
 #include "core/surfaces.h"
 #include "media/cube_face.h"
 
@@ -13,11 +14,16 @@ namespace uw {
 /// dark at once; where the map cannot decide, exact shadow rays find the edge.
 class ShadowMap {
   public:
-    /// Traces `resolution`^2 rays on each face. `surfaces` outlives the map.
-    ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution);
+    /// Traces those of the `resolution`^2 rays on each face that go within `beam`. `surfaces`
+    /// outlives the map.
+    ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution,
+              const DirectionCone& beam = {});
 
-    /// The parts of a stretch of `ray` that the lamp sees, ascending and disjoint. Edges
-    /// lie within 2e-4 of their distance from the lamp. A shadow narrower than a texel may be
+    /// Directions that the map knows.
+    const DirectionCone& beam() const { return beam_; }
+
+    /// The parts of a stretch of `ray` within the beam that the lamp sees, ascending and disjoint.
+    /// Edges lie within 2e-4 of their distance from the lamp. A shadow narrower than a texel may be
     /// missed.
     void lit_intervals(const Ray& ray, const Interval& stretch, std::vector<Interval>& lit) const;
 
@@ -43,7 +49,8 @@ class ShadowMap {
     const Surfaces* surfaces_;
     Point3 lamp_;
     int resolution_;
-    std::array<Pyramid, 6> faces_;
+    DirectionCone beam_;
+    std::array<Pyramid, 6> faces_;  // none of faces beside the beam
     std::uint64_t rays_traced_ = 0;
 };
 
