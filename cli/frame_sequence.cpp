@@ -139,6 +139,8 @@ bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
         if (is_newer(volume.file)) return false;
     for (const GeometryDesc& mesh : scene_of_frame.geometry)
         if (mesh.type == GeometryDesc::Type::file && is_newer(mesh.file)) return false;
+    for (const LampDesc& lamp : scene_of_frame.lamps)
+        if (std::ranges::any_of(files_of(lamp), is_newer)) return false;
     return is_image_of(files.image);
 }
 

@@ -35,7 +35,8 @@ SceneDesc scene_of_frame(const SceneDesc& scene, const Frame& frame);
 void check_frames(const FrameSequence& sequence, const SceneDesc& scene);
 
 /// Whether `frame`, one of a sequence, is there: all its files but the statistics are, the image is
-/// one that `is_image_of` accepts, and none of the frame's volumes and meshes is newer than it.
+/// one that `is_image_of` accepts, and none of the files of the frame's volumes, meshes and lamps
+/// is newer than it.
 bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
                  const std::function<bool(const std::filesystem::path& image)>& is_image_of);
 

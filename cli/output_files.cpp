@@ -66,6 +66,9 @@ void OutputCheck::take_inputs(const SceneDesc& scene) {
     for (const GeometryDesc& geometry : scene.geometry)
         if (geometry.type == GeometryDesc::Type::file)
             taken_.emplace(identity(geometry.file), "a mesh of the scene");
+    for (const LampDesc& lamp : scene.lamps)
+        for (const fs::path& file : files_of(lamp))
+            taken_.emplace(identity(file), "a lamp's file of the scene");
 }
 
 void OutputCheck::take_outputs(const OutputFiles& files) {

@@ -11,6 +11,7 @@
 #include "core/planes_integrator.h"
 #include "core/reference_integrator.h"
 #include "core/volume_integrator.h"
+#include "media/lamp_factory.h"
 
 namespace uw {
 
@@ -140,7 +141,8 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
             build_surfaces(desc.geometry, medium.wavelengths_nm, scene.geometry_warnings);
     append(scene.warnings, scene.geometry_warnings);
     for (const LampDesc& lamp : desc.lamps)
-        scene.lamps.emplace_back(lamp, desc.camera.world_from_camera, medium.band_count());
+        scene.lamps.push_back(
+            make_lamp(lamp, desc.camera.world_from_camera, medium.wavelengths_nm, scene.warnings));
     warn_of_lamps_at_the_camera(scene);
     scene.slabs = place_slabs(desc.render.planes, *scene.camera, scene.lit());
     return scene;

@@ -148,11 +148,26 @@ struct GeometryDesc {
 };
 
 struct LampProfileDesc {
-    enum class Type { isotropic, spot, cosine };
+    enum class Type { isotropic, spot, cosine, ies };
     Type type = Type::isotropic;
-    double beam = 0;  // spot: full angle at half intensity
-    double edge = 0;  // spot: angle over which the intensity falls from full to none
-    double fwhm = 0;  // cosine: full angle at half intensity
+    double beam = 0;             // spot: full angle at half intensity
+    double edge = 0;             // spot: angle over which the intensity falls from full to none
+    double fwhm = 0;             // cosine: full angle at half intensity
+    std::filesystem::path file;  // ies
+    double rotate = 0;           // ies: about the lamp's direction
+    double tilt = 0;             // ies: then from it towards the luminaire's azimuth 0
+    SourceLocation where = "profile";  // ies
+};
+
+/// The light of a lamp over wavelength, up to a factor.
+struct LampSpectrumDesc {
+    enum class Type { flat, d65, blackbody, led, file };
+    Type type = Type::flat;
+    double temperature = 0;      // blackbody [K]
+    std::string name;            // led: of the CIE's illuminants, LED-B3
+    std::filesystem::path file;  // CSV of wavelength_nm and
+    std::string column;          // this column; empty: the only other one
+    SourceLocation where;
 };
 
 struct LampDesc {
@@ -160,11 +175,18 @@ struct LampDesc {
     Point3 position;
     Vector3 direction{0, 0, 1};  // unit
     LampProfileDesc profile;
-    std::optional<PerBand> intensity;  // W/sr on the axis; exactly one of the two is set
-    std::optional<PerBand> power;      // W
+    // Exactly one is set; none for a profile of type ies: the file's candelas.
+    std::optional<PerBand> intensity;  // W/sr on the axis; with a spectrum one value for all of it
+    std::optional<PerBand> power;      // W; likewise
+    std::optional<double> lumens;      // luminous flux; with a spectrum
+    std::optional<LampSpectrumDesc> spectrum;
     bool fixed_to_camera = true;
+    Affine world_from_mount;  // where it is not fixed to the camera: of its axes, rigid
     SourceLocation where;
 };
+
+/// The files that a lamp is read from.
+std::vector<std::filesystem::path> files_of(const LampDesc& lamp);
 
 /// Slabs of water parallel to the image plane, in camera z [m]: what the planes integrator sums
 /// over, and the first of them is the layer `backscatter_first`.
