@@ -18,6 +18,7 @@ struct RenderArguments {
     std::vector<std::string> overrides;      // --set key.path=value
     std::optional<std::array<int, 2>> size;  // --size WxH
     std::optional<std::array<int, 4>> crop;  // --crop x0,y0,x1,y1
+    std::string camera;                      // --camera: of a rig this one only; empty: all
     std::string integrator;                  // empty: the scene's
     std::string layers;                      // empty: the default set
     std::optional<int> samples;

@@ -69,6 +69,8 @@ void OutputCheck::take_inputs(const SceneDesc& scene) {
     for (const LampDesc& lamp : scene.lamps)
         for (const fs::path& file : files_of(lamp))
             taken_.emplace(identity(file), "a lamp's file of the scene");
+    if (!scene.render.colour.file.empty())
+        taken_.emplace(identity(scene.render.colour.file), "the response of the scene");
 }
 
 void OutputCheck::take_outputs(const OutputFiles& files) {

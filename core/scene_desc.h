@@ -196,6 +196,18 @@ struct PlanesDesc {
     SourceLocation where;
 };
 
+/// How bands become R G B.
+struct ColourDesc {
+    /// Automatic: three bands are R, G and B themselves, others what CIE 1931 makes of them.
+    enum class Response { automatic, bands, cie, camera };
+    Response response = Response::automatic;
+    std::filesystem::path file;  // camera: CSV of wavelength_nm,r,g,b
+    /// The light that is shown white, R = G = B; flat if it is left out. `raw`: no such light.
+    std::optional<LampSpectrumDesc> white;
+    bool raw = false;
+    SourceLocation where = "render.response";
+};
+
 struct RenderDesc {
     enum class Integrator { volume, planes, reference };
     Integrator integrator = Integrator::volume;
@@ -203,6 +215,7 @@ struct RenderDesc {
     enum class Output { radiance, sensor_irradiance, paper };
     Output output = Output::radiance;  // all but radiance need camera.lens
     SourceLocation output_where;
+    ColourDesc colour;
     int samples = 4;
     /// A draft is for looking: within 3 % of the final image, at a fraction of its cost. Exact is
     /// for comparison: every pixel's water has a ray of its own (WaterLattice).
@@ -222,9 +235,17 @@ inline constexpr std::array<std::pair<std::string_view, RenderDesc::Integrator>,
                         {"planes", RenderDesc::Integrator::planes},
                         {"reference", RenderDesc::Integrator::reference}}};
 
+/// One camera of a rig.
+struct RigCameraDesc {
+    std::string name;
+    CameraDesc camera;
+};
+
 struct SceneDesc {
     std::filesystem::path file;
-    CameraDesc camera;
+    CameraDesc camera;                   // of a rig the one that is rendered: at first its first
+    std::string camera_name;             // empty: the scene has one camera, no rig
+    std::vector<RigCameraDesc> cameras;  // of a rig; else none
     WaterDesc water;
     std::vector<VolumeDesc> volumes;
     std::vector<GeometryDesc> geometry;

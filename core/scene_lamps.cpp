@@ -12,20 +12,6 @@ namespace {
 
 constexpr std::size_t k_longest_name = 64;
 
-/// Lamp names become parts of layer names.
-std::string read_name(const ConfigValue& value) {
-    constexpr std::string_view k_allowed =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    std::string name = value.text("name the lamp, such as left");
-    if (name.find_first_not_of(k_allowed) != std::string::npos || name.size() > k_longest_name) {
-        value.fail(
-            fmt::format("'{}' cannot be part of a layer's name; use only letters, digits, _ "
-                        "and -, at most {} of them",
-                        printable(name), k_longest_name));
-    }
-    return name;
-}
-
 void read_spot(ConfigMap& map, LampProfileDesc& profile) {
     const ConfigValue beam = map.require("beam", "give the full angle at half intensity");
     profile.beam = beam.number("give the full angle at half intensity in degrees");
@@ -86,39 +72,6 @@ LampProfileDesc read_profile(const ConfigValue& value, const SceneContext& conte
     return profile;
 }
 
-LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& context) {
-    using Type = LampSpectrumDesc::Type;
-    constexpr auto k_example = "write {type: led, name: LED-B4} or {file: lamp.csv}";
-    ConfigMap map(value, {"type", "temperature", "name", "file", "column"}, k_example);
-    LampSpectrumDesc spectrum;
-    spectrum.where = value.location();
-    if (!map.has("type") && map.has("file")) {
-        spectrum.type = Type::file;
-        spectrum.file = read_existing_file(*map.find("file"), context);
-        if (const auto column = map.find("column"))
-            spectrum.column = column->text("name the column of the file");
-        map.finish("a spectrum with 'file'");
-        return spectrum;
-    }
-    const ConfigValue type = map.require("type", k_example);
-    constexpr std::array<std::pair<std::string_view, Type>, 4> k_types{
-        {{"flat", Type::flat},
-         {"d65", Type::d65},
-         {"blackbody", Type::blackbody},
-         {"led", Type::led}}};
-    spectrum.type = type.choice(k_types);
-    if (spectrum.type == Type::blackbody) {
-        constexpr auto k_mend = "give the colour temperature in kelvin, such as 5600";
-        spectrum.temperature = map.require("temperature", k_mend).within(500, 100000, k_mend);
-    }
-    if (spectrum.type == Type::led) {
-        constexpr auto k_mend = "name one of the CIE's LED illuminants, such as LED-B4";
-        spectrum.name = map.require("name", k_mend).text(k_mend);
-    }
-    map.finish("spectrum type '" + type.node().scalar + "'");
-    return spectrum;
-}
-
 void read_lumens(const ConfigValue& value, LampDesc& lamp) {
     lamp.lumens = value.positive("give the luminous flux in lm");
     if (!lamp.spectrum) {
@@ -177,7 +130,8 @@ LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneCont
     LampDesc lamp;
     lamp.where = value.location();
     const auto name = map.find("name");
-    lamp.name = name ? read_name(*name) : fmt::format("lamp{}", number);
+    lamp.name = name ? read_short_name(*name, "a layer's name", "name the lamp, such as left")
+                     : fmt::format("lamp{}", number);
     lamp.position =
         at_origin_plus(map.require("position", "give the lamp's position in metres")
                            .vector("give the lamp's position, three lengths in metres"));
@@ -186,15 +140,73 @@ LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneCont
     }
     if (const auto entry = map.find("profile")) lamp.profile = read_profile(*entry, context);
     read_output(map, context, lamp);
+    enum class Frame { camera, rig, world };
+    constexpr std::array<std::pair<std::string_view, Frame>, 3> k_frames{
+        {{"camera", Frame::camera}, {"rig", Frame::rig}, {"world", Frame::world}}};
+    Frame frame = context.rig ? Frame::rig : Frame::camera;
     if (const auto entry = map.find("frame")) {
-        constexpr std::array<std::pair<std::string_view, bool>, 2> k_frames{
-            {{"camera", true}, {"world", false}}};
-        lamp.fixed_to_camera = entry->choice(k_frames);
+        frame = entry->choice(k_frames);
+        if (frame == Frame::rig && !context.rig) {
+            entry->fail(
+                "there is no rig in this scene; use camera or world, or give cameras: a list of "
+                "named cameras");
+        }
+    }
+    lamp.fixed_to_camera = frame == Frame::camera && !context.rig;
+    if (context.rig && frame != Frame::world) {
+        lamp.world_from_mount =
+            frame == Frame::rig ? context.rig->world_from_rig : context.rig->world_from_camera;
     }
     return lamp;
 }
 
 }  // namespace
+
+LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& context) {
+    using Type = LampSpectrumDesc::Type;
+    constexpr auto k_example = "write {type: led, name: LED-B4} or {file: lamp.csv}";
+    ConfigMap map(value, {"type", "temperature", "name", "file", "column"}, k_example);
+    LampSpectrumDesc spectrum;
+    spectrum.where = value.location();
+    if (!map.has("type") && map.has("file")) {
+        spectrum.type = Type::file;
+        spectrum.file = read_existing_file(*map.find("file"), context);
+        if (const auto column = map.find("column"))
+            spectrum.column = column->text("name the column of the file");
+        map.finish("a spectrum with 'file'");
+        return spectrum;
+    }
+    const ConfigValue type = map.require("type", k_example);
+    constexpr std::array<std::pair<std::string_view, Type>, 4> k_types{
+        {{"flat", Type::flat},
+         {"d65", Type::d65},
+         {"blackbody", Type::blackbody},
+         {"led", Type::led}}};
+    spectrum.type = type.choice(k_types);
+    if (spectrum.type == Type::blackbody) {
+        constexpr auto k_mend = "give the colour temperature in kelvin, such as 5600";
+        spectrum.temperature = map.require("temperature", k_mend).within(500, 100000, k_mend);
+    }
+    if (spectrum.type == Type::led) {
+        constexpr auto k_mend = "name one of the CIE's LED illuminants, such as LED-B4";
+        spectrum.name = map.require("name", k_mend).text(k_mend);
+    }
+    map.finish("spectrum type '" + type.node().scalar + "'");
+    return spectrum;
+}
+
+std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend) {
+    constexpr std::string_view k_allowed =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    std::string name = value.text(mend);
+    if (name.find_first_not_of(k_allowed) != std::string::npos || name.size() > k_longest_name) {
+        value.fail(
+            fmt::format("'{}' cannot be part of {}; use only letters, digits, _ and -, at "
+                        "most {} of them",
+                        printable(name), of, k_longest_name));
+    }
+    return name;
+}
 
 std::vector<std::filesystem::path> files_of(const LampDesc& lamp) {
     std::vector<std::filesystem::path> files;
