@@ -85,7 +85,7 @@ class IesText {
     /// A count of numbers that follow: no more than the rest of the text can hold.
     std::size_t count(std::string_view what) {
         const double value = number(what);
-        const double most = static_cast<double>(rest_.size() / 2 + 1);
+        const double most = 0.5 * static_cast<double>(rest_.size()) + 1;
         if (!(value >= 1) || value != std::floor(value) || value > most)
             fail(fmt::format("{} must be a whole number from 1 to what the file holds, found {}",
                              what, value));
