@@ -24,6 +24,8 @@ struct SceneContext {
 };
 
 CameraDesc read_camera(const ConfigValue& value, const SceneContext& context);
+/// `camera.port`.
+PortDesc read_port(const ConfigValue& value, const SceneContext& context);
 /// `camera.pose` as world_from_camera.
 Affine read_pose(const ConfigValue& value);
 
