@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "camera/calibration/calibration.h"
+
 namespace uw {
 
 /// `uwvdb render` as typed.
@@ -50,14 +52,23 @@ struct ValidateArguments {
     bool quiet = false;
 };
 
+/// `uwvdb calibration` as typed.
+struct CalibrationArguments {
+    std::filesystem::path file;               // a calibration, or a scene
+    std::string camera;                       // --camera: which of several
+    std::optional<CalibrationFormat> format;  // --to
+    std::filesystem::path output;             // -o; empty: standard output
+    bool json = false;
+};
+
 /// Help or version text to print instead of doing anything.
 struct MessageArguments {
     std::string text;
 };
 
 /// What the command line asks for.
-using Arguments =
-    std::variant<MessageArguments, RenderArguments, WaterArguments, ValidateArguments>;
+using Arguments = std::variant<MessageArguments, RenderArguments, WaterArguments, ValidateArguments,
+                               CalibrationArguments>;
 
 /// Parses the command line. Throws UsageError with one line for a wrong one.
 Arguments parse_arguments(int argc, const char* const* argv);

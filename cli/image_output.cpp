@@ -93,10 +93,11 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame) {
         m["uwvdb/forward_scatter_shape"] = std::string(
             forward.shape == ForwardScatterDesc::Shape::gaussian ? "gaussian" : "exponential");
     }
-    if (const auto& port = scene.camera.port) {
-        m["uwvdb/port_fresnel"] = std::string(port->fresnel ? "on" : "off");
-        m["uwvdb/port_radiance_in"] = std::string(port->radiance_in_air ? "air" : "water");
-    }
+    const auto note_port = [&m](const auto& port) {
+        m["uwvdb/port_fresnel"] = std::string(port.fresnel ? "on" : "off");
+        m["uwvdb/port_radiance_in"] = std::string(port.radiance_in_air ? "air" : "water");
+    };
+    if (scene.camera.port) std::visit(note_port, *scene.camera.port);
     if (const auto& lens = scene.camera.lens) {
         m["uwvdb/lens_f_number"] = lens->f_number;
         m["uwvdb/lens_focal_length_m"] = lens->focal_length;

@@ -61,6 +61,8 @@ OutputFiles output_files(const RenderArguments& a) {
 
 void OutputCheck::take_inputs(const SceneDesc& scene) {
     taken_.emplace(identity(scene.file), "the scene");
+    if (scene.camera.calibration)
+        taken_.emplace(identity(scene.camera.calibration->file), "the scene's calibration");
     for (const VolumeDesc& volume : scene.volumes)
         taken_.emplace(identity(volume.file), "a volume of the scene");
     for (const GeometryDesc& geometry : scene.geometry)

@@ -12,12 +12,12 @@
 #include "cli/frame_sequence.h"
 #include "cli/image_output.h"
 #include "cli/progress.h"
+#include "cli/scene_loading.h"
 #include "cli/stats.h"
 #include "core/config_text.h"
 #include "core/error.h"
 #include "core/image_reader.h"
 #include "core/parallel.h"
-#include "core/scene_reader.h"
 #include "media/colour_response.h"
 
 namespace uw {
@@ -131,7 +131,7 @@ void run_render(const RenderArguments& a) {
     FrameSequence sequence = frames_of(a);
 
     stats.begin_stage("scene");
-    SceneDesc desc = read_scene(a.scene, a.overrides);
+    SceneDesc desc = load_scene(a.scene, a.overrides);
     apply_arguments(a, desc);
     add_cameras(sequence, desc, a.camera);
     const std::vector<PixelWindow> windows = windows_of(a, desc);

@@ -120,6 +120,12 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
             fmt::format("{}: the planes integrator is for uniform water: remove `volumes`, or use "
                         "integrator volume",
                         desc.volumes.front().where));
+    if (desc.render.integrator == RenderDesc::Integrator::planes &&
+        desc.camera.distortion.model == DistortionDesc::Model::fisheye)
+        throw InputError(fmt::format(
+            "{}: render.integrator: the planes integrator sums over slabs parallel to the image "
+            "plane, which a fisheye lens looks past; use integrator volume",
+            desc.file.filename().string()));
     refuse_open_sequences(desc);
     AssembledScene scene;
     scene.desc = desc;

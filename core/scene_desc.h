@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/affine.h"
+#include "core/camera_desc.h"
 #include "core/vec.h"
 
 /// The scene file as inert data (docs/scene-file.md). Lengths in metres, angles in degrees,
@@ -16,41 +17,7 @@
 /// resolved against the scene file's folder. Per-band lists hold exactly one value per band.
 namespace uw {
 
-/// Where an entry stands in the scene file, for messages: "plume.yaml:14:7: volumes[0].file".
-using SourceLocation = std::string;
-
 using PerBand = std::vector<double>;
-
-struct IntrinsicsDesc {  // pixels; the image's corner is (0, 0)
-    double fx = 0, fy = 0, cx = 0, cy = 0;
-};
-
-struct DistortionDesc {  // Brown-Conrady, rational when k4..k6 are not 0
-    std::array<double, 6> k{};
-    std::array<double, 2> p{};
-};
-
-struct FlatPortDesc {         // camera frame
-    Vector3 normal{0, 0, 1};  // unit, z > 0
-    double distance = 0;      // camera centre to inner glass surface, along the normal
-    double thickness = 0;
-    double n_air = 1.0, n_glass = 1.49, n_water = 1.334;
-    bool fresnel = false;          // reflection losses at both surfaces
-    bool radiance_in_air = false;  // the camera's radiance is that in air, not in water
-};
-
-struct LensDesc {
-    double f_number = 0, focal_length = 0, transmission = 1;
-};
-
-struct CameraDesc {
-    int width = 0, height = 0;
-    IntrinsicsDesc intrinsics;
-    DistortionDesc distortion;
-    std::optional<FlatPortDesc> port;
-    std::optional<LensDesc> lens;
-    Affine world_from_camera;  // rigid; x right, y down, z forward
-};
 
 struct PhaseDesc {
     enum class Type { henyey_greenstein, fournier_forand, petzold, table, water };

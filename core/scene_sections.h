@@ -37,6 +37,8 @@ std::vector<RigCameraDesc> read_cameras(const ConfigValue& value,
                                         SceneContext& context);
 /// A name that becomes part of `of` ("a layer's name"): letters, digits, _ and - only.
 std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend);
+/// `camera.port`.
+PortDesc read_port(const ConfigValue& value, const SceneContext& context);
 /// `camera.pose` as world_from_camera.
 Affine read_pose(const ConfigValue& value);
 

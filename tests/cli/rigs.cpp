@@ -149,6 +149,21 @@ TEST_F(Rigs, CamerasMayDiffer) {
     EXPECT_EQ(image("out.right.exr").height, 6);
 }
 
+TEST_F(Rigs, EachMayHaveItsCalibration) {
+    write("camera.yaml",
+          "image_width: 32\nimage_height: 18\ncamera_name: a\n"
+          "camera_matrix: {rows: 3, cols: 3, data: [40, 0, 16, 0, 40, 9, 0, 0, 1]}\n"
+          "distortion_model: plumb_bob\n"
+          "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n");
+    expect_runs({"render", "rig.yaml", "-o", "out.exr"});
+    expect_runs({"render", "rig.yaml", "-o", "from.exr", "--set",
+                 "cameras[1]={name: right, calibration: camera.yaml, " + pose(0.4) + "}"});
+    // The file's principal point is the image's centre, whether pixel centres are at 0 or 1/2.
+    const ImageFile a = image("out.right.exr"), b = image("from.right.exr");
+    EXPECT_EQ(b.width, 32);
+    EXPECT_NEAR(a.at("depth.Z", 5, 5), b.at("depth.Z", 5, 5), 1e-4);
+}
+
 TEST_F(Rigs, InSequences) {
     expect_runs(
         {"render", "rig.yaml", "-o", "{camera}.##.exr", "--frames", "1-2", "--stats", "s.json"});
