@@ -1,37 +1,63 @@
 #include "camera/camera.h"
 
+#include <stdexcept>
+
 namespace uw {
 
 Camera::Camera(const CameraDesc& desc)
     : width_(desc.width),
       height_(desc.height),
       intrinsics_(desc.intrinsics),
-      distortion_(desc.distortion),
-      world_from_camera_(desc.world_from_camera) {
-    if (desc.port) port_.emplace(*desc.port);
+      lens_(make_lens_model(desc.distortion)),
+      world_from_camera_(desc.world_from_camera),
+      camera_from_world_(desc.world_from_camera.inverse()) {
+    if (width_ <= 0 || height_ <= 0)
+        throw std::logic_error("a camera without resolution: its calibration was not read");
+    if (desc.port) port_.emplace(make_port(*desc.port));
 }
 
-std::optional<Vector3> Camera::direction(double x, double y) const {
-    const auto undistorted = distortion_.undistort(
-        {(x - intrinsics_.cx) / intrinsics_.fx, (y - intrinsics_.cy) / intrinsics_.fy});
-    if (!undistorted) return std::nullopt;
-    return glm::normalize(Vector3(undistorted->x, undistorted->y, 1));
+std::optional<Vector3> Camera::lens_direction(double x, double y) const {
+    const NormalizedPoint image{(x - intrinsics_.cx) / intrinsics_.fx,
+                                (y - intrinsics_.cy) / intrinsics_.fy};
+    return std::visit([&](const auto& lens) { return lens.direction(image); }, lens_);
 }
 
 std::optional<Ray> Camera::water_ray(double x, double y) const {
-    const std::optional<Vector3> in_housing = direction(x, y);
+    const std::optional<Vector3> in_housing = lens_direction(x, y);
     if (!in_housing) return std::nullopt;
-    const std::optional<Ray> in_camera =
-        port_ ? port_->water_ray(*in_housing) : Ray{Point3{}, *in_housing};
+    std::optional<Ray> in_camera = Ray{Point3{}, *in_housing};
+    if (port_)
+        in_camera =
+            std::visit([&](const auto& port) { return port.water_ray(*in_housing); }, *port_);
     if (!in_camera) return std::nullopt;
     return Ray{world_from_camera_ * in_camera->origin,
                glm::normalize(world_from_camera_.apply_to_vector(in_camera->direction))};
 }
 
 LensRay Camera::lens_ray(double x, double y) const {
-    const std::optional<Vector3> in_housing = direction(x, y);
+    const std::optional<Vector3> in_housing = lens_direction(x, y);
     if (!in_housing) return {0, 0};
-    return {in_housing->z, port_ ? port_->transmittance(*in_housing) : 1.0};
+    LensRay ray;
+    ray.falloff = std::visit([&](const auto& lens) { return lens.falloff(*in_housing); }, lens_);
+    if (port_)
+        ray.port_transmittance =
+            std::visit([&](const auto& port) { return port.transmittance(*in_housing); }, *port_);
+    return ray;
+}
+
+std::optional<ImagePoint> Camera::project(const Point3& world) const {
+    const Point3 point = camera_from_world_ * world;
+    std::optional<Vector3> in_housing;
+    if (port_) {
+        in_housing = std::visit([&](const auto& port) { return port.direction_to(point); }, *port_);
+    } else if (const double range = glm::length(from_origin(point)); range > 0) {
+        in_housing = from_origin(point) / range;
+    }
+    if (!in_housing) return std::nullopt;
+    const auto image = std::visit([&](const auto& lens) { return lens.image(*in_housing); }, lens_);
+    if (!image) return std::nullopt;
+    return ImagePoint{intrinsics_.cx + intrinsics_.fx * image->x,
+                      intrinsics_.cy + intrinsics_.fy * image->y};
 }
 
 }  // namespace uw

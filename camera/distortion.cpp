@@ -17,6 +17,8 @@ constexpr int k_max_iterations = 100;
 constexpr int k_max_halvings = 60;
 /// Newton's last step bounds what is left of the error; ten times better than promised.
 constexpr double k_tolerance = 1e-11;
+/// Points nearer to each other are one, but for what the inverse is short of and a fold magnifies.
+constexpr double k_same_point = 1e-6;
 
 /// Radius where d(r f)/dr changes sign or f has a pole. With u = r^2 and f = N/D,
 /// d(r f)/dr = ((N + 2u N') D - 2u N D') / D^2, a polynomial of degree 6 over a square.
@@ -115,6 +117,31 @@ std::optional<NormalizedPoint> Distortion::undistort(const NormalizedPoint& dist
         if (!closer) return std::nullopt;
     }
     return std::nullopt;
+}
+
+std::optional<Vector3> Distortion::direction(const NormalizedPoint& image) const {
+    const auto undistorted = undistort(image);
+    if (!undistorted) return std::nullopt;
+    return glm::normalize(Vector3(undistorted->x, undistorted->y, 1));
+}
+
+std::optional<NormalizedPoint> Distortion::image(const Vector3& direction) const {
+    if (!(direction.z > 0)) return std::nullopt;
+    const NormalizedPoint p{direction.x / direction.z, direction.y / direction.z};
+    if (identity_) return p;
+    if (!in_domain(p, jacobian(p))) return std::nullopt;
+    const NormalizedPoint shown = distort(p);
+    const bool radial_only = desc_.p[0] == 0 && desc_.p[1] == 0;
+    if (radial_only) return shown;
+    // With tangential terms parts beyond the fold may look like the one around the axis.
+    const auto back = undistort(shown);
+    if (!back || std::hypot(back->x - p.x, back->y - p.y) > k_same_point) return std::nullopt;
+    return shown;
+}
+
+double Distortion::falloff(const Vector3& direction) {
+    const double cosine_squared = direction.z * direction.z;
+    return cosine_squared * cosine_squared;
 }
 
 }  // namespace uw

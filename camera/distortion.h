@@ -2,15 +2,11 @@
 
 #include <optional>
 
-#include "core/scene_desc.h"
+#include "camera/normalized_point.h"
+#include "core/camera_desc.h"
+#include "core/vec.h"
 
 namespace uw {
-
-/// Where a ray (x, y, 1) meets the plane z = 1 of the camera frame; dimensionless.
-struct NormalizedPoint {
-    double x = 0;
-    double y = 0;
-};
 
 /// Brown-Conrady lens distortion, rational form, as in OpenCV (k1 k2 p1 p2 k3 k4 k5 k6):
 ///   f(r) = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
@@ -28,6 +24,15 @@ class Distortion {
     /// The inverse of `distort` on the part around the axis, to 1e-10; empty where no point of
     /// that part is shown at `distorted`.
     std::optional<NormalizedPoint> undistort(const NormalizedPoint& distorted) const;
+
+    /// The unit direction, camera frame, that is shown at `image`, as `undistort`.
+    std::optional<Vector3> direction(const NormalizedPoint& image) const;
+    /// Where `direction` (unit, camera frame) is shown; empty if it runs backwards or lies beyond
+    /// the fold: exactly where no `direction` of an image point is this one.
+    std::optional<NormalizedPoint> image(const Vector3& direction) const;
+    /// The irradiance behind the lens relative to that on the axis: the cos^4 of a rectilinear
+    /// lens, whose distortion is taken to be small.
+    static double falloff(const Vector3& direction);
 
     /// Undistorted radius up to which the radial model grows; infinite if it always does.
     double fold_radius() const { return fold_radius_; }

@@ -2,17 +2,10 @@
 
 #include <optional>
 
+#include "core/camera_desc.h"
 #include "core/ray.h"
-#include "core/scene_desc.h"
 
 namespace uw {
-
-/// Snell's law in vector form (docs/physics.md, section 3): `direction` (unit) crosses from index
-/// `n1` to `n2` through a surface whose unit `normal` points the way the light goes
-/// (direction . normal > 0). Unit result; empty on total reflection. Nothing is
-/// singular at normal incidence, and equal indices change nothing.
-std::optional<Vector3> refract(const Vector3& direction, const Vector3& normal, double n1,
-                               double n2);
 
 /// A flat window between the camera's air and the water: two parallel planes n.X = d and
 /// n.X = d + d_g in the camera frame. It has no rim.
@@ -31,6 +24,13 @@ class FlatPort {
     /// and (n_air / n_water)^2 where the radiance is asked for in air. 1 if neither is.
     /// Precondition: there is a water ray.
     double transmittance(const Vector3& direction) const;
+
+    /// The unit direction in air, from the camera centre, of the ray that meets `point` (camera
+    /// frame) in the water; empty if none does, as for points in the housing or in the glass.
+    /// Refraction stays in the plane of the normal and the point, where the ray's distance from
+    /// the normal at the point's depth grows with its slope: one monotone equation (Agrawal et al.
+    /// 2012), solved to the last digits.
+    std::optional<Vector3> direction_to(const Point3& point) const;
 
   private:
     FlatPortDesc desc_;

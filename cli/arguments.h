@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "camera/calibration/calibration.h"
+
 namespace uw {
 
 /// `uwvdb render` as typed.
@@ -18,6 +20,7 @@ struct RenderArguments {
     std::vector<std::string> overrides;      // --set key.path=value
     std::optional<std::array<int, 2>> size;  // --size WxH
     std::optional<std::array<int, 4>> crop;  // --crop x0,y0,x1,y1
+    std::string camera;                      // --camera: of a rig this one only; empty: all
     std::string integrator;                  // empty: the scene's
     std::string layers;                      // empty: the default set
     std::optional<int> samples;
@@ -49,14 +52,23 @@ struct ValidateArguments {
     bool quiet = false;
 };
 
+/// `uwvdb calibration` as typed.
+struct CalibrationArguments {
+    std::filesystem::path file;               // a calibration, or a scene
+    std::string camera;                       // --camera: which of several
+    std::optional<CalibrationFormat> format;  // --to
+    std::filesystem::path output;             // -o; empty: standard output
+    bool json = false;
+};
+
 /// Help or version text to print instead of doing anything.
 struct MessageArguments {
     std::string text;
 };
 
 /// What the command line asks for.
-using Arguments =
-    std::variant<MessageArguments, RenderArguments, WaterArguments, ValidateArguments>;
+using Arguments = std::variant<MessageArguments, RenderArguments, WaterArguments, ValidateArguments,
+                               CalibrationArguments>;
 
 /// Parses the command line. Throws UsageError with one line for a wrong one.
 Arguments parse_arguments(int argc, const char* const* argv);

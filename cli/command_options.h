@@ -19,6 +19,7 @@ struct Command {
 Command add_render_command(CLI::App& app);
 Command add_water_command(CLI::App& app);
 Command add_validate_command(CLI::App& app);
+Command add_calibration_command(CLI::App& app);
 
 /// `--set KEY.PATH=VALUE`, any number of times.
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides);

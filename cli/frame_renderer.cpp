@@ -70,9 +70,20 @@ FrameRenderer::FrameRenderer(const RenderArguments& arguments, const SceneDesc& 
     : arguments_(arguments),
       all_frames_(desc),
       plan_(std::move(plan)),
-      film_(desc.camera.width, desc.camera.height, rendered_window(desc, plan_.window),
-            plan_.layers.channel_names()),
-      clock_(count) {}
+      film_(1, 1, {0, 0, 1, 1}, plan_.layers.channel_names()),
+      clock_(count, desc.cameras.empty() ? "frame" : "image") {}
+
+// The cameras of a rig may differ in size; before the first image the film has none.
+void FrameRenderer::fit_film(const Frame& frame, const CameraDesc& camera) {
+    SceneDesc desc = all_frames_;
+    desc.camera = camera;
+    const PixelWindow rendered = rendered_window(desc, window(frame));
+    if (film_.width() == camera.width && film_.height() == camera.height &&
+        film_.window() == rendered)
+        return;
+    film_ = Film(1, 1, {0, 0, 1, 1}, plan_.layers.channel_names());  // frees the memory
+    film_ = Film(camera.width, camera.height, rendered, plan_.layers.channel_names());
+}
 
 void FrameRenderer::say(const std::string& line) const {
     if (!arguments_.quiet) print_message(line + "\n");
@@ -80,8 +91,10 @@ void FrameRenderer::say(const std::string& line) const {
 
 void FrameRenderer::warn(const Frame& frame, const std::string& line) {
     if (!warned_.insert(without_frame(line, scene_.desc, all_frames_)).second) return;
-    const std::string which =
-        clock_.images_done() > 0 ? fmt::format("frame {}: ", frame.number.value_or(0)) : "";
+    std::string which;
+    if (clock_.images_done() > 0 && frame.number) which = fmt::format("frame {}: ", *frame.number);
+    if (clock_.images_done() > 0 && !frame.camera_name.empty())
+        which += fmt::format("camera {}: ", frame.camera_name);
     print_message(fmt::format("warning: {}{}\n", which, line));
 }
 
@@ -149,14 +162,15 @@ void FrameRenderer::write_image(const Frame& frame) {
             [&](const std::string& line) { say(line); },
             [&](const std::string& line) { warn(frame, line); });
     };
-    if (film_.window() == plan_.window)
+    if (film_.window() == window(frame))
         write(film_);
     else
-        write(cropped(film_, plan_.window));
+        write(cropped(film_, window(frame)));
 }
 
 void FrameRenderer::render(const Frame& frame, const SceneDesc& desc, RunStats& stats) {
     const OutputFiles& files = frame.files;
+    fit_film(frame, desc.camera);
     assemble(frame, desc, stats);
     stats.begin_stage("splat");
     const LightFields light_fields = splat(!files.irradiance_vdb.empty());

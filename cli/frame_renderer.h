@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "cli/arguments.h"
 #include "cli/frame_sequence.h"
@@ -19,7 +20,7 @@ namespace uw {
 
 /// What the images of one run have in common, beside the scene.
 struct ImagePlan {
-    PixelWindow window;  // of the pixels written
+    std::vector<PixelWindow> windows;  // of the pixels written, by camera
     LayerPlan layers;
     BandColour colour;
 };
@@ -29,17 +30,19 @@ struct ImagePlan {
 class FrameRenderer {
   public:
     /// `desc`: the scene of all frames; `count`: how many there will be. `arguments` outlives the
-    /// renderer. Throws InputError if an image does not fit into memory.
+    /// renderer.
     FrameRenderer(const RenderArguments& arguments, const SceneDesc& desc, ImagePlan plan,
                   std::size_t count);
 
     /// Renders one frame, `desc` its scene, and writes all its files but the statistics, whose
     /// figures go to `stats`. Says on stderr what it does; a warning that is the same for several
-    /// frames but for the file's name is given once. Throws InputError; IoError; Interrupted, and
-    /// then no image of this frame has been written.
+    /// frames but for the file's name is given once. Throws InputError, also if the image does not
+    /// fit into memory; IoError; Interrupted, and then no image of this frame has been written.
     void render(const Frame& frame, const SceneDesc& desc, RunStats& stats);
 
   private:
+    const PixelWindow& window(const Frame& frame) const { return plan_.windows[frame.camera]; }
+    void fit_film(const Frame& frame, const CameraDesc& camera);
     void assemble(const Frame& frame, const SceneDesc& desc, RunStats& stats);
     LightFields splat(bool with_irradiance);
     void render_image(const LightFields& light_fields);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -41,7 +42,9 @@ class MissingFrames {
     void look(const SourceLocation& where, const fs::path& name, const FrameSequence& sequence) {
         std::vector<int> missing;
         for (const Frame& frame : sequence.frames)
-            if (!is_file(file_of_frame(name, *frame.number))) missing.push_back(*frame.number);
+            if (frame.camera == sequence.frames.front().camera &&
+                !is_file(file_of_frame(name, *frame.number)))
+                missing.push_back(*frame.number);
         if (missing.empty()) return;
         text_ += fmt::format("{}{}.file: '{}' has no file for {} {}", text_.empty() ? "" : "; ",
                              where, printable(name.string(), 300),
@@ -61,8 +64,42 @@ void check_volumes(const FrameSequence& sequence, const SceneDesc& scene) {
         if (!scene.volumes[v].is_sequence) continue;
         VolumeSequenceCheck check;
         for (const Frame& frame : sequence.frames)
-            check.take(scene_of_frame(scene, frame).volumes[v]);
+            if (frame.camera == sequence.frames.front().camera)
+                check.take(scene_of_frame(scene, frame).volumes[v]);
     }
+}
+
+constexpr std::string_view k_camera_place = "{camera}";
+
+// The file of one camera: its name stands in its place, or before the ending.
+fs::path of_camera(const fs::path& file, const std::string& camera) {
+    std::string name = file.string();
+    std::size_t at = name.find(k_camera_place);
+    if (at == std::string::npos) {
+        fs::path with_name = file;
+        return with_name.replace_extension("." + camera + file.extension().string());
+    }
+    for (; at != std::string::npos; at = name.find(k_camera_place, at + camera.size()))
+        name.replace(at, k_camera_place.size(), camera);
+    return name;
+}
+
+void refuse_camera_places(const FrameSequence& sequence, const std::string& only) {
+    if (!only.empty())
+        throw UsageError(fmt::format(
+            "--camera {}: the scene has one camera, which has no name; leave the option out",
+            printable(only)));
+    for (const Frame& frame : sequence.frames)
+        if (frame.files.image.string().find(k_camera_place) != std::string::npos)
+            throw UsageError(
+                fmt::format("-o {}: the scene has one camera, which has no name; take {} out",
+                            printable(frame.files.image.string(), 300), k_camera_place));
+}
+
+std::string names_of(const std::vector<RigCameraDesc>& cameras) {
+    std::string names;
+    for (const RigCameraDesc& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
+    return names;
 }
 
 bool has_sequence(const SceneDesc& scene) {
@@ -74,7 +111,7 @@ bool has_sequence(const SceneDesc& scene) {
 
 FrameSequence frames_of(const RenderArguments& a) {
     const OutputFiles names = output_files(a);
-    if (a.frames.empty()) return {{{std::nullopt, names}}, {}};
+    if (a.frames.empty()) return {{{std::nullopt, names, 0, ""}}, {}};
     if (a.frames.size() > 1) {
         require_place("-o", names.image);
         require_place("--irradiance-vdb", names.irradiance_vdb);
@@ -88,13 +125,47 @@ FrameSequence frames_of(const RenderArguments& a) {
         files.preview = expanded(names.preview, number);
         if (one_each) files.stats = expanded(names.stats, number);
         files.irradiance_vdb = expanded(names.irradiance_vdb, number);
-        sequence.frames.push_back({number, std::move(files)});
+        sequence.frames.push_back({number, std::move(files), 0, ""});
     }
     return sequence;
 }
 
+void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::string& only) {
+    if (scene.cameras.empty()) {
+        refuse_camera_places(sequence, only);
+        return;
+    }
+    if (!only.empty() &&
+        std::ranges::find(scene.cameras, only, &RigCameraDesc::name) == scene.cameras.end())
+        throw UsageError(fmt::format("--camera: the scene has no camera '{}'; it has {}",
+                                     printable(only), names_of(scene.cameras)));
+    std::vector<Frame> frames;
+    for (const Frame& frame : sequence.frames) {
+        bool is_first = true;
+        for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+            const std::string& name = scene.cameras[i].name;
+            if (!only.empty() && name != only) continue;
+            OutputFiles files = frame.files;
+            for (fs::path* file : {&files.image, &files.preview}) *file = of_camera(*file, name);
+            if (frame.number && !files.stats.empty()) files.stats = of_camera(files.stats, name);
+            if (!is_first) files.irradiance_vdb.clear();
+            is_first = false;
+            frames.push_back({frame.number, std::move(files), i, name});
+        }
+    }
+    sequence.frames = std::move(frames);
+    if (sequence.frames.size() == 1 || sequence.frames.front().number) return;
+    // Without --frames the figures of all cameras go to one file.
+    sequence.stats = sequence.frames.front().files.stats;
+    for (Frame& frame : sequence.frames) frame.files.stats.clear();
+}
+
 SceneDesc scene_of_frame(const SceneDesc& scene, const Frame& frame) {
     SceneDesc result = scene;
+    if (!scene.cameras.empty()) {
+        result.camera = scene.cameras[frame.camera].camera;
+        result.camera_name = scene.cameras[frame.camera].name;
+    }
     if (!frame.number) return result;
     const auto choose = [&](auto& input) {
         if (!input.is_sequence) return;
@@ -139,6 +210,8 @@ bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
         if (is_newer(volume.file)) return false;
     for (const GeometryDesc& mesh : scene_of_frame.geometry)
         if (mesh.type == GeometryDesc::Type::file && is_newer(mesh.file)) return false;
+    for (const LampDesc& lamp : scene_of_frame.lamps)
+        if (std::ranges::any_of(files_of(lamp), is_newer)) return false;
     return is_image_of(files.image);
 }
 

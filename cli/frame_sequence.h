@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "cli/arguments.h"
@@ -14,6 +16,8 @@ namespace uw {
 struct Frame {
     std::optional<int> number;  // none: the run renders the scene as it is, without --frames
     OutputFiles files;
+    std::size_t camera = 0;   // of a rig's, by its index
+    std::string camera_name;  // empty: the scene has one camera
 };
 
 /// The images of a run, in the order they are rendered.
@@ -26,7 +30,13 @@ struct FrameSequence {
 /// whose ending is not that of its format.
 FrameSequence frames_of(const RenderArguments& arguments);
 
-/// `scene` with the frame's files in place of its sequences.
+/// Makes of every frame one for each camera of a rig, whose names stand in the place of {camera} in
+/// the names of files, or before their ending. `only`: this camera alone; empty: all. What is the
+/// same for all cameras, the irradiance, is written with the first. Throws UsageError for a camera
+/// that there is not, and for a place in names without a rig.
+void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::string& only);
+
+/// `scene` with the frame's files in place of its sequences, and seen by the frame's camera.
 SceneDesc scene_of_frame(const SceneDesc& scene, const Frame& frame);
 
 /// Looks at what all frames read and write before the first is rendered. Throws IoError that names
@@ -35,7 +45,8 @@ SceneDesc scene_of_frame(const SceneDesc& scene, const Frame& frame);
 void check_frames(const FrameSequence& sequence, const SceneDesc& scene);
 
 /// Whether `frame`, one of a sequence, is there: all its files but the statistics are, the image is
-/// one that `is_image_of` accepts, and none of the frame's volumes and meshes is newer than it.
+/// one that `is_image_of` accepts, and none of the files of the frame's volumes, meshes and lamps
+/// is newer than it.
 bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
                  const std::function<bool(const std::filesystem::path& image)>& is_image_of);
 

@@ -34,6 +34,16 @@ std::string band_list(std::span<const double> values) {
     return text;
 }
 
+// The first three rows of the 4 x 4 matrix, the last being 0 0 0 1.
+std::string matrix_rows(const Affine& pose) {
+    std::string text;
+    for (int row = 0; row < 3; ++row)
+        text += fmt::format("{}{:.17g} {:.17g} {:.17g} {:.17g}", text.empty() ? "" : "; ",
+                            pose.linear()[0][row], pose.linear()[1][row], pose.linear()[2][row],
+                            pose.offset()[row]);
+    return text;
+}
+
 // One line if the image shows nothing, or is empty in part; no black image without a word.
 void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
     const PixelWindow& window = film.window();
@@ -69,6 +79,13 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame) {
                     {"uwvdb/units", quantity + ", irradiance and exitance W m^-2, metres"},
                     {"uwvdb/bands_nm", band_list(scene.water.bands_nm)}};
     if (frame) m["uwvdb/frame"] = fmt::format("{}", *frame);
+    if (!scene.camera_name.empty()) m["uwvdb/camera"] = scene.camera_name;
+    const IntrinsicsDesc& k = scene.camera.intrinsics;
+    m["uwvdb/intrinsics_fx_fy_cx_cy_px"] =
+        fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", k.fx, k.fy, k.cx, k.cy);
+    m["uwvdb/world_from_camera"] = matrix_rows(scene.camera.world_from_camera);
+    if (scene.render.colour.response == ColourDesc::Response::camera)
+        m["uwvdb/rgb_response"] = scene.render.colour.file.filename().string();
     if (const ForwardScatterDesc& forward = scene.water.forward_scatter; forward.K > 0) {
         m["uwvdb/forward_scatter_K"] = forward.K;
         m["uwvdb/forward_scatter_G_per_m"] = forward.G;
@@ -76,10 +93,11 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame) {
         m["uwvdb/forward_scatter_shape"] = std::string(
             forward.shape == ForwardScatterDesc::Shape::gaussian ? "gaussian" : "exponential");
     }
-    if (const auto& port = scene.camera.port) {
-        m["uwvdb/port_fresnel"] = std::string(port->fresnel ? "on" : "off");
-        m["uwvdb/port_radiance_in"] = std::string(port->radiance_in_air ? "air" : "water");
-    }
+    const auto note_port = [&m](const auto& port) {
+        m["uwvdb/port_fresnel"] = std::string(port.fresnel ? "on" : "off");
+        m["uwvdb/port_radiance_in"] = std::string(port.radiance_in_air ? "air" : "water");
+    };
+    if (scene.camera.port) std::visit(note_port, *scene.camera.port);
     if (const auto& lens = scene.camera.lens) {
         m["uwvdb/lens_f_number"] = lens->f_number;
         m["uwvdb/lens_focal_length_m"] = lens->focal_length;

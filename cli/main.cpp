@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "cli/arguments.h"
+#include "cli/calibration_command.h"
 #include "cli/console.h"
 #include "cli/exit_code.h"
 #include "cli/render_command.h"
@@ -38,6 +39,11 @@ uw::ExitCode run(const uw::RenderArguments& arguments) {
 
 uw::ExitCode run(const uw::WaterArguments& arguments) {
     uw::run_water(arguments, std::cout);
+    return uw::k_exit_done;
+}
+
+uw::ExitCode run(const uw::CalibrationArguments& arguments) {
+    uw::run_calibration(arguments, std::cout);
     return uw::k_exit_done;
 }
 

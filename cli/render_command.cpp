@@ -12,12 +12,13 @@
 #include "cli/frame_sequence.h"
 #include "cli/image_output.h"
 #include "cli/progress.h"
+#include "cli/scene_loading.h"
 #include "cli/stats.h"
 #include "core/config_text.h"
 #include "core/error.h"
 #include "core/image_reader.h"
 #include "core/parallel.h"
-#include "core/scene_reader.h"
+#include "media/colour_response.h"
 
 namespace uw {
 
@@ -47,6 +48,7 @@ void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
     if (width < 1 || height < 1 || width > 32768 || height > 32768)
         throw UsageError("--size: each side must be 1 to 32768 pixels");
     resize_image(desc.camera, width, height);
+    for (RigCameraDesc& entry : desc.cameras) resize_image(entry.camera, width, height);
 }
 
 std::vector<std::string> names_of(const std::vector<LampDesc>& lamps) {
@@ -66,26 +68,42 @@ PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
     return {x0, y0, x1, y1};
 }
 
-// Leaves out the frames that are there already.
-void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const ImageLayout& layout,
+// The pixels that are written, by camera.
+std::vector<PixelWindow> windows_of(const RenderArguments& a, const SceneDesc& desc) {
+    if (desc.cameras.empty()) return {window_of(a, desc.camera)};
+    std::vector<PixelWindow> windows;
+    for (const RigCameraDesc& entry : desc.cameras)
+        windows.push_back(a.camera.empty() || a.camera == entry.name ? window_of(a, entry.camera)
+                                                                     : PixelWindow{});
+    return windows;
+}
+
+bool is_whole(const PixelWindow& window, const CameraDesc& camera) {
+    return window == PixelWindow{0, 0, camera.width, camera.height};
+}
+
+// Leaves out the images that are there already.
+void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const ImagePlan& plan,
                         bool quiet) {
     std::vector<int> there;
     std::vector<Frame> left;
     for (Frame& frame : sequence.frames) {
-        const bool rendered =
-            is_rendered(frame, scene_of_frame(desc, frame), [&](const std::filesystem::path& file) {
-                return has_header_of(file, layout, metadata_of(desc, frame.number));
-            });
-        if (rendered)
+        const SceneDesc scene = scene_of_frame(desc, frame);
+        const ImageLayout layout{scene.camera.width, scene.camera.height,
+                                 plan.windows[frame.camera], plan.layers.channel_names()};
+        const bool rendered = is_rendered(frame, scene, [&](const std::filesystem::path& file) {
+            return has_header_of(file, layout, metadata_of(scene, frame.number));
+        });
+        if (rendered && (there.empty() || there.back() != *frame.number))
             there.push_back(*frame.number);
-        else
-            left.push_back(std::move(frame));
+        if (!rendered) left.push_back(std::move(frame));
     }
     sequence.frames = std::move(left);
     if (!there.empty() && !quiet)
-        print_message(fmt::format("resume: {} {} {} there already, {} left\n",
+        print_message(fmt::format("resume: {} {} {} there already, {} {}left\n",
                                   there.size() == 1 ? "frame" : "frames", format_frame_list(there),
-                                  there.size() == 1 ? "is" : "are", sequence.frames.size()));
+                                  there.size() == 1 ? "is" : "are", sequence.frames.size(),
+                                  desc.cameras.empty() ? "" : "images "));
 }
 
 // Renders all frames; `done` gets the figures of each, whatever ends the run.
@@ -113,25 +131,26 @@ void run_render(const RenderArguments& a) {
     FrameSequence sequence = frames_of(a);
 
     stats.begin_stage("scene");
-    SceneDesc desc = read_scene(a.scene, a.overrides);
+    SceneDesc desc = load_scene(a.scene, a.overrides);
     apply_arguments(a, desc);
-    const PixelWindow window = window_of(a, desc.camera);
+    add_cameras(sequence, desc, a.camera);
+    const std::vector<PixelWindow> windows = windows_of(a, desc);
     const std::vector<std::string> lamp_names = names_of(desc.lamps);
     const LayerPlan plan(a.layers, desc.water.bands_nm, lamp_names);
-    const BandColour colour(desc.water.bands_nm);
+    const BandColour colour = make_band_colour(desc.render.colour, desc.water.bands_nm);
     if (!colour.warning().empty()) desc.warnings.push_back(colour.warning());
     if (const auto warning = frame_warning(a, desc)) desc.warnings.push_back(*warning);
-    const PixelWindow whole{0, 0, desc.camera.width, desc.camera.height};
-    if (desc.water.forward_scatter.K > 0 && window != whole)
+    const Frame first = sequence.frames.front();
+    const CameraDesc first_camera = scene_of_frame(desc, first).camera;
+    if (desc.water.forward_scatter.K > 0 && !is_whole(windows[first.camera], first_camera))
         desc.warnings.push_back(
             "--crop: forward scatter takes light from the whole image: all of it is rendered, then "
             "cropped; set water.forward_scatter.K=0 to save that time");
-    if (a.resume)
-        leave_out_rendered(sequence, desc,
-                           {whole.width(), whole.height(), window, plan.channel_names()}, a.quiet);
+    const ImagePlan images{windows, plan, colour};
+    if (a.resume) leave_out_rendered(sequence, desc, images, a.quiet);
     if (sequence.frames.empty()) return;
     check_frames(sequence, desc);
-    FrameRenderer renderer(a, desc, {window, plan, colour}, sequence.frames.size());
+    FrameRenderer renderer(a, desc, images, sequence.frames.size());
 
     std::vector<RunStats> done;
     const auto write_stats = [&] {

@@ -19,10 +19,12 @@ constexpr const char* k_render_examples = R"(Examples:
   uwvdb render plume.yaml --set lamps.left.intensity='[80, 80, 80]' --layers direct,depth
   uwvdb render plume.yaml --integrator reference --crop 100,80,140,120 --stats stats.json
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.exr --resume
+  uwvdb render stereo.yaml -o 'out/{camera}.exr'
   uwvdb render houdini.yaml --set 'volumes[0].file=/data/my.vdb' --irradiance-vdb light.vdb
 
 Writes OUT.exr (32-bit float, layers by name) and OUT.png beside it, a preview. With --frames, a
-volume's file may hold the place of the frame's number: file: smoke_####.vdb
+volume's file may hold the place of the frame's number: file: smoke_####.vdb. A scene of several
+cameras becomes an image of each, OUT.NAME.exr, or where {camera} stands in the name.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted. More: docs/command-line.md)";
 
@@ -69,6 +71,8 @@ Command add_render_command(CLI::App& app) {
         ->type_name("WxH");
     render.add_option("--crop", p->crop, "render these pixels only; x1 and y1 are excluded")
         ->type_name("x0,y0,x1,y1");
+    render.add_option("--camera", p->arguments.camera, "of a rig's cameras render this one only")
+        ->type_name("NAME");
     render.add_option("--integrator", p->arguments.integrator, "volume, planes or reference")
         ->type_name("NAME");
     render

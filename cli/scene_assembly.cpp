@@ -11,6 +11,7 @@
 #include "core/planes_integrator.h"
 #include "core/reference_integrator.h"
 #include "core/volume_integrator.h"
+#include "media/lamp_factory.h"
 
 namespace uw {
 
@@ -125,6 +126,12 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
             fmt::format("{}: the planes integrator is for uniform water: remove `volumes`, or use "
                         "integrator volume",
                         desc.volumes.front().where));
+    if (desc.render.integrator == RenderDesc::Integrator::planes &&
+        desc.camera.distortion.model == DistortionDesc::Model::fisheye)
+        throw InputError(fmt::format(
+            "{}: render.integrator: the planes integrator sums over slabs parallel to the image "
+            "plane, which a fisheye lens looks past; use integrator volume",
+            desc.file.filename().string()));
     refuse_open_sequences(desc);
     AssembledScene scene;
     scene.desc = desc;
@@ -146,7 +153,8 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
             build_surfaces(desc.geometry, medium.wavelengths_nm, scene.geometry_warnings);
     append(scene.warnings, scene.geometry_warnings);
     for (const LampDesc& lamp : desc.lamps)
-        scene.lamps.emplace_back(lamp, desc.camera.world_from_camera, medium.band_count());
+        scene.lamps.push_back(
+            make_lamp(lamp, desc.camera.world_from_camera, medium.wavelengths_nm, scene.warnings));
     warn_of_lamps_at_the_camera(scene);
     scene.slabs = place_slabs(desc.render.planes, *scene.camera, scene.lit());
     return scene;

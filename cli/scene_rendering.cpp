@@ -92,6 +92,8 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     setup.desc = scene.desc.water.forward_scatter;
     setup.plane = scatter_plane(*scene.camera);
     setup.faces = layer_faces(scene);
+    // Planes of camera z do not reach around a view that is wider than a hemisphere.
+    setup.shells = scene.desc.camera.distortion.model == DistortionDesc::Model::fisheye;
     setup.sensor = SensorModel(scene.desc);
     setup.first = {scene.slabs.boundary(0), scene.slabs.boundary(1)};
     const ConcentrationField* field = scene.field.get();

@@ -4,13 +4,16 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace uw {
 
 /// How far a run of several images is, and how long it will take.
 class SequenceClock {
   public:
-    explicit SequenceClock(std::size_t images) : images_(images) {}
+    /// `noun`: what messages call one of them.
+    explicit SequenceClock(std::size_t images, std::string noun = "frame")
+        : images_(images), noun_(std::move(noun)) {}
 
     void finish_image() { ++done_; }
     std::size_t images_done() const { return done_; }
@@ -20,7 +23,7 @@ class SequenceClock {
     /// "frame 3 of 10: render"; of a single image "render".
     std::string label(const std::string& pass) const {
         if (!is_sequence()) return pass;
-        return "frame " + std::to_string(done_ + 1) + " of " + std::to_string(images_) + ": " +
+        return noun_ + " " + std::to_string(done_ + 1) + " of " + std::to_string(images_) + ": " +
                pass;
     }
 
@@ -34,6 +37,7 @@ class SequenceClock {
 
   private:
     std::size_t images_;
+    std::string noun_;
     std::size_t done_ = 0;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

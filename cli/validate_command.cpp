@@ -5,13 +5,13 @@
 #include <ostream>
 
 #include "cli/console.h"
+#include "cli/scene_loading.h"
 #include "cli/stop_signal.h"
 #include "cli/validation_report.h"
 #include "cli/validation_suite.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/scene_reader.h"
 
 namespace uw {
 
@@ -24,7 +24,7 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     const ValidationSuite suite;
     std::vector<std::pair<std::string, SceneDesc>> scenes = suite.scenes();
     if (!a.scene.empty())
-        scenes = {{a.scene.filename().string(), read_scene(a.scene, a.overrides)}};
+        scenes = {{a.scene.filename().string(), load_scene(a.scene, a.overrides)}};
 
     ValidationOptions options;
     options.tolerance = a.tolerance;

@@ -6,6 +6,7 @@
 
 #include "camera/image_size.h"
 #include "cli/direct_sum.h"
+#include "core/error.h"
 #include "core/planes_integrator.h"
 #include "core/quadrature_integrator.h"
 #include "core/reference_integrator.h"
@@ -54,6 +55,10 @@ std::string planes_name(int count) {
 SceneDesc small_image(const SceneDesc& desc, int longest_side) {
     SceneDesc small = desc;
     CameraDesc& camera = small.camera;
+    if (camera.distortion.model == DistortionDesc::Model::fisheye)
+        throw InputError(
+            "validate: sums over slabs parallel to the image plane are part of it, which a fisheye "
+            "lens looks past; give --set camera.distortion='{k: [0, 0, 0]}'");
     const double scale =
         std::min(1.0, static_cast<double>(longest_side) / std::max(camera.width, camera.height));
     const int width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
@@ -64,7 +69,8 @@ SceneDesc small_image(const SceneDesc& desc, int longest_side) {
     small.render.samples = 1;
     // What is compared is the radiance in the water.
     small.render.output = RenderDesc::Output::radiance;
-    if (camera.port) camera.port->fresnel = camera.port->radiance_in_air = false;
+    if (camera.port)
+        std::visit([](auto& port) { port.fresnel = port.radiance_in_air = false; }, *camera.port);
     return small;
 }
 

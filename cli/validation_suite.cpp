@@ -80,9 +80,9 @@ SceneDesc through_a_port() {
     SceneDesc desc = bare_scene();
     desc.water = kopelevich();
     desc.camera.port = FlatPortDesc{};
-    desc.camera.port->normal = glm::normalize(Vector3(0.05, -0.03, 1));
-    desc.camera.port->distance = 0.02;
-    desc.camera.port->thickness = 0.04;
+    std::get<FlatPortDesc>(*desc.camera.port).normal = glm::normalize(Vector3(0.05, -0.03, 1));
+    std::get<FlatPortDesc>(*desc.camera.port).distance = 0.02;
+    std::get<FlatPortDesc>(*desc.camera.port).thickness = 0.04;
     desc.lamps = {lamp("beside", {1, -0.5, 0}, 50)};
     desc.water.forward_scatter = forward_scatter(ForwardScatterDesc::Shape::exponential);
     return desc;

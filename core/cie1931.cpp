@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace uw {
@@ -74,6 +75,19 @@ Xyz cie1931_matching_functions(double wavelength_nm) {
     const Xyz& a = k_table[i];
     const Xyz& b = k_table[i + 1];
     return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
+}
+
+Xyz mean_matching_functions(double begin_nm, double end_nm) {
+    // Midpoints of steps of a tenth of the table's: 1e-4 of the peak, even if it bends in between.
+    const int steps =
+        std::max(1, static_cast<int>(std::ceil(10 * (end_nm - begin_nm) / k_step_nm)));
+    Xyz sum;
+    for (int i = 0; i < steps; ++i) {
+        const Xyz at =
+            cie1931_matching_functions(begin_nm + (end_nm - begin_nm) * (i + 0.5) / steps);
+        sum = {sum.x + at.x, sum.y + at.y, sum.z + at.z};
+    }
+    return {sum.x / steps, sum.y / steps, sum.z / steps};
 }
 
 }  // namespace uw

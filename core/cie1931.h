@@ -14,4 +14,7 @@ struct Xyz {
 /// Source: CIE 015 tables as in colour-science/colour, colour/colorimetry/datasets/cmfs.py (BSD-3).
 Xyz cie1931_matching_functions(double wavelength_nm);
 
+/// Their means over an interval of wavelengths, `begin_nm` < `end_nm`.
+Xyz mean_matching_functions(double begin_nm, double end_nm);
+
 }  // namespace uw

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/band_intervals.h"
 #include "core/cie1931.h"
 
 namespace uw {
@@ -24,18 +25,19 @@ constexpr std::array<double, 3> k_white_xyz{0.3127 / 0.3290, 1, (1 - 0.3127 - 0.
 /// Mean response below which a band set is blind to X, Y or Z; the functions peak at 1.06 to 1.78.
 constexpr double k_blind = 1e-6;
 
-/// Width of the stretch of wavelengths that each band stands for, by the trapezoid rule [nm].
-std::vector<double> trapezoid_widths(std::span<const double> bands_nm) {
-    std::vector<std::size_t> order(bands_nm.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(order, {}, [&](std::size_t i) { return bands_nm[i]; });
-    std::vector<double> widths(bands_nm.size(), 0.0);
-    for (std::size_t k = 1; k < order.size(); ++k) {
-        const double half = 0.5 * (bands_nm[order[k]] - bands_nm[order[k - 1]]);
-        widths[order[k - 1]] += half;
-        widths[order[k]] += half;
+/// What X, Y and Z see of a radiance of 1 in each band: the matching functions' means over the
+/// bands' intervals, by the share of the bands' widths; zero in bands that are none apart.
+std::vector<std::array<double, 3>> tristimulus_of_bands(std::span<const double> bands_nm) {
+    const std::vector<BandInterval> intervals = band_intervals(bands_nm);
+    const double mean_width = mean_band_width(intervals);
+    std::vector<std::array<double, 3>> xyz(bands_nm.size());
+    if (!(mean_width > 0)) return xyz;
+    for (std::size_t i = 0; i < xyz.size(); ++i) {
+        const Xyz mean = mean_matching_functions(intervals[i].begin, intervals[i].end);
+        const double share = intervals[i].width() / mean_width;
+        xyz[i] = {share * mean.x, share * mean.y, share * mean.z};
     }
-    return widths;
+    return xyz;
 }
 
 }  // namespace
@@ -56,38 +58,44 @@ BandColour::BandColour(std::span<const double> bands_nm) : bands_(bands_nm.size(
     } else if (bands_ == 1) {
         show_grey();
     } else {
-        show_cie1931(bands_nm);
+        show_cie1931(bands_nm, std::vector<double>(bands_, 1.0));
     }
+}
+
+BandColour::BandColour(std::span<const double> bands_nm, std::span<const double> white)
+    : bands_(bands_nm.size()) {
+    show_cie1931(bands_nm, white);
 }
 
 void BandColour::show_grey() {
     for (std::size_t i = 0; i < bands_; ++i) rgb_of_band_[i].fill(1 / static_cast<double>(bands_));
 }
 
-void BandColour::show_cie1931(std::span<const double> bands_nm) {
-    const std::vector<double> widths = trapezoid_widths(bands_nm);
-    std::vector<std::array<double, 3>> xyz_of_band(bands_);
-    std::array<double, 3> equal_energy{};
+void BandColour::show_cie1931(std::span<const double> bands_nm, std::span<const double> white) {
+    const std::vector<std::array<double, 3>> xyz_of_band = tristimulus_of_bands(bands_nm);
+    std::array<double, 3> equal_values{}, white_values{};
     for (std::size_t i = 0; i < bands_; ++i) {
-        const Xyz response = cie1931_matching_functions(bands_nm[i]);
-        xyz_of_band[i] = {widths[i] * response.x, widths[i] * response.y, widths[i] * response.z};
-        for (std::size_t c = 0; c < 3; ++c) equal_energy[c] += xyz_of_band[i][c];
+        for (std::size_t c = 0; c < 3; ++c) {
+            equal_values[c] += xyz_of_band[i][c];
+            if (!white.empty()) white_values[c] += white[i] * xyz_of_band[i][c];
+        }
     }
-    const double range = std::accumulate(widths.begin(), widths.end(), 0.0);
-    if (!(*std::ranges::min_element(equal_energy) > k_blind * range)) {
+    const std::array<double, 3>& seen = white.empty() ? equal_values : white_values;
+    if (!(*std::ranges::min_element(seen) > k_blind * static_cast<double>(bands_))) {
         show_grey();
         warning_ =
             "water.bands: no colour can be made of these wavelengths; shown grey, the mean "
             "of the bands (add bands between 400 and 650 nm for colour)";
         return;
     }
-    for (std::size_t i = 0; i < bands_; ++i) {
-        for (std::size_t row = 0; row < 3; ++row) {
-            for (std::size_t c = 0; c < 3; ++c) {
-                rgb_of_band_[i][row] +=
-                    k_rgb_from_xyz[row][c] * k_white_xyz[c] / equal_energy[c] * xyz_of_band[i][c];
-            }
-        }
+    for (std::size_t c = 0; c < 3; ++c) {
+        // Equal values have Y = 1, whatever is white.
+        const double scale =
+            white.empty() ? 1 / equal_values[1]
+                          : k_white_xyz[c] * white_values[1] / white_values[c] / equal_values[1];
+        for (std::size_t i = 0; i < bands_; ++i)
+            for (std::size_t row = 0; row < 3; ++row)
+                rgb_of_band_[i][row] += k_rgb_from_xyz[row][c] * scale * xyz_of_band[i][c];
     }
 }
 

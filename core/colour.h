@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/bands.h"
 
@@ -22,15 +25,24 @@ double srgb_encode(double linear);
 /// - Three bands are R, G and B themselves, unchanged.
 /// - One band is grey.
 /// - Any other number goes through CIE 1931: each band stands for the wavelengths around it
-///   (trapezoid rule over the sorted bands); X, Y and Z are each scaled so that equal energy in
-///   all bands is the white of sRGB (D65), then turned into linear sRGB. Bands may come in any
-///   order. Colours outside the gamut have negative components, which are kept.
+///   (core/band_intervals.h), in which its radiance is even; X, Y and Z are each scaled so that
+///   equal values in all bands are the white of sRGB (D65), then turned into linear sRGB. Bands may
+///   come in any order. Colours outside the gamut have negative components, which are kept.
 ///   Where the bands see nothing of X, Y or Z (all in the infrared, say) there is no white to
 ///   balance: the image is grey then, the mean of the bands, and `warning` says so.
 class BandColour {
   public:
     /// `bands_nm`: 1 to k_max_bands wavelengths.
     explicit BandColour(std::span<const double> bands_nm);
+
+    /// CIE 1931 for any number of bands. `white`: the light that is shown white, per band; empty:
+    /// none is, X, Y and Z are those of the light itself. Y is that of equal values in all bands.
+    BandColour(std::span<const double> bands_nm, std::span<const double> white);
+
+    /// By another response: `response[i]` is what R, G and B see of a radiance of 1 in band i.
+    explicit BandColour(std::vector<LinearRgb> response) : bands_(response.size()), rgb_of_band_{} {
+        std::copy(response.begin(), response.end(), rgb_of_band_.begin());
+    }
 
     /// Reads the first `bands` values of `radiance`.
     LinearRgb operator()(const Spectrum& radiance) const;
@@ -40,7 +52,7 @@ class BandColour {
 
   private:
     void show_grey();
-    void show_cie1931(std::span<const double> bands_nm);
+    void show_cie1931(std::span<const double> bands_nm, std::span<const double> white);
 
     std::size_t bands_;
     std::array<LinearRgb, k_max_bands> rgb_of_band_{};

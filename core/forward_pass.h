@@ -20,8 +20,9 @@ struct ForwardScatterSetup {
     ScatterPlane plane;       // the whole image
     /// Camera z of the faces of the layers that the water is split into [m], ascending.
     std::vector<double> faces;
-    int cells = 1;   // WaterLayers
-    Interval first;  // camera z of the water of `backscatter_first`; its ends are faces
+    bool shells = false;  // `faces` and `first` are distances along water rays instead
+    int cells = 1;        // WaterLayers
+    Interval first;       // camera z of the water of `backscatter_first`; its ends are faces
     LampPaths::PointColumn lamp_column;
     SensorModel sensor;  // the renderer's
 };

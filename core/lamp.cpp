@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <utility>
 
 #include "core/affine.h"
 
@@ -50,6 +52,33 @@ void append_cone_crossings(const Ray& ray, const Point3& apex, const Vector3& ax
     if (q != 0) append(c / q);
 }
 
+void append_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& normal,
+                           std::vector<double>& s) {
+    const double root = -glm::dot(ray.origin - apex, normal) / glm::dot(ray.direction, normal);
+    if (std::isfinite(root) && root > 0) s.push_back(root);
+}
+
+// Appends where `ray` crosses the half of the plane across `normal` at `apex` that lies on the side
+// of `side`.
+void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& side,
+                                const Vector3& normal, std::vector<double>& s) {
+    const double root = -glm::dot(ray.origin - apex, normal) / glm::dot(ray.direction, normal);
+    if (std::isfinite(root) && root > 0 && glm::dot(ray.at(root) - apex, side) >= 0)
+        s.push_back(root);
+}
+
+// Appends where the angle to `axis`, seen from `apex`, is least or greatest: the azimuth changes
+// fastest there, and a profile with a tip on its axis bends.
+void append_nearest_to_axis(const Ray& ray, const Point3& apex, const Vector3& axis,
+                            std::vector<double>& s) {
+    const Vector3 o = ray.origin - apex;
+    const double da = glm::dot(ray.direction, axis), oa = glm::dot(o, axis);
+    const double od = glm::dot(o, ray.direction);
+    // d/ds (x.a / |x|) = 0 with x = o + s d: linear in s.
+    const double root = (da * glm::dot(o, o) - oa * od) / (oa - da * od);
+    if (std::isfinite(root) && root > 0) s.push_back(root);
+}
+
 }  // namespace
 
 DirectionCone DirectionCone::widened(double angle) const {
@@ -64,28 +93,26 @@ bool DirectionCone::includes(const DirectionCone& other) const {
     return apart + std::acos(other.cosine) <= std::acos(cosine) + 1e-12;
 }
 
-Lamp::Lamp(const LampDesc& desc, const Affine& world_from_camera, int band_count)
-    : name_(desc.name),
-      position_(desc.fixed_to_camera ? world_from_camera * desc.position : desc.position),
-      axis_(desc.fixed_to_camera ? world_from_camera.apply_to_vector(desc.direction)
-                                 : desc.direction),
-      profile_(desc.profile) {
-    axis_ = glm::normalize(axis_);
-    if (profile_.type == LampProfileDesc::Type::spot) {
-        full_angle_ = glm::radians(std::max(0.0, 0.5 * (profile_.beam - profile_.edge)));
-        dark_angle_ = glm::radians(std::min(180.0, 0.5 * (profile_.beam + profile_.edge)));
-        cos_full_ = std::cos(full_angle_);
-        cos_dark_ = std::cos(dark_angle_);
-        cones_.push_back(cos_full_);
-        // Within the edge as well: a ray that grazes the beam sees a narrow bump of it.
-        if (cos_dark_ != cos_full_)
-            for (const double part : {0.25, 0.5, 0.75, 1.0})
-                cones_.push_back(std::cos(full_angle_ + part * (dark_angle_ - full_angle_)));
-    } else if (profile_.type == LampProfileDesc::Type::cosine) {
-        exponent_ = std::log(0.5) / std::log(std::cos(glm::radians(0.5 * profile_.fwhm)));
-        // A cosine beam is smooth but may be narrow: cones of equal intensity follow it.
-        for (const double level : {0.95, 0.75, 0.5, 0.25, 0.1, 0.03, 0.003, 1e-4})
-            cones_.push_back(std::pow(level, 1 / exponent_));
+Lamp::Lamp(const LampDesc& desc, const Affine& world_from_camera, int band_count,
+           std::shared_ptr<const PhotometricWeb> web)
+    : name_(desc.name), profile_(desc.profile), web_(std::move(web)) {
+    const Affine& world_from_frame =
+        desc.fixed_to_camera ? world_from_camera : desc.world_from_mount;
+    position_ = world_from_frame * desc.position;
+    axis_ = glm::normalize(world_from_frame.apply_to_vector(desc.direction));
+    switch (profile_.type) {
+        case LampProfileDesc::Type::isotropic:
+            break;
+        case LampProfileDesc::Type::spot:
+            place_spot();
+            break;
+        case LampProfileDesc::Type::cosine:
+            place_cosine();
+            break;
+        case LampProfileDesc::Type::ies:
+            if (!web_) throw std::logic_error("an IES lamp without its photometry");
+            place_web(world_from_frame, desc.direction);
+            break;
     }
     const double per_watt = desc.power ? 1.0 / beam_solid_angle() : 1.0;
     const PerBand& values = desc.power ? *desc.power : *desc.intensity;
@@ -95,15 +122,66 @@ Lamp::Lamp(const LampDesc& desc, const Affine& world_from_camera, int band_count
     }
 }
 
+void Lamp::place_spot() {
+    full_angle_ = glm::radians(std::max(0.0, 0.5 * (profile_.beam - profile_.edge)));
+    dark_angle_ = glm::radians(std::min(180.0, 0.5 * (profile_.beam + profile_.edge)));
+    cos_full_ = std::cos(full_angle_);
+    cos_dark_ = std::cos(dark_angle_);
+    cones_.push_back(cos_full_);
+    // Within the edge as well: a ray that grazes the beam sees a narrow bump of it.
+    if (cos_dark_ != cos_full_)
+        for (const double part : {0.25, 0.5, 0.75, 1.0})
+            cones_.push_back(std::cos(full_angle_ + part * (dark_angle_ - full_angle_)));
+}
+
+void Lamp::place_cosine() {
+    exponent_ = std::log(0.5) / std::log(std::cos(glm::radians(0.5 * profile_.fwhm)));
+    // A cosine beam is smooth but may be narrow: cones of equal intensity follow it.
+    for (const double level : {0.95, 0.75, 0.5, 0.25, 0.1, 0.03, 0.003, 1e-4})
+        cones_.push_back(std::pow(level, 1 / exponent_));
+    breaks_at_equator_ = true;
+}
+
+void Lamp::place_web(const Affine& world_from_frame, const Vector3& direction) {
+    // Azimuth 0 lies towards the frame's x, seen along the lamp's direction, then 90 degrees
+    // anticlockwise of it seen from behind the lamp as LM-63 has it: zenith, the other end of the
+    // axis, is z of a right-handed system.
+    const Vector3 x(1, 0, 0), y(0, 1, 0);
+    const Vector3& reference = glm::length(glm::cross(direction, x)) > 1e-6 ? x : y;
+    const Vector3 towards = glm::normalize(reference - glm::dot(reference, direction) * direction);
+    const Vector3 across = glm::cross(-direction, towards);
+    const double turn = glm::radians(profile_.rotate), tilt = glm::radians(profile_.tilt);
+    const Vector3 turned = std::cos(turn) * towards + std::sin(turn) * across;
+    axis_ = glm::normalize(
+        world_from_frame.apply_to_vector(std::cos(tilt) * direction + std::sin(tilt) * turned));
+    zero_ = glm::normalize(
+        world_from_frame.apply_to_vector(std::cos(tilt) * turned - std::sin(tilt) * direction));
+    quarter_ = glm::cross(-axis_, zero_);
+    constexpr double k_flat = 1e-6;  // a cone this near to 90 degrees is a plane
+    cos_dark_ = std::cos(web_->dark_angle());
+    if (std::abs(cos_dark_) < k_flat) cos_dark_ = -1e-3;
+    for (const double azimuth : web_->azimuth_breaks())
+        half_planes_.push_back(std::cos(azimuth) * zero_ + std::sin(azimuth) * quarter_);
+    for (const double angle : web_->polar_breaks()) {
+        const double cosine = std::cos(angle);
+        if (std::abs(cosine) < k_flat)
+            breaks_at_equator_ = true;
+        else if (std::abs(cosine) < 1)
+            cones_.push_back(cosine);
+    }
+}
+
 double Lamp::beam_solid_angle() const {
     if (profile_.type == LampProfileDesc::Type::isotropic) return 4.0 * std::numbers::pi;
     if (profile_.type == LampProfileDesc::Type::cosine)
         return 2.0 * std::numbers::pi / (exponent_ + 1.0);
+    if (web_) return web_->flux() / web_->peak();
     return 2.0 * std::numbers::pi * (1.0 - cos_full_) + edge_solid_angle(full_angle_, dark_angle_);
 }
 
 double Lamp::relative_intensity(const Vector3& v) const {
     if (profile_.type == LampProfileDesc::Type::isotropic) return 1.0;
+    if (profile_.type == LampProfileDesc::Type::ies) return web_intensity(v);
     const double cosine = glm::dot(v, axis_) / glm::length(v);
     if (profile_.type == LampProfileDesc::Type::cosine)
         return cosine <= 0 ? 0.0 : std::pow(cosine, exponent_);
@@ -113,9 +191,17 @@ double Lamp::relative_intensity(const Vector3& v) const {
     return smoothstep((dark_angle_ - angle) / (dark_angle_ - full_angle_));
 }
 
+double Lamp::web_intensity(const Vector3& v) const {
+    const double x = glm::dot(v, zero_), y = glm::dot(v, quarter_), along = glm::dot(v, axis_);
+    const double polar = std::atan2(std::sqrt(x * x + y * y), along);
+    const double azimuth = web_->is_rotational() ? 0.0 : std::atan2(y, x);
+    return web_->candelas(polar, azimuth) / web_->peak();
+}
+
 Interval Lamp::beam(const Ray& ray, const Interval& stretch) const {
     const Interval none{stretch.begin, stretch.begin};
-    if (!(stretch.length() > 0) || profile_.type != LampProfileDesc::Type::spot) return stretch;
+    const bool has_beam = profile_.type == LampProfileDesc::Type::spot || (web_ && cos_dark_ > -1);
+    if (!(stretch.length() > 0) || !has_beam) return stretch;
     thread_local std::vector<double> cuts;
     cuts.clear();
     append_cone_crossings(ray, position_, axis_, cos_dark_, cuts);
@@ -136,10 +222,11 @@ Interval Lamp::beam(const Ray& ray, const Interval& stretch) const {
 
 void Lamp::append_profile_breaks(const Ray& ray, std::vector<double>& s) const {
     for (const double cosine : cones_) append_cone_crossings(ray, position_, axis_, cosine, s);
-    if (profile_.type != LampProfileDesc::Type::cosine) return;
-    const double along = glm::dot(ray.direction, axis_);
-    const double root = -glm::dot(ray.origin - position_, axis_) / along;
-    if (std::isfinite(root) && root > 0) s.push_back(root);
+    if (breaks_at_equator_) append_plane_crossing(ray, position_, axis_, s);
+    if (!web_) return;
+    append_nearest_to_axis(ray, position_, axis_, s);
+    for (const Vector3& side : half_planes_)
+        append_half_plane_crossing(ray, position_, side, glm::cross(axis_, side), s);
 }
 
 }  // namespace uw

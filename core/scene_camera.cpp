@@ -1,27 +1,34 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
+#include "core/camera_values.h"
 #include "core/config_map.h"
 #include "core/scene_sections.h"
 
 namespace uw {
 namespace {
 
-constexpr int k_longest_side = 32768;
-constexpr long long k_most_pixels = 1LL << 28;
+/// Where a fisheye shows the angle `theta` [rad], in units of the focal length.
+double fisheye_radius(double theta, const DistortionDesc& distortion) {
+    double sum = 0;
+    for (std::size_t i = 4; i-- > 0;) sum = (sum + distortion.k[i]) * theta * theta;
+    return theta * (1 + sum);
+}
 
-void read_resolution(const ConfigValue& value, CameraDesc& camera) {
-    constexpr auto k_mend = "give [width, height] in pixels";
-    const std::vector<ConfigValue> sides = value.list_of(2, k_mend);
-    camera.width = sides[0].integer(1, k_longest_side, k_mend);
-    camera.height = sides[1].integer(1, k_longest_side, k_mend);
-    const long long pixels = static_cast<long long>(camera.width) * camera.height;
-    if (pixels > k_most_pixels) {
-        value.fail(fmt::format("{} x {} are more than {} pixels; give a smaller image",
-                               camera.width, camera.height, k_most_pixels));
+/// Whether all angles up to `theta` are shown, each farther out than those before.
+bool grows_to(double theta, const DistortionDesc& distortion) {
+    constexpr int k_steps = 1000;
+    double last = 0;
+    for (int i = 1; i <= k_steps; ++i) {
+        const double here = fisheye_radius(theta * i / k_steps, distortion);
+        if (!(here > last)) return false;
+        last = here;
     }
+    return true;
 }
 
 IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camera) {
@@ -31,9 +38,19 @@ IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camer
     intrinsics.cy = camera.height / 2.0;
     if (const auto fov = map.find("fov_x")) {
         map.finish("intrinsics with 'fov_x'");
-        const double degrees = fov->between(0, 180, "give the horizontal field of view in degrees");
+        constexpr auto k_mend = "give the horizontal field of view in degrees";
+        const bool fisheye = camera.distortion.model == DistortionDesc::Model::fisheye;
+        const double degrees =
+            fisheye ? fov->within(1e-3, 360, k_mend) : fov->between(0, 180, k_mend);
         const double half = degrees / 2 * std::numbers::pi / 180;
-        intrinsics.fx = intrinsics.fy = camera.width / 2.0 / std::tan(half);
+        const double edge = fisheye ? fisheye_radius(half, camera.distortion) : std::tan(half);
+        if (fisheye && !grows_to(half, camera.distortion)) {
+            fov->fail(
+                fmt::format("the distortion folds back before {} degrees off the axis; check "
+                            "distortion.k, or give fx in pixels",
+                            degrees / 2));
+        }
+        intrinsics.fx = intrinsics.fy = camera.width / 2.0 / edge;
         return intrinsics;
     }
     constexpr auto k_focal = "give the focal length in pixels";
@@ -46,27 +63,40 @@ IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camer
     return intrinsics;
 }
 
+/// Numbers into the first places of `places`.
+void read_coefficients(const ConfigValue& value, std::size_t least, std::string_view mend,
+                       std::span<double> places) {
+    const std::vector<ConfigValue> numbers = value.list(mend);
+    if (numbers.size() < least || numbers.size() > places.size()) {
+        const std::string count = least == places.size()
+                                      ? fmt::format("{}", least)
+                                      : fmt::format("{} to {}", least, places.size());
+        value.fail(fmt::format("expected {} numbers, found {}; {}", count, numbers.size(), mend));
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) places[i] = numbers[i].number(mend);
+}
+
 DistortionDesc read_distortion(const ConfigValue& value) {
     ConfigMap map(value, {"model", "k", "p", "k1", "k2", "k3", "k4"},
                   "write {model: brown-conrady, k: [0, 0, 0], p: [0, 0]}");
-    enum class Model { brown_conrady, fisheye };
+    using Model = DistortionDesc::Model;
     constexpr std::array<std::pair<std::string_view, Model>, 2> k_models{
         {{"brown-conrady", Model::brown_conrady}, {"fisheye", Model::fisheye}}};
-    if (const auto model = map.find("model")) {
-        if (model->choice(k_models) == Model::fisheye) {
-            model->fail("'fisheye' is not supported yet; use brown-conrady");
-        }
-    }
     DistortionDesc distortion;
-    if (const auto k = map.find("k")) {
-        constexpr auto k_mend = "give 3 to 6 numbers: k1, k2, k3 and, if rational, k4, k5, k6";
-        const std::vector<ConfigValue> numbers = k->list(k_mend);
-        if (numbers.size() < 3 || numbers.size() > distortion.k.size()) {
-            k->fail(fmt::format("expected 3 to 6 numbers, found {}; {}", numbers.size(), k_mend));
-        }
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-            distortion.k[i] = numbers[i].number(k_mend);
-        }
+    if (const auto model = map.find("model")) distortion.model = model->choice(k_models);
+    const auto k = map.find("k");
+    if (distortion.model == Model::fisheye) {
+        constexpr auto k_mend = "give k1, k2, k3, k4";
+        if (k) read_coefficients(*k, 4, k_mend, std::span(distortion.k).first(4));
+        constexpr std::array<std::string_view, 4> k_names{"k1", "k2", "k3", "k4"};
+        for (std::size_t i = 0; i < k_names.size() && !k; ++i)
+            if (const auto entry = map.find(k_names[i])) distortion.k[i] = entry->number(k_mend);
+        map.finish("model 'fisheye' (write k: [k1, k2, k3, k4])");
+        return distortion;
+    }
+    if (k) {
+        read_coefficients(*k, 3, "give 3 to 6 numbers: k1, k2, k3 and, if rational, k4, k5, k6",
+                          distortion.k);
     }
     if (const auto p = map.find("p")) {
         constexpr auto k_mend = "give two numbers: p1, p2";
@@ -97,60 +127,20 @@ LensDesc read_lens(const ConfigValue& value) {
     return lens;
 }
 
-FlatPortDesc read_port(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value,
-                  {"type", "normal", "distance", "thickness", "n_air", "n_glass", "n_water",
-                   "fresnel", "radiance_in", "center", "radius"},
-                  "write {type: flat, distance: 0.02, thickness: 0.01}");
-    enum class Type { flat, dome };
-    constexpr std::array<std::pair<std::string_view, Type>, 2> k_types{
-        {{"flat", Type::flat}, {"dome", Type::dome}}};
-    if (const auto type = map.find("type")) {
-        if (type->choice(k_types) == Type::dome) {
-            type->fail("'dome' is not supported yet; use a flat port, or none");
-        }
+/// A file's name, or {file, camera}.
+CalibrationDesc read_calibration_name(const ConfigValue& value, const SceneContext& context) {
+    CalibrationDesc calibration;
+    calibration.where = value.location();
+    if (value.node().kind == ConfigNode::Kind::scalar) {
+        calibration.file = read_existing_file(value, context);
+        return calibration;
     }
-    FlatPortDesc port;
-    if (const auto normal = map.find("normal")) {
-        port.normal =
-            normal->direction("give the glass's normal in camera axes, towards the water");
-        if (port.normal.z <= 0) {
-            normal->fail(
-                "must point away from the camera (z > 0), found z <= 0; camera axes are x "
-                "right, y down, z forward");
-        }
-    }
-    const auto read_length = [&](std::string_view key, double& length) {
-        const auto entry = map.find(key);
-        if (!entry) return;
-        length = entry->non_negative("give a length in metres");
-        if (length > 1) {
-            context.warn(*entry,
-                         fmt::format("{} m is a lot for a port; lengths are in metres", length));
-        }
-    };
-    read_length("distance", port.distance);
-    read_length("thickness", port.thickness);
-    const auto read_index = [&](std::string_view key, double& index) {
-        if (const auto entry = map.find(key)) {
-            index = entry->within(1, 3, "give a refractive index, such as 1.0, 1.49 or 1.334");
-        }
-    };
-    read_index("n_air", port.n_air);
-    read_index("n_glass", port.n_glass);
-    read_index("n_water", port.n_water);
-    if (const auto fresnel = map.find("fresnel")) {
-        constexpr std::array<std::pair<std::string_view, bool>, 2> k_switch{
-            {{"true", true}, {"false", false}}};
-        port.fresnel = fresnel->choice(k_switch);
-    }
-    if (const auto medium = map.find("radiance_in")) {
-        constexpr std::array<std::pair<std::string_view, bool>, 2> k_media{
-            {{"water", false}, {"air", true}}};
-        port.radiance_in_air = medium->choice(k_media);
-    }
-    map.finish("type 'flat'");
-    return port;
+    constexpr auto k_mend = "write calibration: rig.yaml, or {file: rig.yaml, camera: cam0}";
+    ConfigMap map(value, {"file", "camera"}, k_mend);
+    calibration.file = read_existing_file(map.require("file", k_mend), context);
+    if (const auto camera = map.find("camera"))
+        calibration.camera = camera->text("give the camera's name in the file, such as cam0");
+    return calibration;
 }
 
 }  // namespace
@@ -159,18 +149,23 @@ CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
     ConfigMap map(value,
                   {"resolution", "intrinsics", "distortion", "port", "pose", "lens", "calibration"},
                   "write {resolution: [1920, 1080], intrinsics: {fov_x: 60}}");
-    if (const auto calibration = map.find("calibration")) {
-        calibration->fail(
-            "calibration files are not supported yet; write their numbers as "
-            "intrinsics, distortion and port");
-    }
     CameraDesc camera;
-    read_resolution(map.require("resolution", "give resolution: [width, height] in pixels"),
-                    camera);
-    camera.intrinsics = read_intrinsics(
-        map.require("intrinsics", "give intrinsics: {fov_x: 60}, or fx, fy, cx, cy in pixels"),
-        camera);
-    if (const auto entry = map.find("distortion")) camera.distortion = read_distortion(*entry);
+    if (const auto calibration = map.find("calibration")) {
+        camera.calibration = read_calibration_name(*calibration, context);
+        for (const std::string_view key : {"resolution", "intrinsics", "distortion"}) {
+            if (const auto entry = map.find(key))
+                entry->fail("comes from the calibration file; remove it here, or 'calibration'");
+        }
+    } else {
+        const ConfigValue resolution =
+            map.require("resolution", "give resolution: [width, height] in pixels");
+        const auto sides = resolution.list_of(2, "give [width, height] in pixels");
+        read_resolution(resolution, sides[0], sides[1], camera);
+        const ConfigValue intrinsics =
+            map.require("intrinsics", "give intrinsics: {fov_x: 60}, or fx, fy, cx, cy in pixels");
+        if (const auto entry = map.find("distortion")) camera.distortion = read_distortion(*entry);
+        camera.intrinsics = read_intrinsics(intrinsics, camera);
+    }
     if (const auto entry = map.find("port")) camera.port = read_port(*entry, context);
     if (const auto entry = map.find("lens")) camera.lens = read_lens(*entry);
     if (const auto entry = map.find("pose")) camera.world_from_camera = read_pose(*entry);

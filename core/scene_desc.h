@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/affine.h"
+#include "core/camera_desc.h"
 #include "core/vec.h"
 
 /// The scene file as inert data (docs/scene-file.md). Lengths in metres, angles in degrees,
@@ -16,41 +17,7 @@
 /// resolved against the scene file's folder. Per-band lists hold exactly one value per band.
 namespace uw {
 
-/// Where an entry stands in the scene file, for messages: "plume.yaml:14:7: volumes[0].file".
-using SourceLocation = std::string;
-
 using PerBand = std::vector<double>;
-
-struct IntrinsicsDesc {  // pixels; the image's corner is (0, 0)
-    double fx = 0, fy = 0, cx = 0, cy = 0;
-};
-
-struct DistortionDesc {  // Brown-Conrady, rational when k4..k6 are not 0
-    std::array<double, 6> k{};
-    std::array<double, 2> p{};
-};
-
-struct FlatPortDesc {         // camera frame
-    Vector3 normal{0, 0, 1};  // unit, z > 0
-    double distance = 0;      // camera centre to inner glass surface, along the normal
-    double thickness = 0;
-    double n_air = 1.0, n_glass = 1.49, n_water = 1.334;
-    bool fresnel = false;          // reflection losses at both surfaces
-    bool radiance_in_air = false;  // the camera's radiance is that in air, not in water
-};
-
-struct LensDesc {
-    double f_number = 0, focal_length = 0, transmission = 1;
-};
-
-struct CameraDesc {
-    int width = 0, height = 0;
-    IntrinsicsDesc intrinsics;
-    DistortionDesc distortion;
-    std::optional<FlatPortDesc> port;
-    std::optional<LensDesc> lens;
-    Affine world_from_camera;  // rigid; x right, y down, z forward
-};
 
 struct PhaseDesc {
     enum class Type { henyey_greenstein, fournier_forand, petzold, table, water };
@@ -148,11 +115,26 @@ struct GeometryDesc {
 };
 
 struct LampProfileDesc {
-    enum class Type { isotropic, spot, cosine };
+    enum class Type { isotropic, spot, cosine, ies };
     Type type = Type::isotropic;
-    double beam = 0;  // spot: full angle at half intensity
-    double edge = 0;  // spot: angle over which the intensity falls from full to none
-    double fwhm = 0;  // cosine: full angle at half intensity
+    double beam = 0;             // spot: full angle at half intensity
+    double edge = 0;             // spot: angle over which the intensity falls from full to none
+    double fwhm = 0;             // cosine: full angle at half intensity
+    std::filesystem::path file;  // ies
+    double rotate = 0;           // ies: about the lamp's direction
+    double tilt = 0;             // ies: then from it towards the luminaire's azimuth 0
+    SourceLocation where = "profile";  // ies
+};
+
+/// The light of a lamp over wavelength, up to a factor.
+struct LampSpectrumDesc {
+    enum class Type { flat, d65, blackbody, led, file };
+    Type type = Type::flat;
+    double temperature = 0;      // blackbody [K]
+    std::string name;            // led: of the CIE's illuminants, LED-B3
+    std::filesystem::path file;  // CSV of wavelength_nm and
+    std::string column;          // this column; empty: the only other one
+    SourceLocation where;
 };
 
 struct LampDesc {
@@ -160,11 +142,18 @@ struct LampDesc {
     Point3 position;
     Vector3 direction{0, 0, 1};  // unit
     LampProfileDesc profile;
-    std::optional<PerBand> intensity;  // W/sr on the axis; exactly one of the two is set
-    std::optional<PerBand> power;      // W
+    // Exactly one is set; none for a profile of type ies: the file's candelas.
+    std::optional<PerBand> intensity;  // W/sr on the axis; with a spectrum one value for all of it
+    std::optional<PerBand> power;      // W; likewise
+    std::optional<double> lumens;      // luminous flux; with a spectrum
+    std::optional<LampSpectrumDesc> spectrum;
     bool fixed_to_camera = true;
+    Affine world_from_mount;  // where it is not fixed to the camera: of its axes, rigid
     SourceLocation where;
 };
+
+/// The files that a lamp is read from.
+std::vector<std::filesystem::path> files_of(const LampDesc& lamp);
 
 /// Slabs of water parallel to the image plane, in camera z [m]: what the planes integrator sums
 /// over, and the first of them is the layer `backscatter_first`.
@@ -174,6 +163,18 @@ struct PlanesDesc {
     SourceLocation where;
 };
 
+/// How bands become R G B.
+struct ColourDesc {
+    /// Automatic: three bands are R, G and B themselves, others what CIE 1931 makes of them.
+    enum class Response { automatic, bands, cie, camera };
+    Response response = Response::automatic;
+    std::filesystem::path file;  // camera: CSV of wavelength_nm,r,g,b
+    /// The light that is shown white, R = G = B; flat if it is left out. `raw`: no such light.
+    std::optional<LampSpectrumDesc> white;
+    bool raw = false;
+    SourceLocation where = "render.response";
+};
+
 struct RenderDesc {
     enum class Integrator { volume, planes, reference };
     Integrator integrator = Integrator::volume;
@@ -181,6 +182,7 @@ struct RenderDesc {
     enum class Output { radiance, sensor_irradiance, paper };
     Output output = Output::radiance;  // all but radiance need camera.lens
     SourceLocation output_where;
+    ColourDesc colour;
     int samples = 4;
     /// A draft is for looking: within 3 % of the final image, at a fraction of its cost. Exact is
     /// for comparison: every pixel's water has a ray of its own (WaterLattice).
@@ -200,9 +202,17 @@ inline constexpr std::array<std::pair<std::string_view, RenderDesc::Integrator>,
                         {"planes", RenderDesc::Integrator::planes},
                         {"reference", RenderDesc::Integrator::reference}}};
 
+/// One camera of a rig.
+struct RigCameraDesc {
+    std::string name;
+    CameraDesc camera;
+};
+
 struct SceneDesc {
     std::filesystem::path file;
-    CameraDesc camera;
+    CameraDesc camera;                   // of a rig the one that is rendered: at first its first
+    std::string camera_name;             // empty: the scene has one camera, no rig
+    std::vector<RigCameraDesc> cameras;  // of a rig; else none
     WaterDesc water;
     std::vector<VolumeDesc> volumes;
     std::vector<GeometryDesc> geometry;

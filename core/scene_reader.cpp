@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <system_error>
@@ -69,8 +70,9 @@ PlanesDesc read_planes(const ConfigValue& value) {
     return planes;
 }
 
-RenderDesc read_render(const ConfigValue& value) {
-    ConfigMap map(value, {"integrator", "output", "planes", "samples"}, "write {samples: 4}");
+RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
+    ConfigMap map(value, {"integrator", "output", "planes", "samples", "response", "white"},
+                  "write {samples: 4}");
     RenderDesc render;
     render.planes.where = value.location() + ".planes";
     if (const auto entry = map.find("integrator"))
@@ -87,8 +89,40 @@ RenderDesc read_render(const ConfigValue& value) {
     if (const auto entry = map.find("samples")) {
         render.samples = entry->integer(1, 4096, "give the samples per pixel");
     }
+    render.colour = read_colour(map, context);
     return render;
 }
+
+namespace {
+
+void read_camera_or_rig(ConfigMap& map, SceneContext& context, SceneDesc& desc) {
+    constexpr auto k_mend = "give camera: {resolution: [W, H], intrinsics: {fov_x: 60}}";
+    const auto cameras = map.find("cameras");
+    const auto rig = map.find("rig");
+    if (!cameras) {
+        if (rig) rig->fail("a rig has named cameras; give them as a list, cameras, not camera");
+        desc.camera = read_camera(map.require("camera", k_mend), context);
+        return;
+    }
+    if (const auto camera = map.find("camera"))
+        camera->fail("a scene has either camera or cameras; remove one");
+    desc.cameras = read_cameras(*cameras, rig, context);
+    desc.camera = desc.cameras.front().camera;
+    desc.camera_name = desc.cameras.front().name;
+}
+
+void check_lenses(const SceneDesc& desc) {
+    if (desc.render.output == RenderDesc::Output::radiance) return;
+    const bool all = desc.camera.lens && std::ranges::all_of(desc.cameras, [](const auto& entry) {
+                         return entry.camera.lens.has_value();
+                     });
+    if (!all)
+        throw InputError(desc.render.output_where +
+                         ": needs the camera's lens; give camera.lens: {f_number: 2.8, "
+                         "focal_length: 0.0085}, or write output: radiance");
+}
+
+}  // namespace
 
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
     const std::string origin = printable(file.string(), 300);
@@ -97,28 +131,25 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
 
     const ConfigValue scene(root, "");
     check_version(scene);
-    ConfigMap map(scene, {"uwvdb", "camera", "water", "volumes", "geometry", "lamps", "render"},
-                  "a scene starts with 'uwvdb: 1'");
+    ConfigMap map(
+        scene,
+        {"uwvdb", "camera", "cameras", "rig", "water", "volumes", "geometry", "lamps", "render"},
+        "a scene starts with 'uwvdb: 1'");
     map.require("uwvdb", "a scene starts with 'uwvdb: 1'");
 
     SceneDesc desc;
     desc.file = file;
-    SceneContext context{file.parent_path(), desc.water.bands_nm.size(), &desc.warnings};
+    SceneContext context{file.parent_path(), desc.water.bands_nm.size(), &desc.warnings,
+                         std::nullopt};
     desc.water.where = scene.location();
     desc.render.planes.where = scene.location() + ": render.planes";
     if (const auto entry = map.find("water")) desc.water = read_water(*entry, context);
-    desc.camera = read_camera(
-        map.require("camera", "give camera: {resolution: [W, H], intrinsics: {fov_x: 60}}"),
-        context);
+    read_camera_or_rig(map, context, desc);
     if (const auto entry = map.find("volumes")) desc.volumes = read_volumes(*entry, context);
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
-    if (const auto entry = map.find("render")) desc.render = read_render(*entry);
-    if (desc.render.output != RenderDesc::Output::radiance && !desc.camera.lens) {
-        throw InputError(desc.render.output_where +
-                         ": needs the camera's lens; give camera.lens: {f_number: 2.8, "
-                         "focal_length: 0.0085}, or write output: radiance");
-    }
+    if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
+    check_lenses(desc);
     if (desc.lamps.empty()) {
         context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
     }
@@ -131,7 +162,7 @@ WaterDesc read_water_overrides(const std::vector<std::string>& overrides) {
     for (const std::string& text : overrides) apply_override(root, text);
     ConfigMap map(ConfigValue(root, ""), {"water"}, "without a scene only water can be set");
     std::vector<std::string> warnings;
-    SceneContext context{{}, 0, &warnings};
+    SceneContext context{{}, 0, &warnings, std::nullopt};
     WaterDesc water = read_water(map.require("water", "give water.bands"), context);
     water.where = "water";  // no file to point into
     return water;

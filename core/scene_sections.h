@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/config_value.h"
@@ -16,6 +18,11 @@ struct SceneContext {
     std::filesystem::path folder;        // of the scene file; file names are relative to it
     std::size_t band_count = 0;          // of water.bands, which is read first
     std::vector<std::string>* warnings;  // one line each
+    /// Of a scene with a rig, which is read before its lamps.
+    struct RigFrames {
+        Affine world_from_rig, world_from_camera;  // the first camera's
+    };
+    std::optional<RigFrames> rig;
 
     /// Adds the warning "<location>: <what>".
     void warn(const ConfigValue& value, const std::string& what) const {
@@ -24,6 +31,14 @@ struct SceneContext {
 };
 
 CameraDesc read_camera(const ConfigValue& value, const SceneContext& context);
+/// `cameras` and `rig`, also the frames that lamps of a rig are fixed to.
+std::vector<RigCameraDesc> read_cameras(const ConfigValue& value,
+                                        const std::optional<ConfigValue>& rig,
+                                        SceneContext& context);
+/// A name that becomes part of `of` ("a layer's name"): letters, digits, _ and - only.
+std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend);
+/// `camera.port`.
+PortDesc read_port(const ConfigValue& value, const SceneContext& context);
 /// `camera.pose` as world_from_camera.
 Affine read_pose(const ConfigValue& value);
 
@@ -34,7 +49,10 @@ PhaseDesc read_phase(const ConfigValue& value, const SceneContext& context);
 std::vector<VolumeDesc> read_volumes(const ConfigValue& value, const SceneContext& context);
 std::vector<GeometryDesc> read_geometry(const ConfigValue& value, const SceneContext& context);
 std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context);
-RenderDesc read_render(const ConfigValue& value);
+LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& context);
+/// `response` and `white` of `render`.
+ColourDesc read_colour(class ConfigMap& render, const SceneContext& context);
+RenderDesc read_render(const ConfigValue& value, const SceneContext& context);
 
 /// `transform: {scale, rotate, translate}` as translate * rotate * scale.
 Affine read_transform(const ConfigValue& value);

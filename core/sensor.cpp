@@ -17,8 +17,7 @@ SensorModel::SensorModel(const SceneDesc& desc) : output_(desc.render.output) {
 
 double SensorModel::pixel_factor(const LensRay& lens_ray, double range) const {
     if (output_ == RenderDesc::Output::radiance) return lens_ray.port_transmittance;
-    const double cosine_squared = lens_ray.cosine * lens_ray.cosine;
-    const double lens = std::numbers::pi / 4 * lens_.transmission * cosine_squared * cosine_squared;
+    const double lens = std::numbers::pi / 4 * lens_.transmission * lens_ray.falloff;
     const double through_port = lens_ray.port_transmittance * lens;
     if (output_ == RenderDesc::Output::paper) return through_port / lens_.f_number;
     return through_port / (lens_.f_number * lens_.f_number) *

@@ -43,7 +43,7 @@ View look(const RaySource& rays, const Surfaces& surfaces) {
             }
             any_enters = true;
             const RayDepth depth(camera_from_world, *ray);
-            view.near = std::min(view.near, depth.z(0));
+            view.near = std::min(view.near, std::max(0.0, depth.z(0)));
             const double surface = surfaces.hit_distance(*ray);
             view.open = view.open || surface > k_far;
             if (surface <= k_far) view.deepest = std::max(view.deepest, depth.z(surface));

@@ -27,12 +27,14 @@ struct WaterLayers::Cells {
 
 WaterLayers::WaterLayers(const LitScene& scene, const Integrator& integrator,
                          const LampPaths& paths, const Affine& world_from_camera,
-                         std::vector<double> faces, int cells, const SensorModel& sensor)
+                         std::vector<double> faces, bool shells, int cells,
+                         const SensorModel& sensor)
     : scene_(scene),
       integrator_(integrator),
       paths_(paths),
       camera_from_world_(world_from_camera.inverse()),
       faces_(std::move(faces)),
+      shells_(shells),
       cells_(cells),
       attenuation_(*scene.medium),
       sensor_(sensor) {}
@@ -60,7 +62,7 @@ void WaterLayers::place_cells(const Ray& ray, std::span<const double> ends,
     cells.ends.clear();
     cells.visible.clear();
     cells.layer.clear();
-    const RayDepth depth(camera_from_world_, ray);
+    const RayDepth depth = shells_ ? RayDepth::from_origin() : RayDepth(camera_from_world_, ray);
     if (depth.cosine() <= 0) return;
     const auto face = [&](std::size_t i) { return std::max(0.0, depth.distance(faces_[i])); };
     cells.begin = face(first);

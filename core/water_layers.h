@@ -60,15 +60,16 @@ struct LayerLight {
 /// Splits the in-scatter of camera rays into layers of water.
 class WaterLayers {
   public:
-    /// `faces`: camera z of the layers' faces [m], ascending. Inside a layer, the middle of its
-    /// light is found from `cells` parts of it. `sensor` says how `integrator` weights light by
-    /// distance. All references outlive this.
+    /// `faces`: camera z of the layers' faces [m], ascending; or, where the layers are `shells`,
+    /// their distances along the water rays, for views that planes do not reach around. Inside a
+    /// layer, the middle of its light is found from `cells` parts of it. `sensor` says how
+    /// `integrator` weights light by distance. All references outlive this.
     WaterLayers(const LitScene& scene, const Integrator& integrator, const LampPaths& paths,
-                const Affine& world_from_camera, std::vector<double> faces, int cells,
+                const Affine& world_from_camera, std::vector<double> faces, bool shells, int cells,
                 const SensorModel& sensor);
 
     std::size_t count() const { return faces_.size() - 1; }
-    /// Camera z in the middle of layer `i` [m].
+    /// Camera z, or distance, in the middle of layer `i` [m].
     double middle(std::size_t i) const { return 0.5 * (faces_[i] + faces_[i + 1]); }
     const AttenuationTable& attenuation() const { return attenuation_; }
 
@@ -93,6 +94,7 @@ class WaterLayers {
     const LampPaths& paths_;
     Affine camera_from_world_;
     std::vector<double> faces_;
+    bool shells_;
     int cells_;
     AttenuationTable attenuation_;
     SensorModel sensor_;

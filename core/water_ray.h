@@ -9,8 +9,9 @@ namespace uw {
 
 /// How light arrives at the lens.
 struct LensRay {
-    /// Of the angle to the optical axis, inside the housing (in the water without a port).
-    double cosine = 1;
+    /// The irradiance behind the lens relative to that on its axis, for equal radiance: cos^4 of
+    /// the angle to the optical axis, inside the housing, for a rectilinear lens.
+    double falloff = 1;
     /// What the port makes of the radiance in water; 1 unless the scene asks for it.
     double port_transmittance = 1;
 };

@@ -56,8 +56,10 @@ class TreeBuilder : public YAML::EventHandler {
     void OnDocumentStart(const YAML::Mark& mark) override {
         if (++documents_ > 1) {
             fail(mark,
-                 "a second document starts here; a scene is one document: remove this, or the "
-                 "'---' above it");
+                 fmt::format(
+                     "a second document starts here; a {} is one document: remove this, or the "
+                     "'---' above it",
+                     limits_.subject));
         }
     }
     void OnDocumentEnd() override {}
@@ -102,14 +104,14 @@ class TreeBuilder : public YAML::EventHandler {
     }
     void check_tag(const YAML::Mark& mark, const std::string& tag) const {
         if (tag.empty() || tag == "?" || tag == "!") return;
-        fail(mark,
-             fmt::format("the tag '{}' has no meaning in a scene; remove it", printable(tag)));
+        fail(mark, fmt::format("the tag '{}' has no meaning in a {}; remove it", printable(tag),
+                               limits_.subject));
     }
     void count(const YAML::Mark& mark, std::size_t nodes) {
         nodes_ += nodes;
         if (nodes_ <= limits_.nodes) return;
-        fail(mark, fmt::format("more than {} values (aliases count each time); this is no scene",
-                               limits_.nodes));
+        fail(mark, fmt::format("more than {} values (aliases count each time); this is no {}",
+                               limits_.nodes, limits_.subject));
     }
     ConfigNode make(ConfigNode::Kind kind, const YAML::Mark& mark) {
         count(mark, 1);
@@ -122,7 +124,8 @@ class TreeBuilder : public YAML::EventHandler {
               YAML::anchor_t anchor) {
         check_tag(mark, tag);
         if (open_.size() >= limits_.depth) {
-            fail(mark, fmt::format("nested more than {} deep; this is no scene", limits_.depth));
+            fail(mark, fmt::format("nested more than {} deep; this is no {}", limits_.depth,
+                                   limits_.subject));
         }
         open_.push_back({make(kind, mark), anchor, std::nullopt});
     }
@@ -137,9 +140,8 @@ class TreeBuilder : public YAML::EventHandler {
             nodes_ += weight(node);
             if (nodes_ > limits_.nodes) {
                 throw InputError(
-                    fmt::format("{}: more than {} values (anchors count twice); this "
-                                "is no scene",
-                                node.position.text(), limits_.nodes));
+                    fmt::format("{}: more than {} values (anchors count twice); this is no {}",
+                                node.position.text(), limits_.nodes, limits_.subject));
             }
             anchors_.insert_or_assign(anchor, node);
         }
@@ -201,25 +203,25 @@ void check_keys_unique(const ConfigNode& node, const std::string& path) {
 /// What the parser would need gigabytes or minutes for is turned away before it sees it.
 void check_text(std::string_view text, const Source& source, const YamlLimits& limits) {
     if (text.size() > limits.bytes) {
-        source.fail(0, 0, fmt::format("larger than {} bytes; this is no scene", limits.bytes));
+        source.fail(
+            0, 0, fmt::format("larger than {} bytes; this is no {}", limits.bytes, limits.subject));
     }
     const std::size_t bad = first_non_text(text);
     if (bad != text.size()) {
         const auto line = std::count(text.begin(), text.begin() + static_cast<long>(bad), '\n');
         source.fail(static_cast<int>(line), 0,
-                    fmt::format("not UTF-8 text (byte {}); a scene is a YAML text file saved as "
+                    fmt::format("not UTF-8 text (byte {}); a {} is a YAML text file saved as "
                                 "UTF-8",
-                                bad));
+                                bad, limits.subject));
     }
     constexpr std::string_view k_indicators = "[]{},:&*!\"'?";
     const auto indicators = std::count_if(text.begin(), text.end(), [&](char c) {
         return k_indicators.find(c) != std::string_view::npos;
     });
     if (static_cast<std::size_t>(indicators) > limits.indicators) {
-        source.fail(
-            0, 0,
-            fmt::format("more than {} brackets, commas, colons and quotes; this is no scene",
-                        limits.indicators));
+        source.fail(0, 0,
+                    fmt::format("more than {} brackets, commas, colons and quotes; this is no {}",
+                                limits.indicators, limits.subject));
     }
 }
 
@@ -256,7 +258,10 @@ ConfigNode parse_yaml(std::string_view text, const std::string& origin, const Ya
     const Source source{std::make_shared<const std::string>(origin), true};
     std::optional<ConfigNode> root = parse(text, source, limits);
     if (!root || root->kind == ConfigNode::Kind::null) {
-        source.fail(0, 0, "is empty; a scene starts with 'uwvdb: 1'");
+        source.fail(0, 0,
+                    fmt::format("is empty; a {} is a YAML file with content, and a scene starts "
+                                "with 'uwvdb: 1'",
+                                limits.subject));
     }
     return *std::move(root);
 }

@@ -14,6 +14,8 @@ struct YamlLimits {
     std::size_t indicators = 1000000;  // brackets, commas, colons, quotes and the like
     std::size_t nodes = 200000;        // after aliases are expanded
     std::size_t depth = 64;
+    /// What it is called in messages.
+    std::string_view subject = "scene";
 };
 
 /// Parses one YAML (or JSON) document. `origin` names it in messages and in the nodes' positions.

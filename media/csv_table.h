@@ -25,6 +25,8 @@ class CsvTable {
 
     const std::string& name() const { return name_; }
     std::size_t row_count() const { return rows_.size(); }
+    /// The names of the columns, in their order.
+    const std::vector<std::string>& columns() const { return columns_; }
 
     /// The cells of column `column` as text.
     std::vector<std::string> text(std::string_view column) const;

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "bench/support/generated_files.h"
+#include "cli/scene_loading.h"
 #include "core/error.h"
-#include "core/scene_reader.h"
 
 namespace uw::bench {
 namespace {
@@ -149,7 +149,7 @@ SceneDesc SceneFiles::read(const SceneCase& scene) const {
     out << yaml;
     out.close();
     if (!out) throw IoError(file.string() + ": cannot write");
-    return read_scene(file, {});
+    return load_scene(file, {});
 }
 
 std::vector<std::string> lamp_names(const SceneDesc& scene) {

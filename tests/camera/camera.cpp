@@ -20,8 +20,8 @@ CameraDesc pinhole() {
 CameraDesc behind_port() {
     CameraDesc desc = pinhole();
     desc.port = FlatPortDesc{};
-    desc.port->distance = 0.02;
-    desc.port->thickness = 0.04;
+    std::get<FlatPortDesc>(*desc.port).distance = 0.02;
+    std::get<FlatPortDesc>(*desc.port).thickness = 0.04;
     return desc;
 }
 
@@ -92,8 +92,9 @@ TEST(Camera, DistortionIsUndoneBeforeThePort) {
 
 TEST(Camera, PortOfEqualIndicesIsAPinhole) {
     CameraDesc desc = behind_port();
-    desc.port->normal = glm::normalize(Vector3(0.2, 0.1, 1));
-    desc.port->n_air = desc.port->n_glass = desc.port->n_water = 1.334;
+    std::get<FlatPortDesc>(*desc.port).normal = glm::normalize(Vector3(0.2, 0.1, 1));
+    std::get<FlatPortDesc>(*desc.port).n_air = std::get<FlatPortDesc>(*desc.port).n_glass =
+        std::get<FlatPortDesc>(*desc.port).n_water = 1.334;
     const Camera with_port(desc), without(pinhole());
     for (double x = 0.5; x < 640; x += 71) {
         const auto a = with_port.water_ray(x, 100.5), b = without.water_ray(x, 100.5);

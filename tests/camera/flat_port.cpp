@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "camera/refract.h"
+
 namespace uw {
 namespace {
 

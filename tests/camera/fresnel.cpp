@@ -121,12 +121,12 @@ TEST(LensRay, AngleInsideTheHousingAndTransmittance) {
     desc.height = 480;
     desc.intrinsics = {500, 500, 320, 240};
     desc.world_from_camera = Affine{};
-    EXPECT_EQ(Camera(desc).lens_ray(320, 240).cosine, 1);
-    EXPECT_NEAR(Camera(desc).lens_ray(820, 240).cosine, std::sqrt(0.5), k_rounding);
+    EXPECT_EQ(Camera(desc).lens_ray(320, 240).falloff, 1);
+    EXPECT_NEAR(Camera(desc).lens_ray(820, 240).falloff, 0.25, k_rounding);
     EXPECT_EQ(Camera(desc).lens_ray(820, 240).port_transmittance, 1);
     desc.port = glass();  // bends the ray in water, not in the housing
     const LensRay behind_glass = Camera(desc).lens_ray(820, 240);
-    EXPECT_NEAR(behind_glass.cosine, std::sqrt(0.5), k_rounding);
+    EXPECT_NEAR(behind_glass.falloff, 0.25, k_rounding);
     EXPECT_NEAR(behind_glass.port_transmittance,
                 FlatPort(glass()).transmittance(glm::normalize(Vector3(1, 0, 1))), k_rounding);
 }

@@ -84,13 +84,24 @@ TEST(Colour, EqualEnergyIsWhite) {
 }
 
 TEST(Colour, FollowsCie1931) {
-    // Table values of 450, 500 and 600 nm and of 550 nm, unequal steps, out of order.
-    const std::vector<double> bands{600, 450, 550, 500};
-    const std::array<double, 4> width{25, 25, 50, 50};  // half of the gaps beside each
-    const std::array<std::array<double, 3>, 4> cmf{{{1.0622, 0.631, 0.00080},
-                                                    {0.3362, 0.038, 1.77211},
-                                                    {0.4334499, 0.9949501, 0.008749999},
-                                                    {0.0049, 0.323, 0.272}}};
+    // Unequal steps, out of order; intervals from halfway to halfway, as far out as in at the ends.
+    const std::vector<double> bands{600, 450, 550, 480};
+    const std::array<std::array<int, 2>, 4> interval{
+        {{575, 625}, {435, 465}, {515, 575}, {465, 515}}};
+    std::array<double, 4> width{};
+    std::array<std::array<double, 3>, 4> cmf{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto [begin, end] = interval[i];
+        width[i] = end - begin;
+        // The trapezoid rule over 1 nm is exact for a table that is linear over 5.
+        for (int nm = begin; nm <= end; ++nm) {
+            const Xyz at = cie1931_matching_functions(nm);
+            const double weight = (nm == begin || nm == end ? 0.5 : 1.0) / width[i];
+            cmf[i][0] += weight * at.x;
+            cmf[i][1] += weight * at.y;
+            cmf[i][2] += weight * at.z;
+        }
+    }
     const std::vector<double> radiance{0.2, 0.9, 0.5, 1.4};
     std::array<double, 3> xyz{}, white{};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -109,7 +120,8 @@ TEST(Colour, FollowsCie1931) {
         const auto& m = xyz_from_rgb[row];
         const double d65 = m[0] + m[1] + m[2];
         const double shown = m[0] * rgb[0] + m[1] * rgb[1] + m[2] * rgb[2];
-        EXPECT_NEAR(shown / d65, xyz[row] / white[row], 1e-6) << row;
+        // Means are taken over half nanometres.
+        EXPECT_NEAR(shown / d65, xyz[row] / white[row], 2e-5) << row;
     }
 }
 

@@ -69,8 +69,11 @@ TEST_F(SceneErrors, resolutionAndIntrinsics) {
                "the "
                "number alone, without a unit (give the horizontal field of view in degrees)"},
               {"  calibration: rig.yaml\n",
-               "scene.yaml:3:16: camera.calibration: calibration files are "
-               "not supported yet; write their numbers"},
+               "scene.yaml:3:16: camera.calibration: no such file 'rig.yaml' (looked in "},
+              {"  {calibration: sub/a.csv, resolution: [64, 48]}\n",
+               "scene.yaml:3:40: camera.resolution: comes from the calibration file; remove it"},
+              {"  calibration: {camera: cam0}\n",
+               "camera.calibration: 'file' is missing; write calibration: rig.yaml"},
           });
 }
 
@@ -78,8 +81,15 @@ TEST_F(SceneErrors, cameraParts) {
     check(
         "uwvdb: 1\ncamera:\n  resolution: [64, 48]\n  intrinsics: {fov_x: 60}\n",
         {
-            {"  distortion: {model: fisheye, k1: 0}\n",
-             "scene.yaml:5:23: camera.distortion.model: 'fisheye' is not supported yet"},
+            {"  distortion: {model: fisheye, k: [0, 0, 0]}\n",
+             "scene.yaml:5:35: camera.distortion.k: expected 4 numbers, found 3; give k1, k2, k3, "
+             "k4"},
+            {"  distortion: {model: fisheye, p: [0, 0]}\n",
+             "camera.distortion.p: is not used by model 'fisheye'"},
+            {"  distortion: {model: fisheye, k: [0, 0, 0, 0], k1: 1}\n",
+             "camera.distortion.k1: is not used by model 'fisheye'"},
+            {"  distortion: {model: fisheye, k1: -5}\n",
+             "camera.intrinsics.fov_x: the distortion folds back before 30 degrees off the axis"},
             {"  distortion: {model: brown}\n",
              "unknown value 'brown'; did you mean 'brown-conrady'?"},
             {"  distortion: {k: [1, 2]}\n",
@@ -88,7 +98,14 @@ TEST_F(SceneErrors, cameraParts) {
              "camera.distortion.k1: is not used by model 'brown-conrady'"},
             {"  distortion: {p: [1, 2, 3]}\n", "camera.distortion.p: expected a list of 2, found"},
             {"  port: {type: dome}\n",
-             "scene.yaml:5:16: camera.port.type: 'dome' is not supported yet"},
+             "scene.yaml:5:9: camera.port: 'radius' is missing; give the radius of the inner"},
+            {"  port: {type: dome, radius: 0}\n",
+             "camera.port.radius: must be greater than 0, found 0"},
+            {"  port: {type: dome, radius: 0.05, distance: 0.1}\n",
+             "camera.port.distance: is not used by type 'dome'; remove it"},
+            {"  port: {type: dome, radius: 0.05, center: [0, 0.04, 0.03]}\n",
+             "scene.yaml:5:9: camera.port: the camera stands outside of its dome: 0.05 m from its "
+             "centre, which has an inner radius of 0.05 m"},
             {"  port: {normal: [0, 0, 0]}\n", "camera.port.normal: [0, 0, 0] has no direction"},
             {"  port: {normal: [0, 0, -1]}\n",
              "camera.port.normal: must point away from the camera"},

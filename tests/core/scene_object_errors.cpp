@@ -104,7 +104,11 @@ TEST_F(SceneObjectErrors, lamps) {
               {start + "intensity: 1, frame: wrld}\n",
                "lamps[0].frame: unknown value 'wrld'; did you"},
               {start + "intensity: 1, profile: {type: ies, file: a.ies}}\n",
-               "scene.yaml:4:64: lamps[0].profile.type: 'ies' is not supported yet"},
+               "lamps[0].profile.file: no such file 'a.ies'"},
+              {start + "profile: {type: ies, file: a.vdb, tilt: 200}}\n",
+               "lamps[0].profile.tilt: must be from -180 to 180, found 200"},
+              {start + "intensity: 1, profile: {type: isotropic, rotate: 5}}\n",
+               "lamps[0].profile.rotate: is not used by profile type 'isotropic'; remove it"},
               {start + "intensity: 1, profile: {type: spt}}\n",
                "unknown value 'spt'; did you mean 'spot"},
               {start + "intensity: 1, profile: {type: spot}}\n",
@@ -124,6 +128,36 @@ TEST_F(SceneObjectErrors, lamps) {
               {start + "intensity: 1}\n" + start + "intensity: 1}\n",
                "scene.yaml:5:3: lamps[1]: the name 'a' is taken by another lamp"},
           });
+}
+
+TEST_F(SceneObjectErrors, spectraOfLamps) {
+    const std::string start = "- {name: a, position: [0, 0, 0], ";
+    check(
+        std::string(k_base) + "lamps:\n",
+        {
+            {start + "spectrum: {type: led, name: LED-B4}}\n",
+             "lamps[0]: says not how bright it is; give intensity in W/sr or power in W, or its "
+             "spectrum and lumens"},
+            {start + "lumens: 100}\n",
+             "lamps[0].lumens: lumens become watts by the lamp's spectrum only; give it"},
+            {start + "spectrum: {type: flat}, lumens: 0}\n", "lamps[0].lumens: must be greater"},
+            {start + "spectrum: {type: flat}, lumens: 1, power: 3}\n",
+             "lamps[0].lumens: a lamp has either lumens or watts; remove one"},
+            {start + "spectrum: {type: flat}, power: [1, 2, 3]}\n",
+             "lamps[0].power: expected a number, found a list"},
+            {start + "spectrum: {type: led}, power: 1}\n", "lamps[0].spectrum: 'name' is missing"},
+            {start + "spectrum: {type: blackbody}, power: 1}\n",
+             "lamps[0].spectrum: 'temperature' is missing"},
+            {start + "spectrum: {type: blackbody, temperature: 5}, power: 1}\n",
+             "lamps[0].spectrum.temperature: must be from 500 to 100000, found 5"},
+            {start + "spectrum: {type: d65, name: x}, power: 1}\n",
+             "lamps[0].spectrum.name: is not used by spectrum type 'd65'; remove it"},
+            {start + "spectrum: {file: b.csv}, power: 1}\n",
+             "lamps[0].spectrum.file: no such file 'b.csv'"},
+            {start + "spectrum: {file: sub/a.csv, name: x}, power: 1}\n",
+             "lamps[0].spectrum.name: is not used by a spectrum with 'file'; remove it"},
+            {start + "spectrum: {}, power: 1}\n", "lamps[0].spectrum: 'type' is missing"},
+        });
 }
 
 TEST_F(SceneObjectErrors, render) {

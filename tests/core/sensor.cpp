@@ -39,7 +39,7 @@ TEST(SensorModel, IrradianceHasTheSquareOfTheFNumber) {
     const SensorModel model = sensor(RenderDesc::Output::sensor_irradiance);
     EXPECT_NEAR(model.pixel_factor({1, 1}, k_infinitely_far), k_on_axis, k_digits);
     EXPECT_NEAR(model.pixel_factor({1, 1}, 0.085), 0.81 * k_on_axis, k_digits);
-    EXPECT_NEAR(model.pixel_factor({0.5, 1}, k_infinitely_far), k_on_axis / 16, k_digits);
+    EXPECT_NEAR(model.pixel_factor({1.0 / 16, 1}, k_infinitely_far), k_on_axis / 16, k_digits);
     EXPECT_NEAR(model.pixel_factor({1, 0.9}, k_infinitely_far), 0.9 * k_on_axis, k_digits);
     EXPECT_EQ(model.surface_factor(0.085), 1);
     EXPECT_EQ(model.description(), "sensor irradiance W m^-2");

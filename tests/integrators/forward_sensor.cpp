@@ -82,12 +82,13 @@ double transmittance_of_glass(double tangent_in_air, double n_glass, double n_wa
 TEST(ForwardScatterBehindAPort, IsThatOfRadianceInWaterTimesTheTransmittance) {
     SceneDesc desc = scattering(staged(), forward(1));
     desc.camera.port = FlatPortDesc{};
-    desc.camera.port->distance = 0.02;
-    desc.camera.port->thickness = 0.01;
-    const double n_glass = desc.camera.port->n_glass, n_water = desc.camera.port->n_water;
+    std::get<FlatPortDesc>(*desc.camera.port).distance = 0.02;
+    std::get<FlatPortDesc>(*desc.camera.port).thickness = 0.01;
+    const double n_glass = std::get<FlatPortDesc>(*desc.camera.port).n_glass,
+                 n_water = std::get<FlatPortDesc>(*desc.camera.port).n_water;
     const RenderedFilm plain(desc);
-    desc.camera.port->fresnel = true;
-    desc.camera.port->radiance_in_air = true;
+    std::get<FlatPortDesc>(*desc.camera.port).fresnel = true;
+    std::get<FlatPortDesc>(*desc.camera.port).radiance_in_air = true;
     expect_scaled(RenderedFilm(desc), plain, [&](int x, int y) {
         const double angle = tangent(desc.camera, x, y);
         return transmittance_of_glass(angle, n_glass, n_water) / (n_water * n_water);

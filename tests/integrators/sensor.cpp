@@ -25,8 +25,8 @@ SceneDesc plane_behind_port(Output output) {
     desc.geometry = {plane_at_z(1.5), box({0.1, -0.2, 0.6}, {0.3, 0.1, 0.9})};
     desc.lamps = {isotropic_lamp({0.6, -0.3, 0}, 50), isotropic_lamp({-0.4, 0.2, 0.1}, 20)};
     desc.camera.port = FlatPortDesc{};
-    desc.camera.port->distance = 0.02;
-    desc.camera.port->thickness = 0.01;
+    std::get<FlatPortDesc>(*desc.camera.port).distance = 0.02;
+    std::get<FlatPortDesc>(*desc.camera.port).thickness = 0.01;
     desc.camera.lens = LensDesc{k_f_number, k_focal_length, k_transmission};
     desc.render.output = output;
     desc.render.samples = 4;
@@ -118,7 +118,7 @@ TEST(SensorIrradiance, WaterWithoutSurfaceIsFocusedAtInfinity) {
 TEST(Outputs, LampsAddUpAndTwiceTheLampsIsTwiceTheImage) {
     for (const Output output : {Output::radiance, Output::sensor_irradiance, Output::paper}) {
         SceneDesc desc = plane_behind_port(output);
-        desc.camera.port->fresnel = true;
+        std::get<FlatPortDesc>(*desc.camera.port).fresnel = true;
         const SeenScene dim(desc);
         for (LampDesc& lamp : desc.lamps)
             for (double& intensity : lamp.intensity.value()) intensity *= 2;
@@ -171,7 +171,7 @@ TEST(Outputs, CleanIsDirectLightInClearWater) {
 TEST(Fresnel, MultipliesRadianceAndNothingElse) {
     SceneDesc desc = plane_behind_port(Output::radiance);
     const SeenScene off(desc);
-    desc.camera.port->fresnel = true;
+    std::get<FlatPortDesc>(*desc.camera.port).fresnel = true;
     const SeenScene on(desc);
     const double inner = std::pow((1.49 - 1) / (1.49 + 1), 2);
     const double outer = std::pow((1.49 - 1.334) / (1.49 + 1.334), 2);

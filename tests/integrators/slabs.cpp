@@ -93,7 +93,7 @@ TEST(PlaceSlabs, RefusesSlabsWithoutWater) {
     for (const auto& [near, far] : {std::pair{4.5, 6.0}, std::pair{0.0, 0.05}}) {
         SceneDesc desc = with_planes(uniform_scene({1, -0.5, 0}), 8, near, far);
         desc.camera.port = FlatPortDesc{};
-        desc.camera.port->distance = 0.06;
+        std::get<FlatPortDesc>(*desc.camera.port).distance = 0.06;
         desc.render.planes.where = "test.yaml:9:3: render.planes";
         try {
             const TestScene scene(desc);

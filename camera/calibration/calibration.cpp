@@ -1,0 +1,178 @@
+#include "camera/calibration/calibration.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <system_error>
+
+#include "camera/calibration/formats.h"
+#include "core/config_text.h"
+#include "core/error.h"
+#include "core/yaml_document.h"
+
+namespace uw {
+namespace {
+
+constexpr std::array<CalibrationFormat, 6> k_formats{
+    CalibrationFormat::opencv,   CalibrationFormat::ros,    CalibrationFormat::kalibr,
+    CalibrationFormat::calibmar, CalibrationFormat::colmap, CalibrationFormat::scene};
+
+constexpr auto k_known =
+    "known are OpenCV and ROS YAML (camera_matrix, distortion_coefficients), Kalibr's "
+    "camchain.yaml "
+    "(cam0: {camera_model, intrinsics, ...}), Calibmar's calibration.yaml (model, parameters, "
+    "non_svp_model) and COLMAP's cameras.txt (1 OPENCV 1920 1080 ...)";
+
+std::string read_text(const std::filesystem::path& file, const std::string& origin) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status))
+        throw IoError(origin + ": no such file; check the name of the calibration");
+    if (!std::filesystem::is_regular_file(status))
+        throw IoError(origin + ": is no file but a folder, pipe or device; name a calibration");
+    std::ifstream stream(file, std::ios::binary);
+    std::string text(YamlLimits{}.bytes + 1, '\0');
+    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!stream.is_open() || stream.bad())
+        throw IoError(origin + ": cannot be read; check its permissions");
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > YamlLimits{}.bytes)
+        throw InputError(fmt::format("{}: larger than {} bytes; this is no calibration; {}", origin,
+                                     YamlLimits{}.bytes, k_known));
+    return text;
+}
+
+/// OpenCV's dialect as YAML, every character in its place: "%YAML:1.0" has no space, and the types
+/// of values have tags.
+std::string as_yaml(std::string text) {
+    const auto blank = [&](std::size_t begin, std::size_t length) {
+        for (std::size_t i = begin; i < begin + length; ++i) text[i] = ' ';
+    };
+    if (text.starts_with("%YAML")) blank(0, std::min(text.find('\n'), text.size()));
+    constexpr std::string_view k_tag = "!!opencv-matrix";
+    for (std::size_t at = text.find(k_tag); at != std::string::npos; at = text.find(k_tag, at))
+        blank(at, k_tag.size());
+    return text;
+}
+
+Calibration read_yaml(const std::string& text, const std::string& origin,
+                      const std::string& camera) {
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+        throw InputError(fmt::format("{}: is empty; {}", origin, k_known));
+    const ConfigNode node = parse_yaml(as_yaml(text), origin, {.subject = "calibration"});
+    const ConfigValue root(node, "");
+    if (looks_like_kalibr(node)) return read_kalibr(root, camera);
+    if (looks_like_calibmar(node)) return read_calibmar(root);
+    if (looks_like_opencv(node)) return read_opencv_yaml(root);
+    if (node.find("uwvdb") != nullptr)
+        root.fail("is a scene and no calibration; copy its camera instead");
+    root.fail(fmt::format("is no calibration that is known; {}", k_known));
+}
+
+}  // namespace
+
+std::span<const CalibrationFormat> calibration_formats() {
+    return k_formats;
+}
+
+std::string_view word_of(CalibrationFormat format) {
+    constexpr std::array<std::string_view, 6> k_words{"opencv",   "ros",    "kalibr",
+                                                      "calibmar", "colmap", "scene"};
+    return k_words[static_cast<std::size_t>(format)];
+}
+
+std::string_view title_of(CalibrationFormat format) {
+    constexpr std::array<std::string_view, 6> k_titles{"OpenCV YAML",        "ROS camera_info YAML",
+                                                       "Kalibr camchain",    "Calibmar calibration",
+                                                       "COLMAP cameras.txt", "uwvdb scene"};
+    return k_titles[static_cast<std::size_t>(format)];
+}
+
+Calibration read_calibration(const std::filesystem::path& file, const std::string& camera) {
+    const std::string origin = printable(file.string(), 300);
+    const std::string text = read_text(file, origin);
+    Calibration result = looks_like_colmap(text) ? read_colmap(text, origin, camera)
+                                                 : read_yaml(text, origin, camera);
+    if (result.cameras.empty()) {
+        if (!result.camera.empty()) result.cameras.push_back(result.camera);
+        if (!camera.empty() && camera != result.camera)
+            throw InputError(
+                fmt::format("{}: has one camera{}, and none called '{}'; leave the "
+                            "camera's name out",
+                            origin,
+                            result.camera.empty() ? std::string(" without a name")
+                                                  : fmt::format(", '{}'", printable(result.camera)),
+                            printable(camera)));
+    }
+    ConfigNode content;
+    content.kind = ConfigNode::Kind::scalar;
+    content.quoted = true;
+    content.scalar = text;
+    result.hash = config_hash(content);
+    return result;
+}
+
+std::optional<Calibration> apply_calibration(CameraDesc& camera) {
+    if (!camera.calibration) return std::nullopt;
+    Calibration result = read_calibration(camera.calibration->file, camera.calibration->camera);
+    if (camera.port && result.desc.port)
+        throw InputError(
+            camera.calibration->where +
+            ": the file has a port of its own; remove camera.port, or take the numbers of "
+            "'uwvdb calibration FILE --to scene' in place of the file");
+    camera.width = result.desc.width;
+    camera.height = result.desc.height;
+    camera.intrinsics = result.desc.intrinsics;
+    camera.distortion = result.desc.distortion;
+    if (result.desc.port) camera.port = result.desc.port;
+    return result;
+}
+
+std::string calibration_obstacle(CalibrationFormat format, const CameraDesc& camera) {
+    switch (format) {
+        case CalibrationFormat::opencv:
+        case CalibrationFormat::ros:
+            return opencv_obstacle(camera);
+        case CalibrationFormat::kalibr:
+            return kalibr_obstacle(camera);
+        case CalibrationFormat::calibmar:
+        case CalibrationFormat::colmap:
+        case CalibrationFormat::scene:
+            break;
+    }
+    return "";
+}
+
+std::vector<std::string> calibration_omissions(CalibrationFormat format, const CameraDesc& camera) {
+    if (format == CalibrationFormat::scene || !camera.port) return {};
+    return std::visit(
+        [](const auto& port) {
+            std::vector<std::string> lines;
+            if (port.fresnel) lines.emplace_back("the port's fresnel has no place in the file");
+            if (port.radiance_in_air)
+                lines.emplace_back("the port's radiance_in has no place in the file");
+            return lines;
+        },
+        *camera.port);
+}
+
+std::string write_calibration(CalibrationFormat format, const CameraDesc& camera) {
+    switch (format) {
+        case CalibrationFormat::opencv:
+            return write_opencv(camera);
+        case CalibrationFormat::ros:
+            return write_ros(camera);
+        case CalibrationFormat::kalibr:
+            return write_kalibr(camera);
+        case CalibrationFormat::calibmar:
+            return write_calibmar(camera);
+        case CalibrationFormat::colmap:
+            return write_colmap(camera);
+        case CalibrationFormat::scene:
+            break;
+    }
+    return write_scene_camera(camera);
+}
+
+}  // namespace uw

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/camera_desc.h"
+
+namespace uw {
+
+/// A file format of camera calibrations (docs/calibration.md).
+enum class CalibrationFormat : std::uint8_t {
+    opencv,    // YAML of OpenCV's FileStorage
+    ros,       // YAML of ROS camera_info
+    kalibr,    // camchain.yaml
+    calibmar,  // calibration.yaml
+    colmap,    // cameras.txt, stock and refractive
+    scene,     // the camera of a scene of ours
+};
+
+/// Every format in which calibrations are written.
+std::span<const CalibrationFormat> calibration_formats();
+/// "kalibr", as the command line has it.
+std::string_view word_of(CalibrationFormat format);
+/// "Kalibr camchain", for people.
+std::string_view title_of(CalibrationFormat format);
+
+/// What a calibration file says of one camera.
+struct Calibration {
+    CalibrationFormat format = CalibrationFormat::opencv;
+    std::string camera;                // its name in the file; "" if it has none
+    std::vector<std::string> cameras;  // all names in the file
+    std::string model;                 // in the file's own words: "pinhole, radtan"
+    /// Resolution, intrinsics in our convention (image corner at 0), distortion and port alone.
+    CameraDesc desc;
+    std::vector<std::string> warnings;  // one line each
+    std::string hash;                   // of the file's text
+};
+
+/// Reads a calibration of any format but a scene; which one is found out from the content.
+/// `camera` names one of several in the file; it may be empty where there is one. Throws IoError if
+/// the file cannot be read, and InputError of one line for what is wrong in it.
+Calibration read_calibration(const std::filesystem::path& file, const std::string& camera = "");
+
+/// Reads what `camera.calibration` names, if it names anything, into the rest of `camera`, whose
+/// port it may leave alone but not replace. Returns what was read. Throws as read_calibration.
+std::optional<Calibration> apply_calibration(CameraDesc& camera);
+
+/// Why `format` cannot express this camera, with the mend; empty if it can.
+std::string calibration_obstacle(CalibrationFormat format, const CameraDesc& camera);
+
+/// The camera's resolution, intrinsics, distortion and port as the text of a file, with all digits.
+/// Precondition: there is no calibration_obstacle.
+std::string write_calibration(CalibrationFormat format, const CameraDesc& camera);
+
+/// What `format` leaves out of this camera though it can be written: one line each.
+std::vector<std::string> calibration_omissions(CalibrationFormat format, const CameraDesc& camera);
+
+}  // namespace uw

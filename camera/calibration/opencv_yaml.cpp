@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <span>
+
+#include "camera/calibration/formats.h"
+#include "core/camera_values.h"
+#include "core/config_text.h"
+
+// The YAML of OpenCV's FileStorage, as its calibration sample writes it, and of ROS camera_info.
+// First pixel's centre at (0, 0).
+
+namespace uw {
+namespace {
+
+using Names = std::span<const std::string_view>;
+constexpr std::array<std::string_view, 4> k_matrix_names{"camera_matrix", "Camera_Matrix",
+                                                         "cameraMatrix", "K"};
+constexpr std::array<std::string_view, 4> k_coefficient_names{
+    "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "D"};
+constexpr std::array<std::string_view, 2> k_width_names{"image_width", "image_Width"};
+constexpr std::array<std::string_view, 2> k_height_names{"image_height", "image_Height"};
+
+const ConfigNode* find_any(const ConfigNode& map, Names names) {
+    for (const std::string_view name : names)
+        if (const ConfigNode* const node = map.find(name)) return node;
+    return nullptr;
+}
+
+/// The value under the first of several names.
+ConfigValue require_any(const ConfigValue& map, Names names, std::string_view mend) {
+    for (const std::string_view name : names)
+        if (const ConfigNode* const node = map.node().find(name)) return {*node, std::string(name)};
+    return require_value(map, names.front(), mend);
+}
+
+/// The numbers of a matrix: {rows, cols, data: [...]}, or a plain list.
+std::vector<ConfigValue> numbers_of(const ConfigValue& value, std::string_view mend) {
+    if (value.node().kind != ConfigNode::Kind::map) return value.list(mend);
+    const auto numbers = require_value(value, "data", mend).list(mend);
+    const ConfigNode* const rows = value.node().find("rows");
+    const ConfigNode* const cols = value.node().find("cols");
+    if (rows == nullptr || cols == nullptr) return numbers;
+    constexpr int k_most = 64;
+    const int count = ConfigValue(*rows, value.path() + ".rows").integer(0, k_most, mend) *
+                      ConfigValue(*cols, value.path() + ".cols").integer(0, k_most, mend);
+    if (static_cast<std::size_t>(count) != numbers.size())
+        value.fail(fmt::format("rows x cols are {}, but data has {} numbers; {}", count,
+                               numbers.size(), mend));
+    return numbers;
+}
+
+void read_matrix(const ConfigValue& value, IntrinsicsDesc& intrinsics) {
+    constexpr auto k_mend = "give the nine numbers fx 0 cx 0 fy cy 0 0 1";
+    const auto m = numbers_of(value, k_mend);
+    if (m.size() != 9)
+        value.fail(fmt::format("expected 9 numbers, found {}; {}", m.size(), k_mend));
+    constexpr std::array<double, 9> k_fixed{-1, 0, -1, 0, -1, -1, 0, 0, 1};
+    for (std::size_t i = 0; i < 9; ++i) {
+        if (k_fixed[i] >= 0 && m[i].number(k_mend) != k_fixed[i])
+            m[i].fail(fmt::format("must be {}, found {}: skewed pixels are not supported; {}",
+                                  k_fixed[i], m[i].number(k_mend), k_mend));
+    }
+    intrinsics = {m[0].positive(k_mend), m[4].positive(k_mend), m[2].number(k_mend) + k_half_pixel,
+                  m[5].number(k_mend) + k_half_pixel};
+}
+
+/// `unnamed` and `brown_conrady` have any number of coefficients; the former may be a fisheye.
+enum class Model : std::uint8_t { unnamed, brown_conrady, plumb_bob, rational, equidistant };
+
+Model read_model(const ConfigValue& root, Calibration& result) {
+    if (const ConfigNode* const node = root.node().find("distortion_model")) {
+        constexpr std::array<std::pair<std::string_view, Model>, 5> k_models{
+            {{"plumb_bob", Model::plumb_bob},
+             {"rational_polynomial", Model::rational},
+             {"equidistant", Model::equidistant},
+             {"fisheye", Model::equidistant},
+             {"none", Model::plumb_bob}}};
+        result.model = node->scalar;
+        return ConfigValue(*node, "distortion_model").choice(k_models);
+    }
+    const ConfigNode* const fisheye = root.node().find("fisheye_model");
+    if (fisheye != nullptr &&
+        ConfigValue(*fisheye, "fisheye_model").integer(0, 1, "give 0 or 1") == 1) {
+        result.model = "fisheye";
+        return Model::equidistant;
+    }
+    result.model = "plumb_bob";
+    return fisheye != nullptr ? Model::brown_conrady : Model::unnamed;
+}
+
+void read_coefficients(const ConfigValue& value, Model model, Calibration& result) {
+    constexpr auto k_mend = "give k1 k2 p1 p2 [k3 [k4 k5 k6]], or k1 k2 k3 k4 of a fisheye";
+    std::vector<double> d;
+    for (const ConfigValue& number : numbers_of(value, k_mend)) d.push_back(number.number(k_mend));
+    const std::size_t count = d.size();
+    const auto refuse = [&](std::string_view expected) {
+        value.fail(fmt::format("expected {} numbers, found {}; {}", expected, count, k_mend));
+    };
+    DistortionDesc& distortion = result.desc.distortion;
+    d.resize(std::max<std::size_t>(count, 14));
+    if (model == Model::equidistant) {
+        if (count != 4) refuse("4");
+        distortion.model = DistortionDesc::Model::fisheye;
+        distortion.k = {d[0], d[1], d[2], d[3], 0, 0};
+        return;
+    }
+    if (model == Model::plumb_bob && count != 0 && count != 4 && count != 5) refuse("4 or 5");
+    if (model == Model::rational && count != 8) refuse("8");
+    if (count != 0 && count != 4 && count != 5 && count != 8 && count != 12 && count != 14)
+        refuse("0, 4, 5, 8, 12 or 14");
+    for (std::size_t i = 8; i < d.size(); ++i)
+        if (d[i] != 0)
+            value.fail(
+                fmt::format("has a {} ({}), which is not supported; calibrate without that model",
+                            i < 12 ? "thin-prism coefficient" : "tilt of the sensor", d[i]));
+    distortion.k = {d[0], d[1], d[4], d[5], d[6], d[7]};
+    distortion.p = {d[2], d[3]};
+    if (count >= 8) result.model = "rational_polynomial";
+    if (model == Model::unnamed && count == 4)
+        result.warnings.push_back(
+            value.location() +
+            ": no distortion_model is named; its four numbers were taken as k1 k2 p1 p2, as "
+            "cv::calibrateCamera gives them; for those of cv::fisheye add distortion_model: "
+            "equidistant");
+}
+
+/// OpenCV's order of coefficients.
+std::vector<double> coefficients_of(const DistortionDesc& d) {
+    if (d.model == DistortionDesc::Model::fisheye) return {d.k[0], d.k[1], d.k[2], d.k[3]};
+    std::vector<double> result{d.k[0], d.k[1], d.p[0], d.p[1], d.k[2]};
+    if (has_radial_above(d, 3)) result.insert(result.end(), d.k.begin() + 3, d.k.end());
+    return result;
+}
+
+std::string_view model_of(const DistortionDesc& d) {
+    if (d.model == DistortionDesc::Model::fisheye) return "equidistant";
+    return has_radial_above(d, 3) ? "rational_polynomial" : "plumb_bob";
+}
+
+std::array<double, 9> matrix_of(const IntrinsicsDesc& i) {
+    return {i.fx, 0, i.cx - k_half_pixel, 0, i.fy, i.cy - k_half_pixel, 0, 0, 1};
+}
+
+std::string matrix_text(std::string_view name, std::size_t rows, std::span<const double> numbers,
+                        bool file_storage) {
+    return fmt::format("{}:{}\n  rows: {}\n  cols: {}\n{}  data: {}\n", name,
+                       file_storage ? " !!opencv-matrix" : "", rows, numbers.size() / rows,
+                       file_storage ? "  dt: d\n" : "", number_list(numbers));
+}
+
+}  // namespace
+
+bool looks_like_opencv(const ConfigNode& root) {
+    return find_any(root, k_matrix_names) != nullptr ||
+           find_any(root, k_coefficient_names) != nullptr ||
+           root.find("distortion_model") != nullptr;
+}
+
+Calibration read_opencv_yaml(const ConfigValue& root) {
+    Calibration result;
+    const bool is_ros = root.node().find("projection_matrix") != nullptr ||
+                        root.node().find("camera_name") != nullptr;
+    result.format = is_ros ? CalibrationFormat::ros : CalibrationFormat::opencv;
+    if (const ConfigNode* const name = root.node().find("camera_name"))
+        result.camera = name->scalar;
+    constexpr auto k_size = "give image_width and image_height in pixels";
+    const ConfigValue width = require_any(root, k_width_names, k_size);
+    read_resolution(width, width, require_any(root, k_height_names, k_size), result.desc);
+    read_matrix(require_any(root, k_matrix_names, "give camera_matrix: {rows: 3, cols: 3, data}"),
+                result.desc.intrinsics);
+    const Model model = read_model(root, result);
+    read_coefficients(
+        require_any(root, k_coefficient_names, "give distortion_coefficients: {data: [...]}"),
+        model, result);
+    return result;
+}
+
+std::string opencv_obstacle(const CameraDesc& camera) {
+    return camera.port ? "the files of OpenCV and ROS have no ports; write calibmar or colmap" : "";
+}
+
+std::string write_opencv(const CameraDesc& camera) {
+    const DistortionDesc& d = camera.distortion;
+    const std::vector<double> coefficients = coefficients_of(d);
+    return fmt::format("%YAML:1.0\n---\nimage_width: {}\nimage_height: {}\n", camera.width,
+                       camera.height) +
+           matrix_text("camera_matrix", 3, matrix_of(camera.intrinsics), true) +
+           fmt::format("distortion_model: {}\nfisheye_model: {}\n", model_of(d),
+                       d.model == DistortionDesc::Model::fisheye ? 1 : 0) +
+           matrix_text("distortion_coefficients", coefficients.size(), coefficients, true);
+}
+
+std::string write_ros(const CameraDesc& camera) {
+    const std::vector<double> coefficients = coefficients_of(camera.distortion);
+    const std::array<double, 9> m = matrix_of(camera.intrinsics);
+    constexpr std::array<double, 9> k_identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const std::array<double, 12> projection{m[0], 0, m[2], 0, 0, m[4], m[5], 0, 0, 0, 1, 0};
+    return fmt::format("image_width: {}\nimage_height: {}\ncamera_name: camera\n", camera.width,
+                       camera.height) +
+           matrix_text("camera_matrix", 3, m, false) +
+           fmt::format("distortion_model: {}\n", model_of(camera.distortion)) +
+           matrix_text("distortion_coefficients", 1, coefficients, false) +
+           matrix_text("rectification_matrix", 3, k_identity, false) +
+           matrix_text("projection_matrix", 3, projection, false);
+}
+
+}  // namespace uw

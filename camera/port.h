@@ -1,0 +1,18 @@
+#pragma once
+
+#include <variant>
+
+#include "camera/dome_port.h"
+#include "camera/flat_port.h"
+
+namespace uw {
+
+/// The glass between camera and water. All have `water_ray`, `transmittance` and `direction_to`.
+using Port = std::variant<FlatPort, DomePort>;
+
+inline Port make_port(const PortDesc& desc) {
+    if (const auto* dome = std::get_if<DomePortDesc>(&desc)) return DomePort(*dome);
+    return FlatPort(std::get<FlatPortDesc>(desc));
+}
+
+}  // namespace uw

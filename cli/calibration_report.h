@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera/calibration/calibration.h"
+
+namespace uw {
+
+/// Angles between the outermost rays of the image through its principal point [rad]; less than the
+/// image where the lens or the port shows less of it.
+struct FieldOfView {
+    double horizontal = 0, vertical = 0, diagonal = 0;
+};
+
+/// What `uwvdb calibration` reports.
+struct CalibrationReport {
+    std::filesystem::path file;
+    Calibration calibration;
+    FieldOfView in_lens;                  // in the housing; in the water without a port
+    std::optional<FieldOfView> in_water;  // behind a port
+    /// Angle to the axis up to which the lens shows anything [rad], and its distance from the
+    /// principal point along x [pixels]; none for a lens that shows all before it.
+    std::optional<double> fold_angle, fold_radius;
+    double covered = 0;  // share of the image's pixels with a ray into the water
+    struct Target {
+        CalibrationFormat format;
+        std::string obstacle;  // empty: it can be written
+    };
+    std::vector<Target> targets;
+};
+
+CalibrationReport report_on(const std::filesystem::path& file, const Calibration& calibration);
+
+/// For people, ASCII.
+std::string calibration_text(const CalibrationReport& report);
+/// Everything as one JSON object.
+std::string calibration_json(const CalibrationReport& report);
+
+}  // namespace uw
