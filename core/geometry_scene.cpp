@@ -96,8 +96,10 @@ class Builder {
         }
         switch (desc.type) {
             case GeometryDesc::Type::file:
-                add_mesh(desc, read_mesh(desc.file, warnings), object_id,
-                         given_reflectance(desc, objects_.bands.count()));
+                add_mesh(
+                    desc,
+                    read_mesh(desc.file, warnings, {desc.import.camera, desc.import.any_lamps()}),
+                    object_id, given_reflectance(desc, objects_.bands.count()));
                 break;
             case GeometryDesc::Type::box:
                 add_mesh(desc, box_mesh(desc), object_id, reflectance(desc));

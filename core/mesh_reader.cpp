@@ -8,7 +8,6 @@
 
 #include "core/assimp_reader.h"
 #include "core/error.h"
-#include "core/gltf_inspection.h"
 #include "core/mesh_cleanup.h"
 #include "core/ply_reader.h"
 
@@ -22,13 +21,14 @@ std::string lower_extension(const std::filesystem::path& file) {
     return extension;
 }
 
-TriangleMesh read_any(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+TriangleMesh read_any(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                      const GltfUse& use) {
     const std::string extension = lower_extension(file);
     if (extension == ".ply") return read_ply(file, warnings);
     if (extension == ".obj") return read_with_assimp(file, {}, warnings);
     // STL repeats the face's normal at each corner.
     if (extension == ".stl") return read_with_assimp(file, {.normals = false}, warnings);
-    const std::vector<std::string> ignored = inspect_gltf(file);
+    const std::vector<std::string> ignored = inspect_gltf(file, use);
     if (!ignored.empty()) {
         warnings.push_back(fmt::format("{}: ignored: {}", file.string(), fmt::join(ignored, ", ")));
     }
@@ -57,9 +57,10 @@ void check_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                       const GltfUse& use) {
     check_file(file);
-    TriangleMesh mesh = read_any(file, warnings);
+    TriangleMesh mesh = read_any(file, warnings, use);
     DroppedTriangles dropped;
     drop_bad_triangles(mesh, dropped);
     dropped.report(file.string(), warnings);

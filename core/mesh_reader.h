@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/gltf_inspection.h"
 #include "core/mesh.h"
 
 namespace uw {
@@ -16,6 +17,8 @@ namespace uw {
 ///
 /// Appends one line to `warnings` for everything dropped or ignored. Throws IoError if the file
 /// cannot be opened, InputError if it is broken, of another kind, or has no triangles.
-TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings);
+/// `use`: what else is taken from a glTF file, elsewhere, and so is not called ignored.
+TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                       const GltfUse& use = {});
 
 }  // namespace uw

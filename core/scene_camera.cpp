@@ -167,13 +167,16 @@ CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
     CameraDesc camera;
     read_resolution(map.require("resolution", "give resolution: [width, height] in pixels"),
                     camera);
-    camera.intrinsics = read_intrinsics(
-        map.require("intrinsics", "give intrinsics: {fov_x: 60}, or fx, fy, cx, cy in pixels"),
-        camera);
+    camera.where = value.location();
+    const auto intrinsics = map.find("intrinsics");
+    camera.has_intrinsics = intrinsics.has_value();
+    if (intrinsics) camera.intrinsics = read_intrinsics(*intrinsics, camera);
     if (const auto entry = map.find("distortion")) camera.distortion = read_distortion(*entry);
     if (const auto entry = map.find("port")) camera.port = read_port(*entry, context);
     if (const auto entry = map.find("lens")) camera.lens = read_lens(*entry);
-    if (const auto entry = map.find("pose")) camera.world_from_camera = read_pose(*entry);
+    const auto pose = map.find("pose");
+    camera.has_pose = pose.has_value();
+    if (pose) camera.world_from_camera = read_pose(*pose);
     return camera;
 }
 

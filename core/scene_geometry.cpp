@@ -62,10 +62,60 @@ void read_shape(ConfigMap& map, const ConfigValue& type, GeometryDesc& object) {
     map.finish("type '" + type.node().scalar + "'");
 }
 
+std::vector<std::string> read_lamp_names(const ConfigValue& value, bool& all) {
+    constexpr auto k_mend = "write all, or a list of the lights' names";
+    all = value.node().kind == ConfigNode::Kind::scalar && value.node().scalar == "all";
+    std::vector<std::string> names;
+    if (all) return names;
+    for (const ConfigValue& name : value.list(k_mend)) names.push_back(name.text(k_mend));
+    if (names.empty()) value.fail("names no light; write all, a list of names, or leave it out");
+    return names;
+}
+
+/// What a file brings beside its meshes.
+GltfImportDesc read_import(ConfigMap& map, const std::filesystem::path& file) {
+    GltfImportDesc import;
+    const std::string extension = file.extension().string();
+    const auto check_file = [&](const ConfigValue& value) {
+        if (extension == ".gltf" || extension == ".glb") return;
+        value.fail(
+            fmt::format("only glTF files (.gltf, .glb) bring it, not '{}'; remove it, or "
+                        "export the scene as glTF",
+                        extension));
+    };
+    if (const auto camera = map.find("camera")) {
+        check_file(*camera);
+        import.camera = true;
+        import.camera_where = camera->location();
+        const ConfigNode& node = camera->node();
+        const bool is_true = node.kind == ConfigNode::Kind::scalar && !node.quoted &&
+                             (node.scalar == "true" || node.scalar == "True");
+        if (!is_true) {
+            import.camera_name = camera->text("give the name of a camera of the file, or true");
+        }
+    }
+    const auto lamps = map.find("lamps");
+    if (lamps) {
+        check_file(*lamps);
+        import.lamps_where = lamps->location();
+        import.lamps = read_lamp_names(*lamps, import.all_lamps);
+    }
+    if (const auto units = map.find("light_units")) {
+        check_file(*units);
+        if (!lamps) units->fail("is of use with lamps only; add lamps: all, or remove it");
+        constexpr std::array<std::pair<std::string_view, LightUnits>, 3> k_units{
+            {{"standard", LightUnits::standard},
+             {"compat", LightUnits::compat},
+             {"raw", LightUnits::raw}}};
+        import.units = units->choice(k_units);
+    }
+    return import;
+}
+
 GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) {
     ConfigMap map(value,
                   {"file", "transform", "reflectance", "type", "point", "normal", "min", "max",
-                   "center", "radius"},
+                   "center", "radius", "camera", "lamps", "light_units"},
                   "write {file: seabed.glb} or {type: sphere, center: [0, 0, 2], radius: 0.2}");
     GeometryDesc object;
     object.where = value.location();
@@ -80,6 +130,7 @@ GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) 
         map.require("file", "give a mesh file, or type: plane, box or sphere"), context,
         object.is_sequence);
     if (const auto entry = map.find("transform")) object.world_from_object = read_transform(*entry);
+    object.import = read_import(map, object.file);
     map.finish("a mesh file");
     return object;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <system_error>
@@ -48,6 +49,33 @@ void check_version(const ConfigValue& scene) {
         .fail(fmt::format("this program reads scene version 1, found {}; write 'uwvdb: 1', or use "
                           "the program that goes with that version",
                           version->description()));
+}
+
+/// What a glTF file is to bring must be missing in the scene, and what is missing be brought.
+void check_gltf_imports(const SceneDesc& desc) {
+    const CameraDesc& camera = desc.camera;
+    const SourceLocation* source = nullptr;
+    for (const GeometryDesc& object : desc.geometry) {
+        if (!object.import.camera) continue;
+        const SourceLocation& where = object.import.camera_where;
+        if (source != nullptr) {
+            throw InputError(
+                fmt::format("{}: the camera is taken from {} already; remove one", where, *source));
+        }
+        if (camera.has_intrinsics && camera.has_pose) {
+            throw InputError(fmt::format(
+                "{}: the scene's own camera has intrinsics and pose, which leaves nothing to take "
+                "from the file; remove them, or one of them, or this",
+                where));
+        }
+        source = &where;
+    }
+    if (source == nullptr && !camera.has_intrinsics) {
+        throw InputError(fmt::format(
+            "{}: 'intrinsics' is missing; give intrinsics: {{fov_x: 60}}, or fx, fy, cx, cy in "
+            "pixels, or take a glTF file's with geometry: [{{file: x.glb, camera: true}}]",
+            camera.where));
+    }
 }
 
 }  // namespace
@@ -119,7 +147,10 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
                          ": needs the camera's lens; give camera.lens: {f_number: 2.8, "
                          "focal_length: 0.0085}, or write output: radiance");
     }
-    if (desc.lamps.empty()) {
+    check_gltf_imports(desc);
+    const bool brings_lamps = std::ranges::any_of(
+        desc.geometry, [](const GeometryDesc& object) { return object.import.any_lamps(); });
+    if (desc.lamps.empty() && !brings_lamps) {
         context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
     }
     desc.hash = config_hash(root);
