@@ -143,8 +143,10 @@ class EmbreeSurfaces final : public Surfaces {
                                    object.mesh.triangles.data(), 0, 3 * sizeof(std::uint32_t),
                                    object.mesh.triangle_count());
         rtcSetGeometryUserData(geometry.get(), &object);
-        rtcSetGeometryIntersectFilterFunction(geometry.get(), filter_closest);
-        rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_occluder);
+        rtcSetGeometryIntersectFilterFunction(
+            geometry.get(), object.has_holes ? filter_closest_with_holes : filter_closest);
+        rtcSetGeometryOccludedFilterFunction(
+            geometry.get(), object.has_holes ? filter_occluder_with_holes : filter_occluder);
         rtcCommitGeometry(geometry.get());
         rtcAttachGeometry(scene_.get(), geometry.get());
         check("taking over a mesh");

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <map>
 #include <set>
 
 #include "core/error.h"
+#include "core/gltf_bytes.h"
 #include "core/gltf_nodes.h"
 #include "core/gltf_uri.h"
 
@@ -17,14 +17,9 @@ using Json = nlohmann::json;
 
 constexpr int k_float = 5126;
 
-// Numbers per element of an accessor.
-const std::map<std::string, std::uint64_t> k_components = {
-    {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
-
 class Inspection {
   public:
-    Inspection(const std::filesystem::path& file, const GltfUse& use)
-        : document_(file), use_(use) {}
+    Inspection(const GltfDocument& document, const GltfUse& use) : document_(document), use_(use) {}
 
     std::vector<std::string> run() {
         check_extensions();
@@ -56,7 +51,8 @@ class Inspection {
         // add lights or looks do not.
         for (const Json& required : document_.list("extensionsRequired")) {
             const std::string extension = required.get<std::string>();
-            if (extension != "KHR_lights_punctual" && !extension.starts_with("KHR_materials_")) {
+            if (extension != "KHR_lights_punctual" && extension != "KHR_texture_transform" &&
+                !extension.starts_with("KHR_materials_")) {
                 document_.fail(
                     fmt::format("needs the glTF extension {}, which is not supported; export "
                                 "without it",
@@ -65,10 +61,13 @@ class Inspection {
         }
         for (const Json& used : document_.list("extensionsUsed")) {
             const std::string extension = used.get<std::string>();
-            if (extension != "KHR_lights_punctual") {
+            if (extension == "KHR_lights_punctual") {
+                if (!use_.lamps) ignored_.insert("lights");
+            } else if (extension == "KHR_materials_ior") {
+                if (!use_.pbr) ignored_.insert(extension);
+            } else if (extension != "KHR_texture_transform" &&
+                       extension != "KHR_materials_emissive_strength") {
                 ignored_.insert(extension);
-            } else if (!use_.lamps) {
-                ignored_.insert("lights");
             }
         }
     }
@@ -128,9 +127,7 @@ class Inspection {
         const std::uint64_t count = document_.whole_number(entry, "count", 0);
         if (count > total) document_.fail("a glTF accessor counts more than its file can hold");
         const std::uint64_t size =
-            k_components.contains(entry.value("type", ""))
-                ? k_components.at(entry.value("type", "")) * component_size(entry)
-                : 0;
+            gltf_component_count(entry.value("type", "")) * component_size(entry);
         if (size == 0) document_.fail("a glTF accessor has an impossible type");
         if (entry.contains("bufferView")) check_range(entry, count, size);
         if (!entry.contains("sparse")) return;
@@ -142,19 +139,7 @@ class Inspection {
     }
 
     std::uint64_t component_size(const Json& entry) const {
-        switch (document_.whole_number(entry, "componentType", 0)) {
-            case 5120:
-            case 5121:
-                return 1;
-            case 5122:
-            case 5123:
-                return 2;
-            case 5125:
-            case k_float:
-                return 4;
-            default:
-                return 0;
-        }
+        return gltf_component_size(document_.whole_number(entry, "componentType", 0));
     }
 
     void check_attribute(const std::string& semantic, const Json& entry) const {
@@ -163,11 +148,13 @@ class Inspection {
         const bool is_vector = semantic == "POSITION" || semantic == "NORMAL";
         const bool is_uv = semantic.starts_with("TEXCOORD_");
         const bool is_color = semantic.starts_with("COLOR_");
-        if ((is_vector || is_uv) && !is_float) {
+        const bool is_share = is_uv && entry.value("normalized", false);
+        if ((is_vector || is_uv) && !is_float && !is_share) {
             document_.fail(
                 fmt::format("glTF {} is quantised; export it as 32-bit floats", semantic));
         }
         if ((is_vector && type != "VEC3") || (is_uv && type != "VEC2") ||
+            (semantic == "TANGENT" && (type != "VEC4" || !is_float)) ||
             (is_color && type != "VEC3" && type != "VEC4") ||
             (semantic.starts_with("JOINTS_") && type != "VEC4") ||
             (semantic.starts_with("WEIGHTS_") && type != "VEC4")) {
@@ -209,45 +196,24 @@ class Inspection {
     }
 
     void inspect_material(const Json& material) {
-        static const Json none = Json::object();
-        const auto found = material.find("pbrMetallicRoughness");
-        const Json& surface = found == material.end() ? none : *found;
-        if (surface.value("metallicFactor", 1.0) > 0) ignored_.insert("metallic");
-        if (surface.contains("metallicRoughnessTexture")) ignored_.insert("metallic");
-        if (material.contains("normalTexture")) ignored_.insert("normal maps");
+        const Json& surface = document_.object(material, "pbrMetallicRoughness");
+        if (!use_.pbr && (surface.value("metallicFactor", 1.0) > 0 ||
+                          surface.contains("metallicRoughnessTexture"))) {
+            ignored_.insert("metallic");
+        }
         if (material.contains("occlusionTexture")) ignored_.insert("occlusion maps");
-        if (material.contains("emissiveTexture")) ignored_.insert("emission");
-        for (const Json& factor : document_.list(material, "emissiveFactor")) {
-            if (factor.get<double>() > 0) ignored_.insert("emission");
-        }
-        if (material.value("alphaMode", "OPAQUE") != "OPAQUE") ignored_.insert("alpha");
-        if (!surface.contains("baseColorTexture")) return;
-        const std::uint64_t index =
-            document_.whole_number(surface["baseColorTexture"], "index", UINT64_MAX);
-        const Json& textures = document_.list("textures");
-        if (index >= textures.size())
-            document_.fail("a glTF material names a texture that is not there");
-        if (document_.whole_number(textures[index], "source", UINT64_MAX) >=
-            document_.list("images").size()) {
-            document_.fail(
-                "a glTF base colour texture has no PNG or JPEG source; export it as PNG");
-        }
+        if (material.value("alphaMode", "OPAQUE") == "BLEND") ignored_.insert("alpha blending");
     }
 
-    GltfDocument document_;
+    const GltfDocument& document_;
     GltfUse use_;
     std::set<std::string> ignored_;
 };
 
 }  // namespace
 
-std::vector<std::string> inspect_gltf(const std::filesystem::path& file, const GltfUse& use) {
-    try {
-        return Inspection(file, use).run();
-    } catch (const Json::exception& error) {
-        throw InputError(
-            fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));
-    }
+std::vector<std::string> inspect_gltf(const GltfDocument& document, const GltfUse& use) {
+    return Inspection(document, use).run();
 }
 
 }  // namespace uw

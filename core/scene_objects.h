@@ -14,6 +14,19 @@
 
 namespace uw {
 
+/// Where a line meets something, in units of its direction's length.
+struct TriangleCrossing {
+    double t = 0;
+    double u = 0, v = 0;  // barycentric: (1 - u - v) a + u b + v c
+
+    /// Whether the crossing lies in the triangle and off its edges by more than floats round.
+    bool well_inside() const {
+        return u > k_edge_margin && v > k_edge_margin && u + v < 1 - k_edge_margin;
+    }
+    /// Share of the triangle's size that single precision may err by.
+    static constexpr double k_edge_margin = 1e-3;
+};
+
 /// A triangle mesh in world space. Its positions are followed by the 4 floats that Embree may read
 /// past the last vertex.
 struct MeshObject {
@@ -21,7 +34,10 @@ struct MeshObject {
     std::uint32_t object_id = 0;
     std::optional<Spectrum> reflectance;  // instead of the mesh's colours
     std::size_t vertex_count = 0;
+    bool has_holes = false;  // some material has an alpha cutoff
 
+    /// Whether there is a hole where a line crosses a triangle. For meshes with holes.
+    bool is_hole(std::uint32_t triangle, const TriangleCrossing& crossing) const;
     /// Corner `k` (0..2) of a triangle.
     Point3 corner(std::uint32_t triangle, int k) const;
 };
@@ -52,19 +68,6 @@ struct SceneObjects {
     std::vector<PlaneObject> planes;
     Bounds bounds;  // of meshes and spheres
     ReflectanceBands bands;
-};
-
-/// Where a line meets something, in units of its direction's length.
-struct TriangleCrossing {
-    double t = 0;
-    double u = 0, v = 0;  // barycentric: (1 - u - v) a + u b + v c
-
-    /// Whether the crossing lies in the triangle and off its edges by more than floats round.
-    bool well_inside() const {
-        return u > k_edge_margin && v > k_edge_margin && u + v < 1 - k_edge_margin;
-    }
-    /// Share of the triangle's size that single precision may err by.
-    static constexpr double k_edge_margin = 1e-3;
 };
 
 /// The crossing of a line with the plane of a triangle (Moeller & Trumbore 1997) in double
