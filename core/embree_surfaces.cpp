@@ -44,6 +44,11 @@ class EmbreeSurfaces final : public Surfaces {
         return shade(find_nearest(ray, s_end), ray, s_end, hit);
     }
 
+    SurfaceFinish finish(const SurfaceHit& hit) const override {
+        if (!hit.has_finish) return {};
+        return finish_of_mesh(*objects_.meshes[hit.geometry], objects_.bands, hit);
+    }
+
     double hit_distance(const Ray& ray) const override {
         return find_nearest(ray, k_infinity).distance;
     }
@@ -176,6 +181,7 @@ class EmbreeSurfaces final : public Surfaces {
         } else if (nearest.geometry < objects_.meshes.size()) {
             shade_mesh(*objects_.meshes[nearest.geometry], nearest.primitive, nearest.crossing,
                        objects_.bands, ray.direction, hit);
+            hit.geometry = nearest.geometry;
         } else {
             shade_sphere(objects_.spheres[nearest.primitive], ray.direction, hit);
         }

@@ -117,10 +117,10 @@ class Builder {
         }
         switch (desc.type) {
             case GeometryDesc::Type::file:
-                add_mesh(
-                    desc,
-                    read_mesh(desc.file, warnings, {desc.import.camera, desc.import.any_lamps()}),
-                    object_id, given_reflectance(desc, objects_.bands.count()));
+                add_mesh(desc,
+                         read_mesh(desc.file, warnings,
+                                   {desc.import.camera, desc.import.any_lamps(), desc.is_pbr}),
+                         object_id, given_reflectance(desc, objects_.bands.count()));
                 break;
             case GeometryDesc::Type::box:
                 add_mesh(desc, box_mesh(desc), object_id, reflectance(desc));
@@ -157,11 +157,12 @@ class Builder {
         object->mesh = std::move(mesh);
         object->object_id = object_id;
         object->reflectance = reflectance;
+        object->is_pbr = desc.is_pbr;
         object->vertex_count = object->mesh.vertex_count();
         const auto& materials = object->mesh.materials;
         object->has_holes = std::ranges::any_of(
             materials, [](const MeshMaterial& material) { return material.alpha_cutoff > 0; });
-        if (reflectance && std::ranges::none_of(materials, has_more_than_color)) {
+        if (reflectance && !desc.is_pbr && std::ranges::none_of(materials, has_more_than_color)) {
             object->mesh.uvs = {};
             object->mesh.colors = {};
             object->mesh.triangle_materials = {};

@@ -168,6 +168,7 @@ struct GeometryDesc {
     double radius = 0;                   // sphere
     std::optional<PerBand> reflectance;  // replaces the file's colours; without either, 0.5
     GltfImportDesc import;
+    bool is_pbr = false;  // a glTF file's metallic-roughness materials; else all is diffuse
     SourceLocation where;
 
     friend bool operator==(const GeometryDesc&, const GeometryDesc&) = default;

@@ -72,10 +72,10 @@ std::vector<std::string> read_lamp_names(const ConfigValue& value, bool& all) {
     return names;
 }
 
-/// What a file brings beside its meshes.
-GltfImportDesc read_import(ConfigMap& map, const std::filesystem::path& file) {
-    GltfImportDesc import;
-    const std::string extension = file.extension().string();
+/// What a file brings beside diffuse meshes.
+void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
+    GltfImportDesc& import = object.import;
+    const std::string extension = object.file.extension().string();
     const auto check_file = [&](const ConfigValue& value) {
         if (extension == ".gltf" || extension == ".glb") return;
         value.fail(
@@ -109,13 +109,18 @@ GltfImportDesc read_import(ConfigMap& map, const std::filesystem::path& file) {
              {"raw", LightUnits::raw}}};
         import.units = units->choice(k_units);
     }
-    return import;
+    if (const auto material = map.find("material")) {
+        check_file(*material);
+        constexpr std::array<std::pair<std::string_view, bool>, 2> k_materials{
+            {{"diffuse", false}, {"pbr", true}}};
+        object.is_pbr = material->choice(k_materials);
+    }
 }
 
 GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) {
     ConfigMap map(value,
                   {"file", "transform", "reflectance", "type", "point", "normal", "min", "max",
-                   "center", "radius", "camera", "lamps", "light_units"},
+                   "center", "radius", "camera", "lamps", "light_units", "material"},
                   "write {file: seabed.glb} or {type: sphere, center: [0, 0, 2], radius: 0.2}");
     GeometryDesc object;
     object.where = value.location();
@@ -130,7 +135,7 @@ GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) 
         map.require("file", "give a mesh file, or type: plane, box or sphere"), context,
         object.is_sequence);
     if (const auto entry = map.find("transform")) object.world_from_object = read_transform(*entry);
-    object.import = read_import(map, object.file);
+    read_gltf_keys(map, object);
     map.finish("a mesh file");
     return object;
 }

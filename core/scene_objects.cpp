@@ -3,12 +3,19 @@
 #include <cmath>
 
 #include "core/mesh_surface.h"
+#include "core/microfacet.h"
 
 namespace uw {
 namespace {
 
 Vector3 toward_viewer(const Vector3& normal, const Vector3& direction) {
     return glm::dot(normal, direction) > 0 ? -normal : normal;
+}
+
+/// The colour given in the scene, or that of the file.
+Spectrum base_color(const MeshObject& object, const MeshPlace& place,
+                    const ReflectanceBands& bands) {
+    return object.reflectance ? *object.reflectance : bands.from_rgb(place.base_color());
 }
 
 }  // namespace
@@ -82,8 +89,33 @@ void shade_mesh(const MeshObject& object, std::uint32_t triangle, const Triangle
     const MeshPlace place(object.mesh, triangle, crossing.u, crossing.v);
     hit.geometric_normal = toward_viewer(flat, direction);
     hit.normal = place.shading_normal(hit.geometric_normal);
-    hit.reflectance = object.reflectance ? *object.reflectance : bands.from_rgb(place.base_color());
+    hit.reflectance = base_color(object, place, bands);
+    hit.has_finish = object.is_pbr || place.material().emission != Rgb{0, 0, 0};
+    if (object.is_pbr) {
+        const double metallic = place.roughness_metallic()[1];
+        for (double& rho : hit.reflectance) rho *= 1 - metallic;
+    }
+    hit.triangle = triangle;
+    hit.u = crossing.u;
+    hit.v = crossing.v;
     hit.object_id = object.object_id;
+}
+
+SurfaceFinish finish_of_mesh(const MeshObject& object, const ReflectanceBands& bands,
+                             const SurfaceHit& hit) {
+    const MeshPlace place(object.mesh, hit.triangle, hit.u, hit.v);
+    SurfaceFinish finish;
+    finish.emission = bands.from_rgb(place.emission());
+    finish.is_glossy = object.is_pbr;
+    if (!object.is_pbr) return finish;
+    const auto [roughness, metallic] = place.roughness_metallic();
+    finish.roughness = roughness;
+    const double dielectric = dielectric_f0(place.material().ior);
+    const Spectrum metal = base_color(object, place, bands);
+    for (std::size_t b = 0; b < static_cast<std::size_t>(bands.count()); ++b) {
+        finish.f0[b] = (1 - metallic) * dielectric + metallic * metal[b];
+    }
+    return finish;
 }
 
 void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceHit& hit) {
@@ -93,12 +125,14 @@ void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceH
         glm::normalize(glm::transpose(sphere.object_from_world.linear()) * outward);
     hit.geometric_normal = hit.normal = toward_viewer(normal, direction);
     hit.reflectance = sphere.reflectance;
+    hit.has_finish = false;
     hit.object_id = sphere.object_id;
 }
 
 void shade_plane(const PlaneObject& plane, const Vector3& direction, SurfaceHit& hit) {
     hit.geometric_normal = hit.normal = toward_viewer(plane.normal, direction);
     hit.reflectance = plane.reflectance;
+    hit.has_finish = false;
     hit.object_id = plane.object_id;
 }
 

@@ -35,6 +35,7 @@ struct MeshObject {
     std::optional<Spectrum> reflectance;  // instead of the mesh's colours
     std::size_t vertex_count = 0;
     bool has_holes = false;  // some material has an alpha cutoff
+    bool is_pbr = false;     // metallic-roughness counts; else it is diffuse
 
     /// Whether there is a hole where a line crosses a triangle. For meshes with holes.
     bool is_hole(std::uint32_t triangle, const TriangleCrossing& crossing) const;
@@ -91,6 +92,9 @@ std::optional<double> cross_plane(const PlaneObject& plane, const Point3& origin
 /// ray's, whose side the normals are turned to.
 void shade_mesh(const MeshObject& object, std::uint32_t triangle, const TriangleCrossing& crossing,
                 const ReflectanceBands& bands, const Vector3& direction, SurfaceHit& hit);
+/// What a triangle of `hit` (SurfaceHit::triangle) does beside reflecting diffusely.
+SurfaceFinish finish_of_mesh(const MeshObject& object, const ReflectanceBands& bands,
+                             const SurfaceHit& hit);
 void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceHit& hit);
 void shade_plane(const PlaneObject& plane, const Vector3& direction, SurfaceHit& hit);
 

@@ -96,8 +96,9 @@ TEST_F(MeshReaderGltf, NamesWhatItIgnoresInOneLine) {
                                      "occlusionTexture":{"index":0}}])"},
                     {"extensionsUsed", R"(["KHR_lights_punctual"])"}}));
     ASSERT_EQ(warnings_.size(), 1U);
-    EXPECT_NE(warnings_[0].find("ignored: alpha blending, cameras, lights, metallic, occlusion maps"),
-              std::string::npos)
+    EXPECT_NE(
+        warnings_[0].find("ignored: alpha blending, cameras, lights, metallic, occlusion maps"),
+        std::string::npos)
         << warnings_[0];
 }
 
