@@ -167,8 +167,10 @@ class Inspection {
             document_.fail("a glTF mesh has no POSITION");
         }
         const Json& attributes = primitive["attributes"];
-        const std::uint64_t count =
-            document_.whole_number(accessor(attributes["POSITION"]), "count", 0);
+        const Json& positions = accessor(attributes["POSITION"]);
+        // Without data an accessor is all zeros, of any count that a forger likes.
+        if (!positions.contains("bufferView")) document_.fail("a glTF POSITION has no data");
+        const std::uint64_t count = document_.whole_number(positions, "count", 0);
         const auto check_set = [&](const Json& set) {
             for (const auto& [semantic, index] : set.items()) {
                 const Json& entry = accessor(index);

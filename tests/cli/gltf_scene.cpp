@@ -158,5 +158,43 @@ TEST_F(GltfScene, ItsLampsHaveLayersOfTheirOwnAndShareTheEntrysTransform) {
     EXPECT_LT(differing, 0.01 * k_width * k_height);
 }
 
+TEST_F(GltfScene, FramesOfASequenceBringTheirCamerasAndTheSameLamps) {
+    std::ifstream in(std::filesystem::path(UWVDB_SOURCE_DIR) / "tests/data/lights_compat.gltf");
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const auto replaced = [&](const std::string& from, const std::string& to) {
+        std::string result = text;
+        const std::size_t at = result.find("\"nodes\" : [\n        {");
+        result.replace(result.find(from, at), from.size(), to);
+        return result;
+    };
+    write("s_1.gltf", text);
+    write("s_2.gltf", replaced("3.200000047683716", "3.9"));  // the robot, farther back
+    write("s_3.gltf", replaced("SpotLeft", "SpotLift"));
+    write("scene.yaml",
+          "uwvdb: 1\ncamera: {resolution: [96, 72]}\ngeometry: [{file: 's_#.gltf', camera: true, "
+          "lamps: all, light_units: compat}]\nrender: {samples: 1}\n");
+    const test::ProgramResult two = run(
+        {"render", "scene.yaml", "-o", "o_#.exr", "--frames", "1-2", "--layers", "depth,lamps"});
+    ASSERT_EQ(two.exit_code, 0) << two.err;
+    const test::ImageFile near = test::read_exr(folder_ / "o_1.exr");
+    const test::ImageFile far = test::read_exr(folder_ / "o_2.exr");
+    EXPECT_TRUE(near.channels.contains("lamp.PointFill.G"));
+    const auto nearest = [](const test::ImageFile& image) {
+        float least = 1e9F;
+        for (const float z : image.channels.at("depth.Z"))
+            least = z > 0 ? std::min(z, least) : least;
+        return least;
+    };
+    // Along an axis 15 degrees off, to a cube's corner as pixels meet it.
+    EXPECT_NEAR(nearest(far) - nearest(near), 0.68, 0.03);
+    const test::ProgramResult three =
+        run({"render", "scene.yaml", "-o", "p_#.exr", "--frames", "1-3", "--quiet"});
+    EXPECT_EQ(three.exit_code, 3);
+    EXPECT_NE(three.err.find("frame 3: its lamps are SpotLift, SpotRight, PointFill"),
+              std::string::npos)
+        << three.err;
+    EXPECT_EQ(run({"render", "scene.yaml", "-o", "q.exr"}).exit_code, 3);  // an open sequence
+}
+
 }  // namespace
 }  // namespace uw

@@ -186,6 +186,8 @@ TEST_F(GltfImport, RefusesInOneLine) {
     expect_error("light_units: is of use with lamps only", ", light_units: raw", own);
     expect_error("light_units: unknown value 'rae'; did you mean 'raw'?",
                  ", lamps: all, light_units: rae", own);
+    expect_error("material: unknown value 'metal'; use one of: diffuse, pbr", ", material: metal",
+                 own);
     expect_error("lamps: names no light", ", lamps: []", own);
     expect_error(
         "scale of 0", ", camera: true", "",
