@@ -141,8 +141,7 @@ void ForwardPass::add_surface(const SurfaceSample& sample, SurfaceSums& sums) co
     lamp_paths_.add_mean(1, hit.position, sums.from_lamps);
     const double share = 1.0 / renderer_.samples();
     const double seen = setup_.sensor.surface_factor(hit.distance);
-    // Light scattered on its way to the surface comes from no single direction: what of it is
-    // reflected is taken as diffuse. Glints and the surface's own light are in the direct part.
+    // Light scattered on its way comes from no single direction: the diffuse part reflects it.
     for (std::size_t b = 0; b < bands_; ++b)
         sums.response[b] +=
             share * hit.reflectance[b] * std::numbers::inv_pi * seen * light.to_camera(0)[b];
