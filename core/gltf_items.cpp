@@ -19,7 +19,7 @@ constexpr auto k_lights = "KHR_lights_punctual";
 
 std::string name_of(const Json& node, const Json& item, const char* kind, std::size_t number) {
     for (const Json* named : {&node, &item}) {
-        const std::string name = named->value("name", "");
+        std::string name = named->value("name", "");
         if (!name.empty()) return name;
     }
     return fmt::format("{}{}", kind, number);
