@@ -7,6 +7,7 @@
 #include "cli/scene_rendering.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/surface_reflection.h"
 
 namespace uw {
 
@@ -71,6 +72,7 @@ int mirrored(int i, int side) {
 /// What a camera's pixels see of surfaces.
 struct SurfaceImage {
     Image irradiance, response;               // W/m^2; radiance at the camera per irradiance [1/sr]
+    Image direct;                             // radiance at the camera that was not scattered
     std::vector<double> to_lamps, to_camera;  // m
     std::vector<char> in_water;               // whether a ray enters it
 };
@@ -91,7 +93,7 @@ class DirectSum {
         Image radiance(pixels_);
         for_each([&](std::size_t i, std::size_t b) {
             forward[i][b] *= seen.response[i][b];
-            radiance[i][b] = seen.irradiance[i][b] * seen.response[i][b] + forward[i][b];
+            radiance[i][b] = seen.direct[i][b] + forward[i][b];
         });
         const Image signal = scattered(radiance, seen.to_camera);  // (16)
         for_each([&](std::size_t i, std::size_t b) {
@@ -107,8 +109,12 @@ class DirectSum {
     }
 
     SurfaceImage look(const Integrator& integrator) const {
-        SurfaceImage seen{Image(pixels_), Image(pixels_), std::vector<double>(pixels_),
-                          std::vector<double>(pixels_), std::vector<char>(pixels_)};
+        SurfaceImage seen{Image(pixels_),
+                          Image(pixels_),
+                          Image(pixels_),
+                          std::vector<double>(pixels_),
+                          std::vector<double>(pixels_),
+                          std::vector<char>(pixels_)};
         const std::vector<Lamp>& lamps = trial_.scene.lamps;
         parallel_for(pixels_, [&](std::size_t i) {
             const int x = static_cast<int>(i) % trial_.width();
@@ -125,11 +131,21 @@ class DirectSum {
             for (std::size_t j = 0; j < lamps.size(); ++j)
                 seen.to_lamps[i] +=
                     distance(lamps[j].position(), hit.position) / static_cast<double>(lamps.size());
-            for (std::size_t b = 0; b < bands_; ++b) {
-                for (std::size_t j = 0; j < lamps.size(); ++j)
+            const SurfaceReflection reflection(*trial_.scene.surfaces, sample,
+                                               static_cast<int>(bands_));
+            Spectrum brdf{};
+            for (std::size_t j = 0; j < lamps.size(); ++j) {
+                if (!light.visible(0, j)) continue;
+                reflection.brdf(lamps[j].position(), brdf);
+                for (std::size_t b = 0; b < bands_; ++b) {
                     seen.irradiance[i][b] += light.irradiance(0, j, b);
-                seen.response[i][b] =
-                    hit.reflectance[b] * std::numbers::inv_pi * light.to_camera(0)[b];
+                    seen.direct[i][b] += light.irradiance(0, j, b) * brdf[b];
+                }
+            }
+            for (std::size_t b = 0; b < bands_; ++b) {
+                const double transmittance = light.to_camera(0)[b];
+                seen.response[i][b] = hit.reflectance[b] * std::numbers::inv_pi * transmittance;
+                seen.direct[i][b] = (seen.direct[i][b] + reflection.emission()[b]) * transmittance;
             }
         });
         return seen;

@@ -50,12 +50,16 @@ void count_work(const AssembledScene& scene, const LightFields& light_fields,
 
 // What `warning` says of any frame: with the sequences' names in place of their files'.
 std::string without_frame(std::string warning, const SceneDesc& frame, const SceneDesc& all) {
-    for (std::size_t v = 0; v < frame.volumes.size(); ++v) {
-        const std::string file = frame.volumes[v].file.string();
+    const auto replace = [&](const auto& of_frame, const auto& of_all) {
+        const std::string file = of_frame.file.string();
         const std::size_t at = warning.find(file);
-        if (all.volumes[v].is_sequence && at != std::string::npos)
-            warning.replace(at, file.size(), all.volumes[v].file.string());
-    }
+        if (of_all.is_sequence && at != std::string::npos)
+            warning.replace(at, file.size(), of_all.file.string());
+    };
+    for (std::size_t v = 0; v < frame.volumes.size(); ++v)
+        replace(frame.volumes[v], all.volumes[v]);
+    for (std::size_t g = 0; g < frame.geometry.size(); ++g)
+        replace(frame.geometry[g], all.geometry[g]);
     return warning;
 }
 

@@ -1,6 +1,7 @@
 #include "cli/render_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "cli/stats.h"
 #include "core/config_text.h"
 #include "core/error.h"
+#include "core/gltf_import.h"
 #include "core/image_reader.h"
 #include "core/parallel.h"
 #include "media/colour_response.h"
@@ -56,6 +58,26 @@ std::vector<std::string> names_of(const std::vector<LampDesc>& lamps) {
     names.reserve(lamps.size());
     for (const LampDesc& lamp : lamps) names.push_back(lamp.name);
     return names;
+}
+
+// The scene of a frame with the camera and lamps of its glTF files.
+SceneDesc scene_with_gltf(const SceneDesc& desc, const Frame& frame) {
+    SceneDesc scene = scene_of_frame(desc, frame);
+    import_gltf(scene);
+    return scene;
+}
+
+// Likewise, of a frame whose lamps must be `lamp_names`: layers are the same in all frames.
+SceneDesc scene_with_lamps(const SceneDesc& desc, const Frame& frame,
+                           const std::vector<std::string>& lamp_names) {
+    SceneDesc scene = scene_with_gltf(desc, frame);
+    const std::vector<std::string> names = names_of(scene.lamps);
+    if (names != lamp_names)
+        throw InputError(fmt::format(
+            "frame {}: its lamps are {}, those of the first frame {}; export the same lights in "
+            "all frames",
+            frame.number.value_or(0), fmt::join(names, ", "), fmt::join(lamp_names, ", ")));
+    return scene;
 }
 
 PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
@@ -107,11 +129,12 @@ void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const Im
 }
 
 // Renders all frames; `done` gets the figures of each, whatever ends the run.
-void render_frames(const FrameSequence& sequence, const SceneDesc& desc, FrameRenderer& renderer,
+void render_frames(const FrameSequence& sequence, const SceneDesc& desc,
+                   const std::vector<std::string>& lamp_names, FrameRenderer& renderer,
                    RunStats stats, std::vector<RunStats>& done) {
     try {
         for (const Frame& frame : sequence.frames) {
-            renderer.render(frame, scene_of_frame(desc, frame), stats);
+            renderer.render(frame, scene_with_lamps(desc, frame, lamp_names), stats);
             if (!frame.files.stats.empty())
                 stats.write_json(frame.files.stats, desc.file.filename().string());
             done.push_back(std::exchange(stats, RunStats()));
@@ -135,7 +158,8 @@ void run_render(const RenderArguments& a) {
     apply_arguments(a, desc);
     add_cameras(sequence, desc, a.camera);
     const std::vector<PixelWindow> windows = windows_of(a, desc);
-    const std::vector<std::string> lamp_names = names_of(desc.lamps);
+    const std::vector<std::string> lamp_names =
+        names_of(scene_with_gltf(desc, sequence.frames.front()).lamps);
     const LayerPlan plan(a.layers, desc.water.bands_nm, lamp_names);
     const BandColour colour = make_band_colour(desc.render.colour, desc.water.bands_nm);
     if (!colour.warning().empty()) desc.warnings.push_back(colour.warning());
@@ -158,7 +182,7 @@ void run_render(const RenderArguments& a) {
             RunStats::write_json(sequence.stats, a.scene.filename().string(), done);
     };
     try {
-        render_frames(sequence, desc, renderer, std::move(stats), done);
+        render_frames(sequence, desc, lamp_names, renderer, std::move(stats), done);
     } catch (...) {
         write_stats();  // of what is done
         throw;

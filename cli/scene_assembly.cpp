@@ -8,6 +8,7 @@
 #include "core/focus_weighted_integrator.h"
 #include "core/forward_images.h"
 #include "core/geometry_scene.h"
+#include "core/gltf_import.h"
 #include "core/planes_integrator.h"
 #include "core/reference_integrator.h"
 #include "core/volume_integrator.h"
@@ -119,8 +120,13 @@ void take_over_surfaces(AssembledScene& scene, AssembledScene& before) {
 
 }  // namespace
 
-AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
+AssembledScene assemble_scene(const SceneDesc& given, const StageCallback& begin_stage,
                               AssembledScene before) {
+    refuse_open_sequences(given);
+    AssembledScene scene;
+    scene.desc = given;
+    import_gltf(scene.desc);
+    const SceneDesc& desc = scene.desc;
     if (desc.render.integrator == RenderDesc::Integrator::planes && !desc.volumes.empty())
         throw InputError(
             fmt::format("{}: the planes integrator is for uniform water: remove `volumes`, or use "
@@ -132,9 +138,6 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
             "{}: render.integrator: the planes integrator sums over slabs parallel to the image "
             "plane, which a fisheye lens looks past; use integrator volume",
             desc.file.filename().string()));
-    refuse_open_sequences(desc);
-    AssembledScene scene;
-    scene.desc = desc;
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
     scene.water = before.camera && same_water(before.desc, desc)

@@ -38,7 +38,8 @@ struct AssembledScene {
 /// Called with the name of each stage as it begins.
 using StageCallback = std::function<void(const std::string& stage)>;
 
-/// Loads what `desc` names and builds it, and places the slabs. `before`, a scene assembled
+/// Loads what `desc` names and builds it, with what glTF files bring (import_gltf), and places the
+/// slabs. `before`, a scene assembled
 /// earlier or none, is used up: water, volumes and surfaces whose description is the same are taken
 /// over from it as they are, even if their files have changed since; what is not is freed before
 /// anything is loaded. The result is to the bit what it is without `before`. Throws InputError,

@@ -11,6 +11,7 @@
 #include "cli/validation_suite.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/gltf_import.h"
 #include "core/parallel.h"
 
 namespace uw {
@@ -23,8 +24,10 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     if (!a.report.empty()) const AtomicFile probe(a.report);
     const ValidationSuite suite;
     std::vector<std::pair<std::string, SceneDesc>> scenes = suite.scenes();
-    if (!a.scene.empty())
+    if (!a.scene.empty()) {
         scenes = {{a.scene.filename().string(), load_scene(a.scene, a.overrides)}};
+        import_gltf(scenes.front().second);
+    }
 
     ValidationOptions options;
     options.tolerance = a.tolerance;

@@ -11,7 +11,6 @@
 #include <span>
 
 #include "core/affine.h"
-#include "core/assimp_materials.h"
 #include "core/error.h"
 #include "core/polygon.h"
 
@@ -72,69 +71,39 @@ std::vector<Placement> placements_of(const aiScene& scene) {
 /// Builds one mesh out of all placements.
 class MeshJoiner {
   public:
-    MeshJoiner(const AssimpOptions& options, std::string name)
-        : options_(options), name_(std::move(name)) {}
+    explicit MeshJoiner(bool normals) : wants_normals_(normals) {}
 
-    void set_materials(std::vector<AssimpMaterial> materials) {
-        materials_ = std::move(materials);
-        mesh_.materials.clear();
-        for (const AssimpMaterial& m : materials_) mesh_.materials.push_back(m.material);
-    }
-
-    TriangleMesh join(const std::vector<Placement>& placements) {
-        prepare(placements);
+    TriangleMesh join(const std::vector<Placement>& placements, const std::string& name) {
+        prepare(placements, name);
         for (const Placement& placement : placements) append(placement);
         return std::move(mesh_);
     }
 
-    std::uint64_t colors_out_of_range() const { return colors_out_of_range_; }
-
   private:
-    const AssimpMaterial* material_of(const aiMesh& mesh) const {
-        return mesh.mMaterialIndex < materials_.size() ? &materials_[mesh.mMaterialIndex] : nullptr;
-    }
-
-    /// Assimp appends a stand-in to the materials, for meshes that have none.
-    bool has_material(const aiMesh& mesh) const {
-        return std::size_t{mesh.mMaterialIndex} + 1 < materials_.size();
-    }
-
     /// Allocates once, and only what some part needs.
-    void prepare(const std::vector<Placement>& placements) {
+    void prepare(const std::vector<Placement>& placements, const std::string& name) {
         std::uint64_t vertices = 0, faces = 0;
         for (const auto& [mesh, transform] : placements) {
             vertices += mesh->mNumVertices;
             faces += mesh->mNumFaces;
-            has_normals_ |= options_.normals && mesh->mNormals != nullptr;
-            if (!options_.materials) continue;
-            has_colors_ |= mesh->mColors[0] != nullptr;
-            has_uvs_ |= material_of(*mesh) != nullptr && material_of(*mesh)->material.texture;
-            has_materials_ |= mesh->mMaterialIndex != placements[0].mesh->mMaterialIndex ||
-                              mesh->mMaterialIndex != 0;
+            has_normals_ |= wants_normals_ && mesh->mNormals != nullptr;
         }
         if (vertices > k_max_corners || 3 * faces > k_max_corners) {
             throw InputError(
                 fmt::format("{}: more than 500 million triangles; split or thin out "
                             "the mesh",
-                            name_));
+                            name));
         }
-        if (has_colors_) mesh_.materials.back().base_color = {1, 1, 1};
         mesh_.positions.reserve(3 * vertices + 4);  // Embree reads 16 bytes at the last vertex
         mesh_.triangles.reserve(3 * faces);
         if (has_normals_) mesh_.normals.reserve(3 * vertices);
-        if (has_uvs_) mesh_.uvs.reserve(2 * vertices);
-        if (has_colors_) mesh_.colors.reserve(3 * vertices);
-        if (has_materials_) mesh_.triangle_materials.reserve(faces);
     }
 
     void append(const Placement& placement) {
-        const aiMesh& mesh = *placement.mesh;
         const auto first = static_cast<std::uint32_t>(mesh_.vertex_count());
         append_positions(placement);
         if (has_normals_) append_normals(placement);
-        if (has_uvs_) append_uvs(mesh);
-        if (has_colors_) append_colors(mesh);
-        append_faces(mesh, first);
+        append_faces(*placement.mesh, first);
     }
 
     void append_positions(const Placement& placement) {
@@ -163,44 +132,6 @@ class MeshJoiner {
         }
     }
 
-    void append_uvs(const aiMesh& mesh) {
-        const AssimpMaterial* material = material_of(mesh);
-        const bool textured = material != nullptr && material->material.texture;
-        const aiVector3D* uvs = nullptr;
-        if (textured) {
-            if (material->uv_set < AI_MAX_NUMBER_OF_TEXTURECOORDS) {
-                uvs = mesh.mTextureCoords[material->uv_set];
-            }
-            if (uvs == nullptr) {
-                throw InputError(
-                    fmt::format("{}: mesh '{}' has a texture but not its coordinates "
-                                "TEXCOORD_{}; unwrap it or remove the texture",
-                                name_, mesh.mName.C_Str(), material->uv_set));
-            }
-        }
-        for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
-            // Assimp turned v upwards; glTF's, from the top left, is ours.
-            mesh_.uvs.push_back(textured ? uvs[k].x : 0.0F);
-            mesh_.uvs.push_back(textured ? 1.0F - uvs[k].y : 0.0F);
-        }
-    }
-
-    void append_colors(const aiMesh& mesh) {
-        const aiColor4D* colors = mesh.mColors[0];
-        // Without a material, vertex colours stand alone, and without those too it is neutral grey.
-        const auto grey = has_material(mesh) ? 1.0F : 0.5F;
-        const aiColor4D plain(grey, grey, grey, 1);
-        for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
-            const aiColor4D color = colors != nullptr ? colors[k] : plain;
-            bool in_range = true;
-            for (const float c : {color.r, color.g, color.b}) {
-                in_range &= c >= 0 && c <= 1.0001F;
-                mesh_.colors.push_back(c > 0 ? std::min(c, 1.0F) : 0.0F);
-            }
-            colors_out_of_range_ += in_range ? 0 : 1;
-        }
-    }
-
     void append_faces(const aiMesh& mesh, std::uint32_t first) {
         constexpr std::uint32_t missing = std::numeric_limits<std::uint32_t>::max();
         std::vector<std::uint32_t> corners;
@@ -218,23 +149,16 @@ class MeshJoiner {
                 triangulate_polygon(corners, mesh_.positions, mesh_.triangles);
             }
         }
-        if (has_materials_) {
-            mesh_.triangle_materials.resize(mesh_.triangle_count(), mesh.mMaterialIndex);
-        }
     }
 
-    AssimpOptions options_;
-    std::string name_;
+    bool wants_normals_ = false;
     TriangleMesh mesh_;
-    std::vector<AssimpMaterial> materials_;
-    bool has_normals_ = false, has_uvs_ = false, has_colors_ = false, has_materials_ = false;
-    std::uint64_t colors_out_of_range_ = 0;
+    bool has_normals_ = false;
 };
 
 }  // namespace
 
-TriangleMesh read_with_assimp(const std::filesystem::path& file, const AssimpOptions& options,
-                              std::vector<std::string>& warnings) {
+TriangleMesh read_with_assimp(const std::filesystem::path& file, bool normals) {
     const std::string name = file.string();
     Assimp::Importer importer;
     importer.SetIOHandler(new RegularFiles);  // the importer owns it
@@ -246,15 +170,7 @@ TriangleMesh read_with_assimp(const std::filesystem::path& file, const AssimpOpt
         std::replace(message.begin(), message.end(), '\n', ' ');
         throw InputError(fmt::format("{}: cannot read the mesh: {}", name, message));
     }
-    const std::vector<Placement> placements = placements_of(*scene);
-    MeshJoiner joiner(options, name);
-    if (options.materials) joiner.set_materials(read_assimp_materials(*scene, file));
-    TriangleMesh mesh = joiner.join(placements);
-    if (joiner.colors_out_of_range() > 0) {
-        warnings.push_back(fmt::format("{}: {} vertex colours are outside 0..1; clamped", name,
-                                       joiner.colors_out_of_range()));
-    }
-    return mesh;
+    return MeshJoiner(normals).join(placements_of(*scene), name);
 }
 
 }  // namespace uw

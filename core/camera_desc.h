@@ -76,6 +76,10 @@ struct CameraDesc {
     Affine world_from_camera;  // rigid; x right, y down, z forward
     /// Where what is above the lens comes from, if it is not in the scene (camera/calibration.h).
     std::optional<CalibrationDesc> calibration;
+    // Whether the scene file itself or a calibration says so; else they are those of a glTF camera,
+    // once import_gltf has been there.
+    bool has_intrinsics = true, has_pose = true;
+    SourceLocation where;
 };
 
 }  // namespace uw

@@ -22,13 +22,31 @@ Query& query_of(const RTCIntersectContext* context, RTCRayN* rays, unsigned coun
     return context_of(context).queries[RTCRayN_id(rays, count, i)];
 }
 
-}  // namespace
+/// Whether the ray of `query` passes a hole of the mesh where Embree saw it meet a triangle.
+bool passes_hole(const MeshObject& object, const RTCFilterFunctionNArguments* args, unsigned i,
+                 const Query& query) {
+    const unsigned count = args->N;
+    const unsigned triangle = RTCHitN_primID(args->hit, count, i);
+    // In double, as the crossing is told later.
+    const auto crossing = cross_triangle(object, triangle, query.origin, query.direction);
+    return object.is_hole(triangle, crossing ? *crossing
+                                             : TriangleCrossing{0, RTCHitN_u(args->hit, count, i),
+                                                                RTCHitN_v(args->hit, count, i)});
+}
 
-void filter_closest(const RTCFilterFunctionNArguments* args) {
+template <bool with_holes>
+void take_closest(const RTCFilterFunctionNArguments* args) {
     const unsigned count = args->N;
     for (unsigned i = 0; i < count; ++i) {
         if (args->valid[i] != -1) continue;
         Query& query = query_of(args->context, args->ray, count, i);
+        if constexpr (with_holes) {
+            if (passes_hole(*static_cast<const MeshObject*>(args->geometryUserPtr), args, i,
+                            query)) {
+                args->valid[i] = 0;
+                continue;
+            }
+        }
         float& end = RTCRayN_tfar(args->ray, count, i);  // here the candidate's own
         if (query.take(end, RTCHitN_geomID(args->hit, count, i),
                        RTCHitN_primID(args->hit, count, i))) {
@@ -41,7 +59,8 @@ void filter_closest(const RTCFilterFunctionNArguments* args) {
     }
 }
 
-void filter_occluder(const RTCFilterFunctionNArguments* args) {
+template <bool with_holes>
+void take_occluder(const RTCFilterFunctionNArguments* args) {
     const auto& object = *static_cast<const MeshObject*>(args->geometryUserPtr);
     const unsigned count = args->N;
     for (unsigned i = 0; i < count; ++i) {
@@ -50,7 +69,7 @@ void filter_occluder(const RTCFilterFunctionNArguments* args) {
         const auto crossing = cross_triangle(object, RTCHitN_primID(args->hit, count, i),
                                              query.origin, query.direction);
         const double t = crossing ? crossing->t : RTCRayN_tfar(args->ray, count, i);
-        if (!between_ends(t)) {
+        if (!between_ends(t) || (with_holes && passes_hole(object, args, i, query))) {
             args->valid[i] = 0;
         } else if (!context_of(args->context).edges_count &&
                    !(crossing && crossing->well_inside())) {
@@ -58,6 +77,24 @@ void filter_occluder(const RTCFilterFunctionNArguments* args) {
             args->valid[i] = 0;
         }
     }
+}
+
+}  // namespace
+
+void filter_closest(const RTCFilterFunctionNArguments* args) {
+    take_closest<false>(args);
+}
+
+void filter_closest_with_holes(const RTCFilterFunctionNArguments* args) {
+    take_closest<true>(args);
+}
+
+void filter_occluder(const RTCFilterFunctionNArguments* args) {
+    take_occluder<false>(args);
+}
+
+void filter_occluder_with_holes(const RTCFilterFunctionNArguments* args) {
+    take_occluder<true>(args);
 }
 
 void sphere_bounds(const RTCBoundsFunctionArguments* args) {

@@ -63,6 +63,9 @@ static_assert(std::is_standard_layout_v<QueryContext>);
 void filter_closest(const RTCFilterFunctionNArguments* args);
 /// Filter of triangles for shadow rays; the geometry's user data is its MeshObject.
 void filter_occluder(const RTCFilterFunctionNArguments* args);
+/// The same for meshes with holes (MeshObject::has_holes), which cost a texture look-up each.
+void filter_closest_with_holes(const RTCFilterFunctionNArguments* args);
+void filter_occluder_with_holes(const RTCFilterFunctionNArguments* args);
 
 // The user geometry of spheres; its user data is a std::vector<SphereObject>.
 void sphere_bounds(const RTCBoundsFunctionArguments* args);

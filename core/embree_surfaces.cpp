@@ -44,6 +44,11 @@ class EmbreeSurfaces final : public Surfaces {
         return shade(find_nearest(ray, s_end), ray, s_end, hit);
     }
 
+    SurfaceFinish finish(const SurfaceHit& hit) const override {
+        if (!hit.has_finish) return {};
+        return finish_of_mesh(*objects_.meshes[hit.geometry], objects_.bands, hit);
+    }
+
     double hit_distance(const Ray& ray) const override {
         return find_nearest(ray, k_infinity).distance;
     }
@@ -143,8 +148,10 @@ class EmbreeSurfaces final : public Surfaces {
                                    object.mesh.triangles.data(), 0, 3 * sizeof(std::uint32_t),
                                    object.mesh.triangle_count());
         rtcSetGeometryUserData(geometry.get(), &object);
-        rtcSetGeometryIntersectFilterFunction(geometry.get(), filter_closest);
-        rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_occluder);
+        rtcSetGeometryIntersectFilterFunction(
+            geometry.get(), object.has_holes ? filter_closest_with_holes : filter_closest);
+        rtcSetGeometryOccludedFilterFunction(
+            geometry.get(), object.has_holes ? filter_occluder_with_holes : filter_occluder);
         rtcCommitGeometry(geometry.get());
         rtcAttachGeometry(scene_.get(), geometry.get());
         check("taking over a mesh");
@@ -174,6 +181,7 @@ class EmbreeSurfaces final : public Surfaces {
         } else if (nearest.geometry < objects_.meshes.size()) {
             shade_mesh(*objects_.meshes[nearest.geometry], nearest.primitive, nearest.crossing,
                        objects_.bands, ray.direction, hit);
+            hit.geometry = nearest.geometry;
         } else {
             shade_sphere(objects_.spheres[nearest.primitive], ray.direction, hit);
         }

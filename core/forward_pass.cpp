@@ -11,6 +11,7 @@
 #include "core/available_memory.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/surface_reflection.h"
 
 namespace uw {
 
@@ -140,15 +141,20 @@ void ForwardPass::add_surface(const SurfaceSample& sample, SurfaceSums& sums) co
     lamp_paths_.add_mean(1, hit.position, sums.from_lamps);
     const double share = 1.0 / renderer_.samples();
     const double seen = setup_.sensor.surface_factor(hit.distance);
-    for (std::size_t b = 0; b < bands_; ++b) {
-        const double factor =
-            hit.reflectance[b] * std::numbers::inv_pi * seen * light.to_camera(0)[b];
-        sums.response[b] += share * factor;
-        for (std::size_t c = 0; c < components_.size(); ++c) {
-            for (const std::size_t j : components_[c].lamps) {
+    // Light scattered on its way comes from no single direction: the diffuse part reflects it.
+    for (std::size_t b = 0; b < bands_; ++b)
+        sums.response[b] +=
+            share * hit.reflectance[b] * std::numbers::inv_pi * seen * light.to_camera(0)[b];
+    const SurfaceReflection reflection(*scene_.surfaces, sample, static_cast<int>(bands_));
+    Spectrum brdf{};
+    for (std::size_t c = 0; c < components_.size(); ++c) {
+        for (const std::size_t j : components_[c].lamps) {
+            if (!light.visible(0, j)) continue;
+            reflection.brdf((*scene_.lamps)[j].position(), brdf);
+            for (std::size_t b = 0; b < bands_; ++b) {
                 const double irradiance = share * light.irradiance(0, j, b);
                 sums.irradiance[c][b] += irradiance;
-                sums.direct[c][b] += irradiance * factor;
+                sums.direct[c][b] += irradiance * brdf[b] * seen * light.to_camera(0)[b];
             }
         }
     }

@@ -55,6 +55,22 @@ void transform(TriangleMesh& mesh, const Affine& world_from_object) {
         if (!(length > 0)) continue;  // zero stands for "flat"
         for (int axis = 0; axis < 3; ++axis) n[axis] = static_cast<float>(world[axis] / length);
     }
+    if (mesh.tangents.empty()) return;
+    // A mirror turns corners and cross products round.
+    const bool is_mirror = world_from_object.determinant() < 0;
+    const float side = is_mirror ? -1.0F : 1.0F;
+    for (std::size_t at = 0; is_mirror && at + 2 < mesh.triangles.size(); at += 3) {
+        std::swap(mesh.triangles[at + 1], mesh.triangles[at + 2]);
+    }
+    for (std::size_t at = 0; at + 3 < mesh.tangents.size(); at += 4) {
+        float* t = &mesh.tangents[at];
+        const Vector3 world = world_from_object.apply_to_vector({t[0], t[1], t[2]});
+        const double length = glm::length(world);
+        for (int axis = 0; axis < 3; ++axis) {
+            t[axis] = length > 0 ? static_cast<float>(world[axis] / length) : 0.0F;
+        }
+        t[3] *= side;
+    }
 }
 
 /// Of the corners in use; a file may have broken vertices that no triangle names.
@@ -65,6 +81,11 @@ Bounds bounds_of(const TriangleMesh& mesh) {
         bounds.extend(Point3{p[0], p[1], p[2]});
     }
     return bounds;
+}
+
+/// Whether a material says more than the colour that a given reflectance replaces.
+bool has_more_than_color(const MeshMaterial& material) {
+    return material.alpha_cutoff > 0 || material.normal_map || material.emission != Rgb{0, 0, 0};
 }
 
 TriangleMesh box_mesh(const GeometryDesc& desc) {
@@ -96,8 +117,10 @@ class Builder {
         }
         switch (desc.type) {
             case GeometryDesc::Type::file:
-                add_mesh(desc, read_mesh(desc.file, warnings), object_id,
-                         given_reflectance(desc, objects_.bands.count()));
+                add_mesh(desc,
+                         read_mesh(desc.file, warnings,
+                                   {desc.import.camera, desc.import.any_lamps(), desc.is_pbr}),
+                         object_id, given_reflectance(desc, objects_.bands.count()));
                 break;
             case GeometryDesc::Type::box:
                 add_mesh(desc, box_mesh(desc), object_id, reflectance(desc));
@@ -134,8 +157,12 @@ class Builder {
         object->mesh = std::move(mesh);
         object->object_id = object_id;
         object->reflectance = reflectance;
+        object->is_pbr = desc.is_pbr;
         object->vertex_count = object->mesh.vertex_count();
-        if (reflectance) {
+        const auto& materials = object->mesh.materials;
+        object->has_holes = std::ranges::any_of(
+            materials, [](const MeshMaterial& material) { return material.alpha_cutoff > 0; });
+        if (reflectance && !desc.is_pbr && std::ranges::none_of(materials, has_more_than_color)) {
             object->mesh.uvs = {};
             object->mesh.colors = {};
             object->mesh.triangle_materials = {};

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <map>
 #include <set>
 
 #include "core/error.h"
-#include "core/gltf_json.h"
+#include "core/gltf_bytes.h"
+#include "core/gltf_nodes.h"
 #include "core/gltf_uri.h"
 
 namespace uw {
@@ -16,58 +16,32 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int k_float = 5126;
-constexpr std::size_t k_max_node_depth = 256;
-
-// Numbers per element of an accessor.
-const std::map<std::string, std::uint64_t> k_components = {
-    {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
 
 class Inspection {
   public:
-    explicit Inspection(const std::filesystem::path& file)
-        : file_(file), name_(file.string()), document_(load_gltf_json(file)) {}
+    Inspection(const GltfDocument& document, const GltfUse& use) : document_(document), use_(use) {}
 
     std::vector<std::string> run() {
         check_extensions();
-        check_nodes();
+        gltf_nodes(document_);  // a strict tree
         check_sizes();
-        for (const Json& mesh : list(document_, "meshes")) {
-            for (const Json& primitive : list(mesh, "primitives")) check_primitive(primitive);
+        for (const Json& mesh : document_.list("meshes")) {
+            for (const Json& primitive : document_.list(mesh, "primitives"))
+                check_primitive(primitive);
         }
-        for (const Json& material : list(document_, "materials")) inspect_material(material);
-        for (const char* ignored : {"cameras", "animations", "skins"}) {
-            if (!list(document_, ignored).empty()) ignored_.insert(ignored);
+        for (const Json& material : document_.list("materials")) inspect_material(material);
+        for (const char* ignored : {"animations", "skins"}) {
+            if (!document_.list(ignored).empty()) ignored_.insert(ignored);
         }
+        if (!use_.camera && !document_.list("cameras").empty()) ignored_.insert("cameras");
         return {ignored_.begin(), ignored_.end()};
     }
 
   private:
-    [[noreturn]] void fail(const std::string& what) const {
-        throw InputError(fmt::format("{}: {}", name_, what));
-    }
-
-    /// The array under `key`; empty if there is none.
-    const Json& list(const Json& parent, const char* key) const {
-        static const Json none = Json::array();
-        const auto found = parent.is_object() ? parent.find(key) : parent.end();
-        if (!parent.is_object() || found == parent.end()) return none;
-        if (!found->is_array()) fail(fmt::format("glTF '{}' is not a list", key));
-        return *found;
-    }
-
-    std::uint64_t whole_number(const Json& parent, const char* key, std::uint64_t otherwise) const {
-        const auto found = parent.find(key);
-        if (found == parent.end()) return otherwise;
-        if (!found->is_number_unsigned()) {
-            fail(fmt::format("glTF '{}' is not a whole number", key));
-        }
-        return found->get<std::uint64_t>();
-    }
-
     const Json& accessor(const Json& index) const {
-        const Json& accessors = list(document_, "accessors");
+        const Json& accessors = document_.list("accessors");
         if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size()) {
-            fail("glTF names an accessor that is not there");
+            document_.fail("glTF names an accessor that is not there");
         }
         return accessors[index.get<std::size_t>()];
     }
@@ -75,39 +49,25 @@ class Inspection {
     void check_extensions() {
         // Extensions that say how to read the geometry change it when left out; those that only
         // add lights or looks do not.
-        for (const Json& required : list(document_, "extensionsRequired")) {
+        for (const Json& required : document_.list("extensionsRequired")) {
             const std::string extension = required.get<std::string>();
-            if (extension != "KHR_lights_punctual" && !extension.starts_with("KHR_materials_")) {
-                fail(
+            if (extension != "KHR_lights_punctual" && extension != "KHR_texture_transform" &&
+                !extension.starts_with("KHR_materials_")) {
+                document_.fail(
                     fmt::format("needs the glTF extension {}, which is not supported; export "
                                 "without it",
                                 extension));
             }
         }
-        for (const Json& used : list(document_, "extensionsUsed")) {
+        for (const Json& used : document_.list("extensionsUsed")) {
             const std::string extension = used.get<std::string>();
-            ignored_.insert(extension == "KHR_lights_punctual" ? "lights" : extension);
-        }
-    }
-
-    void check_nodes() {
-        const Json& nodes = list(document_, "nodes");
-        constexpr std::size_t no_parent = SIZE_MAX;
-        std::vector<std::size_t> parent(nodes.size(), no_parent);
-        for (std::size_t node = 0; node < nodes.size(); ++node) {
-            for (const Json& child : list(nodes[node], "children")) {
-                const auto index = child.is_number_unsigned() ? child.get<std::size_t>() : SIZE_MAX;
-                if (index >= nodes.size()) fail("glTF names a node that is not there");
-                if (parent[index] != no_parent) fail("a glTF node has two parents");
-                parent[index] = node;
-            }
-        }
-        for (std::size_t node = 0; node < nodes.size(); ++node) {
-            std::size_t depth = 0;
-            for (std::size_t at = node; parent[at] != no_parent; at = parent[at]) {
-                if (++depth > k_max_node_depth) {
-                    fail("the glTF nodes are in a circle or nested more than 256 deep");
-                }
+            if (extension == "KHR_lights_punctual") {
+                if (!use_.lamps) ignored_.insert("lights");
+            } else if (extension == "KHR_materials_ior") {
+                if (!use_.pbr) ignored_.insert(extension);
+            } else if (extension != "KHR_texture_transform" &&
+                       extension != "KHR_materials_emissive_strength") {
+                ignored_.insert(extension);
             }
         }
     }
@@ -116,179 +76,146 @@ class Inspection {
     std::uint64_t source_size(const Json& buffer, std::uint64_t own_size) const {
         const std::string uri = buffer.value("uri", "");
         if (uri.empty() || uri.starts_with("data:")) return own_size;
-        const std::filesystem::path source = gltf_uri_path(file_, uri);
+        const std::filesystem::path source = gltf_uri_path(document_.file(), uri);
         std::error_code status;
         if (!std::filesystem::is_regular_file(source, status)) {
             throw IoError(fmt::format("{}: its buffer {} is missing; put it beside the glTF file",
-                                      name_, uri));
+                                      document_.name(), uri));
         }
         return std::filesystem::file_size(source);
     }
 
     void check_sizes() {
-        const std::uint64_t own_size = std::filesystem::file_size(file_);
+        const std::uint64_t own_size = std::filesystem::file_size(document_.file());
         std::uint64_t total = own_size;
-        for (const Json& buffer : list(document_, "buffers")) {
+        for (const Json& buffer : document_.list("buffers")) {
             const std::uint64_t size = source_size(buffer, own_size);
-            if (whole_number(buffer, "byteLength", 0) > size) {
-                fail("a glTF buffer is longer than its file; the file is cut off");
+            if (document_.whole_number(buffer, "byteLength", 0) > size) {
+                document_.fail("a glTF buffer is longer than its file; the file is cut off");
             }
             total += size;
         }
-        for (const Json& view : list(document_, "bufferViews")) check_view(view);
-        for (const Json& entry : list(document_, "accessors")) check_accessor(entry, total);
-    }
-
-    const Json& element(const char* key, const Json& parent, const char* index_key) const {
-        const Json& all = list(document_, key);
-        const std::uint64_t index = whole_number(parent, index_key, UINT64_MAX);
-        if (index >= all.size()) fail(fmt::format("glTF '{}' names what is not there", index_key));
-        return all[index];
+        for (const Json& view : document_.list("bufferViews")) check_view(view);
+        for (const Json& entry : document_.list("accessors")) check_accessor(entry, total);
     }
 
     void check_view(const Json& view) const {
-        const Json& buffer = element("buffers", view, "buffer");
-        const std::uint64_t size = whole_number(buffer, "byteLength", 0);
-        const std::uint64_t length = whole_number(view, "byteLength", 0);
-        if (length > size || whole_number(view, "byteOffset", 0) > size - length) {
-            fail("a glTF bufferView reaches past its buffer; the file is cut off");
+        const Json& buffer = document_.element("buffers", view, "buffer");
+        const std::uint64_t size = document_.whole_number(buffer, "byteLength", 0);
+        const std::uint64_t length = document_.whole_number(view, "byteLength", 0);
+        if (length > size || document_.whole_number(view, "byteOffset", 0) > size - length) {
+            document_.fail("a glTF bufferView reaches past its buffer; the file is cut off");
         }
     }
 
     /// `source` names a bufferView and an offset in it; `count` elements must lie inside.
     void check_range(const Json& source, std::uint64_t count, std::uint64_t element_size) const {
-        const Json& view = element("bufferViews", source, "bufferView");
-        const std::uint64_t length = whole_number(view, "byteLength", 0);
-        const std::uint64_t offset = whole_number(source, "byteOffset", 0);
-        const std::uint64_t stride = whole_number(view, "byteStride", element_size);
+        const Json& view = document_.element("bufferViews", source, "bufferView");
+        const std::uint64_t length = document_.whole_number(view, "byteLength", 0);
+        const std::uint64_t offset = document_.whole_number(source, "byteOffset", 0);
+        const std::uint64_t stride = document_.whole_number(view, "byteStride", element_size);
         // glTF 2.0, 3.6.2.1: a stride is at most 252. It is below element_size for interleaved
         // matrices only, which no mesh uses.
         const bool sane = count == 0 || (offset <= length && stride <= 252 &&
                                          stride >= element_size && element_size <= length - offset);
         if (!sane || (count > 0 && (count - 1) * stride > length - offset - element_size)) {
-            fail("a glTF accessor reaches past its bufferView; the file is cut off");
+            document_.fail("a glTF accessor reaches past its bufferView; the file is cut off");
         }
     }
 
     void check_accessor(const Json& entry, std::uint64_t total) const {
-        const std::uint64_t count = whole_number(entry, "count", 0);
-        if (count > total) fail("a glTF accessor counts more than its file can hold");
+        const std::uint64_t count = document_.whole_number(entry, "count", 0);
+        if (count > total) document_.fail("a glTF accessor counts more than its file can hold");
         const std::uint64_t size =
-            k_components.contains(entry.value("type", ""))
-                ? k_components.at(entry.value("type", "")) * component_size(entry)
-                : 0;
-        if (size == 0) fail("a glTF accessor has an impossible type");
+            gltf_component_count(entry.value("type", "")) * component_size(entry);
+        if (size == 0) document_.fail("a glTF accessor has an impossible type");
         if (entry.contains("bufferView")) check_range(entry, count, size);
         if (!entry.contains("sparse")) return;
         const Json& sparse = entry.at("sparse");
-        const std::uint64_t patches = whole_number(sparse, "count", 0);
-        if (patches > count) fail("a glTF accessor has more sparse values than values");
+        const std::uint64_t patches = document_.whole_number(sparse, "count", 0);
+        if (patches > count) document_.fail("a glTF accessor has more sparse values than values");
         check_range(sparse.at("indices"), patches, component_size(sparse.at("indices")));
         check_range(sparse.at("values"), patches, size);
     }
 
     std::uint64_t component_size(const Json& entry) const {
-        switch (whole_number(entry, "componentType", 0)) {
-            case 5120:
-            case 5121:
-                return 1;
-            case 5122:
-            case 5123:
-                return 2;
-            case 5125:
-            case k_float:
-                return 4;
-            default:
-                return 0;
-        }
+        return gltf_component_size(document_.whole_number(entry, "componentType", 0));
     }
 
     void check_attribute(const std::string& semantic, const Json& entry) const {
         const std::string type = entry.value("type", "");
-        const bool is_float = whole_number(entry, "componentType", 0) == k_float;
+        const bool is_float = document_.whole_number(entry, "componentType", 0) == k_float;
         const bool is_vector = semantic == "POSITION" || semantic == "NORMAL";
         const bool is_uv = semantic.starts_with("TEXCOORD_");
         const bool is_color = semantic.starts_with("COLOR_");
-        if ((is_vector || is_uv) && !is_float) {
-            fail(fmt::format("glTF {} is quantised; export it as 32-bit floats", semantic));
+        const bool is_share = is_uv && entry.value("normalized", false);
+        if ((is_vector || is_uv) && !is_float && !is_share) {
+            document_.fail(
+                fmt::format("glTF {} is quantised; export it as 32-bit floats", semantic));
         }
         if ((is_vector && type != "VEC3") || (is_uv && type != "VEC2") ||
+            (semantic == "TANGENT" && (type != "VEC4" || !is_float)) ||
             (is_color && type != "VEC3" && type != "VEC4") ||
             (semantic.starts_with("JOINTS_") && type != "VEC4") ||
             (semantic.starts_with("WEIGHTS_") && type != "VEC4")) {
-            fail(fmt::format("glTF {} has the impossible type '{}'", semantic, type));
+            document_.fail(fmt::format("glTF {} has the impossible type '{}'", semantic, type));
         }
     }
 
     void check_primitive(const Json& primitive) {
         if (!primitive.contains("attributes") || !primitive["attributes"].contains("POSITION")) {
-            fail("a glTF mesh has no POSITION");
+            document_.fail("a glTF mesh has no POSITION");
         }
         const Json& attributes = primitive["attributes"];
-        const std::uint64_t count = whole_number(accessor(attributes["POSITION"]), "count", 0);
+        const Json& positions = accessor(attributes["POSITION"]);
+        // Without data an accessor is all zeros, of any count that a forger likes.
+        if (!positions.contains("bufferView")) document_.fail("a glTF POSITION has no data");
+        const std::uint64_t count = document_.whole_number(positions, "count", 0);
         const auto check_set = [&](const Json& set) {
             for (const auto& [semantic, index] : set.items()) {
                 const Json& entry = accessor(index);
                 check_attribute(semantic, entry);
-                if (whole_number(entry, "count", 0) != count) {
-                    fail(fmt::format("glTF {} has another count than POSITION", semantic));
+                if (document_.whole_number(entry, "count", 0) != count) {
+                    document_.fail(
+                        fmt::format("glTF {} has another count than POSITION", semantic));
                 }
             }
         };
         check_set(attributes);
-        for (const Json& target : list(primitive, "targets")) {
+        for (const Json& target : document_.list(primitive, "targets")) {
             check_set(target);
             ignored_.insert("morph targets");
         }
         if (primitive.contains("indices")) {
             const Json& entry = accessor(primitive["indices"]);
-            const std::uint64_t type = whole_number(entry, "componentType", 0);
+            const std::uint64_t type = document_.whole_number(entry, "componentType", 0);
             if (entry.value("type", "") != "SCALAR" ||
                 (type != 5121 && type != 5123 && type != 5125)) {
-                fail("glTF indices are not whole numbers");
+                document_.fail("glTF indices are not whole numbers");
             }
         }
-        if (whole_number(primitive, "mode", 4) < 4) ignored_.insert("points and lines");
+        if (document_.whole_number(primitive, "mode", 4) < 4) ignored_.insert("points and lines");
     }
 
     void inspect_material(const Json& material) {
-        static const Json none = Json::object();
-        const auto found = material.find("pbrMetallicRoughness");
-        const Json& surface = found == material.end() ? none : *found;
-        if (surface.value("metallicFactor", 1.0) > 0) ignored_.insert("metallic");
-        if (surface.contains("metallicRoughnessTexture")) ignored_.insert("metallic");
-        if (material.contains("normalTexture")) ignored_.insert("normal maps");
+        const Json& surface = document_.object(material, "pbrMetallicRoughness");
+        if (!use_.pbr && (surface.value("metallicFactor", 1.0) > 0 ||
+                          surface.contains("metallicRoughnessTexture"))) {
+            ignored_.insert("metallic");
+        }
         if (material.contains("occlusionTexture")) ignored_.insert("occlusion maps");
-        if (material.contains("emissiveTexture")) ignored_.insert("emission");
-        for (const Json& factor : list(material, "emissiveFactor")) {
-            if (factor.get<double>() > 0) ignored_.insert("emission");
-        }
-        if (material.value("alphaMode", "OPAQUE") != "OPAQUE") ignored_.insert("alpha");
-        if (!surface.contains("baseColorTexture")) return;
-        const std::uint64_t index = whole_number(surface["baseColorTexture"], "index", UINT64_MAX);
-        const Json& textures = list(document_, "textures");
-        if (index >= textures.size()) fail("a glTF material names a texture that is not there");
-        if (whole_number(textures[index], "source", UINT64_MAX) >=
-            list(document_, "images").size()) {
-            fail("a glTF base colour texture has no PNG or JPEG source; export it as PNG");
-        }
+        if (material.value("alphaMode", "OPAQUE") == "BLEND") ignored_.insert("alpha blending");
     }
 
-    std::filesystem::path file_;
-    std::string name_;
-    Json document_;
+    const GltfDocument& document_;
+    GltfUse use_;
     std::set<std::string> ignored_;
 };
 
 }  // namespace
 
-std::vector<std::string> inspect_gltf(const std::filesystem::path& file) {
-    try {
-        return Inspection(file).run();
-    } catch (const Json::exception& error) {
-        throw InputError(
-            fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));
-    }
+std::vector<std::string> inspect_gltf(const GltfDocument& document, const GltfUse& use) {
+    return Inspection(document, use).run();
 }
 
 }  // namespace uw

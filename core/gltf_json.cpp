@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <system_error>
 
 #include "core/error.h"
 
@@ -29,8 +30,13 @@ std::uint32_t little_endian(const std::string& bytes, std::size_t at) {
 
 std::string json_text(const std::filesystem::path& file) {
     const std::string name = file.string();
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw IoError(name + ": cannot open the mesh; check the name and its permissions");
+    std::error_code status;
+    // A pipe or device under a mesh's name would block the reader.
+    const bool is_file = std::filesystem::is_regular_file(file, status);
+    std::ifstream in;
+    if (is_file) in.open(file, std::ios::binary);
+    if (!is_file || !in)
+        throw IoError(name + ": cannot open the mesh; check the name and its permissions");
     const std::uint64_t size = std::filesystem::file_size(file);
     std::string header = read_bytes(in, std::min<std::uint64_t>(size, k_glb_header));
     if (!header.starts_with("glTF")) {

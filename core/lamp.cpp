@@ -176,7 +176,10 @@ double Lamp::beam_solid_angle() const {
     if (profile_.type == LampProfileDesc::Type::cosine)
         return 2.0 * std::numbers::pi / (exponent_ + 1.0);
     if (web_) return web_->flux() / web_->peak();
-    return 2.0 * std::numbers::pi * (1.0 - cos_full_) + edge_solid_angle(full_angle_, dark_angle_);
+    const double full = 2.0 * std::numbers::pi * (1.0 - cos_full_);
+    if (profile_.falloff == LampProfileDesc::Falloff::gltf)  // a square of the cosine's way
+        return full + 2.0 * std::numbers::pi * (cos_full_ - cos_dark_) / 3.0;
+    return full + edge_solid_angle(full_angle_, dark_angle_);
 }
 
 double Lamp::relative_intensity(const Vector3& v) const {
@@ -187,6 +190,10 @@ double Lamp::relative_intensity(const Vector3& v) const {
         return cosine <= 0 ? 0.0 : std::pow(cosine, exponent_);
     if (cosine >= cos_full_) return 1.0;
     if (cosine <= cos_dark_) return 0.0;
+    if (profile_.falloff == LampProfileDesc::Falloff::gltf) {
+        const double way = (cosine - cos_dark_) / (cos_full_ - cos_dark_);
+        return way * way;
+    }
     const double angle = std::acos(glm::clamp(cosine, -1.0, 1.0));
     return smoothstep((dark_angle_ - angle) / (dark_angle_ - full_angle_));
 }

@@ -1,15 +1,15 @@
 #include "core/mesh_reader.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 
 #include "core/assimp_reader.h"
 #include "core/error.h"
-#include "core/gltf_inspection.h"
+#include "core/gltf_reader.h"
 #include "core/mesh_cleanup.h"
+#include "core/mesh_tangents.h"
 #include "core/ply_reader.h"
 
 namespace uw {
@@ -22,17 +22,14 @@ std::string lower_extension(const std::filesystem::path& file) {
     return extension;
 }
 
-TriangleMesh read_any(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+TriangleMesh read_any(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                      const GltfUse& use) {
     const std::string extension = lower_extension(file);
     if (extension == ".ply") return read_ply(file, warnings);
-    if (extension == ".obj") return read_with_assimp(file, {}, warnings);
+    if (extension == ".obj") return read_with_assimp(file, true);
     // STL repeats the face's normal at each corner.
-    if (extension == ".stl") return read_with_assimp(file, {.normals = false}, warnings);
-    const std::vector<std::string> ignored = inspect_gltf(file);
-    if (!ignored.empty()) {
-        warnings.push_back(fmt::format("{}: ignored: {}", file.string(), fmt::join(ignored, ", ")));
-    }
-    return read_with_assimp(file, {.materials = true}, warnings);
+    if (extension == ".stl") return read_with_assimp(file, false);
+    return read_gltf(file, use, warnings);
 }
 
 void check_file(const std::filesystem::path& file) {
@@ -57,12 +54,14 @@ void check_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                       const GltfUse& use) {
     check_file(file);
-    TriangleMesh mesh = read_any(file, warnings);
+    TriangleMesh mesh = read_any(file, warnings, use);
     DroppedTriangles dropped;
     drop_bad_triangles(mesh, dropped);
     dropped.report(file.string(), warnings);
+    compute_tangents(mesh);
     if (mesh.triangles.empty()) {
         throw InputError(file.string() + ": the mesh has no triangles; check what was exported");
     }

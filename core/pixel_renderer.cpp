@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "core/surface_reflection.h"
 
 namespace uw {
 
@@ -174,7 +175,7 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
     result.range = view.has_hit ? view.range : 0;
     result.path = view.has_hit ? view.path : 0;
     for (std::size_t i = 0; i < view.samples.size(); ++i)
-        add_surface(view.samples[i].hit, light, first_sample + i, result);
+        add_surface(view.samples[i], light, first_sample + i, result);
     if (!view.samples.empty())
         for (std::size_t b = 0; b < bands; ++b)
             result.transmittance[b] /= static_cast<double>(view.samples.size());
@@ -195,23 +196,34 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
     shade(view, surfaces, 0, row, result);
 }
 
-void PixelRenderer::add_surface(const SurfaceHit& hit, const SurfaceLight& light,
+void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight& light,
                                 std::size_t sample, PixelResult& result) const {
+    const SurfaceHit& hit = surface.hit;
     const double share = 1.0 / samples_;
     const double seen = sensor_.surface_factor(hit.distance);
     const auto bands = static_cast<std::size_t>(band_count());
     const std::span<const double> to_camera = light.to_camera(sample);
+    const SurfaceReflection reflection(*scene_.surfaces, surface, band_count());
     for (std::size_t b = 0; b < bands; ++b) result.transmittance[b] += to_camera[b];
+    if (reflection.emits()) {
+        for (std::size_t b = 0; b < bands; ++b) {
+            const double emission = share * reflection.emission()[b] * seen;
+            result.clean[b] += emission;
+            result.direct[b] += emission * to_camera[b];
+        }
+    }
+    Spectrum brdf{};
     for (std::size_t j = 0; j < light.lamp_count(); ++j) {
         if (!light.visible(sample, j)) continue;
         result.lit += share / static_cast<double>(light.lamp_count());
+        reflection.brdf((*scene_.lamps)[j].position(), brdf);
         for (std::size_t b = 0; b < bands; ++b) {
             const double irradiance = share * light.irradiance(sample, j, b);
-            const double brdf = hit.reflectance[b] * std::numbers::inv_pi * seen;
-            const double direct = irradiance * brdf * to_camera[b];
+            const double response = brdf[b] * seen;
+            const double direct = irradiance * response * to_camera[b];
             result.irradiance[b] += irradiance;
             result.exitance[b] += irradiance * hit.reflectance[b];
-            result.clean[b] += share * light.clean(sample, j, b) * brdf;
+            result.clean[b] += share * light.clean(sample, j, b) * response;
             result.direct[b] += direct;
             if (!result.lamps.empty()) result.lamps[j][b] += direct;
         }

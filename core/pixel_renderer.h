@@ -69,7 +69,7 @@ class PixelRenderer {
     void render(int x, int y, PixelResult& result) const;
 
   private:
-    void add_surface(const SurfaceHit& hit, const SurfaceLight& light, std::size_t sample,
+    void add_surface(const SurfaceSample& surface, const SurfaceLight& light, std::size_t sample,
                      PixelResult& result) const;
     void add_water(std::span<const double> row, PixelResult& result) const;
     // Begins a view with the ray at the pixel's centre.

@@ -161,14 +161,17 @@ CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
             map.require("resolution", "give resolution: [width, height] in pixels");
         const auto sides = resolution.list_of(2, "give [width, height] in pixels");
         read_resolution(resolution, sides[0], sides[1], camera);
-        const ConfigValue intrinsics =
-            map.require("intrinsics", "give intrinsics: {fov_x: 60}, or fx, fy, cx, cy in pixels");
+        const auto intrinsics = map.find("intrinsics");
         if (const auto entry = map.find("distortion")) camera.distortion = read_distortion(*entry);
-        camera.intrinsics = read_intrinsics(intrinsics, camera);
+        camera.has_intrinsics = intrinsics.has_value();
+        if (intrinsics) camera.intrinsics = read_intrinsics(*intrinsics, camera);
     }
+    camera.where = value.location();
     if (const auto entry = map.find("port")) camera.port = read_port(*entry, context);
     if (const auto entry = map.find("lens")) camera.lens = read_lens(*entry);
-    if (const auto entry = map.find("pose")) camera.world_from_camera = read_pose(*entry);
+    const auto pose = map.find("pose");
+    camera.has_pose = pose.has_value();
+    if (pose) camera.world_from_camera = read_pose(*pose);
     return camera;
 }
 

@@ -97,6 +97,27 @@ struct VolumeDesc {
     friend bool operator==(const VolumeDesc&, const VolumeDesc&) = default;
 };
 
+/// What a glTF file's light intensities are (Blender's exporter offers these three).
+enum class LightUnits {
+    standard,  // candela, as the format has it: W/sr times 683
+    compat,    // W/sr
+    raw,       // W in all directions
+};
+
+/// What to take from a glTF file beside its meshes (core/gltf_import.h).
+struct GltfImportDesc {
+    bool camera = false;
+    std::string camera_name;  // empty: the file's only one
+    SourceLocation camera_where;
+    bool all_lamps = false;
+    std::vector<std::string> lamps;  // by name; empty with all_lamps
+    SourceLocation lamps_where;
+    LightUnits units = LightUnits::standard;
+
+    bool any_lamps() const { return all_lamps || !lamps.empty(); }
+    friend bool operator==(const GltfImportDesc&, const GltfImportDesc&) = default;
+};
+
 struct GeometryDesc {
     enum class Type { file, plane, box, sphere };
     Type type = Type::file;
@@ -109,6 +130,8 @@ struct GeometryDesc {
     Point3 center;                       // sphere
     double radius = 0;                   // sphere
     std::optional<PerBand> reflectance;  // replaces the file's colours; without either, 0.5
+    GltfImportDesc import;
+    bool is_pbr = false;  // a glTF file's metallic-roughness materials; else all is diffuse
     SourceLocation where;
 
     friend bool operator==(const GeometryDesc&, const GeometryDesc&) = default;
@@ -117,12 +140,16 @@ struct GeometryDesc {
 struct LampProfileDesc {
     enum class Type { isotropic, spot, cosine, ies };
     Type type = Type::isotropic;
-    double beam = 0;             // spot: full angle at half intensity
-    double edge = 0;             // spot: angle over which the intensity falls from full to none
-    double fwhm = 0;             // cosine: full angle at half intensity
-    std::filesystem::path file;  // ies
-    double rotate = 0;           // ies: about the lamp's direction
-    double tilt = 0;             // ies: then from it towards the luminaire's azimuth 0
+    double beam = 0;  // spot: full angle at half intensity
+    double edge = 0;  // spot: angle over which the intensity falls from full to none
+    double fwhm = 0;  // cosine: full angle at half intensity
+    /// How a spot falls: smoothstep in the angle, or as glTF's spots do, by the square of what is
+    /// left of the cosine's way (KHR_lights_punctual).
+    enum class Falloff { smooth, gltf };
+    Falloff falloff = Falloff::smooth;
+    std::filesystem::path file;        // ies
+    double rotate = 0;                 // ies: about the lamp's direction
+    double tilt = 0;                   // ies: then from it towards the luminaire's azimuth 0
     SourceLocation where = "profile";  // ies
 };
 
@@ -218,6 +245,7 @@ struct SceneDesc {
     std::vector<GeometryDesc> geometry;
     std::vector<LampDesc> lamps;
     RenderDesc render;
+    bool gltf_is_imported = false;      // import_gltf has put in what `geometry` asks for
     std::string hash;                   // of the text as read with overrides, for image headers
     std::vector<std::string> warnings;  // one line each
 };

@@ -62,10 +62,65 @@ void read_shape(ConfigMap& map, const ConfigValue& type, GeometryDesc& object) {
     map.finish("type '" + type.node().scalar + "'");
 }
 
+std::vector<std::string> read_lamp_names(const ConfigValue& value, bool& all) {
+    constexpr auto k_mend = "write all, or a list of the lights' names";
+    all = value.node().kind == ConfigNode::Kind::scalar && value.node().scalar == "all";
+    std::vector<std::string> names;
+    if (all) return names;
+    for (const ConfigValue& name : value.list(k_mend)) names.push_back(name.text(k_mend));
+    if (names.empty()) value.fail("names no light; write all, a list of names, or leave it out");
+    return names;
+}
+
+/// What a file brings beside diffuse meshes.
+void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
+    GltfImportDesc& import = object.import;
+    const std::string extension = object.file.extension().string();
+    const auto check_file = [&](const ConfigValue& value) {
+        if (extension == ".gltf" || extension == ".glb") return;
+        value.fail(
+            fmt::format("only glTF files (.gltf, .glb) bring it, not '{}'; remove it, or "
+                        "export the scene as glTF",
+                        extension));
+    };
+    if (const auto camera = map.find("camera")) {
+        check_file(*camera);
+        import.camera = true;
+        import.camera_where = camera->location();
+        const ConfigNode& node = camera->node();
+        const bool is_true = node.kind == ConfigNode::Kind::scalar && !node.quoted &&
+                             (node.scalar == "true" || node.scalar == "True");
+        if (!is_true) {
+            import.camera_name = camera->text("give the name of a camera of the file, or true");
+        }
+    }
+    const auto lamps = map.find("lamps");
+    if (lamps) {
+        check_file(*lamps);
+        import.lamps_where = lamps->location();
+        import.lamps = read_lamp_names(*lamps, import.all_lamps);
+    }
+    if (const auto units = map.find("light_units")) {
+        check_file(*units);
+        if (!lamps) units->fail("is of use with lamps only; add lamps: all, or remove it");
+        constexpr std::array<std::pair<std::string_view, LightUnits>, 3> k_units{
+            {{"standard", LightUnits::standard},
+             {"compat", LightUnits::compat},
+             {"raw", LightUnits::raw}}};
+        import.units = units->choice(k_units);
+    }
+    if (const auto material = map.find("material")) {
+        check_file(*material);
+        constexpr std::array<std::pair<std::string_view, bool>, 2> k_materials{
+            {{"diffuse", false}, {"pbr", true}}};
+        object.is_pbr = material->choice(k_materials);
+    }
+}
+
 GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) {
     ConfigMap map(value,
                   {"file", "transform", "reflectance", "type", "point", "normal", "min", "max",
-                   "center", "radius"},
+                   "center", "radius", "camera", "lamps", "light_units", "material"},
                   "write {file: seabed.glb} or {type: sphere, center: [0, 0, 2], radius: 0.2}");
     GeometryDesc object;
     object.where = value.location();
@@ -80,6 +135,7 @@ GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) 
         map.require("file", "give a mesh file, or type: plane, box or sphere"), context,
         object.is_sequence);
     if (const auto entry = map.find("transform")) object.world_from_object = read_transform(*entry);
+    read_gltf_keys(map, object);
     map.finish("a mesh file");
     return object;
 }

@@ -30,6 +30,12 @@ void read_spot(ConfigMap& map, LampProfileDesc& profile) {
                             profile.beam, profile.edge));
         }
     }
+    if (const auto falloff = map.find("falloff")) {
+        using Falloff = LampProfileDesc::Falloff;
+        constexpr std::array<std::pair<std::string_view, Falloff>, 2> k_falloffs{
+            {{"smooth", Falloff::smooth}, {"gltf", Falloff::gltf}}};
+        profile.falloff = falloff->choice(k_falloffs);
+    }
 }
 
 void read_ies_profile(ConfigMap& map, const SceneContext& context, LampProfileDesc& profile) {
@@ -45,7 +51,8 @@ void read_ies_profile(ConfigMap& map, const SceneContext& context, LampProfileDe
 LampProfileDesc read_profile(const ConfigValue& value, const SceneContext& context) {
     using Type = LampProfileDesc::Type;
     constexpr auto k_example = "write {type: spot, beam: 60, edge: 5}";
-    ConfigMap map(value, {"type", "beam", "edge", "fwhm", "file", "rotate", "tilt"}, k_example);
+    ConfigMap map(value, {"type", "beam", "edge", "falloff", "fwhm", "file", "rotate", "tilt"},
+                  k_example);
     const ConfigValue type = map.require("type", k_example);
     constexpr std::array<std::string_view, 4> k_types{"isotropic", "spot", "cosine", "ies"};
     LampProfileDesc profile;

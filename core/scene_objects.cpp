@@ -1,7 +1,9 @@
 #include "core/scene_objects.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "core/mesh_surface.h"
+#include "core/microfacet.h"
 
 namespace uw {
 namespace {
@@ -10,54 +12,10 @@ Vector3 toward_viewer(const Vector3& normal, const Vector3& direction) {
     return glm::dot(normal, direction) > 0 ? -normal : normal;
 }
 
-std::array<double, 3> weights_of(const TriangleCrossing& crossing) {
-    const double u = std::clamp(crossing.u, 0.0, 1.0);
-    const double v = std::clamp(crossing.v, 0.0, 1.0 - u);
-    return {1 - u - v, u, v};
-}
-
-/// The interpolated normal of the file, or the flat one if a corner has none. The side is that of
-/// the flat normal: on a grazing view an interpolated one may lean past the viewer's horizon.
-Vector3 shading_normal(const TriangleMesh& mesh, const std::uint32_t* corners,
-                       const std::array<double, 3>& weights, const Vector3& flat) {
-    if (mesh.normals.empty()) return flat;
-    Vector3 sum(0.0);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const float* n = &mesh.normals[3 * std::size_t{corners[k]}];
-        const Vector3 normal(n[0], n[1], n[2]);
-        if (normal == Vector3(0.0)) return flat;
-        sum += weights[k] * normal;
-    }
-    const double length = glm::length(sum);
-    if (!(length > 1e-6)) return flat;
-    return (glm::dot(sum, flat) < 0 ? -sum : sum) / length;
-}
-
-Rgb mesh_color(const TriangleMesh& mesh, std::uint32_t triangle, const std::uint32_t* corners,
-               const std::array<double, 3>& weights) {
-    const std::uint32_t material_index =
-        mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[triangle];
-    const MeshMaterial& material = mesh.materials[material_index];
-    Rgb color = material.base_color;
-    if (material.texture) {
-        double u = 0, v = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            u += weights[k] * mesh.uvs[2 * std::size_t{corners[k]}];
-            v += weights[k] * mesh.uvs[2 * std::size_t{corners[k]} + 1];
-        }
-        const Rgb texel = material.texture->sample(u, v, material.lookup);
-        for (std::size_t i = 0; i < 3; ++i) color[i] *= texel[i];
-    }
-    if (!mesh.colors.empty()) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            double factor = 0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                factor += weights[k] * mesh.colors[3 * std::size_t{corners[k]} + i];
-            }
-            color[i] *= factor;
-        }
-    }
-    return color;
+/// The colour given in the scene, or that of the file.
+Spectrum base_color(const MeshObject& object, const MeshPlace& place,
+                    const ReflectanceBands& bands) {
+    return object.reflectance ? *object.reflectance : bands.from_rgb(place.base_color());
 }
 
 }  // namespace
@@ -66,6 +24,10 @@ Point3 MeshObject::corner(std::uint32_t triangle, int k) const {
     const std::uint32_t vertex = mesh.triangles[3 * std::size_t{triangle} + std::size_t(k)];
     const float* p = &mesh.positions[3 * std::size_t{vertex}];
     return {p[0], p[1], p[2]};
+}
+
+bool MeshObject::is_hole(std::uint32_t triangle, const TriangleCrossing& crossing) const {
+    return MeshPlace(mesh, triangle, crossing.u, crossing.v).is_hole();
 }
 
 Bounds SphereObject::world_bounds() const {
@@ -124,14 +86,36 @@ void shade_mesh(const MeshObject& object, std::uint32_t triangle, const Triangle
     const Vector3 area = glm::cross(object.corner(triangle, 1) - a, object.corner(triangle, 2) - a);
     const double size = glm::length(area);
     const Vector3 flat = size > 0 ? area / size : -direction;
-    const std::uint32_t* corners = &object.mesh.triangles[3 * std::size_t{triangle}];
-    const std::array<double, 3> weights = weights_of(crossing);
+    const MeshPlace place(object.mesh, triangle, crossing.u, crossing.v);
     hit.geometric_normal = toward_viewer(flat, direction);
-    hit.normal = shading_normal(object.mesh, corners, weights, hit.geometric_normal);
-    hit.reflectance = object.reflectance
-                          ? *object.reflectance
-                          : bands.from_rgb(mesh_color(object.mesh, triangle, corners, weights));
+    hit.normal = place.shading_normal(hit.geometric_normal);
+    hit.reflectance = base_color(object, place, bands);
+    hit.has_finish = object.is_pbr || place.material().emission != Rgb{0, 0, 0};
+    if (object.is_pbr) {
+        const double metallic = place.roughness_metallic()[1];
+        for (double& rho : hit.reflectance) rho *= 1 - metallic;
+    }
+    hit.triangle = triangle;
+    hit.u = crossing.u;
+    hit.v = crossing.v;
     hit.object_id = object.object_id;
+}
+
+SurfaceFinish finish_of_mesh(const MeshObject& object, const ReflectanceBands& bands,
+                             const SurfaceHit& hit) {
+    const MeshPlace place(object.mesh, hit.triangle, hit.u, hit.v);
+    SurfaceFinish finish;
+    finish.emission = bands.from_rgb(place.emission());
+    finish.is_glossy = object.is_pbr;
+    if (!object.is_pbr) return finish;
+    const auto [roughness, metallic] = place.roughness_metallic();
+    finish.roughness = roughness;
+    const double dielectric = dielectric_f0(place.material().ior);
+    const Spectrum metal = base_color(object, place, bands);
+    for (std::size_t b = 0; b < static_cast<std::size_t>(bands.count()); ++b) {
+        finish.f0[b] = (1 - metallic) * dielectric + metallic * metal[b];
+    }
+    return finish;
 }
 
 void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceHit& hit) {
@@ -141,12 +125,14 @@ void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceH
         glm::normalize(glm::transpose(sphere.object_from_world.linear()) * outward);
     hit.geometric_normal = hit.normal = toward_viewer(normal, direction);
     hit.reflectance = sphere.reflectance;
+    hit.has_finish = false;
     hit.object_id = sphere.object_id;
 }
 
 void shade_plane(const PlaneObject& plane, const Vector3& direction, SurfaceHit& hit) {
     hit.geometric_normal = hit.normal = toward_viewer(plane.normal, direction);
     hit.reflectance = plane.reflectance;
+    hit.has_finish = false;
     hit.object_id = plane.object_id;
 }
 

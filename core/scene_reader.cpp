@@ -51,6 +51,43 @@ void check_version(const ConfigValue& scene) {
                           version->description()));
 }
 
+/// What a glTF file is to bring must be missing in the scene, and what is missing be brought.
+void check_gltf_imports(const SceneDesc& desc) {
+    const CameraDesc& camera = desc.camera;
+    const SourceLocation* source = nullptr;
+    for (const GeometryDesc& object : desc.geometry) {
+        if (!object.import.camera) continue;
+        const SourceLocation& where = object.import.camera_where;
+        if (!desc.cameras.empty()) {
+            throw InputError(fmt::format(
+                "{}: the scene has a rig of its own cameras; remove this, or give camera instead "
+                "of cameras",
+                where));
+        }
+        if (source != nullptr) {
+            throw InputError(
+                fmt::format("{}: the camera is taken from {} already; remove one", where, *source));
+        }
+        if (camera.has_intrinsics && camera.has_pose) {
+            throw InputError(fmt::format(
+                "{}: the scene's own camera has intrinsics and pose, which leaves nothing to take "
+                "from the file; remove them, or one of them, or this",
+                where));
+        }
+        source = &where;
+    }
+    if (source != nullptr) return;
+    const auto check = [](const CameraDesc& own) {
+        if (own.has_intrinsics) return;
+        throw InputError(fmt::format(
+            "{}: 'intrinsics' is missing; give intrinsics: {{fov_x: 60}}, or fx, fy, cx, cy in "
+            "pixels, or take a glTF file's with geometry: [{{file: x.glb, camera: true}}]",
+            own.where));
+    };
+    check(camera);
+    for (const RigCameraDesc& entry : desc.cameras) check(entry.camera);
+}
+
 }  // namespace
 
 PlanesDesc read_planes(const ConfigValue& value) {
@@ -150,7 +187,10 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
     if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
     check_lenses(desc);
-    if (desc.lamps.empty()) {
+    check_gltf_imports(desc);
+    const bool brings_lamps = std::ranges::any_of(
+        desc.geometry, [](const GeometryDesc& object) { return object.import.any_lamps(); });
+    if (desc.lamps.empty() && !brings_lamps) {
         context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
     }
     desc.hash = config_hash(root);

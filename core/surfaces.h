@@ -5,6 +5,7 @@
 
 #include "core/bands.h"
 #include "core/ray.h"
+#include "core/surface_finish.h"
 
 namespace uw {
 
@@ -16,6 +17,10 @@ struct SurfaceHit {
     Vector3 geometric_normal{0, 0, 1};  // of the true surface, unit, same side
     Spectrum reflectance{};             // diffuse reflectance rho per band, 0..1
     std::uint32_t object_id = 0;        // index of the entry of `geometry`, from 1
+    bool has_finish = false;            // does more than reflect diffusely: ask Surfaces::finish
+    // For Surfaces::finish: the triangle and where on it.
+    std::uint32_t geometry = 0, triangle = 0;
+    double u = 0, v = 0;
 };
 
 /// The opaque surfaces of a scene: what stops camera rays and casts shadows. Thread safe.
@@ -25,6 +30,10 @@ class Surfaces {
 
     /// The nearest surface along `ray` within (0, s_end]; false if there is none.
     virtual bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const = 0;
+
+    /// What a surface that was hit does beside reflecting diffusely; nothing unless
+    /// SurfaceHit::has_finish, and by default.
+    virtual SurfaceFinish finish(const SurfaceHit& /*hit*/) const { return {}; }
 
     /// Distance to the nearest surface from the ray's origin, infinity if there is none. Cheaper
     /// than closest_hit: no shading.

@@ -53,14 +53,15 @@ TEST_F(MeshReaderGltf, MultipliesNothingButKeepsFactorTextureAndColors) {
     const MeshMaterial& material = mesh.materials[0];
     EXPECT_EQ(material.base_color, (Rgb{0.5, 0.25, 0.125}));
     EXPECT_TRUE(material.double_sided);
-    EXPECT_EQ(material.lookup.filter, TextureFilter::nearest);
-    EXPECT_EQ(material.lookup.wrap_u, TextureWrap::clamp);
-    EXPECT_EQ(material.lookup.wrap_v, TextureWrap::mirror);
-    ASSERT_TRUE(material.texture);
-    ASSERT_EQ(mesh.uvs.size(), 6U);
-    EXPECT_NEAR(mesh.uvs[1], 0.25, 1e-7);
+    EXPECT_EQ(material.base_map.lookup.filter, TextureFilter::nearest);
+    EXPECT_EQ(material.base_map.lookup.wrap_u, TextureWrap::clamp);
+    EXPECT_EQ(material.base_map.lookup.wrap_v, TextureWrap::mirror);
+    ASSERT_TRUE(material.base_map.texture);
+    ASSERT_EQ(mesh.uvs[0].size(), 6U);
+    EXPECT_NEAR(mesh.uvs[0][1], 0.25, 1e-7);
     // (0.25, 0.25) is the middle of the top left texel, which is red.
-    const Rgb texel = material.texture->sample(mesh.uvs[0], mesh.uvs[1], material.lookup);
+    const Rgb texel =
+        material.base_map.texture->sample(mesh.uvs[0][0], mesh.uvs[0][1], material.base_map.lookup);
     EXPECT_EQ(texel, (Rgb{1, 0, 0}));
     EXPECT_EQ(mesh.colors, (std::vector<float>{.5F, .25F, 1, .5F, .25F, 1, .5F, .25F, 1}));
     EXPECT_TRUE(warnings_.empty());
@@ -91,11 +92,13 @@ TEST_F(MeshReaderGltf, ReadsColorsStoredAsShorts) {
 TEST_F(MeshReaderGltf, NamesWhatItIgnoresInOneLine) {
     read("ignored.gltf",
          gltf_text({{"cameras", R"([{"type":"perspective","perspective":{"yfov":1,"znear":1}}])"},
-                    {"materials", R"([{"emissiveFactor":[1,0,0],"alphaMode":"BLEND"}])"},
+                    {"materials", R"([{"emissiveFactor":[1,0,0],"alphaMode":"BLEND",
+                                     "occlusionTexture":{"index":0}}])"},
                     {"extensionsUsed", R"(["KHR_lights_punctual"])"}}));
     ASSERT_EQ(warnings_.size(), 1U);
-    EXPECT_NE(warnings_[0].find("ignored: alpha, cameras, emission, lights, metallic"),
-              std::string::npos)
+    EXPECT_NE(
+        warnings_[0].find("ignored: alpha blending, cameras, lights, metallic, occlusion maps"),
+        std::string::npos)
         << warnings_[0];
 }
 
