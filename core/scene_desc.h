@@ -147,7 +147,7 @@ struct LampProfileDesc {
     /// left of the cosine's way (KHR_lights_punctual).
     enum class Falloff { smooth, gltf };
     Falloff falloff = Falloff::smooth;
-    std::filesystem::path file;        // ies
+    std::filesystem::path file{};      // ies
     double rotate = 0;                 // ies: about the lamp's direction
     double tilt = 0;                   // ies: then from it towards the luminaire's azimuth 0
     SourceLocation where = "profile";  // ies

@@ -220,7 +220,10 @@ TEST_F(GltfImport, OnlyGltfBringsThem) {
 
 TEST(GltfSpot, FallsAsTheExtensionSays) {
     LampDesc desc;
-    desc.profile = {LampProfileDesc::Type::spot, 63, 7, 0, LampProfileDesc::Falloff::gltf};
+    desc.profile.type = LampProfileDesc::Type::spot;
+    desc.profile.beam = 63;
+    desc.profile.edge = 7;
+    desc.profile.falloff = LampProfileDesc::Falloff::gltf;
     desc.power = PerBand{1};
     const Lamp lamp(desc, Affine(), 1);
     const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
