@@ -20,10 +20,11 @@ std::string printable(std::string text) {
     return text;
 }
 
-/// A metadata map: the strings and 64-bit integers by name; of other types the name alone.
+/// A metadata map: strings, 64-bit integers and vectors of three by name; of others the name alone.
 struct Metadata {
     std::map<std::string, std::string> strings;
     std::map<std::string, std::int64_t> integers;
+    std::map<std::string, std::array<std::int32_t, 3>> vectors;
     std::vector<std::string> others;
 };
 
@@ -38,6 +39,8 @@ Metadata read_metadata(ByteReader& in) {
             metadata.strings[name] = in.text(size);
         } else if (type == "int64" && size == sizeof(std::int64_t)) {
             metadata.integers[name] = in.get<std::int64_t>();
+        } else if (type == "vec3i" && size == 3 * sizeof(std::int32_t)) {
+            metadata.vectors[name] = in.get<std::array<std::int32_t, 3>>();
         } else {
             metadata.others.push_back(name);
             in.skip(size);
@@ -89,8 +92,13 @@ GridSummary read_grid(ByteReader& in, const VdbHeader& header) {
         grid.grid_class = printable(it->second);
     if (const auto it = metadata.integers.find("file_voxel_count"); it != metadata.integers.end())
         grid.active_voxels = it->second;
+    const auto low = metadata.vectors.find("file_bbox_min");
+    const auto high = metadata.vectors.find("file_bbox_max");
+    if (low != metadata.vectors.end() && high != metadata.vectors.end())
+        grid.active_box = IndexBox{low->second, high->second};
     grid.has_base_resolution = std::find(metadata.others.begin(), metadata.others.end(),
-                                         "file_base_resolution") != metadata.others.end();
+                                         "file_base_resolution") != metadata.others.end() ||
+                               metadata.vectors.contains("file_base_resolution");
     grid.transform_offset = in.position();
     grid.map_type = printable(in.text());
     in.seek(next_descriptor);

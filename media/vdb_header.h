@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -9,6 +10,11 @@
 #include "core/scene_desc.h"
 
 namespace uw {
+
+/// Voxels min to max, both included.
+struct IndexBox {
+    std::array<std::int32_t, 3> min{}, max{};
+};
 
 /// What a VDB file says about one of its grids, read without its voxels. Names are made printable.
 struct GridSummary {
@@ -20,6 +26,7 @@ struct GridSummary {
     std::optional<std::int64_t> active_voxels;  // if the file says so
     std::string map_type;                       // e.g. "UniformScaleMap", "NonlinearFrustumMap"
     bool has_base_resolution = false;           // Blender's fluid solver notes it with each grid
+    std::optional<IndexBox> active_box;         // of the active voxels, if the file says so
 
     // For the reader: where in the file things are.
     std::string tree_type;    // "Tree_float_5_4_3"
@@ -55,6 +62,10 @@ VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocatio
 
 /// The summaries alone.
 std::vector<GridSummary> list_grids(const std::filesystem::path& file, const SourceLocation& where);
+
+/// Why the grid's values are no concentrations, to follow "grid 'x' "; "" if nothing in its header
+/// speaks against them.
+std::string unusable_because(const GridSummary& grid);
 
 /// The grid a scene calls `name`, if its concentrations can be used. Throws InputError, starting
 /// with `where`, for a name that is missing or shared by several grids, and for level sets, points,

@@ -39,7 +39,8 @@ std::string did_you_mean(const VdbHeader& header, const std::string& name) {
     return best != nullptr ? fmt::format("; did you mean '{}'?", best->name) : "";
 }
 
-/// Why the grid is no concentration, or "".
+}  // namespace
+
 std::string unusable_because(const GridSummary& grid) {
     if (grid.value_type.starts_with("ptdataidx") || grid.value_type.starts_with("ptidx"))
         return "holds points, not a concentration; rasterise them to a fog volume first";
@@ -55,8 +56,6 @@ std::string unusable_because(const GridSummary& grid) {
         return "has a frustum (camera-shaped) transform; resample it to an affine one";
     return "";
 }
-
-}  // namespace
 
 const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
                                const SourceLocation& where) {
