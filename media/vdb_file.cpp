@@ -95,9 +95,8 @@ Affine read_file_from_index(const VdbHeader& header, const std::string& name,
                             const SourceLocation& where) {
     initialize_openvdb();
     const GridSummary& grid = select_grid(header, name, where);
-    return read_guarded(describe_grid_place(header, grid, where), [&] {
-        return to_affine(*GridStream(header, grid, grid, where).read_transform());
-    });
+    return read_guarded(describe_grid_place(header, grid, where),
+                        [&] { return to_affine(*read_transform(header, grid, where)); });
 }
 
 LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "media/byte_reader.h"
+#include "media/nvdb_header.h"
 
 namespace uw {
 namespace {
@@ -15,8 +16,8 @@ constexpr std::int64_t k_magic = 0x56444220;
 
 /// Names come from the file and go into one-line messages.
 std::string printable(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
     return text;
 }
 
@@ -124,8 +125,9 @@ VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocatio
     ByteReader in(file, where);
     VdbHeader header;
     header.file = file;
-    if (in.size() < 8 || in.get<std::int64_t>() != k_magic)
-        in.fail("is not a VDB file (it does not begin like one)");
+    const std::int64_t magic = in.size() < 8 ? 0 : in.get<std::int64_t>();
+    if (is_nvdb_magic(magic)) return read_nvdb_header(in, file);
+    if (magic != k_magic) in.fail("is not a VDB file (it does not begin like one)");
     header.version = in.get<std::uint32_t>();
     header.library_major = in.get<std::uint32_t>();
     header.library_minor = in.get<std::uint32_t>();

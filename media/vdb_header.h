@@ -22,6 +22,7 @@ struct GridSummary {
     std::string base_name;   // "density" in both cases
     std::string value_type;  // "float", "double", "vec3s", "ptdataidx32", ...
     bool half = false;       // saved with 16 bits per number
+    std::string quantised;   // NanoVDB: "fp4", "fp8", "fp16" or "fpN" if saved so, else ""
     std::string grid_class = "unknown";         // "fog volume", "level set", "staggered", "unknown"
     std::optional<std::int64_t> active_voxels;  // if the file says so
     std::string map_type;                       // e.g. "UniformScaleMap", "NonlinearFrustumMap"
@@ -34,12 +35,15 @@ struct GridSummary {
     std::string instance_of;  // raw unique name of the grid whose voxels this one shares, or ""
     std::uint32_t compression = 0;
     std::int64_t transform_offset = 0;
-    std::int64_t blocks_offset = 0;
+    std::int64_t blocks_offset = 0;  // NanoVDB: where the grid's bytes begin
+    std::int64_t stored_bytes = 0;   // NanoVDB: their number in the file,
+    std::int64_t grid_bytes = 0;     // and once unpacked
 };
 
 /// What a VDB file says about itself.
 struct VdbHeader {
     std::filesystem::path file;
+    bool is_nano = false;       // NanoVDB's own format (.nvdb); it has no version of its own
     std::uint32_t version = 0;  // of the format: 224 for OpenVDB 4 to 12
     std::uint32_t library_major = 0, library_minor = 0;
     std::string creator;  // file metadata "creator"; "" if there is none
@@ -55,9 +59,10 @@ struct VdbHeader {
 inline constexpr std::uint32_t k_oldest_vdb_version = 220;
 inline constexpr std::uint32_t k_newest_vdb_version = 224;
 
-/// Reads the header and the metadata of all grids; sizes the file claims are checked against its
-/// length first. Throws IoError if the file cannot be opened; InputError, starting with `where`,
-/// if it is not a VDB file, is cut short, or has a version other than 220 to 224.
+/// Reads the header and the metadata of all grids of a VDB or NanoVDB file, told apart by how they
+/// begin; sizes the file claims are checked against its length first. Throws IoError if the file
+/// cannot be opened; InputError, starting with `where`, if it is neither, is cut short, or has a
+/// version other than 220 to 224 (NanoVDB: 32).
 VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocation& where);
 
 /// The summaries alone.

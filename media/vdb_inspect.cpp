@@ -150,9 +150,9 @@ openvdb::Vec3d middle_of(const GridInspection& grid) {
     return middle;
 }
 
-void read_transform(const VdbHeader& header, const Placement& placement,
-                    const SourceLocation& where, GridInspection& grid) {
-    const auto transform = GridStream(header, grid.summary, grid.summary, where).read_transform();
+void inspect_transform(const VdbHeader& header, const Placement& placement,
+                       const SourceLocation& where, GridInspection& grid) {
+    const auto transform = uw::read_transform(header, grid.summary, where);
     grid.transform = transform->isLinear() ? kind_of(to_affine(*transform)) : "frustum";
     const Affine world_from_file = upright_from_file(placement.up);
     const auto at = [&](const openvdb::Vec3d& p) {
@@ -218,8 +218,8 @@ VdbInspection inspect_vdb(const std::filesystem::path& file, const SourceLocatio
         grid.box = stated_box(summary);
         const std::string why =
             failure_of(place, [&] { read_values_by_type(header, where, grid); });
-        const std::string transform =
-            failure_of(place, [&] { read_transform(header, inspection.placement, where, grid); });
+        const std::string transform = failure_of(
+            place, [&] { inspect_transform(header, inspection.placement, where, grid); });
         for (const std::string& text : {why, transform})
             if (!text.empty() && grid.unread.empty()) grid.unread = text;
         any = any || (why.empty() && transform.empty());

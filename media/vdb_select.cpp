@@ -48,8 +48,9 @@ std::string unusable_because(const GridSummary& grid) {
         return fmt::format("holds vectors ({}); name a grid with one number per voxel",
                            grid.value_type);
     if (grid.tree_type != "Tree_float_5_4_3" && grid.tree_type != "Tree_double_5_4_3")
-        return fmt::format("has values of type {}; concentrations are float or double",
-                           grid.value_type);
+        return fmt::format(
+            "has values of type {}; concentrations are float or double{}", grid.value_type,
+            grid.tree_type.empty() ? ", of NanoVDB also fp4, fp8, fp16 and fpN" : "");
     if (grid.grid_class == "level set")
         return "is a level set (distances to a surface), not a concentration; export a fog volume";
     if (grid.map_type == "NonlinearFrustumMap")

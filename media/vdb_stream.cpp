@@ -41,6 +41,12 @@ void GridStream::check_layout_once() {
     layout_checked_ = true;
 }
 
+openvdb::math::Transform::ConstPtr read_transform(const VdbHeader& header, const GridSummary& grid,
+                                                  const SourceLocation& where) {
+    if (header.is_nano) return read_nvdb_transform(header, grid, where);
+    return GridStream(header, grid, grid, where).read_transform();
+}
+
 const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& grid) {
     if (grid.instance_of.empty()) return grid;
     for (const GridSummary& other : header.grids)

@@ -71,6 +71,18 @@ class GridStream {
     openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
 };
 
+/// The transform of a grid of either format.
+openvdb::math::Transform::ConstPtr read_transform(const VdbHeader& header, const GridSummary& grid,
+                                                  const SourceLocation& where);
+
+/// A grid of a NanoVDB file, checked and unpacked: its active values. GridT is the type that
+/// `grid.value_type` names. Throws InputError starting with `where` for damage.
+template <class GridT>
+typename GridT::Ptr read_nvdb_grid(const VdbHeader& header, const GridSummary& grid,
+                                   const SourceLocation& where);
+openvdb::math::Transform::Ptr read_nvdb_transform(const VdbHeader& header, const GridSummary& grid,
+                                                  const SourceLocation& where);
+
 /// The grid whose voxels `grid` shares, or itself. Throws std::runtime_error if it is missing.
 const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& grid);
 
@@ -107,10 +119,15 @@ std::vector<openvdb::CoordBBox> cut_into_slabs(const TreeT& tree, std::size_t sl
 }
 
 /// Reads a grid in slabs of about `slab_bytes` and hands each to `take(GridT::Ptr)`; their active
-/// voxels are disjoint. Throws InputError starting with `where`, and what OpenVDB throws.
+/// voxels are disjoint. Of a NanoVDB file all comes at once. Throws InputError starting with
+/// `where`, and what OpenVDB throws.
 template <class GridT, class Take>
 void read_slabs(const VdbHeader& header, const GridSummary& grid, std::size_t slab_bytes,
                 const SourceLocation& where, const Take& take) {
+    if (header.is_nano) {
+        take(read_nvdb_grid<GridT>(header, grid, where));
+        return;
+    }
     GridStream stream(header, grid, holder_of_voxels(header, grid), where);
     typename GridT::Ptr first = stream.template read_topology<GridT>();
     const std::vector<openvdb::CoordBBox> slabs = cut_into_slabs(first->tree(), slab_bytes);
