@@ -99,7 +99,8 @@ std::string vdb_json(const VdbReport& report) {
     json["uwvdb"] = program_version();
     json["file"] = report.file;
     json["sequence"] = sequence_json(report.sequence);
-    json["version"] = header.version;
+    json["format"] = header.is_nano ? "nvdb" : "vdb";
+    json["version"] = header.is_nano ? Json(nullptr) : Json(header.version);
     json["library"] =
         std::to_string(header.library_major) + "." + std::to_string(header.library_minor);
     json["creator"] = text_or_null(header.creator);

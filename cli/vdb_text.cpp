@@ -85,16 +85,21 @@ std::string compression_of(const GridSummary& grid) {
 }
 
 std::string precision_of(const GridSummary& grid) {
+    if (!grid.quantised.empty()) return grid.quantised;
     return grid.half ? "half" : grid.value_type;
 }
 
 std::string vdb_text(const VdbReport& report) {
     const VdbHeader& header = report.inspection.header;
     std::string text = describe_sequence(report.sequence);
-    text += fmt::format("{}: VDB version {}, library {}.{}, creator {}\n",
-                        header.file.filename().string(), header.version, header.library_major,
-                        header.library_minor,
-                        header.creator.empty() ? "not named" : "'" + header.creator + "'");
+    const std::string file = header.file.filename().string();
+    if (header.is_nano)
+        text += fmt::format("{}: NanoVDB, library {}.{}\n", file, header.library_major,
+                            header.library_minor);
+    else
+        text += fmt::format("{}: VDB version {}, library {}.{}, creator {}\n", file, header.version,
+                            header.library_major, header.library_minor,
+                            header.creator.empty() ? "not named" : "'" + header.creator + "'");
     if (header.grids.empty()) text += "no grids\n";
     for (const GridInspection& grid : report.inspection.grids) text += describe_grid(grid);
     text += "\nAdvice\n";
