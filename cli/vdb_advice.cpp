@@ -107,7 +107,7 @@ void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
     if (v.negative > 0 && v.negative < v.finite && !is_level_set_in_disguise(grid))
         say(fmt::format("has {} negative values: they count as 0", v.negative));
     if (v.finite > 0 && v.max <= 0)
-        say(fmt::format("has no value above 0 (they are {:g} to {:g}): nothing would be seen of it",
+        say(fmt::format("has no value above 0 (from {:g} to {:g}): nothing would be seen of it",
                         v.min, v.max));
     if (v.background_value != 0 && !is_level_set_in_disguise(grid))
         say("has a background of " + v.background + ": it counts as 0 outside the active voxels");
@@ -130,6 +130,30 @@ void say_placement(const VdbInspection& inspection, VdbAdvice& advice) {
                 : "nothing in the file says otherwise",
         houdini ? ""
                 : " If it lies on its side, write up: z; if half a voxel off, centering: cell."));
+}
+
+void say_motion(const VdbInspection& inspection, VdbAdvice& advice) {
+    const auto has = [&](const std::string& name) {
+        return std::ranges::any_of(inspection.grids, [&](const GridInspection& grid) {
+            return grid.summary.name == name && grid.unread.empty() && grid.active_voxels != 0;
+        });
+    };
+    std::string grid;
+    for (const GridInspection& candidate : inspection.grids)
+        if (candidate.summary.value_type == "vec3s" && has(candidate.summary.name) &&
+            lower(candidate.summary.base_name).starts_with("vel"))
+            grid = candidate.summary.name;
+    if (grid.empty() && has("vel.x") && has("vel.y") && has("vel.z"))
+        grid = "[vel.x, vel.y, vel.z]";
+    if (grid.empty()) return;
+    advice.lines.push_back(
+        fmt::format("It moves: for motion blur add velocity: {{grid: {}}} to the volume, and the "
+                    "exposure time in "
+                    "seconds as render: {{shutter: 0.02}}.{}",
+                    grid,
+                    inspection.header.from_blender_fluid()
+                        ? " Its unit is 2.5 voxels a second, as Blender's solver has it."
+                        : " Its unit is taken for m/s."));
 }
 
 std::string size_of(const VdbAdvice& advice) {
@@ -233,6 +257,7 @@ VdbAdvice advise_on_vdb(const VdbInspection& inspection, const std::filesystem::
     if (advice.map.empty()) return advice;
     say_placement(inspection, advice);
     say_units(inspection, advice);
+    say_motion(inspection, advice);
     choose_concentrations(inspection, advice);
     place_eye(advice);
     write_block(inspection, file, advice);

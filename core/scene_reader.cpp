@@ -70,7 +70,8 @@ PlanesDesc read_planes(const ConfigValue& value) {
 }
 
 RenderDesc read_render(const ConfigValue& value) {
-    ConfigMap map(value, {"integrator", "output", "planes", "samples"}, "write {samples: 4}");
+    ConfigMap map(value, {"integrator", "output", "planes", "samples", "shutter"},
+                  "write {samples: 4}");
     RenderDesc render;
     render.planes.where = value.location() + ".planes";
     if (const auto entry = map.find("integrator"))
@@ -87,7 +88,24 @@ RenderDesc read_render(const ConfigValue& value) {
     if (const auto entry = map.find("samples")) {
         render.samples = entry->integer(1, 4096, "give the samples per pixel");
     }
+    if (const auto entry = map.find("shutter")) {
+        constexpr double k_longest = 60;
+        render.shutter = entry->non_negative("give the exposure time in seconds, such as 0.02");
+        if (render.shutter > k_longest)
+            entry->fail("more than a minute is no exposure; give seconds, such as 0.02");
+    }
     return render;
+}
+
+/// Gives the volumes that move the time they have for it.
+static void open_shutter(SceneDesc& desc) {
+    for (VolumeDesc& volume : desc.volumes) {
+        if (!volume.motion) continue;
+        volume.motion->shutter = desc.render.shutter;
+        if (desc.render.shutter == 0)
+            desc.warnings.push_back(volume.motion->where +
+                                    ": has no effect without render.shutter, the exposure time");
+    }
 }
 
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -114,6 +132,7 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
     if (const auto entry = map.find("render")) desc.render = read_render(*entry);
+    open_shutter(desc);
     if (desc.render.output != RenderDesc::Output::radiance && !desc.camera.lens) {
         throw InputError(desc.render.output_where +
                          ": needs the camera's lens; give camera.lens: {f_number: 2.8, "

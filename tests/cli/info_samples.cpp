@@ -1,0 +1,130 @@
+// ctest labels: unit
+//
+// The advice on files of other programs, and that its block renders as it is. The environment
+// variable UWVDB_SAMPLES names their folder; where it is set, a file that is missing is a failure.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/cli_test.h"
+
+namespace uw {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Advice {
+    const char* file;
+    std::vector<std::string> map;
+    const char* up;
+    const char* centering;
+    double scale;
+    std::vector<const char*> parts;  // of the advice's lines
+};
+
+std::ostream& operator<<(std::ostream& out, const Advice& advice) {
+    return out << advice.file;
+}
+
+constexpr const char* k_blender = "a cache of Blender's fluid solver";
+constexpr const char* k_plausible = "Units are plausible";
+
+const std::vector<Advice> k_samples{
+    {"plume128_blosc_half_0020.vdb",
+     {"density"},
+     "z",
+     "cell",
+     1,
+     {k_blender, k_plausible, "'shadow' has no value above 0"}},
+    {"plume128_blosc_half_0030.vdb", {"density"}, "z", "cell", 1, {k_blender, k_plausible}},
+    {"plume128_blosc_half_0040.vdb", {"density"}, "z", "cell", 1, {k_blender, k_plausible}},
+    {"plume128long_blosc_half_0100.vdb", {"density"}, "z", "cell", 1, {k_blender, k_plausible}},
+    {"plume96_noise2_data_0030.vdb", {"density"}, "z", "cell", 1, {k_blender, k_plausible}},
+    {"plume96_noise2_noise_0030.vdb", {"density_noise"}, "z", "cell", 1, {k_blender}},
+    {"plume96_none32_0024.vdb", {"density"}, "z", "cell", 1, {k_blender, k_plausible}},
+    {"plume96_zip32_0024.vdb", {"density"}, "z", "cell", 1, {k_blender, k_plausible}},
+    {"fire64_blosc_half_0020.vdb",
+     {"density"},
+     "z",
+     "cell",
+     1,
+     {k_blender, "'temperature', 'flame'", "'velocity' holds vectors"}},
+    {"openvdb_smoke_houdini.vdb",
+     {"density"},
+     "y",
+     "node",
+     0.01,
+     {"written by Houdini", "if these are centimetres"}},
+    {"gaffer_sphere.vdb", {"density"}, "y", "node", 1, {"nothing in the file says otherwise"}},
+    {"oiio_sphere.vdb", {"density"}, "y", "node", 1, {k_plausible}},
+    {"arnold_torus01.vdb", {"voxel_fog_density"}, "y", "node", 1, {"the name says density"}},
+    {"arnold_grids.vdb",
+     {"density[0]", "density[1]", "density[2]"},
+     "y",
+     "node",
+     1,
+     {"3 grids are called 'density'"}},
+    {"arnold_pointgrid.vdb", {}, "y", "node", 1, {"Nothing to map", "holds points"}},
+    {"openvdb_sphere_houdini.vdb", {}, "y", "node", 1, {"Nothing to map", "is a level set"}},
+    {"oiio_sphereCd.vdb", {}, "y", "node", 1, {"Nothing to map", "holds vectors"}}};
+
+std::string triple(const Json& p) {
+    return "[" + std::to_string(p[0].get<double>()) + ", " + std::to_string(p[1].get<double>()) +
+           ", " + std::to_string(p[2].get<double>()) + "]";
+}
+
+class InfoSamples : public test::CliTest, public testing::WithParamInterface<Advice> {};
+
+TEST_P(InfoSamples, AreAdvisedRightlyAndTheBlockRenders) {
+    const Advice& sample = GetParam();
+    const std::filesystem::path file =
+        std::filesystem::path(std::getenv("UWVDB_SAMPLES")) / sample.file;
+    ASSERT_TRUE(std::filesystem::exists(file)) << file << " is missing";
+    const test::ProgramResult result = run({"info", file.string(), "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    const Json& advice = json.at("advice");
+    std::string lines;
+    for (const Json& line : advice.at("lines")) lines += line.get<std::string>() + "\n";
+    for (const char* part : sample.parts)
+        EXPECT_NE(lines.find(part), std::string::npos) << part << "\n" << lines;
+    EXPECT_EQ(advice.at("map"), Json(sample.map));
+    if (sample.map.empty()) {
+        EXPECT_TRUE(advice.at("volumes").is_null());
+        return;
+    }
+    EXPECT_EQ(advice.at("up"), sample.up);
+    EXPECT_EQ(advice.at("centering"), sample.centering);
+    EXPECT_EQ(advice.at("scale"), sample.scale);
+
+    // Between the camera that sees all of it and a wall far behind, with and without the block.
+    const Json& view = advice.at("view");
+    const std::string scene =
+        "uwvdb: 1\ncamera: {resolution: [48, 36], intrinsics: {fov_x: 50}, pose: {position: " +
+        triple(view.at("position")) + ", look_at: " + triple(view.at("look_at")) +
+        "}}\nlamps: [{position: [0.3, 0, 0], intensity: 50}]\nrender: {samples: 1}\n";
+    write("scene.yaml", scene);
+    const test::ImageFile water = render();
+    write("scene.yaml", scene + advice.at("volumes").get<std::string>());
+    const test::ImageFile plume = render();
+    test::expect_finite_and_lit(plume);
+    // It is seen in the middle, against water that has next to no particles.
+    float ratio = 0;
+    for (int y = 9; y < 27; ++y)
+        for (int x = 12; x < 36; ++x)
+            ratio =
+                std::max(ratio, plume.at("backscatter.B", x, y) / water.at("backscatter.B", x, y));
+    EXPECT_GT(ratio, 1.2F);
+}
+
+std::vector<Advice> samples_where_available() {
+    return std::getenv("UWVDB_SAMPLES") != nullptr ? k_samples : std::vector<Advice>{};
+}
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(InfoSamples);
+INSTANTIATE_TEST_SUITE_P(Info, InfoSamples, testing::ValuesIn(samples_where_available()));
+
+}  // namespace
+}  // namespace uw
