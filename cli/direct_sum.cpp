@@ -116,19 +116,20 @@ class DirectSum {
             const std::optional<Ray> ray = trial_.scene.camera->water_ray(x + 0.5, y + 0.5);
             if (!ray) return;
             seen.in_water[i] = 1;
-            SurfaceHit hit;
-            if (!trial_.scene.surfaces->closest_hit(*ray, k_far, hit)) return;
+            SurfaceSample sample{*ray, {}};
+            const SurfaceHit& hit = sample.hit;
+            if (!trial_.scene.surfaces->closest_hit(*ray, k_far, sample.hit)) return;
             SurfaceLight light;
-            integrator.surface_light(*ray, hit, light);
+            integrator.surface_light(sample, light);
             seen.to_camera[i] = hit.distance;
             for (std::size_t j = 0; j < lamps.size(); ++j)
                 seen.to_lamps[i] +=
                     distance(lamps[j].position(), hit.position) / static_cast<double>(lamps.size());
             for (std::size_t b = 0; b < bands_; ++b) {
-                for (const LampIrradiance& lamp : light.lamps)
-                    seen.irradiance[i][b] += lamp.irradiance[b];
+                for (std::size_t j = 0; j < lamps.size(); ++j)
+                    seen.irradiance[i][b] += light.irradiance(0, j, b);
                 seen.response[i][b] =
-                    hit.reflectance[b] * std::numbers::inv_pi * light.transmittance[b];
+                    hit.reflectance[b] * std::numbers::inv_pi * light.to_camera(0)[b];
             }
         });
         return seen;

@@ -72,9 +72,9 @@ void FocusWeightedIntegrator::weigh(double begin, std::span<const double> stops,
     }
 }
 
-void FocusWeightedIntegrator::surface_light(const Ray& ray, const SurfaceHit& hit,
-                                            SurfaceLight& light) const {
-    integrator_->surface_light(ray, hit, light);
+void FocusWeightedIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
+                                             SurfaceLight& light) const {
+    integrator_->surface_lights(samples, light);
 }
 
 }  // namespace uw

@@ -19,7 +19,8 @@ class FocusWeightedIntegrator final : public Integrator {
     void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
                          InScatter& result) const override;
     /// The other integrator's, unweighted: see SensorModel::surface_factor.
-    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
+    void surface_lights(std::span<const SurfaceSample* const> samples,
+                        SurfaceLight& light) const override;
 
   private:
     // The ends and the slices' faces between `begin` and the last of them, ascending.

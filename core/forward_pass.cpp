@@ -109,7 +109,7 @@ void ForwardPass::keep_surfaces(std::size_t i, const PixelView& view, const Pixe
     sums.direct.resize(components_.size());
     sums.from_lamps.reset(scene_.medium->constituents.size());
     sums.to_camera.reset(scene_.medium->constituents.size());
-    for (const PixelView::Sample& sample : view.samples) add_surface(sample, sums);
+    for (const SurfaceSample& sample : view.samples) add_surface(sample, sums);
     const double factor = factor_before(i);
     for (std::size_t b = 0; b < bands_; ++b) {
         response_[b][i] = as_light(sums.response[b] * factor);
@@ -129,11 +129,11 @@ void ForwardPass::keep_surfaces(std::size_t i, const PixelView& view, const Pixe
     set_mean(sums.to_camera, to_camera_);
 }
 
-void ForwardPass::add_surface(const PixelView::Sample& sample, SurfaceSums& sums) const {
+void ForwardPass::add_surface(const SurfaceSample& sample, SurfaceSums& sums) const {
     const auto& [ray, hit] = sample;
     thread_local SurfaceLight light;
     thread_local std::vector<double> column;
-    integrator_.surface_light(ray, hit, light);
+    integrator_.surface_light(sample, light);
     column.assign(scene_.medium->constituents.size(), 0.0);
     if (!column.empty()) scene_.field->column(ray.origin, hit.position, column);
     sums.to_camera.add(1, hit.distance, column);
@@ -142,12 +142,13 @@ void ForwardPass::add_surface(const PixelView::Sample& sample, SurfaceSums& sums
     const double seen = setup_.sensor.surface_factor(hit.distance);
     for (std::size_t b = 0; b < bands_; ++b) {
         const double factor =
-            hit.reflectance[b] * std::numbers::inv_pi * seen * light.transmittance[b];
+            hit.reflectance[b] * std::numbers::inv_pi * seen * light.to_camera(0)[b];
         sums.response[b] += share * factor;
         for (std::size_t c = 0; c < components_.size(); ++c) {
             for (const std::size_t j : components_[c].lamps) {
-                sums.irradiance[c][b] += share * light.lamps[j].irradiance[b];
-                sums.direct[c][b] += share * light.lamps[j].irradiance[b] * factor;
+                const double irradiance = share * light.irradiance(0, j, b);
+                sums.irradiance[c][b] += irradiance;
+                sums.direct[c][b] += irradiance * factor;
             }
         }
     }

@@ -68,7 +68,7 @@ class ForwardPass {
     struct SurfaceSums;
 
     void keep_surfaces(std::size_t i, const PixelView& view, const PixelResult& result);
-    void add_surface(const PixelView::Sample& sample, SurfaceSums& sums) const;
+    void add_surface(const SurfaceSample& sample, SurfaceSums& sums) const;
     void scatter_surfaces();
     void gather(std::size_t first, std::vector<Layer>& layers) const;
     // What light of pixel `i` is multiplied by before and after its blur on the way to the camera.

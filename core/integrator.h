@@ -5,22 +5,9 @@
 
 #include "core/bands.h"
 #include "core/ray.h"
-#include "core/surfaces.h"
+#include "core/surface_light.h"
 
 namespace uw {
-
-/// Light that falls on one surface point from one lamp, and how it would be without water.
-struct LampIrradiance {
-    bool visible = false;
-    Spectrum irradiance{};  // W/m^2, attenuated by the water on its way, 0 if shadowed
-    Spectrum clean{};       // W/m^2, without water
-};
-
-/// What a camera ray sees of a surface point.
-struct SurfaceLight {
-    std::vector<LampIrradiance> lamps;  // one per lamp
-    Spectrum transmittance{};           // e^-tau from the surface to the ray's origin
-};
 
 /// In-scattered radiance [W m^-2 sr^-1] up to several distances along one ray.
 class InScatter {
@@ -55,9 +42,14 @@ class Integrator {
     virtual void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
                                  InScatter& result) const;
 
-    /// Light on the surface point that `ray` meets.
-    virtual void surface_light(const Ray& ray, const SurfaceHit& hit,
-                               SurfaceLight& light) const = 0;
+    /// Light on surface points; faster for many at once that are seen side by side.
+    virtual void surface_lights(std::span<const SurfaceSample* const> samples,
+                                SurfaceLight& light) const = 0;
+    /// Light on one.
+    void surface_light(const SurfaceSample& sample, SurfaceLight& light) const {
+        const SurfaceSample* const one = &sample;
+        surface_lights(std::span(&one, 1), light);
+    }
 };
 
 /// Stands for "no surface": no lamp's light returns from farther [m].

@@ -133,7 +133,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
             view.y = y + offset.y;
         }
         view.alpha += 1.0 / samples_;
-        PixelView::Sample& sample = view.samples.emplace_back();
+        SurfaceSample& sample = view.samples.emplace_back();
         sample.ray = *ray;
         if (samples_ == 1) sample.hit = view.hit;
         if (!(samples_ == 1 ? view.has_hit
@@ -149,7 +149,16 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
     group_ends(distances, samples_, view);
 }
 
-void PixelRenderer::light(const PixelView& view, std::span<const double> water,
+void PixelRenderer::light_surfaces(std::span<const PixelView> views, SurfaceLight& light) const {
+    thread_local std::vector<const SurfaceSample*> samples;
+    samples.clear();
+    for (const PixelView& view : views)
+        for (const SurfaceSample& sample : view.samples) samples.push_back(&sample);
+    integrator_.surface_lights(samples, light);
+}
+
+void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
+                          std::size_t first_sample, std::span<const double> water,
                           PixelResult& result) const {
     const auto bands = static_cast<std::size_t>(band_count());
     for (Spectrum PixelResult::*part : k_parts) std::fill_n((result.*part).begin(), bands, 0.0);
@@ -162,7 +171,8 @@ void PixelRenderer::light(const PixelView& view, std::span<const double> water,
     result.depth_z = view.has_hit ? view.depth_z : 0;
     result.range = view.has_hit ? view.range : 0;
     result.path = view.has_hit ? view.path : 0;
-    for (const PixelView::Sample& sample : view.samples) add_surface(sample, result);
+    for (std::size_t i = 0; i < view.samples.size(); ++i)
+        add_surface(view.samples[i].hit, light, first_sample + i, result);
     if (!view.samples.empty())
         for (std::size_t b = 0; b < bands; ++b)
             result.transmittance[b] /= static_cast<double>(view.samples.size());
@@ -175,30 +185,31 @@ void PixelRenderer::light(const PixelView& view, std::span<const double> water,
 void PixelRenderer::render(int x, int y, PixelResult& result) const {
     thread_local PixelView view;
     thread_local std::vector<double> row;
+    thread_local SurfaceLight surfaces;
     look(x, y, view);
     row.resize(water_.row_size());
     water_.gather(view, row);
-    light(view, row, result);
+    light_surfaces(std::span(&view, 1), surfaces);
+    shade(view, surfaces, 0, row, result);
 }
 
-void PixelRenderer::add_surface(const PixelView::Sample& sample, PixelResult& result) const {
-    thread_local SurfaceLight light;
-    const SurfaceHit& hit = sample.hit;
-    integrator_.surface_light(sample.ray, hit, light);
+void PixelRenderer::add_surface(const SurfaceHit& hit, const SurfaceLight& light,
+                                std::size_t sample, PixelResult& result) const {
     const double share = 1.0 / samples_;
     const double seen = sensor_.surface_factor(hit.distance);
     const auto bands = static_cast<std::size_t>(band_count());
-    for (std::size_t b = 0; b < bands; ++b) result.transmittance[b] += light.transmittance[b];
-    for (std::size_t j = 0; j < light.lamps.size(); ++j) {
-        const LampIrradiance& lamp = light.lamps[j];
-        if (!lamp.visible) continue;
-        result.lit += share / static_cast<double>(light.lamps.size());
+    const std::span<const double> to_camera = light.to_camera(sample);
+    for (std::size_t b = 0; b < bands; ++b) result.transmittance[b] += to_camera[b];
+    for (std::size_t j = 0; j < light.lamp_count(); ++j) {
+        if (!light.visible(sample, j)) continue;
+        result.lit += share / static_cast<double>(light.lamp_count());
         for (std::size_t b = 0; b < bands; ++b) {
+            const double irradiance = share * light.irradiance(sample, j, b);
             const double brdf = hit.reflectance[b] * std::numbers::inv_pi * seen;
-            const double direct = share * lamp.irradiance[b] * brdf * light.transmittance[b];
-            result.irradiance[b] += share * lamp.irradiance[b];
-            result.exitance[b] += share * lamp.irradiance[b] * hit.reflectance[b];
-            result.clean[b] += share * lamp.clean[b] * brdf;
+            const double direct = irradiance * brdf * to_camera[b];
+            result.irradiance[b] += irradiance;
+            result.exitance[b] += irradiance * hit.reflectance[b];
+            result.clean[b] += share * light.clean(sample, j, b) * brdf;
             result.direct[b] += direct;
             if (!result.lamps.empty()) result.lamps[j][b] += direct;
         }

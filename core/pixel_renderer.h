@@ -58,14 +58,19 @@ class PixelRenderer {
     void look(int x, int y, PixelView& view) const;
     /// Likewise of all pixels of a window, row by row: faster than one after another.
     void look(const PixelWindow& window, std::span<PixelView> views) const;
-    /// What a pixel holds: `water` is its row of in-scatter (RayWater). `result` is reused storage.
+    /// Light on the surfaces that pixels look at: the samples of one view after those of another.
     /// Thread safe.
-    void light(const PixelView& view, std::span<const double> water, PixelResult& result) const;
-    /// Both for one pixel, with its own water.
+    void light_surfaces(std::span<const PixelView> views, SurfaceLight& light) const;
+    /// What a pixel holds: `light` has its samples from `first_sample` on, and `water` is its row
+    /// of in-scatter (RayWater). `result` is reused storage. Thread safe.
+    void shade(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
+               std::span<const double> water, PixelResult& result) const;
+    /// All of it for one pixel, with its own water.
     void render(int x, int y, PixelResult& result) const;
 
   private:
-    void add_surface(const PixelView::Sample& sample, PixelResult& result) const;
+    void add_surface(const SurfaceHit& hit, const SurfaceLight& light, std::size_t sample,
+                     PixelResult& result) const;
     void add_water(std::span<const double> row, PixelResult& result) const;
     // Begins a view with the ray at the pixel's centre.
     void begin_view(int x, int y, PixelView& view) const;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/surfaces.h"
+#include "core/surface_light.h"
 
 namespace uw {
 
@@ -16,12 +16,7 @@ struct PixelView {
     /// shares of the samples that end there. Empty without a ray.
     std::vector<double> ends, shares;
 
-    /// A surface that a sample meets.
-    struct Sample {
-        Ray ray;
-        SurfaceHit hit;
-    };
-    std::vector<Sample> samples;
+    std::vector<SurfaceSample> samples;  // those that meet a surface
 
     // Ground truth at the pixel's centre:
     bool has_hit = false;

@@ -116,10 +116,10 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
                                       std::exp(-attenuation_.uniform[b] * w.path[i]);
 }
 
-void PlanesIntegrator::surface_light(const Ray& ray, const SurfaceHit& hit,
-                                     SurfaceLight& light) const {
+void PlanesIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
+                                      SurfaceLight& light) const {
     // Uniform water: there are no columns to fill.
-    light_surface(scene_, attenuation_, ray, hit, light);
+    light_surfaces(scene_, attenuation_, samples, light);
 }
 
 }  // namespace uw

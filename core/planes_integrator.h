@@ -29,7 +29,8 @@ class PlanesIntegrator : public Integrator {
     void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
     void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
                          InScatter& result) const override;
-    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
+    void surface_lights(std::span<const SurfaceSample* const> samples,
+                        SurfaceLight& light) const override;
 
   private:
     /// A slab's stretch of a ray, or the part of it before an end that cuts it.

@@ -131,28 +131,27 @@ void QuadratureIntegrator::in_scatter(const Ray& ray, std::span<const double> en
     }
 }
 
-void QuadratureIntegrator::surface_light(const Ray& ray, const SurfaceHit& hit,
-                                         SurfaceLight& light) const {
+void QuadratureIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
+                                          SurfaceLight& light) const {
     const auto bands = static_cast<std::size_t>(attenuation_.band_count);
     const Spectrum& c = attenuation_.uniform;
-    light.lamps.assign(scene_.lamps->size(), LampIrradiance{});
-    light.transmittance = Spectrum{};
-    for (std::size_t b = 0; b < bands; ++b)
-        light.transmittance[b] = std::exp(-c[b] * distance(ray.origin, hit.position));
-    for (std::size_t j = 0; j < light.lamps.size(); ++j) {
-        const Lamp& lamp = (*scene_.lamps)[j];
-        const Vector3 v = lamp.position() - hit.position;
-        const double r2 = glm::dot(v, v);
-        const double irradiance =
-            lamp.relative_intensity(-v) * glm::dot(hit.normal, v) / (r2 * std::sqrt(r2));
-        if (irradiance <= 0 || glm::dot(hit.geometric_normal, v) <= 0 ||
-            scene_.surfaces->occluded(lamp.position(), hit.position))
-            continue;
-        light.lamps[j].visible = true;
-        for (std::size_t b = 0; b < bands; ++b) {
-            light.lamps[j].clean[b] = irradiance * lamp.axis_intensity()[b];
-            light.lamps[j].irradiance[b] =
-                light.lamps[j].clean[b] * std::exp(-c[b] * std::sqrt(r2));
+    light.reset(samples.size(), *scene_.lamps, bands);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const auto& [ray, hit] = *samples[i];
+        for (std::size_t b = 0; b < bands; ++b)
+            light.to_camera(i)[b] = std::exp(-c[b] * distance(ray.origin, hit.position));
+        for (std::size_t j = 0; j < scene_.lamps->size(); ++j) {
+            const Lamp& lamp = (*scene_.lamps)[j];
+            const Vector3 v = lamp.position() - hit.position;
+            const double r2 = glm::dot(v, v);
+            const double arrival =
+                lamp.relative_intensity(-v) * glm::dot(hit.normal, v) / (r2 * std::sqrt(r2));
+            if (arrival <= 0 || glm::dot(hit.geometric_normal, v) <= 0 ||
+                scene_.surfaces->occluded(lamp.position(), hit.position))
+                continue;
+            light.arrival(i, j) = arrival;
+            for (std::size_t b = 0; b < bands; ++b)
+                light.from_lamp(i, j)[b] = std::exp(-c[b] * std::sqrt(r2));
         }
     }
 }

@@ -21,7 +21,8 @@ class QuadratureIntegrator : public Integrator {
     QuadratureIntegrator(const LitScene& scene, double tolerance);
 
     void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
-    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
+    void surface_lights(std::span<const SurfaceSample* const> samples,
+                        SurfaceLight& light) const override;
 
   private:
     class RayIntegral;

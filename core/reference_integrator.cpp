@@ -99,9 +99,9 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
     return result;
 }
 
-void ReferenceIntegrator::surface_light(const Ray& ray, const SurfaceHit& hit,
-                                        SurfaceLight& light) const {
-    light_surface(scene_, attenuation_, ray, hit, light);
+void ReferenceIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
+                                         SurfaceLight& light) const {
+    light_surfaces(scene_, attenuation_, samples, light);
 }
 
 }  // namespace uw

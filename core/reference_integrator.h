@@ -17,7 +17,8 @@ class ReferenceIntegrator : public Integrator {
     explicit ReferenceIntegrator(const LitScene& scene, double step = 0.005);
 
     void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
-    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
+    void surface_lights(std::span<const SurfaceSample* const> samples,
+                        SurfaceLight& light) const override;
 
   private:
     /// In-scatter per metre at distance `s` of `ray` from lamp `lamp` [W m^-3 sr^-1].

@@ -1,53 +1,76 @@
 #include "core/surface_lighting.h"
 
-#include <algorithm>
 #include <vector>
 
 #include "core/fast_exp.h"
 
 namespace uw {
 
-void light_surface(const LitScene& scene, const AttenuationTable& attenuation, const Ray& ray,
-                   const SurfaceHit& hit, SurfaceLight& light) {
-    const auto bands = static_cast<std::size_t>(attenuation.band_count);
-    const std::size_t lamps = scene.lamps->size();
-    thread_local std::vector<double> column;
-    column.resize(attenuation.constituents.size());
-    // Optical depths to the camera, then from each lamp; all become transmittances at once.
-    thread_local std::vector<double> transmittance;
-    transmittance.assign((1 + lamps) * bands, 0.0);
-    const auto set_depths = [&](std::size_t path, double length) {
-        for (std::size_t b = 0; b < bands; ++b)
-            transmittance[path * bands + b] =
-                attenuation.optical_depth(static_cast<int>(b), length, column);
-    };
-    scene.field->column(ray.origin, hit.position, column);
-    set_depths(0, hit.distance);
-    light.lamps.resize(lamps);
-    for (std::size_t j = 0; j < lamps; ++j) {
-        const Lamp& lamp = (*scene.lamps)[j];
-        LampIrradiance& out = light.lamps[j];
-        out.visible = false;
-        std::fill_n(out.clean.begin(), bands, 0.0);
-        const Vector3 to_lamp = lamp.position() - hit.position;
-        const double radius = glm::length(to_lamp);
-        const double cosine = glm::dot(hit.normal, to_lamp) / radius;
-        // The true surface decides what a lamp can reach; the shading normal only shades.
-        if (cosine <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
-        const double relative = lamp.relative_intensity(-to_lamp);
-        if (relative <= 0 || scene.surfaces->occluded(lamp.position(), hit.position)) continue;
-        scene.field->column(lamp.position(), hit.position, column);
-        set_depths(1 + j, radius);
-        out.visible = true;
-        for (std::size_t b = 0; b < bands; ++b)
-            out.clean[b] = lamp.axis_intensity()[b] * relative * cosine / (radius * radius);
+namespace {
+
+/// The samples that one lamp may reach: they face it, within its beam.
+struct Facing {
+    std::vector<std::size_t> samples;
+    std::vector<Point3> positions;
+    std::vector<double> radii, arrivals;
+    std::vector<char> hidden;
+
+    void find(const Lamp& lamp, std::span<const SurfaceSample* const> all) {
+        samples.clear();
+        positions.clear();
+        radii.clear();
+        arrivals.clear();
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const SurfaceHit& hit = all[i]->hit;
+            const Vector3 to_lamp = lamp.position() - hit.position;
+            // The true surface decides what a lamp can reach; the shading normal only shades.
+            const double towards = glm::dot(hit.normal, to_lamp);
+            if (towards <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
+            const double relative = lamp.relative_intensity(-to_lamp);
+            if (relative <= 0) continue;
+            const double radius = glm::length(to_lamp);
+            samples.push_back(i);
+            positions.push_back(hit.position);
+            radii.push_back(radius);
+            arrivals.push_back(relative * towards / (radius * radius * radius));
+        }
+        hidden.resize(samples.size());
     }
-    exp_of_minus(transmittance);
-    std::copy_n(transmittance.begin(), bands, light.transmittance.begin());
-    for (std::size_t j = 0; j < lamps; ++j)
+};
+
+}  // namespace
+
+void light_surfaces(const LitScene& scene, const AttenuationTable& attenuation,
+                    std::span<const SurfaceSample* const> samples, SurfaceLight& light) {
+    const auto bands = static_cast<std::size_t>(attenuation.band_count);
+    thread_local std::vector<double> column;
+    thread_local Facing facing;
+    column.resize(attenuation.constituents.size());
+    light.reset(samples.size(), *scene.lamps, bands);
+    // Optical depths first; all become transmittances at once.
+    const auto set_depths = [&](const Point3& from, const Point3& to, double length,
+                                std::span<double> depths) {
+        scene.field->column(from, to, column);
         for (std::size_t b = 0; b < bands; ++b)
-            light.lamps[j].irradiance[b] =
-                light.lamps[j].clean[b] * transmittance[(1 + j) * bands + b];
+            depths[b] = attenuation.optical_depth(static_cast<int>(b), length, column);
+    };
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const auto& [ray, hit] = *samples[i];
+        set_depths(ray.origin, hit.position, hit.distance, light.to_camera(i));
+    }
+    for (std::size_t j = 0; j < scene.lamps->size(); ++j) {
+        const Lamp& lamp = (*scene.lamps)[j];
+        facing.find(lamp, samples);
+        scene.surfaces->occluded_many(lamp.position(), facing.positions, facing.hidden);
+        for (std::size_t n = 0; n < facing.samples.size(); ++n) {
+            if (facing.hidden[n] != 0) continue;
+            const std::size_t i = facing.samples[n];
+            light.arrival(i, j) = facing.arrivals[n];
+            set_depths(lamp.position(), facing.positions[n], facing.radii[n],
+                       light.from_lamp(i, j));
+        }
+    }
+    exp_of_minus(light.transmittances());
 }
 
 }  // namespace uw

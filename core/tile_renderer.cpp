@@ -3,7 +3,7 @@
 namespace uw {
 
 TileRenderer::TileRenderer(const PixelRenderer& renderer, double water_tolerance)
-    : renderer_(renderer), views_(1) {
+    : renderer_(renderer) {
     if (water_tolerance > 0)
         lattice_.emplace(renderer.rays(), renderer.water(), water_tolerance);
     else
@@ -12,22 +12,24 @@ TileRenderer::TileRenderer(const PixelRenderer& renderer, double water_tolerance
 
 void TileRenderer::begin(const PixelWindow& tile) {
     tile_ = tile;
-    if (!lattice_) return;
     views_.resize(static_cast<std::size_t>(tile.width()) * static_cast<std::size_t>(tile.height()));
     renderer_.look(tile, views_);
-    lattice_->gather(tile, views_);
+    renderer_.light_surfaces(views_, light_);
+    first_samples_.clear();
+    std::size_t samples = 0;
+    for (const PixelView& view : views_) {
+        first_samples_.push_back(samples);
+        samples += view.samples.size();
+    }
+    if (lattice_) lattice_->gather(tile, views_);
 }
 
 const PixelResult& TileRenderer::render(int x, int y) {
-    if (lattice_) {
-        view_ = &views_[index(x, y)];
-        renderer_.light(*view_, lattice_->row(index(x, y)), result_);
-    } else {
-        view_ = &views_.front();
-        renderer_.look(x, y, views_.front());
-        renderer_.water().gather(*view_, row_);
-        renderer_.light(*view_, row_, result_);
-    }
+    const std::size_t pixel = index(x, y);
+    view_ = &views_[pixel];
+    if (!lattice_) renderer_.water().gather(*view_, row_);
+    renderer_.shade(*view_, light_, first_samples_[pixel], lattice_ ? lattice_->row(pixel) : row_,
+                    result_);
     return result_;
 }
 

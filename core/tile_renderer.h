@@ -14,7 +14,8 @@ class TileRenderer {
     /// `water_tolerance`: of WaterLattice; 0 gathers the water of every pixel by itself.
     TileRenderer(const PixelRenderer& renderer, double water_tolerance);
 
-    /// Looks at the whole of a tile, whatever part of it is rendered: its lattice depends on it.
+    /// Looks at the whole of a tile, whatever part of it is rendered: its lattice depends on it,
+    /// and its surfaces are lit together.
     void begin(const PixelWindow& tile);
 
     /// Renders a pixel of the tile.
@@ -30,7 +31,9 @@ class TileRenderer {
     const PixelRenderer& renderer_;
     std::optional<WaterLattice> lattice_;  // none: every pixel by itself
     PixelWindow tile_;
-    std::vector<PixelView> views_;  // of the tile; one that is reused without a lattice
+    std::vector<PixelView> views_;            // of the tile
+    SurfaceLight light_;                      // on all their samples
+    std::vector<std::size_t> first_samples_;  // of each view among these
     const PixelView* view_ = nullptr;
     std::vector<double> row_;
     PixelResult result_;

@@ -215,9 +215,9 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
     }
 }
 
-void VolumeIntegrator::surface_light(const Ray& ray, const SurfaceHit& hit,
-                                     SurfaceLight& light) const {
-    light_surface(scene_, sum_.attenuation(), ray, hit, light);
+void VolumeIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
+                                      SurfaceLight& light) const {
+    light_surfaces(scene_, sum_.attenuation(), samples, light);
 }
 
 }  // namespace uw

@@ -30,7 +30,8 @@ class VolumeIntegrator : public Integrator {
     void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
     void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
                          InScatter& result) const override;
-    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override;
+    void surface_lights(std::span<const SurfaceSample* const> samples,
+                        SurfaceLight& light) const override;
 
   private:
     struct Workspace;

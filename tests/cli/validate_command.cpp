@@ -25,10 +25,12 @@ class FaultyIntegrator : public Integrator {
         for (std::size_t end = 0; end < ends.size(); ++end)
             for (double& value : result.at(end, 0)) value *= in_scatter_;
     }
-    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override {
-        honest_->surface_light(ray, hit, light);
-        for (LampIrradiance& lamp : light.lamps)
-            for (double& value : lamp.irradiance) value *= direct_;
+    void surface_lights(std::span<const SurfaceSample* const> samples,
+                        SurfaceLight& light) const override {
+        honest_->surface_lights(samples, light);
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            for (std::size_t j = 0; j < light.lamp_count(); ++j)
+                for (double& value : light.from_lamp(i, j)) value *= direct_;
     }
 
   private:
@@ -66,13 +68,16 @@ class FaultyInForwardScatter : public Integrator {
                 result.at(end, lamp) = result.at(end + 1, lamp);
     }
     // Where more falls on a surface, as much less of it comes to the camera.
-    void surface_light(const Ray& ray, const SurfaceHit& hit, SurfaceLight& light) const override {
-        honest_->surface_light(ray, hit, light);
+    void surface_lights(std::span<const SurfaceSample* const> samples,
+                        SurfaceLight& light) const override {
+        honest_->surface_lights(samples, light);
         if (fault_ != Fault::irradiance) return;
-        const double more = 1 + 0.3 * std::sin(3 * hit.position.x);
-        for (double& value : light.transmittance) value /= more;
-        for (LampIrradiance& lamp : light.lamps)
-            for (double& value : lamp.irradiance) value *= more;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const double more = 1 + 0.3 * std::sin(3 * samples[i]->hit.position.x);
+            for (double& value : light.to_camera(i)) value /= more;
+            for (std::size_t j = 0; j < light.lamp_count(); ++j)
+                for (double& value : light.from_lamp(i, j)) value *= more;
+        }
     }
 
   private:
