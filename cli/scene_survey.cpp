@@ -29,6 +29,7 @@ class Reach {
         std::vector<double> columns(static_cast<std::size_t>(scene_.field->constituent_count()));
         scene_.field->column(from, to, columns);
         std::vector<double> depth;
+        depth.reserve(static_cast<std::size_t>(attenuation_.band_count));
         for (int band = 0; band < attenuation_.band_count; ++band)
             depth.push_back(attenuation_.optical_depth(band, distance(from, to), columns));
         return depth;

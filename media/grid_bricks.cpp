@@ -18,7 +18,7 @@ constexpr int k_largest_index = 1 << 30;
 void append_brick(const openvdb::FloatGrid& grid, std::vector<NanoGrid>& bricks) {
     openvdb::CoordBBox box;
     if (!grid.tree().evalActiveVoxelBoundingBox(box)) return;
-    for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < 3; ++axis)
         if (box.min()[axis] <= -k_largest_index || box.max()[axis] >= k_largest_index)
             throw std::range_error("it has voxels further than 2^30 from its origin");
     nanovdb::OpenToNanoVDB<float, nanovdb::Fp16> converter;
@@ -67,7 +67,7 @@ GridIntake take_slab(const openvdb::FloatGrid::Ptr& grid, std::vector<NanoGrid>&
     return intake;
 }
 
-openvdb::FloatGrid::Ptr to_float(openvdb::DoubleGrid::Ptr grid) {
+openvdb::FloatGrid::Ptr to_float(const openvdb::DoubleGrid::Ptr& grid) {
     auto tree = std::make_shared<openvdb::FloatTree>(grid->tree());
     auto result = openvdb::FloatGrid::create(tree);
     result->setTransform(grid->transformPtr());

@@ -21,7 +21,7 @@ GridIntake take_slab(const openvdb::FloatGrid::Ptr& grid, std::vector<NanoGrid>&
 inline openvdb::FloatGrid::Ptr to_float(openvdb::FloatGrid::Ptr grid) {
     return grid;
 }
-openvdb::FloatGrid::Ptr to_float(openvdb::DoubleGrid::Ptr grid);
+openvdb::FloatGrid::Ptr to_float(const openvdb::DoubleGrid::Ptr& grid);
 
 /// Throws InputError starting with `prefix` if what was loaded is a level set in disguise, or if
 /// its voxels have no volume.

@@ -101,7 +101,7 @@ std::vector<openvdb::CoordBBox> cut_into_slabs(const TreeT& tree, std::size_t sl
     if (total <= slab_bytes) return {};
     slab_bytes = std::max(slab_bytes, total / 8);
 
-    const auto axis = static_cast<int>(box.maxExtent());
+    const std::size_t axis = box.maxExtent();
     std::map<int, std::size_t> leaves_at;
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) ++leaves_at[leaf->origin()[axis]];
     std::vector<openvdb::CoordBBox> slabs{openvdb::CoordBBox::inf()};
