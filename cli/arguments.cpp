@@ -94,8 +94,9 @@ Arguments parse_arguments(int argc, const char* const* argv) {
     app.footer(
         "Example:\n  uwvdb render assets/scenes/plume.yaml -o plume.exr\n\n"
         "`uwvdb render --help` and so on tell more.");
-    const std::array commands = {add_render_command(app), add_water_command(app),
-                                 add_validate_command(app), add_calibration_command(app)};
+    const std::array commands = {add_render_command(app), add_info_command(app),
+                                 add_water_command(app), add_validate_command(app),
+                                 add_calibration_command(app)};
     const auto chosen = [&] {
         return std::ranges::find_if(commands, [](const Command& c) { return c.app->parsed(); });
     };
@@ -113,9 +114,8 @@ Arguments parse_arguments(int argc, const char* const* argv) {
     if (version) return MessageArguments{"uwvdb " + program_version() + "\n"};
     if (chosen() == commands.end())
         throw UsageError(
-            "which command? 'uwvdb render SCENE', 'uwvdb water', 'uwvdb validate', 'uwvdb "
-            "calibration "
-            "FILE', or --help");
+            "which command? 'uwvdb render SCENE', 'uwvdb info FILE.vdb|SCENE', 'uwvdb water', "
+            "'uwvdb validate', 'uwvdb calibration FILE', or --help");
     refuse_empty_files(*chosen()->app);
     return chosen()->finish();
 }

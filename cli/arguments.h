@@ -42,6 +42,14 @@ struct WaterArguments {
     bool json = false;
 };
 
+/// `uwvdb info` as typed.
+struct InfoArguments {
+    std::filesystem::path subject;       // a VDB file, a sequence of them, or a scene
+    std::vector<std::string> overrides;  // --set key.path=value, of a scene
+    std::optional<int> frame;            // --frame, of a sequence; else the first there is
+    bool json = false;
+};
+
 /// `uwvdb validate` as typed.
 struct ValidateArguments {
     std::filesystem::path scene;         // empty: the built-in suite
@@ -67,8 +75,8 @@ struct MessageArguments {
 };
 
 /// What the command line asks for.
-using Arguments = std::variant<MessageArguments, RenderArguments, WaterArguments, ValidateArguments,
-                               CalibrationArguments>;
+using Arguments = std::variant<MessageArguments, RenderArguments, InfoArguments, WaterArguments,
+                               ValidateArguments, CalibrationArguments>;
 
 /// Parses the command line. Throws UsageError with one line for a wrong one.
 Arguments parse_arguments(int argc, const char* const* argv);

@@ -17,6 +17,7 @@ struct Command {
 };
 
 Command add_render_command(CLI::App& app);
+Command add_info_command(CLI::App& app);
 Command add_water_command(CLI::App& app);
 Command add_validate_command(CLI::App& app);
 Command add_calibration_command(CLI::App& app);

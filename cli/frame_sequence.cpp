@@ -172,7 +172,10 @@ SceneDesc scene_of_frame(const SceneDesc& scene, const Frame& frame) {
         input.file = file_of_frame(input.file, *frame.number);
         input.is_sequence = false;
     };
-    std::ranges::for_each(result.volumes, choose);
+    for (VolumeDesc& volume : result.volumes) {
+        choose(volume);
+        if (volume.motion) choose(*volume.motion);
+    }
     std::ranges::for_each(result.geometry, choose);
     return result;
 }
@@ -181,8 +184,11 @@ void check_frames(const FrameSequence& sequence, const SceneDesc& scene) {
     const bool numbered = !sequence.frames.empty() && sequence.frames.front().number;
     if (numbered) {
         MissingFrames missing;
-        for (const VolumeDesc& volume : scene.volumes)
+        for (const VolumeDesc& volume : scene.volumes) {
             if (volume.is_sequence) missing.look(volume.where, volume.file, sequence);
+            if (volume.motion && volume.motion->is_sequence && volume.motion->file != volume.file)
+                missing.look(volume.motion->where, volume.motion->file, sequence);
+        }
         for (const GeometryDesc& mesh : scene.geometry)
             if (mesh.is_sequence) missing.look(mesh.where, mesh.file, sequence);
         missing.refuse();
@@ -207,7 +213,7 @@ bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
         return !error && written > rendered;
     };
     for (const VolumeDesc& volume : scene_of_frame.volumes)
-        if (is_newer(volume.file)) return false;
+        if (is_newer(volume.file) || (volume.motion && is_newer(volume.motion->file))) return false;
     for (const GeometryDesc& mesh : scene_of_frame.geometry)
         if (mesh.type == GeometryDesc::Type::file && is_newer(mesh.file)) return false;
     for (const LampDesc& lamp : scene_of_frame.lamps)

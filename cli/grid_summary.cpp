@@ -15,23 +15,27 @@ std::string describe_bounds(const Bounds& b) {
                        b.min.y, b.max.y, b.min.z, b.max.z);
 }
 
-// Optical depth of the grid's own particles along world axis `axis` through its middle.
 std::string describe_depth(const VolumeReport& report, const Medium& medium, std::size_t axis) {
-    const AttenuationTable attenuation(medium);
+    const std::vector<double> depth = depth_through_middle(report, medium, axis);
     std::string text;
-    for (int band = 0; band < medium.band_count(); ++band) {
-        const auto b = static_cast<std::size_t>(band);
-        double tau = 0;
-        for (const ConstituentReport& c : report.constituents)
-            tau += c.column[axis] *
-                   attenuation.constituents[static_cast<std::size_t>(c.constituent)][b];
-        text +=
-            fmt::format("{}{:.3g} ({:g} nm)", band == 0 ? "" : ", ", tau, medium.wavelengths_nm[b]);
-    }
+    for (std::size_t b = 0; b < depth.size(); ++b)
+        text += fmt::format("{}{:.3g} ({:g} nm)", b == 0 ? "" : ", ", depth[b],
+                            medium.wavelengths_nm[b]);
     return text;
 }
 
 }  // namespace
+
+std::vector<double> depth_through_middle(const VolumeReport& report, const Medium& medium,
+                                         std::size_t axis) {
+    const AttenuationTable attenuation(medium);
+    std::vector<double> depth(static_cast<std::size_t>(medium.band_count()));
+    for (std::size_t band = 0; band < depth.size(); ++band)
+        for (const ConstituentReport& c : report.constituents)
+            depth[band] += c.column[axis] *
+                           attenuation.constituents[static_cast<std::size_t>(c.constituent)][band];
+    return depth;
+}
 
 std::string describe_grid(const VolumeReport& report, const Medium& medium) {
     const Vector3& h = report.metres_per_voxel;

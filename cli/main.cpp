@@ -10,6 +10,7 @@
 #include "cli/calibration_command.h"
 #include "cli/console.h"
 #include "cli/exit_code.h"
+#include "cli/info_command.h"
 #include "cli/render_command.h"
 #include "cli/stop_signal.h"
 #include "cli/validate_command.h"
@@ -34,6 +35,11 @@ uw::ExitCode run(const uw::MessageArguments& arguments) {
 uw::ExitCode run(const uw::RenderArguments& arguments) {
     uw::install_stop_signal();
     uw::run_render(arguments);
+    return uw::k_exit_done;
+}
+
+uw::ExitCode run(const uw::InfoArguments& arguments) {
+    uw::print_output(uw::run_info(arguments));
     return uw::k_exit_done;
 }
 

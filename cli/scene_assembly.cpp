@@ -65,8 +65,11 @@ void refuse_open_sequences(const SceneDesc& desc) {
                         "render it with --frames 1-10, or name one file",
                         where, printable(file.string(), 300)));
     };
-    for (const VolumeDesc& volume : desc.volumes)
+    for (const VolumeDesc& volume : desc.volumes) {
         if (volume.is_sequence) refuse(volume.where, volume.file);
+        if (volume.motion && volume.motion->is_sequence)
+            refuse(volume.motion->where, volume.motion->file);
+    }
     for (const GeometryDesc& geometry : desc.geometry)
         if (geometry.is_sequence) refuse(geometry.where, geometry.file);
 }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <system_error>
 
 namespace uw {
@@ -107,6 +109,26 @@ std::filesystem::path file_of_frame(const std::filesystem::path& name, int frame
             file /= expand_frame_pattern(part->string(), frame);
     }
     return file;
+}
+
+std::vector<int> frames_found(const std::filesystem::path& name) {
+    const std::filesystem::path folder = name.parent_path().empty() ? "." : name.parent_path();
+    const std::string pattern = name.filename().string();
+    std::set<int> frames;
+    std::error_code error;
+    std::filesystem::directory_iterator entry(folder, error);
+    for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+        const std::string file = entry->path().filename().string();
+        // Any run of digits may be the number: the one that gives the name back is.
+        for (std::size_t at = 0; at < file.size(); ++at) {
+            if (!is_digit(file[at]) || (at > 0 && is_digit(file[at - 1]))) continue;
+            int number = 0;
+            const char* const end = file.data() + file.size();
+            if (std::from_chars(file.data() + at, end, number).ec != std::errc()) continue;
+            if (expand_frame_pattern(pattern, number) == file) frames.insert(number);
+        }
+    }
+    return {frames.begin(), frames.end()};
 }
 
 bool differs_by_frame(const std::filesystem::path& name) {

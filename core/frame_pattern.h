@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace uw {
 
@@ -19,6 +20,10 @@ std::string expand_frame_pattern(std::string_view name, int frame);
 
 /// The file of one frame. Folders that exist as they are written are taken as written.
 std::filesystem::path file_of_frame(const std::filesystem::path& name, int frame);
+
+/// The frames for which there is a file, ascending; the number must stand in the file's own name,
+/// not in its folder's. Empty if there is no such folder.
+std::vector<int> frames_found(const std::filesystem::path& name);
 
 /// Whether the files of two frames differ.
 bool differs_by_frame(const std::filesystem::path& name);

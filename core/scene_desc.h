@@ -82,6 +82,18 @@ struct GridMappingDesc {
     friend bool operator==(const GridMappingDesc&, const GridMappingDesc&) = default;
 };
 
+/// How the volume moves while the shutter is open.
+struct MotionDesc {
+    std::vector<std::string> grids;  // one of vectors, or three of numbers: x, y, z
+    std::filesystem::path file;      // that has them
+    bool is_sequence = false;        // as VolumeDesc's
+    std::optional<double> scale;     // m/s per unit, file's axes; automatic if left out
+    double shutter = 0;              // how long it is open, around the frame's moment [s]
+    SourceLocation where;
+
+    friend bool operator==(const MotionDesc&, const MotionDesc&) = default;
+};
+
 enum class Centering { automatic, cell, node };
 enum class UpAxis { automatic, y, z };
 
@@ -92,6 +104,7 @@ struct VolumeDesc {
     Centering centering = Centering::automatic;
     UpAxis up = UpAxis::automatic;
     Affine world_from_upright;  // `transform`, applied after `up` has been brought to y
+    std::optional<MotionDesc> motion;
     SourceLocation where;
 
     friend bool operator==(const VolumeDesc&, const VolumeDesc&) = default;
@@ -211,6 +224,7 @@ struct RenderDesc {
     SourceLocation output_where;
     ColourDesc colour;
     int samples = 4;
+    double shutter = 0;  // exposure time [s]; 0: no motion blur
     /// A draft is for looking: within 3 % of the final image, at a fraction of its cost. Exact is
     /// for comparison: every pixel's water has a ray of its own (WaterLattice).
     enum class Quality { draft, final, exact };

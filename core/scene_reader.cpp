@@ -108,7 +108,8 @@ PlanesDesc read_planes(const ConfigValue& value) {
 }
 
 RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value, {"integrator", "output", "planes", "samples", "response", "white"},
+    ConfigMap map(value,
+                  {"integrator", "output", "planes", "samples", "shutter", "response", "white"},
                   "write {samples: 4}");
     RenderDesc render;
     render.planes.where = value.location() + ".planes";
@@ -125,6 +126,12 @@ RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
     if (const auto entry = map.find("planes")) render.planes = read_planes(*entry);
     if (const auto entry = map.find("samples")) {
         render.samples = entry->integer(1, 4096, "give the samples per pixel");
+    }
+    if (const auto entry = map.find("shutter")) {
+        constexpr double k_longest = 60;
+        render.shutter = entry->non_negative("give the exposure time in seconds, such as 0.02");
+        if (render.shutter > k_longest)
+            entry->fail("more than a minute is no exposure; give seconds, such as 0.02");
     }
     render.colour = read_colour(map, context);
     return render;
@@ -159,6 +166,17 @@ void check_lenses(const SceneDesc& desc) {
                          "focal_length: 0.0085}, or write output: radiance");
 }
 
+/// Gives the volumes that move the time they have for it.
+void open_shutter(SceneDesc& desc) {
+    for (VolumeDesc& volume : desc.volumes) {
+        if (!volume.motion) continue;
+        volume.motion->shutter = desc.render.shutter;
+        if (desc.render.shutter == 0)
+            desc.warnings.push_back(volume.motion->where +
+                                    ": has no effect without render.shutter, the exposure time");
+    }
+}
+
 }  // namespace
 
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -186,6 +204,7 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
     if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
+    open_shutter(desc);
     check_lenses(desc);
     check_gltf_imports(desc);
     const bool brings_lamps = std::ranges::any_of(

@@ -71,8 +71,31 @@ std::vector<GridMappingDesc> read_grids(const ConfigValue& value, const SceneCon
     return grids;
 }
 
+MotionDesc read_motion(const ConfigValue& value, const VolumeDesc& volume,
+                       const SceneContext& context) {
+    constexpr auto k_form = "write {grid: velocity}, or {grid: [vel.x, vel.y, vel.z]}";
+    ConfigMap map(value, {"grid", "file", "scale"}, k_form);
+    MotionDesc motion;
+    motion.where = value.location();
+    const ConfigValue grid = map.require("grid", k_form);
+    if (grid.node().kind == ConfigNode::Kind::sequence) {
+        for (const ConfigValue& entry : grid.list(k_form))
+            motion.grids.push_back(entry.text(k_form));
+        if (motion.grids.size() != 3)
+            grid.fail("velocity is one grid of vectors, or three of numbers: x, y, z");
+    } else {
+        motion.grids.push_back(grid.text(k_form));
+    }
+    motion.file = volume.file;
+    motion.is_sequence = volume.is_sequence;
+    if (const auto entry = map.find("file"))
+        motion.file = read_existing_file_or_sequence(*entry, context, motion.is_sequence);
+    if (const auto entry = map.find("scale")) motion.scale = entry->number("give m/s per unit");
+    return motion;
+}
+
 VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value, {"file", "grids", "centering", "up", "transform"},
+    ConfigMap map(value, {"file", "grids", "centering", "up", "transform", "velocity"},
                   "write {file: plume.vdb, grids: {density: {small: 2, large: 10}}}");
     VolumeDesc volume;
     volume.where = value.location();
@@ -91,6 +114,8 @@ VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
     }
     if (const auto entry = map.find("transform"))
         volume.world_from_upright = read_transform(*entry);
+    if (const auto entry = map.find("velocity"))
+        volume.motion = read_motion(*entry, volume, context);
     return volume;
 }
 

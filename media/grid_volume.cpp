@@ -29,12 +29,15 @@ Placement decide_placement(const VdbHeader& header, const VolumeDesc& desc) {
     return placement;
 }
 
-Affine world_from_index(const LoadedGrid& grid, const Placement& placement,
-                        const Affine& world_from_upright) {
+Affine upright_from_file(UpAxis up) {
     // Column by column: x stays, the file's y becomes -z, its z becomes y.
     const Affine upright_from_z_up(Matrix3(1, 0, 0, 0, 0, -1, 0, 1, 0), Vector3(0.0));
-    const Affine upright_from_file = placement.up == UpAxis::z ? upright_from_z_up : Affine();
-    return world_from_upright * upright_from_file * grid.file_from_index;
+    return up == UpAxis::z ? upright_from_z_up : Affine();
+}
+
+Affine world_from_index(const LoadedGrid& grid, const Placement& placement,
+                        const Affine& world_from_upright) {
+    return world_from_upright * upright_from_file(placement.up) * grid.file_from_index;
 }
 
 GridVolume::GridVolume(std::vector<NanoGrid> bricks, const Affine& world_from_index,

@@ -17,6 +17,9 @@ struct Placement {
 /// Automatic means cell and z for caches of Blender's fluid solver, node and y for all others.
 Placement decide_placement(const VdbHeader& header, const VolumeDesc& desc);
 
+/// Brings the file's up axis to y.
+Affine upright_from_file(UpAxis up);
+
 /// World from the file's index space: transform * up * the file's own transform.
 Affine world_from_index(const LoadedGrid& grid, const Placement& placement,
                         const Affine& world_from_upright);

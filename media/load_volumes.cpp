@@ -54,7 +54,10 @@ LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<G
     const Placement placement = decide_placement(header, desc);
     for (std::size_t g = 0; g < desc.grids.size(); ++g) {
         const GridMappingDesc& mapping = desc.grids[g];
-        LoadedGrid loaded = load_grid(header, mapping.grid, mapping.where, slab_bytes);
+        LoadedGrid loaded = desc.motion && desc.motion->shutter > 0
+                                ? load_moving_grid(header, mapping.grid, mapping.where,
+                                                   *desc.motion, placement.centering)
+                                : load_grid(header, mapping.grid, mapping.where, slab_bytes);
         volume.warnings.insert(volume.warnings.end(), loaded.warnings.begin(),
                                loaded.warnings.end());
         const Affine place = world_from_index(loaded, placement, desc.world_from_upright);

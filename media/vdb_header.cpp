@@ -7,6 +7,7 @@
 #include <map>
 
 #include "media/byte_reader.h"
+#include "media/nvdb_header.h"
 
 namespace uw {
 namespace {
@@ -15,15 +16,16 @@ constexpr std::int64_t k_magic = 0x56444220;
 
 /// Names come from the file and go into one-line messages.
 std::string printable(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
     return text;
 }
 
-/// A metadata map: the strings and 64-bit integers by name; of other types the name alone.
+/// A metadata map: strings, 64-bit integers and vectors of three by name; of others the name alone.
 struct Metadata {
     std::map<std::string, std::string> strings;
     std::map<std::string, std::int64_t> integers;
+    std::map<std::string, std::array<std::int32_t, 3>> vectors;
     std::vector<std::string> others;
 };
 
@@ -38,6 +40,8 @@ Metadata read_metadata(ByteReader& in) {
             metadata.strings[name] = in.text(size);
         } else if (type == "int64" && size == sizeof(std::int64_t)) {
             metadata.integers[name] = in.get<std::int64_t>();
+        } else if (type == "vec3i" && size == 3 * sizeof(std::int32_t)) {
+            metadata.vectors[name] = in.get<std::array<std::int32_t, 3>>();
         } else {
             metadata.others.push_back(name);
             in.skip(size);
@@ -89,8 +93,13 @@ GridSummary read_grid(ByteReader& in, const VdbHeader& header) {
         grid.grid_class = printable(it->second);
     if (const auto it = metadata.integers.find("file_voxel_count"); it != metadata.integers.end())
         grid.active_voxels = it->second;
+    const auto low = metadata.vectors.find("file_bbox_min");
+    const auto high = metadata.vectors.find("file_bbox_max");
+    if (low != metadata.vectors.end() && high != metadata.vectors.end())
+        grid.active_box = IndexBox{low->second, high->second};
     grid.has_base_resolution = std::find(metadata.others.begin(), metadata.others.end(),
-                                         "file_base_resolution") != metadata.others.end();
+                                         "file_base_resolution") != metadata.others.end() ||
+                               metadata.vectors.contains("file_base_resolution");
     grid.transform_offset = in.position();
     grid.map_type = printable(in.text());
     in.seek(next_descriptor);
@@ -116,8 +125,9 @@ VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocatio
     ByteReader in(file, where);
     VdbHeader header;
     header.file = file;
-    if (in.size() < 8 || in.get<std::int64_t>() != k_magic)
-        in.fail("is not a VDB file (it does not begin like one)");
+    const std::int64_t magic = in.size() < 8 ? 0 : in.get<std::int64_t>();
+    if (is_nvdb_magic(magic)) return read_nvdb_header(in, file);
+    if (magic != k_magic) in.fail("is not a VDB file (it does not begin like one)");
     header.version = in.get<std::uint32_t>();
     header.library_major = in.get<std::uint32_t>();
     header.library_minor = in.get<std::uint32_t>();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -10,16 +11,23 @@
 
 namespace uw {
 
+/// Voxels min to max, both included.
+struct IndexBox {
+    std::array<std::int32_t, 3> min{}, max{};
+};
+
 /// What a VDB file says about one of its grids, read without its voxels. Names are made printable.
 struct GridSummary {
     std::string name;        // as scenes address it: "density", or "density[1]" among namesakes
     std::string base_name;   // "density" in both cases
     std::string value_type;  // "float", "double", "vec3s", "ptdataidx32", ...
     bool half = false;       // saved with 16 bits per number
+    std::string quantised;   // NanoVDB: "fp4", "fp8", "fp16" or "fpN" if saved so, else ""
     std::string grid_class = "unknown";         // "fog volume", "level set", "staggered", "unknown"
     std::optional<std::int64_t> active_voxels;  // if the file says so
     std::string map_type;                       // e.g. "UniformScaleMap", "NonlinearFrustumMap"
     bool has_base_resolution = false;           // Blender's fluid solver notes it with each grid
+    std::optional<IndexBox> active_box;         // of the active voxels, if the file says so
 
     // For the reader: where in the file things are.
     std::string tree_type;    // "Tree_float_5_4_3"
@@ -27,12 +35,15 @@ struct GridSummary {
     std::string instance_of;  // raw unique name of the grid whose voxels this one shares, or ""
     std::uint32_t compression = 0;
     std::int64_t transform_offset = 0;
-    std::int64_t blocks_offset = 0;
+    std::int64_t blocks_offset = 0;  // NanoVDB: where the grid's bytes begin
+    std::int64_t stored_bytes = 0;   // NanoVDB: their number in the file,
+    std::int64_t grid_bytes = 0;     // and once unpacked
 };
 
 /// What a VDB file says about itself.
 struct VdbHeader {
     std::filesystem::path file;
+    bool is_nano = false;       // NanoVDB's own format (.nvdb); it has no version of its own
     std::uint32_t version = 0;  // of the format: 224 for OpenVDB 4 to 12
     std::uint32_t library_major = 0, library_minor = 0;
     std::string creator;  // file metadata "creator"; "" if there is none
@@ -48,13 +59,18 @@ struct VdbHeader {
 inline constexpr std::uint32_t k_oldest_vdb_version = 220;
 inline constexpr std::uint32_t k_newest_vdb_version = 224;
 
-/// Reads the header and the metadata of all grids; sizes the file claims are checked against its
-/// length first. Throws IoError if the file cannot be opened; InputError, starting with `where`,
-/// if it is not a VDB file, is cut short, or has a version other than 220 to 224.
+/// Reads the header and the metadata of all grids of a VDB or NanoVDB file, told apart by how they
+/// begin; sizes the file claims are checked against its length first. Throws IoError if the file
+/// cannot be opened; InputError, starting with `where`, if it is neither, is cut short, or has a
+/// version other than 220 to 224 (NanoVDB: 32).
 VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocation& where);
 
 /// The summaries alone.
 std::vector<GridSummary> list_grids(const std::filesystem::path& file, const SourceLocation& where);
+
+/// Why the grid's values are no concentrations, to follow "grid 'x' "; "" if nothing in its header
+/// speaks against them.
+std::string unusable_because(const GridSummary& grid);
 
 /// The grid a scene calls `name`, if its concentrations can be used. Throws InputError, starting
 /// with `where`, for a name that is missing or shared by several grids, and for level sets, points,

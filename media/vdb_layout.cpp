@@ -27,14 +27,23 @@ bool is_on(const Mask& mask, std::int64_t n) {
     return (mask[static_cast<std::size_t>(n / 64)] >> (n % 64) & 1U) != 0;
 }
 
+std::int64_t components_of(const std::string& value_type) {
+    return value_type.starts_with("vec3") ? 3 : 1;
+}
+
+std::int64_t bytes_of_value(const std::string& value_type) {
+    const bool wide = value_type == "double" || value_type == "int64" || value_type == "vec3d";
+    return components_of(value_type) * (wide ? 8 : 4);
+}
+
 class LayoutWalk {
   public:
     LayoutWalk(ByteReader& in, const VdbHeader& header, const GridSummary& grid)
         : in_(in),
           old_(header.version < k_first_with_mask_compression),
           compression_(grid.compression),
-          value_bytes_(grid.value_type == "double" ? 8 : 4),
-          stored_bytes_(grid.half ? 2 : value_bytes_),
+          value_bytes_(bytes_of_value(grid.value_type)),
+          stored_bytes_(grid.half ? 2 * components_of(grid.value_type) : value_bytes_),
           half_(grid.half) {}
 
     void walk_tree() {

@@ -39,7 +39,8 @@ std::string did_you_mean(const VdbHeader& header, const std::string& name) {
     return best != nullptr ? fmt::format("; did you mean '{}'?", best->name) : "";
 }
 
-/// Why the grid is no concentration, or "".
+}  // namespace
+
 std::string unusable_because(const GridSummary& grid) {
     if (grid.value_type.starts_with("ptdataidx") || grid.value_type.starts_with("ptidx"))
         return "holds points, not a concentration; rasterise them to a fog volume first";
@@ -47,16 +48,15 @@ std::string unusable_because(const GridSummary& grid) {
         return fmt::format("holds vectors ({}); name a grid with one number per voxel",
                            grid.value_type);
     if (grid.tree_type != "Tree_float_5_4_3" && grid.tree_type != "Tree_double_5_4_3")
-        return fmt::format("has values of type {}; concentrations are float or double",
-                           grid.value_type);
+        return fmt::format(
+            "has values of type {}; concentrations are float or double{}", grid.value_type,
+            grid.tree_type.empty() ? ", of NanoVDB also fp4, fp8, fp16 and fpN" : "");
     if (grid.grid_class == "level set")
         return "is a level set (distances to a surface), not a concentration; export a fog volume";
     if (grid.map_type == "NonlinearFrustumMap")
         return "has a frustum (camera-shaped) transform; resample it to an affine one";
     return "";
 }
-
-}  // namespace
 
 const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
                                const SourceLocation& where) {

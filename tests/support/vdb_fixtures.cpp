@@ -126,4 +126,27 @@ void write_instanced_grids(const std::filesystem::path& file) {
     write_grids(file, {grid, copy}, "");
 }
 
+void write_moving_grid(const std::filesystem::path& file, const VdbFixture& density,
+                       const Vector3& velocity, VelocityKind kind) {
+    openvdb::initialize();
+    const openvdb::CoordBBox box(openvdb::Coord(-64), openvdb::Coord(63));
+    openvdb::GridPtrVec grids{make_grid<openvdb::FloatGrid>(density)};
+    const auto add = [&](auto grid, const std::string& name, const auto& value) {
+        grid->setName(name);
+        grid->setTransform(to_transform(density.file_from_index));
+        grid->tree().sparseFill(box, value, true);
+        grids.push_back(grid);
+    };
+    if (kind == VelocityKind::three_numbers) {
+        for (int c = 0; c < 3; ++c)
+            add(openvdb::FloatGrid::create(), std::string("vel.") + "xyz"[c],
+                static_cast<float>(velocity[c]));
+    } else {
+        auto vectors = openvdb::Vec3SGrid::create();
+        if (kind == VelocityKind::staggered) vectors->setGridClass(openvdb::GRID_STAGGERED);
+        add(vectors, "vel", openvdb::Vec3f(openvdb::Vec3d(velocity.x, velocity.y, velocity.z)));
+    }
+    write_grids(file, grids, density.blender_metadata ? "" : "uwvdb tests");
+}
+
 }  // namespace uw::test

@@ -46,4 +46,16 @@ void write_frustum_grid(const std::filesystem::path& file);
 /// Two grids "density" and "copy" that share one tree in the file but differ in transform.
 void write_instanced_grids(const std::filesystem::path& file);
 
+/// How velocities are kept.
+enum class VelocityKind { vectors, staggered, three_numbers };
+/// `density` with a grid "vel" (or "vel.x", "vel.y", "vel.z") of one velocity all over
+/// [-64, 63]^3, on the same voxels.
+void write_moving_grid(const std::filesystem::path& file, const VdbFixture& density,
+                       const Vector3& velocity, VelocityKind kind);
+
+/// NanoVDB file of `density` (its values, place and name). `precision`: "float", "fp4", "fp8",
+/// "fp16", "fpN"; `codec` 0 none, 1 zip, 2 blosc.
+void write_nvdb_fixture(const std::filesystem::path& file, const VdbFixture& density,
+                        const std::string& precision, int codec = 0);
+
 }  // namespace uw::test

@@ -1,0 +1,166 @@
+// ctest labels: unit
+//
+// `uwvdb info`: what it says of files and scenes, and that what it hands out renders.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/cli_test.h"
+#include "tests/support/vdb_fixtures.h"
+
+namespace uw {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string k_plume =
+    std::string(UWVDB_SOURCE_DIR) + "/assets/grids/plume128_blosc_half_0030.vdb";
+
+class Info : public test::CliTest {
+  protected:
+    Json json_of(const std::vector<std::string>& arguments) const {
+        std::vector<std::string> all{"info", "--json"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const test::ProgramResult result = run(all);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return Json::parse(result.out);
+    }
+    static bool warns(const Json& json, const std::string& part) {
+        return std::ranges::any_of(json.at("warnings"), [&](const Json& line) {
+            return line.get<std::string>().find(part) != std::string::npos;
+        });
+    }
+};
+
+TEST_F(Info, TellsOfEveryGridOfAFile) {
+    const Json json = json_of({k_plume});
+    EXPECT_EQ(json.at("format"), "vdb");
+    EXPECT_EQ(json.at("version"), 224);
+    EXPECT_TRUE(json.at("creator").is_null());
+    ASSERT_EQ(json.at("grids").size(), 8U);
+    for (const Json& grid : json.at("grids")) {
+        for (const char* key : {"type", "class", "precision", "compression", "transform",
+                                "metres_per_voxel", "active_voxels", "world_bounds", "values"})
+            EXPECT_TRUE(grid.contains(key)) << key;
+        EXPECT_TRUE(grid.at("unread").is_null());
+        if (grid.at("name") != "density") continue;
+        EXPECT_EQ(grid.at("active_voxels"), 18076);
+        EXPECT_NEAR(grid.at("metres_per_voxel")[0].get<double>(), 0.046875, 1e-6);
+        std::int64_t in_bins = 0;
+        for (const Json& count : grid.at("values").at("histogram").at("counts"))
+            in_bins += count.get<std::int64_t>();
+        EXPECT_EQ(in_bins, 18076);
+    }
+    EXPECT_EQ(json.at("advice").at("map"), Json({"density"}));
+    EXPECT_EQ(json.at("advice").at("up"), "z");
+    EXPECT_EQ(json.at("advice").at("centering"), "cell");
+    EXPECT_NEAR(json.at("advice").at("optical_depth")[1].get<double>(), 1.5, 0.1);
+}
+
+TEST_F(Info, CountsWhatIsBadInValues) {
+    test::VdbFixture fixture;
+    fixture.name = "smoke";
+    fixture.max = {9, 0, 0};
+    fixture.value = [](int i, int, int) {
+        if (i < 2) return std::nan("");
+        if (i == 2) return std::numeric_limits<double>::infinity();
+        return i < 6 ? -1.0 : 2.0;
+    };
+    test::VdbFixture empty;
+    empty.name = "flame";
+    test::write_fixture(folder_ / "a.vdb", {fixture, empty});
+    const Json json = json_of({"a.vdb"});
+    const Json& values = json.at("grids")[1].at("name") == "smoke"
+                             ? json.at("grids")[1].at("values")
+                             : json.at("grids")[0].at("values");
+    EXPECT_EQ(values.at("nan"), 2);
+    EXPECT_EQ(values.at("infinite"), 1);
+    EXPECT_EQ(values.at("negative"), 3);
+    const std::string text = run({"info", "a.vdb"}).out;
+    EXPECT_NE(text.find("'smoke' has 2 NaN"), std::string::npos) << text;
+    EXPECT_NE(text.find("'flame' is empty"), std::string::npos) << text;
+    EXPECT_NE(text.find("a voxel is exactly 1 m"), std::string::npos) << text;
+}
+
+TEST_F(Info, NamesTheMissingFramesOfASequence) {
+    for (const char* frame : {"0003", "0004", "0007"})
+        std::filesystem::copy_file(k_plume, folder_ / (std::string("p_") + frame + ".vdb"));
+    const Json json = json_of({"p_####.vdb"});
+    EXPECT_EQ(json.at("sequence").at("found"), Json({3, 4, 7}));
+    EXPECT_EQ(json.at("sequence").at("missing"), Json({5, 6}));
+    EXPECT_EQ(json.at("sequence").at("frame"), 3);
+    EXPECT_EQ(json_of({"p_%04d.vdb", "--frame", "7"}).at("sequence").at("frame"), 7);
+    expect_failure({"info", "p_####.vdb", "--frame", "5"}, 4, "p_0005.vdb: no such file");
+    expect_failure({"info", "q_####.vdb"}, 4, "there is no file of this sequence");
+    expect_failure({"info", k_plume, "--frame", "5"}, 2, "--frame");
+}
+
+TEST_F(Info, RefusesHostileFilesInOneLine) {
+    write("text.vdb", "this is no volume");
+    expect_failure({"info", "text.vdb"}, 3, "is not a VDB file");
+    expect_failure({"info", "none.vdb"}, 4, "no such file");
+    expect_failure({"info", "."}, 4, "");
+    std::ifstream in(k_plume, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    write("cut.vdb", bytes.substr(0, 900));
+    expect_failure({"info", "cut.vdb"}, 3, "cut short or damaged");
+    // The last grids of the file are lost, the first ones can still be read or are told of.
+    write("half.vdb", bytes.substr(0, bytes.size() / 2));
+    const test::ProgramResult result = run({"info", "half.vdb"});
+    EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 3) << result.err;
+}
+
+TEST_F(Info, SurveysAScene) {
+    write("plume.yaml", std::string(R"(uwvdb: 1
+camera: {resolution: [64, 36], intrinsics: {fov_x: 60}, pose: {position: [2.1, 0.5, 2], look_at: [2.1, 0.5, -1.5]}}
+volumes: [{file: ')") + k_plume +
+                            R"(', grids: {density: {small: 0.4, large: 2}}}]
+geometry: [{type: plane, point: [0, 0, -4], normal: [0, 0, 1]}]
+lamps: [{name: left, position: [0.5, 0.2, 0], intensity: 50}]
+)");
+    const Json json = json_of({"plume.yaml"});
+    for (const char* key : {"water", "camera", "lamps", "geometry", "grids", "central_ray", "view",
+                            "reach", "warnings", "sequences"})
+        EXPECT_TRUE(json.contains(key)) << key;
+    const Json& grid = json.at("grids").at(0);
+    EXPECT_GT(grid.at("in_view").get<double>(), 0.9);
+    EXPECT_GT(grid.at("in_reach").get<double>(), 0.99);
+    EXPECT_EQ(json.at("central_ray").at("surface_distance"), 6.0);
+    // 1 m of this water times 6, since all of it is the same.
+    EXPECT_NEAR(json.at("central_ray").at("optical_depth_water")[1].get<double>(),
+                6 * json.at("water").at("c")[1].get<double>(), 1e-9);
+    EXPECT_GT(json.at("central_ray").at("optical_depth_volumes")[1].get<double>(), 0.1);
+    EXPECT_EQ(json.at("view").at("on_surface"), 1.0);
+    EXPECT_TRUE(json.at("warnings").empty()) << json.at("warnings");
+
+    EXPECT_TRUE(warns(json_of({"plume.yaml", "--set", "volumes[0].transform.translate=[0,0,20]"}),
+                      "nothing of it is in view"));
+    EXPECT_TRUE(warns(json_of({"plume.yaml", "--set", "lamps.left.position=[0,0,-500]"}),
+                      "no lamp reaches any of it"));
+    EXPECT_TRUE(warns(json_of({"plume.yaml", "--set", "volumes[0].grids.density={large: 1e-6}"}),
+                      "it will be invisible"));
+    EXPECT_TRUE(warns(json_of({"plume.yaml", "--set", "volumes[0].grids.density={large: 1e4}"}),
+                      "it is opaque"));
+    EXPECT_TRUE(warns(json_of({"plume.yaml", "--set", "water.absorption=3"}), "none will be seen"));
+}
+
+TEST_F(Info, AHalfInViewIsAHalf) {
+    test::VdbFixture fixture;
+    fixture.min = {-16, -4, -4};
+    fixture.max = {15, 3, 3};
+    fixture.value = [](int, int, int) { return 1.0; };
+    fixture.file_from_index = Affine::scale(Vector3(0.1));
+    test::write_fixture(folder_ / "bar.vdb", {fixture});
+    // The camera looks along z; the plane x = 0 passes through its left edge.
+    write("bar.yaml", R"(uwvdb: 1
+camera: {resolution: [64, 64], intrinsics: {fx: 32, cx: 0, cy: 32}, pose: {position: [0, 0, -6], look_at: [0, 0, 0], up: [0, -1, 0]}}
+volumes: [{file: bar.vdb, centering: cell, grids: {density: {large: 1}}}]
+lamps: [{position: [0, 0, 0], profile: {type: spot, beam: 90, edge: 0}, intensity: 1}]
+)");
+    const Json grid = json_of({"bar.yaml"}).at("grids").at(0);
+    EXPECT_NEAR(grid.at("in_view").get<double>(), 0.5, 0.02);
+}
+
+}  // namespace
+}  // namespace uw
