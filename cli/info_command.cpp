@@ -91,7 +91,11 @@ std::string info_on_scene(const InfoArguments& a) {
     std::ranges::for_each(desc.volumes, look);
     std::ranges::for_each(desc.geometry, look);
     if (sequences.empty() && a.frame) refuse_frame(a.subject);
-    if (!sequences.empty()) desc = scene_of_frame(desc, {frame, {}});
+    if (!sequences.empty()) {
+        Frame one;
+        one.number = frame;
+        desc = scene_of_frame(desc, one);
+    }
     SceneSurvey survey = survey_scene(assemble_scene(desc, [](const std::string&) {}));
     survey.sequences = std::move(sequences);
     return a.json ? survey_json(survey) : survey_text(survey);

@@ -36,11 +36,18 @@ Json water(const AssembledScene& scene) {
         {"wavelengths_nm", medium.wavelengths_nm}, {"a", list(a)}, {"b", list(b)}, {"c", list(c)}};
 }
 
+/// Of a rig's camera; null without a rig.
+Json camera_name(const SceneSurvey& survey) {
+    const std::string& name = survey.scene.desc.camera_name;
+    return name.empty() ? Json(nullptr) : Json(name);
+}
+
 Json camera(const SceneSurvey& survey) {
     const CameraDesc& desc = survey.scene.desc.camera;
     const Vector3& at = desc.world_from_camera.offset();
     const Vector3 to = desc.world_from_camera.apply_to_vector({0, 0, 1});
-    return {{"resolution", {desc.width, desc.height}},
+    return {{"name", camera_name(survey)},
+            {"resolution", {desc.width, desc.height}},
             {"field_of_view_deg", list({survey.field_of_view[0], survey.field_of_view[1]})},
             {"port", desc.port.has_value()},
             {"position", triple(at.x, at.y, at.z)},

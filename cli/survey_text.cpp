@@ -39,15 +39,18 @@ std::string describe_camera(const SceneSurvey& survey) {
     const CameraDesc& camera = survey.scene.desc.camera;
     const Vector3& at = camera.world_from_camera.offset();
     const Vector3 to = camera.world_from_camera.apply_to_vector({0, 0, 1});
+    const std::string name = survey.scene.desc.camera_name;
     return fmt::format(
-        "camera\n  {} x {} pixels, {:.4g} x {:.4g} degrees in the water, {}\n"
+        "camera{}\n  {} x {} pixels, {:.4g} x {:.4g} degrees in the water, {}\n"
         "  at ({:.4g}, {:.4g}, {:.4g}) looking along ({:.3g}, {:.3g}, {:.3g})\n",
-        camera.width, camera.height, survey.field_of_view[0], survey.field_of_view[1],
+        name.empty() ? "" : " '" + name + "', the first of the rig", camera.width, camera.height,
+        survey.field_of_view[0], survey.field_of_view[1],
         camera.port ? "behind a port" : "without a port", at.x, at.y, at.z, to.x, to.y, to.z);
 }
 
 const char* name_of(LampProfileDesc::Type type) {
     if (type == LampProfileDesc::Type::isotropic) return "isotropic";
+    if (type == LampProfileDesc::Type::ies) return "IES luminaire";
     return type == LampProfileDesc::Type::spot ? "spot" : "cosine";
 }
 
