@@ -13,7 +13,10 @@ Camera::Camera(const CameraDesc& desc)
       camera_from_world_(desc.world_from_camera.inverse()) {
     if (width_ <= 0 || height_ <= 0)
         throw std::logic_error("a camera without resolution: its calibration was not read");
-    if (desc.port) port_.emplace(make_port(*desc.port));
+    if (!desc.port) return;
+    port_.emplace(make_port(*desc.port));
+    port_dims_ = std::visit([](const auto& port) { return port.fresnel || port.radiance_in_air; },
+                            *desc.port);
 }
 
 std::optional<Vector3> Camera::lens_direction(double x, double y) const {

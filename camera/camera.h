@@ -27,6 +27,7 @@ class Camera final : public RaySource {
     /// See RaySource. Empty too where the lens shows nothing (beyond the fold of its distortion).
     std::optional<Ray> water_ray(double x, double y) const override;
     LensRay lens_ray(double x, double y) const override;
+    bool port_dims() const override { return port_dims_; }
     const Affine& world_from_camera() const override { return world_from_camera_; }
 
     /// The unit direction that the lens shows at image position (x, y), camera frame, inside the
@@ -46,6 +47,7 @@ class Camera final : public RaySource {
     IntrinsicsDesc intrinsics_;
     LensModel lens_;
     std::optional<Port> port_;
+    bool port_dims_ = false;
     Affine world_from_camera_;
     Affine camera_from_world_;
 };

@@ -21,8 +21,12 @@ struct DirectionCone {
     double cosine = -1;     // of the angle; -1: all directions
 
     bool has_all() const { return cosine <= -1; }
+    /// `direction`: of any length.
     bool has(const Vector3& direction) const {
-        return has_all() || glm::dot(direction, axis) >= cosine * glm::length(direction);
+        const double along = glm::dot(direction, axis);
+        const double edge = cosine * cosine * glm::dot(direction, direction);  // of along^2
+        return cosine >= 0 ? along >= 0 && along * along >= edge
+                           : along >= 0 || along * along <= edge;
     }
     /// All directions within `angle` [rad] of this cone's.
     DirectionCone widened(double angle) const;

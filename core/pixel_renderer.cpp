@@ -119,14 +119,25 @@ void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
     view.ray = rays_.water_ray(view.x, view.y);
 }
 
+// A single sample's ray is that of the ground truth.
+void PixelRenderer::add_center(PixelView& view) {
+    if (!view.ray) return;
+    view.alpha = 1;
+    view.ends.push_back(view.has_hit ? view.path : k_far);
+    view.shares.push_back(1);
+    if (view.has_hit) view.samples.push_back({*view.ray, view.hit, view.x, view.y});
+}
+
 void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
     thread_local std::vector<double> distances;
     distances.clear();
+    if (samples_ == 1) {
+        add_center(view);
+        return;
+    }
     for (int i = 0; i < samples_; ++i) {
         const ImageOffset offset = sample_offset(i, samples_);
-        // A single sample's ray is that of the ground truth.
-        const std::optional<Ray> ray =
-            samples_ == 1 ? view.ray : rays_.water_ray(x + offset.x, y + offset.y);
+        const std::optional<Ray> ray = rays_.water_ray(x + offset.x, y + offset.y);
         if (!ray) continue;
         if (!view.ray) {
             view.ray = ray;
@@ -136,11 +147,9 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
         view.alpha += 1.0 / samples_;
         SurfaceSample& sample = view.samples.emplace_back();
         sample.ray = *ray;
-        sample.x = samples_ == 1 ? view.x : x + offset.x;
-        sample.y = samples_ == 1 ? view.y : y + offset.y;
-        if (samples_ == 1) sample.hit = view.hit;
-        if (!(samples_ == 1 ? view.has_hit
-                            : scene_.surfaces->closest_hit(*ray, k_far, sample.hit))) {
+        sample.x = x + offset.x;
+        sample.y = y + offset.y;
+        if (!scene_.surfaces->closest_hit(*ray, k_far, sample.hit)) {
             view.samples.pop_back();
             distances.push_back(k_far);
             continue;
@@ -170,7 +179,10 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
     result.pixel_factor = 1;
     result.alpha = view.alpha;
     result.has_hit = view.has_hit;
-    result.hit = view.has_hit ? view.hit : SurfaceHit{};
+    if (view.has_hit)
+        result.hit = view.hit;
+    else
+        result.hit = {};
     result.depth_z = view.has_hit ? view.depth_z : 0;
     result.range = view.has_hit ? view.range : 0;
     result.path = view.has_hit ? view.path : 0;
@@ -181,8 +193,9 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
             result.transmittance[b] /= static_cast<double>(view.samples.size());
     if (!view.ray) return;
     add_water(water, result);
-    result.pixel_factor = sensor_.pixel_factor(rays_.lens_ray(view.x, view.y),
-                                               view.has_hit ? view.range : k_infinitely_far);
+    if (sensor_.uses_lens() || rays_.port_dims())
+        result.pixel_factor = sensor_.pixel_factor(rays_.lens_ray(view.x, view.y),
+                                                   view.has_hit ? view.range : k_infinitely_far);
 }
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {

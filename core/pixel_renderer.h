@@ -76,6 +76,8 @@ class PixelRenderer {
     void begin_view(int x, int y, PixelView& view) const;
     // Makes the ray's hit, if it has one, the view's ground truth.
     void finish_ground_truth(PixelView& view) const;
+    // Makes the pixel's centre its only sample.
+    static void add_center(PixelView& view);
     // Traces the samples: all but a single one, which is the pixel's centre.
     void add_samples(int x, int y, PixelView& view) const;
 

@@ -31,6 +31,9 @@ class SensorModel {
     /// Precondition, checked by the scene reader: anything but radiance has a lens.
     explicit SensorModel(const SceneDesc& desc);
 
+    /// Whether LensRay::falloff and the range matter.
+    bool uses_lens() const { return output_ != RenderDesc::Output::radiance; }
+
     /// What all light of a pixel is multiplied by. `range` of the surface at its centre [m],
     /// k_infinitely_far if there is none.
     double pixel_factor(const LensRay& lens_ray, double range) const;

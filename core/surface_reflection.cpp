@@ -12,22 +12,22 @@ SurfaceReflection::SurfaceReflection(const Surfaces& surfaces, const SurfaceSamp
     : sample_(&sample), bands_(static_cast<std::size_t>(band_count)) {
     if (!sample.hit.has_finish) return;
     finish_ = surfaces.finish(sample.hit);
-    emits_ = std::any_of(finish_.emission.begin(), finish_.emission.end(),
+    emits_ = std::any_of(finish_->emission.begin(), finish_->emission.end(),
                          [](double radiance) { return radiance > 0; });
 }
 
 void SurfaceReflection::brdf(const Point3& position, Spectrum& values) const {
     const SurfaceHit& hit = sample_->hit;
-    if (!finish_.is_glossy) {
+    if (!finish_ || !finish_->is_glossy) {
         for (std::size_t b = 0; b < bands_; ++b)
             values[b] = hit.reflectance[b] * std::numbers::inv_pi;
         return;
     }
     const Vector3 to_lamp = glm::normalize(position - hit.position);
     const MicrofacetLobe lobe =
-        microfacet_lobe(hit.normal, -sample_->ray.direction, to_lamp, finish_.roughness);
+        microfacet_lobe(hit.normal, -sample_->ray.direction, to_lamp, finish_->roughness);
     for (std::size_t b = 0; b < bands_; ++b) {
-        const double fresnel = lobe.fresnel(finish_.f0[b]);
+        const double fresnel = lobe.fresnel(finish_->f0[b]);
         values[b] =
             (1 - fresnel) * hit.reflectance[b] * std::numbers::inv_pi + fresnel * lobe.density;
     }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/surface_finish.h"
 #include "core/surface_light.h"
 
@@ -17,12 +19,13 @@ class SurfaceReflection {
 
     /// Whether the surface shines by itself.
     bool emits() const { return emits_; }
-    const Spectrum& emission() const { return finish_.emission; }
+    /// Precondition: emits().
+    const Spectrum& emission() const { return finish_->emission; }
 
   private:
     const SurfaceSample* sample_;
     std::size_t bands_;
-    SurfaceFinish finish_;
+    std::optional<SurfaceFinish> finish_;  // none: diffuse and dark
     bool emits_ = false;
 };
 

@@ -33,6 +33,8 @@ class RaySource {
     /// How the light of the water ray at image position (x, y) arrives at the lens.
     /// Precondition: there is a water ray.
     virtual LensRay lens_ray(double x, double y) const = 0;
+    /// Whether some lens ray's port_transmittance is not 1.
+    virtual bool port_dims() const = 0;
 
     virtual const Affine& world_from_camera() const = 0;
 };

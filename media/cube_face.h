@@ -11,22 +11,27 @@ namespace uw {
 /// Directions around a lamp as the six faces of a cube, seen by central projection: a straight
 /// line in space is a straight line on a face. Face 2a + 0 looks along +axis a, 2a + 1 along -a.
 struct CubeFace {
-    int axis = 0;     // the face's major axis: 0, 1, 2
-    double sign = 1;  // which way along it
+    int axis = 0;                // the face's major axis: 0, 1, 2
+    int u_axis = 1, v_axis = 2;  // the two after it
+    double sign = 1;             // which way along the major axis
 
-    explicit CubeFace(int index) : axis(index / 2), sign(index % 2 == 0 ? 1.0 : -1.0) {}
+    explicit CubeFace(int index)
+        : axis(index / 2),
+          u_axis((axis + 1) % 3),
+          v_axis((axis + 2) % 3),
+          sign(index % 2 == 0 ? 1.0 : -1.0) {}
 
     /// Depth of `v` along the face's axis; `v` projects onto the face only if this is > 0.
     double depth(const Vector3& v) const { return sign * v[axis]; }
-    double u(const Vector3& v) const { return v[(axis + 1) % 3] / depth(v); }
-    double v(const Vector3& w) const { return w[(axis + 2) % 3] / depth(w); }
+    double u(const Vector3& v) const { return v[u_axis] / depth(v); }
+    double v(const Vector3& w) const { return w[v_axis] / depth(w); }
 
     /// The direction (not unit: depth 1) of the face's point (u, v).
     Vector3 direction(double u_on_face, double v_on_face) const {
         Vector3 d(0.0);
         d[axis] = sign;
-        d[(axis + 1) % 3] = u_on_face;
-        d[(axis + 2) % 3] = v_on_face;
+        d[u_axis] = u_on_face;
+        d[v_axis] = v_on_face;
         return d;
     }
 };

@@ -57,8 +57,9 @@ void ShadowMap::trace_face(int face_index) {
         directions.clear();
         columns.clear();
         const double v = (2.0 * static_cast<double>(row) - 1.0) / n - 1.0;
+        const Vector3 middle = face.direction(0, v), across = face.direction(1, v) - middle;
         for (int column = 0; column < padded; ++column) {
-            const Vector3 direction = face.direction((2.0 * column - 1.0) / n - 1.0, v);
+            const Vector3 direction = middle + ((2.0 * column - 1.0) / n - 1.0) * across;
             if (!wide.has(direction)) continue;
             directions.push_back(glm::normalize(direction));
             columns.push_back(static_cast<std::size_t>(column));
@@ -101,12 +102,18 @@ ShadowMap::Level ShadowMap::cell_ranges(const std::vector<float>& padded_depth) 
 ShadowMap::Level ShadowMap::halved(const Level& fine) {
     const int size = (fine.size + 1) / 2;
     Level coarse{size, std::vector<DepthRange>(square(size), DepthRange{k_nothing, 0})};
-    for (int row = 0; row < fine.size; ++row) {
-        for (int column = 0; column < fine.size; ++column) {
-            const DepthRange& in = fine.texels[place_of(row, column, fine.size)];
-            DepthRange& out = coarse.texels[place_of(row / 2, column / 2, size)];
-            out.nearest = std::min(out.nearest, in.nearest);
-            out.farthest = std::max(out.farthest, in.farthest);
+    const auto last = fine.size - 1;
+    for (int row = 0; row < size; ++row) {
+        const DepthRange* const above = &fine.texels[place_of(2 * row, 0, fine.size)];
+        const DepthRange* const below =
+            &fine.texels[place_of(std::min(2 * row + 1, last), 0, fine.size)];
+        for (int column = 0; column < size; ++column) {
+            const int left = 2 * column, right = std::min(2 * column + 1, last);
+            coarse.texels[place_of(row, column, size)] = {
+                std::min({above[left].nearest, above[right].nearest, below[left].nearest,
+                          below[right].nearest}),
+                std::max({above[left].farthest, above[right].farthest, below[left].farthest,
+                          below[right].farthest})};
         }
     }
     return coarse;
@@ -154,7 +161,9 @@ class ShadowMap::Search {
     MapPoint project(double s) const {
         const Vector3 x = ray_.at(s) - map_.lamp_;
         const double half = 0.5 * map_.resolution_;
-        return {s, face_.depth(x), (face_.u(x) + 1) * half, (face_.v(x) + 1) * half};
+        const double depth = face_.depth(x), texels_per_metre = half / depth;
+        return {s, depth, half + x[face_.u_axis] * texels_per_metre,
+                half + x[face_.v_axis] * texels_per_metre};
     }
 
     void descend(const MapPoint& a, const MapPoint& b) {
