@@ -23,6 +23,7 @@ struct DirectionCone {
     bool has_all() const { return cosine <= -1; }
     /// `direction`: of any length.
     bool has(const Vector3& direction) const {
+        if (has_all()) return true;  // rounding has no say
         const double along = glm::dot(direction, axis);
         const double edge = cosine * cosine * glm::dot(direction, direction);  // of along^2
         return cosine >= 0 ? along >= 0 && along * along >= edge
