@@ -87,7 +87,7 @@ TEST_F(Frames, KeepWhatDoesNotChange) {
     const std::string meshes = "geometry=[{file: 'wing{frame}.obj'}]";
     // Light that goes all around needs all of a shadow map.
     expect_done(sequence(
-        {"--frames", "1-3", "--stats", "all.json", "--set", "lamps.0.profile={type: isotropic}"}));
+        {"--frames", "1-3", "--stats", "all.json", "--set", "lamps[0].profile={type: isotropic}"}));
     const nlohmann::json all = nlohmann::json::parse(read("all.json"));
     EXPECT_EQ(all.at("scene"), "smoke.yaml");
     ASSERT_EQ(all.at("frames").size(), 3U);
