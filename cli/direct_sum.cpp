@@ -145,7 +145,8 @@ class DirectSum {
             for (std::size_t b = 0; b < bands_; ++b) {
                 const double transmittance = light.to_camera(0)[b];
                 seen.response[i][b] = hit.reflectance[b] * std::numbers::inv_pi * transmittance;
-                seen.direct[i][b] = (seen.direct[i][b] + reflection.emission()[b]) * transmittance;
+                if (reflection.emits()) seen.direct[i][b] += reflection.emission()[b];
+                seen.direct[i][b] *= transmittance;
             }
         });
         return seen;
