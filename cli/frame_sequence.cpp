@@ -218,6 +218,7 @@ bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
         if (mesh.type == GeometryDesc::Type::file && is_newer(mesh.file)) return false;
     for (const LampDesc& lamp : scene_of_frame.lamps)
         if (std::ranges::any_of(files_of(lamp), is_newer)) return false;
+    if (is_newer(scene_of_frame.render.colour.file)) return false;
     return is_image_of(files.image);
 }
 

@@ -63,8 +63,11 @@ void OutputCheck::take_inputs(const SceneDesc& scene) {
     taken_.emplace(identity(scene.file), "the scene");
     if (scene.camera.calibration)
         taken_.emplace(identity(scene.camera.calibration->file), "the scene's calibration");
-    for (const VolumeDesc& volume : scene.volumes)
+    for (const VolumeDesc& volume : scene.volumes) {
         taken_.emplace(identity(volume.file), "a volume of the scene");
+        if (volume.motion && !volume.motion->file.empty())
+            taken_.emplace(identity(volume.motion->file), "a volume's velocity of the scene");
+    }
     for (const GeometryDesc& geometry : scene.geometry)
         if (geometry.type == GeometryDesc::Type::file)
             taken_.emplace(identity(geometry.file), "a mesh of the scene");
