@@ -10,7 +10,7 @@
 #include "bench/support/process.h"
 #include "bench/support/reference_error.h"
 #include "bench/support/scenes.h"
-#include "core/render_film.h"
+#include "core/frame/render_film.h"
 
 namespace uw::bench {
 namespace {
@@ -47,10 +47,10 @@ class ImageRun {
     }
 
     void run(benchmark::State& state) {
-        LightFields light_fields;
+        DeepShadows deep_shadows;
         double splat_s = 0;
         measure(state, Floor(scene_), case_.threads, [&] {
-            splat_s = render(light_fields);
+            splat_s = render(deep_shadows);
             if (peak_mb_ == 0)
                 peak_mb_ = peak_memory_mb();  // before the reference, which adds to it
         });
@@ -68,16 +68,16 @@ class ImageRun {
     }
 
     // Returns the CPU time of the splat [s].
-    double render(LightFields& light_fields) {
-        light_fields.clear();
+    double render(DeepShadows& deep_shadows) {
+        deep_shadows.clear();
         const double begin = process_cpu_seconds();
-        light_fields = splat_lamps(scene_, LightFieldOptions{});
+        deep_shadows = splat_lamps(scene_, DeepShadowOptions{});
         const double splat_s = process_cpu_seconds() - begin;
         const CameraDesc& camera = scene_.desc.camera;
         film_.emplace(camera.width, camera.height, PixelWindow{0, 0, camera.width, camera.height},
                       plan().channel_names());
         film_bytes_ = film_->values().size_bytes();
-        render_scene(scene_, light_fields, *make_integrator(scene_, light_fields), plan(),
+        render_scene(scene_, deep_shadows, *make_integrator(scene_, deep_shadows), plan(),
                      BandColour(scene_.desc.water.bands_nm), *film_,
                      [](const std::string&, double) { return true; });
         benchmark::DoNotOptimize(film_->values().data());

@@ -57,7 +57,7 @@ Samples samples(const Camera& of) {
     Samples result;
     while (result.points.size() < k_points) {
         const ImagePoint pixel{x(random), y(random)};
-        const auto ray = of.water_ray(pixel.x, pixel.y);
+        const auto ray = of.refracted_ray(pixel.x, pixel.y);
         if (!ray) continue;
         result.pixels.push_back(pixel);
         result.points.push_back(ray->at(std::exp(exponent(random))));
@@ -73,13 +73,13 @@ void project(benchmark::State& state, Lens lens, Glass glass) {
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()));
 }
 
-void water_ray(benchmark::State& state, Lens lens, Glass glass) {
+void refracted_ray(benchmark::State& state, Lens lens, Glass glass) {
     const Camera of(camera(lens, glass));
     const Samples with = samples(of);
     std::size_t i = 0;
     for (auto _ : state) {
         const ImagePoint& pixel = with.pixels[i++ % k_points];
-        benchmark::DoNotOptimize(of.water_ray(pixel.x, pixel.y));
+        benchmark::DoNotOptimize(of.refracted_ray(pixel.x, pixel.y));
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()));
 }
@@ -93,12 +93,12 @@ BENCHMARK_CAPTURE(project, brown_conrady_dome, Lens::brown_conrady, Glass::dome)
 BENCHMARK_CAPTURE(project, fisheye, Lens::fisheye, Glass::none);
 BENCHMARK_CAPTURE(project, fisheye_flat, Lens::fisheye, Glass::flat);
 BENCHMARK_CAPTURE(project, fisheye_dome, Lens::fisheye, Glass::dome);
-BENCHMARK_CAPTURE(water_ray, pinhole, Lens::pinhole, Glass::none);
-BENCHMARK_CAPTURE(water_ray, pinhole_flat, Lens::pinhole, Glass::flat);
-BENCHMARK_CAPTURE(water_ray, pinhole_dome, Lens::pinhole, Glass::dome);
-BENCHMARK_CAPTURE(water_ray, brown_conrady, Lens::brown_conrady, Glass::none);
-BENCHMARK_CAPTURE(water_ray, fisheye, Lens::fisheye, Glass::none);
-BENCHMARK_CAPTURE(water_ray, fisheye_dome, Lens::fisheye, Glass::dome);
+BENCHMARK_CAPTURE(refracted_ray, pinhole, Lens::pinhole, Glass::none);
+BENCHMARK_CAPTURE(refracted_ray, pinhole_flat, Lens::pinhole, Glass::flat);
+BENCHMARK_CAPTURE(refracted_ray, pinhole_dome, Lens::pinhole, Glass::dome);
+BENCHMARK_CAPTURE(refracted_ray, brown_conrady, Lens::brown_conrady, Glass::none);
+BENCHMARK_CAPTURE(refracted_ray, fisheye, Lens::fisheye, Glass::none);
+BENCHMARK_CAPTURE(refracted_ray, fisheye_dome, Lens::fisheye, Glass::dome);
 
 }  // namespace
 }  // namespace uw

@@ -8,13 +8,13 @@
 #include "bench/support/measure.h"
 #include "bench/support/process.h"
 #include "bench/support/scenes.h"
-#include "cli/scene_rendering.h"
-#include "core/geometry_scene.h"
-#include "core/image_writer.h"
-#include "core/parallel.h"
-#include "core/render_film.h"
-#include "core/scratch_folder.h"
-#include "core/tile_renderer.h"
+#include "core/base/parallel.h"
+#include "core/base/scratch_folder.h"
+#include "core/frame/render_film.h"
+#include "core/frame/tile_renderer.h"
+#include "core/image/image_writer.h"
+#include "core/surfaces/geometry_scene.h"
+#include "render/scene_rendering.h"
 
 namespace uw::bench {
 namespace {
@@ -33,12 +33,12 @@ class StageRun {
 
     const AssembledScene& scene() const { return scene_; }
     const SceneDesc& desc() const { return scene_.desc; }
-    const LightFields& light_fields() {
-        if (light_fields_.empty()) light_fields_ = splat_lamps(scene_, LightFieldOptions{});
-        return light_fields_;
+    const DeepShadows& deep_shadows() {
+        if (deep_shadows_.empty()) deep_shadows_ = splat_lamps(scene_, DeepShadowOptions{});
+        return deep_shadows_;
     }
     const Integrator& integrator() {
-        if (!integrator_) integrator_ = make_integrator(scene_, light_fields());
+        if (!integrator_) integrator_ = make_integrator(scene_, deep_shadows());
         return *integrator_;
     }
     PixelRenderer renderer() {
@@ -68,7 +68,7 @@ class StageRun {
     int threads_;
     SceneFiles files_;
     AssembledScene scene_;
-    LightFields light_fields_;
+    DeepShadows deep_shadows_;
     std::unique_ptr<Integrator> integrator_;
 };
 
@@ -93,19 +93,19 @@ void load_geometry(StageRun& run, benchmark::State& state) {
 
 void splat(StageRun& run, benchmark::State& state) {
     run.measure(state,
-                [&] { benchmark::DoNotOptimize(splat_lamps(run.scene(), LightFieldOptions{})); });
+                [&] { benchmark::DoNotOptimize(splat_lamps(run.scene(), DeepShadowOptions{})); });
 }
 
 // Every pixel's values, none kept.
 void march(StageRun& run, benchmark::State& state) {
     const PixelRenderer renderer = run.renderer();
     const CameraDesc& camera = run.desc().camera;
-    constexpr int k_tile = WaterLattice::k_tile;
+    constexpr int k_tile = InScatterLattice::k_tile;
     const int columns = (camera.width + k_tile - 1) / k_tile;
     const int rows = (camera.height + k_tile - 1) / k_tile;
     run.measure(state, [&] {
         parallel_for(static_cast<std::size_t>(columns * rows), [&](std::size_t i) {
-            TileRenderer tile(renderer, water_tolerance(run.desc().render));
+            TileRenderer tile(renderer, in_scatter_tolerance(run.desc().render));
             const int x0 = static_cast<int>(i) % columns * k_tile;
             const int y0 = static_cast<int>(i) / columns * k_tile;
             const int x1 = std::min(x0 + k_tile, camera.width);
@@ -124,12 +124,12 @@ void forward_scatter(StageRun& run, benchmark::State& state) {
     const AssembledScene& scene = run.scene();
     const LayerPlan plan = run.plan();
     Film film = run.film();
-    const auto setup = forward_scatter_setup(scene, run.light_fields());
+    const auto setup = forward_scatter_setup(scene, run.deep_shadows());
     const auto go_on = [](double) { return true; };
     ForwardPass pass(renderer, scene.lit(), run.integrator(), scene.camera->world_from_camera(),
                      setup, plan);
     const BandColour colour(run.desc().water.bands_nm);
-    render_film(renderer, water_tolerance(run.desc().render), plan, colour, film, go_on,
+    render_film(renderer, in_scatter_tolerance(run.desc().render), plan, colour, film, go_on,
                 [&](int x, int y, const PixelView& view, const PixelResult& result) {
                     pass.keep(x, y, view, result);
                 });
@@ -155,7 +155,7 @@ void store_film(StageRun& run, benchmark::State& state) {
 
 void write_image(StageRun& run, benchmark::State& state) {
     Film film = run.film();
-    render_film(run.renderer(), water_tolerance(run.desc().render), run.plan(),
+    render_film(run.renderer(), in_scatter_tolerance(run.desc().render), run.plan(),
                 BandColour(run.desc().water.bands_nm), film, [](double) { return true; });
     const ScratchFolder folder;
     run.measure(state, [&] { write_exr(folder.path() / "image.exr", film, {}); });

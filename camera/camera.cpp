@@ -25,13 +25,13 @@ std::optional<Vector3> Camera::lens_direction(double x, double y) const {
     return std::visit([&](const auto& lens) { return lens.direction(image); }, lens_);
 }
 
-std::optional<Ray> Camera::water_ray(double x, double y) const {
+std::optional<Ray> Camera::refracted_ray(double x, double y) const {
     const std::optional<Vector3> in_housing = lens_direction(x, y);
     if (!in_housing) return std::nullopt;
     std::optional<Ray> in_camera = Ray{Point3{}, *in_housing};
     if (port_)
         in_camera =
-            std::visit([&](const auto& port) { return port.water_ray(*in_housing); }, *port_);
+            std::visit([&](const auto& port) { return port.refracted_ray(*in_housing); }, *port_);
     if (!in_camera) return std::nullopt;
     return Ray{world_from_camera_ * in_camera->origin,
                glm::normalize(world_from_camera_.apply_to_vector(in_camera->direction))};

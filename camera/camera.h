@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "camera/lens_model.h"
-#include "camera/port.h"
-#include "core/water_ray.h"
+#include "camera/lens/lens_model.h"
+#include "camera/port/port.h"
+#include "core/base/ray_source.h"
 
 namespace uw {
 
@@ -25,7 +25,7 @@ class Camera final : public RaySource {
     int width() const override { return width_; }
     int height() const override { return height_; }
     /// See RaySource. Empty too where the lens shows nothing (beyond the fold of its distortion).
-    std::optional<Ray> water_ray(double x, double y) const override;
+    std::optional<Ray> refracted_ray(double x, double y) const override;
     LensRay lens_ray(double x, double y) const override;
     bool port_dims() const override { return port_dims_; }
     const Affine& world_from_camera() const override { return world_from_camera_; }

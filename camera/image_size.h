@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/scene_desc.h"
+#include "core/scene/scene_desc.h"
 
 namespace uw {
 

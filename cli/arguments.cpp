@@ -8,8 +8,8 @@
 
 #include "cli/command_options.h"
 #include "cli/version.h"
-#include "core/config_text.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace uw {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "core/config_text.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace uw {
 

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <unordered_set>
 
-#include "core/config_text.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace uw {
 

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "cli/frame_list.h"
-#include "core/config_text.h"
-#include "core/error.h"
-#include "core/frame_pattern.h"
-#include "media/volume_sequence.h"
+#include "core/base/error.h"
+#include "core/base/frame_pattern.h"
+#include "core/base/text.h"
+#include "media/volumes/volume_sequence.h"
 
 namespace uw {
 

@@ -8,7 +8,7 @@
 
 #include "cli/arguments.h"
 #include "cli/output_files.h"
-#include "core/scene_desc.h"
+#include "core/scene/scene_desc.h"
 
 namespace uw {
 

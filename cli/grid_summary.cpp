@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/optical_depth.h"
+#include "core/optics/optical_depth.h"
 
 namespace uw {
 

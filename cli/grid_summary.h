@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/medium.h"
-#include "media/grid_field.h"
+#include "core/optics/medium.h"
+#include "media/volumes/grid_field.h"
 
 namespace uw {
 

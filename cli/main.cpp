@@ -7,16 +7,16 @@
 #include <variant>
 
 #include "cli/arguments.h"
-#include "cli/calibration_command.h"
+#include "cli/calibration/calibration_command.h"
 #include "cli/console.h"
 #include "cli/exit_code.h"
-#include "cli/info_command.h"
-#include "cli/render_command.h"
+#include "cli/info/info_command.h"
+#include "cli/render/render_command.h"
 #include "cli/stop_signal.h"
-#include "cli/validate_command.h"
-#include "cli/water_command.h"
-#include "core/config_text.h"
-#include "core/error.h"
+#include "cli/validate/validate_command.h"
+#include "cli/water/water_command.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <system_error>
 #include <vector>
 
-#include "core/atomic_file.h"
-#include "core/config_text.h"
-#include "core/error.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace uw {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/arguments.h"
-#include "core/scene_desc.h"
+#include "core/scene/scene_desc.h"
 
 namespace uw {
 

@@ -1,8 +1,8 @@
 #include "cli/scene_loading.h"
 
 #include "camera/calibration/calibration.h"
-#include "core/config_node.h"
-#include "core/scene_reader.h"
+#include "core/scene/yaml/config_node.h"
+#include "core/scene/yaml/scene_reader.h"
 
 namespace uw {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene_desc.h"
+#include "core/scene/scene_desc.h"
 
 namespace uw {
 

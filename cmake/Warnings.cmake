@@ -1,5 +1,6 @@
 # Flags every target of the project is built with; third-party headers are SYSTEM and exempt.
 add_library(uwvdb_options INTERFACE)
+target_link_libraries(uwvdb_options INTERFACE glm::glm fmt::fmt)
 target_compile_options(uwvdb_options INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion
     # a*b+c is never fused behind our back: the same scene gives the same bits on every build

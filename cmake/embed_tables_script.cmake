@@ -1,5 +1,5 @@
 # Run as a script: writes OUTPUT, a C++ source that holds each file of TABLES as a raw string.
-set(code "#include \"media/embedded_tables.h\"\n\nnamespace uw {\n\n")
+set(code "#include \"core/tables/embedded_tables.h\"\n\nnamespace uw {\n\n")
 string(APPEND code "const std::vector<EmbeddedTable>& embedded_tables() {\n")
 string(APPEND code "    static const std::vector<EmbeddedTable> tables = {\n")
 foreach(table IN LISTS TABLES)

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "bench/support/process.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace uw::bench {
 namespace {
@@ -37,7 +37,7 @@ double Floor::trace() const {
         const int y0 = static_cast<int>(tile) / columns * k_tile;
         for (int y = y0; y < std::min(y0 + k_tile, height); ++y)
             for (int x = x0; x < std::min(x0 + k_tile, width); ++x) {
-                const auto ray = scene_.camera->water_ray(x + 0.5, y + 0.5);
+                const auto ray = scene_.camera->refracted_ray(x + 0.5, y + 0.5);
                 const double s = ray ? scene_.surfaces->hit_distance(*ray) : k_far;
                 if (s >= k_far) continue;
                 for (const Lamp& lamp : scene_.lamps)

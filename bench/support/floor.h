@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/scene_assembly.h"
+#include "render/scene_assembly.h"
 
 namespace uw::bench {
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bench/support/value_noise.h"
-#include "core/atomic_file.h"
-#include "core/error.h"
-#include "core/vec.h"
-#include "media/vdb_writer.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/vec.h"
+#include "media/vdb/vdb_writer.h"
 
 namespace uw::bench {
 namespace {

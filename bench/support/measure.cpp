@@ -1,7 +1,7 @@
 #include "bench/support/measure.h"
 
 #include "bench/support/process.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace uw::bench {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
-#include "core/reference_integrator.h"
+#include "core/base/parallel.h"
+#include "core/integrators/reference_integrator.h"
 
 namespace uw::bench {
 namespace {

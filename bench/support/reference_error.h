@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/scene_rendering.h"
+#include "render/scene_rendering.h"
 
 namespace uw::bench {
 

@@ -12,7 +12,7 @@
 
 #include "bench/support/generated_files.h"
 #include "cli/scene_loading.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace uw::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/scene_desc.h"
-#include "core/scratch_folder.h"
+#include "core/base/scratch_folder.h"
+#include "core/scene/scene_desc.h"
 
 namespace uw::bench {
 

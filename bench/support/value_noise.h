@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace uw::bench {
 

@@ -2,7 +2,7 @@
 
 #include "camera/calibration/colmap_models.h"
 #include "camera/calibration/formats.h"
-#include "core/camera_values.h"
+#include "core/scene/yaml/camera_values.h"
 
 // Calibmar's calibration.yaml: COLMAP's models by name and list of parameters, image corner at
 // (0, 0) (it adds the half pixel to what OpenCV detects), lengths in metres.

@@ -7,9 +7,9 @@
 #include <system_error>
 
 #include "camera/calibration/formats.h"
-#include "core/config_text.h"
-#include "core/error.h"
-#include "core/yaml_document.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/scene/yaml/yaml_document.h"
 
 namespace uw {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/camera_desc.h"
+#include "core/scene/camera_desc.h"
 
 namespace uw {
 

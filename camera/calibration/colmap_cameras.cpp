@@ -5,9 +5,9 @@
 
 #include "camera/calibration/colmap_models.h"
 #include "camera/calibration/formats.h"
-#include "core/camera_values.h"
-#include "core/config_text.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/scene/yaml/camera_values.h"
 
 // COLMAP's cameras.txt: one camera per line,
 //   CAMERA_ID MODEL WIDTH HEIGHT PARAMS...

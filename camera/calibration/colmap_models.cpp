@@ -7,8 +7,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/camera_values.h"
-#include "core/config_text.h"
+#include "core/base/text.h"
+#include "core/scene/yaml/camera_values.h"
 
 namespace uw {
 namespace {
@@ -58,7 +58,7 @@ const ColmapModel& model_called(const ConfigValue& value) {
 }
 
 /// Where the parameter of this name is kept; f is fx, and fy by its absence.
-double* place_of(std::string_view name, CameraDesc& camera) {
+double* parameter_of(std::string_view name, CameraDesc& camera) {
     IntrinsicsDesc& i = camera.intrinsics;
     if (name == "f" || name == "fx") return &i.fx;
     if (name == "fy") return &i.fy;
@@ -87,7 +87,7 @@ void read_colmap_model(const ConfigValue& name, std::span<const ConfigValue> par
     for (std::size_t i = 0; i < names.size(); ++i) {
         const std::string mend = fmt::format("give {} of {}", names[i], model.parameters);
         const bool focal = names[i][0] == 'f';
-        *place_of(names[i], camera) =
+        *parameter_of(names[i], camera) =
             focal ? parameters[i].positive(mend) : parameters[i].number(mend);
     }
     if (names.front() == "f") camera.intrinsics.fy = camera.intrinsics.fx;
@@ -152,7 +152,7 @@ ColmapParameters colmap_model_of(const CameraDesc& camera) {
     ColmapParameters result{model.name, model.parameters, {}};
     CameraDesc copy = camera;
     for (const std::string& name : words(model.parameters))
-        result.values.push_back(*place_of(name, copy));
+        result.values.push_back(*parameter_of(name, copy));
     return result;
 }
 

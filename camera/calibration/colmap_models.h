@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/camera_desc.h"
-#include "core/config_value.h"
+#include "core/scene/camera_desc.h"
+#include "core/scene/yaml/config_value.h"
 
 namespace uw {
 

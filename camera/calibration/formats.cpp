@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "core/config_text.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace uw {
 

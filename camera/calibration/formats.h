@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "camera/calibration/calibration.h"
-#include "core/config_map.h"
-#include "core/config_value.h"
+#include "core/scene/yaml/config_map.h"
+#include "core/scene/yaml/config_value.h"
 
 namespace uw {
 

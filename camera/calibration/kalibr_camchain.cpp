@@ -3,8 +3,8 @@
 #include <array>
 
 #include "camera/calibration/formats.h"
-#include "core/camera_values.h"
-#include "core/config_text.h"
+#include "core/base/text.h"
+#include "core/scene/yaml/camera_values.h"
 
 // Kalibr's camchain.yaml: a map cam0, cam1, ... First pixel's centre at (0, 0).
 

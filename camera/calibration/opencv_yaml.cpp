@@ -4,8 +4,8 @@
 #include <span>
 
 #include "camera/calibration/formats.h"
-#include "core/camera_values.h"
-#include "core/config_text.h"
+#include "core/base/text.h"
+#include "core/scene/yaml/camera_values.h"
 
 // The YAML of OpenCV's FileStorage, as its calibration sample writes it, and of ROS camera_info.
 // First pixel's centre at (0, 0).

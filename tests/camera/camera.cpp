@@ -28,7 +28,7 @@ CameraDesc behind_port() {
 /// How much farther from the centre than a camera without housing image position `x` shows what
 /// it sees in the plane z = `depth`.
 double enlargement(const Camera& camera, double x, double depth) {
-    const auto ray = camera.water_ray(x, 240);
+    const auto ray = camera.refracted_ray(x, 240);
     EXPECT_TRUE(ray);
     if (!ray) return 0;
     const Point3 seen = ray->at((depth - ray->origin.z) / ray->direction.z);
@@ -42,10 +42,10 @@ TEST(Camera, ImageCornerIsZeroAndPixelCentresAtOneHalf) {
     desc.height = 2;
     desc.intrinsics = {1, 1, 1, 1};  // the principal point is the corner shared by all four pixels
     const Camera camera(desc);
-    const auto axis = camera.water_ray(1, 1);
+    const auto axis = camera.refracted_ray(1, 1);
     ASSERT_TRUE(axis);
     EXPECT_EQ(axis->direction, Vector3(0, 0, 1));
-    const auto first = camera.water_ray(0.5, 0.5);  // up and left: x right, y down
+    const auto first = camera.refracted_ray(0.5, 0.5);  // up and left: x right, y down
     ASSERT_TRUE(first);
     const Vector3 truth = Vector3(-0.5, -0.5, 1) / std::sqrt(1.5);
     EXPECT_NEAR(glm::length(first->direction - truth), 0, 1e-15);
@@ -53,7 +53,7 @@ TEST(Camera, ImageCornerIsZeroAndPixelCentresAtOneHalf) {
 
 TEST(Camera, PinholeWithoutPortStartsAtTheCentre) {
     const Camera camera(pinhole());
-    const auto ray = camera.water_ray(420, 342);
+    const auto ray = camera.refracted_ray(420, 342);
     ASSERT_TRUE(ray);
     EXPECT_EQ(ray->origin, (Point3{0, 0, 0}));
     EXPECT_NEAR(ray->direction.x / ray->direction.z, 0.2, 1e-15);
@@ -66,13 +66,13 @@ TEST(Camera, PoseTurnsAndMovesTheRay) {
     CameraDesc desc = behind_port();
     // Looks along world x: camera z -> x, camera x -> -z, camera y -> y.
     desc.world_from_camera = {Matrix3(0, 0, -1, 0, 1, 0, 1, 0, 0), Vector3(10, 20, 30)};
-    const auto ray = Camera(desc).water_ray(320, 240);
+    const auto ray = Camera(desc).refracted_ray(320, 240);
     ASSERT_TRUE(ray);
     EXPECT_NEAR(ray->origin.x, 10.06, 1e-14);  // on the outer glass surface
     EXPECT_NEAR(ray->origin.y, 20, 1e-14);
     EXPECT_NEAR(ray->origin.z, 30, 1e-14);
     EXPECT_NEAR(glm::length(ray->direction - Vector3(1, 0, 0)), 0, 1e-15);
-    const auto right = Camera(desc).water_ray(500, 240);
+    const auto right = Camera(desc).refracted_ray(500, 240);
     ASSERT_TRUE(right);
     EXPECT_LT(right->direction.z, 0);
 }
@@ -82,12 +82,12 @@ TEST(Camera, DistortionIsUndoneBeforeThePort) {
     desc.distortion.k[0] = -1.0 / 3;
     const Camera camera(desc);
     // x = 0.3 is shown at 0.3 (1 - 0.03) = 0.291; then Snell from air to water.
-    const auto ray = camera.water_ray(320 + 500 * 0.291, 240);
+    const auto ray = camera.refracted_ray(320 + 500 * 0.291, 240);
     ASSERT_TRUE(ray);
     const double in_water = std::asin(std::sin(std::atan(0.3)) / 1.334);
     EXPECT_NEAR(ray->direction.x, std::sin(in_water), 1e-10);
     // The model shows nothing farther out than 2/3.
-    EXPECT_FALSE(camera.water_ray(320 + 500 * 0.67, 240));
+    EXPECT_FALSE(camera.refracted_ray(320 + 500 * 0.67, 240));
 }
 
 TEST(Camera, PortOfEqualIndicesIsAPinhole) {
@@ -97,7 +97,7 @@ TEST(Camera, PortOfEqualIndicesIsAPinhole) {
         std::get<FlatPortDesc>(*desc.port).n_water = 1.334;
     const Camera with_port(desc), without(pinhole());
     for (double x = 0.5; x < 640; x += 71) {
-        const auto a = with_port.water_ray(x, 100.5), b = without.water_ray(x, 100.5);
+        const auto a = with_port.refracted_ray(x, 100.5), b = without.refracted_ray(x, 100.5);
         ASSERT_TRUE(a && b);
         EXPECT_NEAR(glm::length(a->direction - b->direction), 0, 1e-15);
         EXPECT_NEAR(glm::length(glm::cross(a->origin - b->origin, b->direction)), 0, 1e-15);

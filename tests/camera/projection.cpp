@@ -78,7 +78,7 @@ TEST(Projection, WhereAWaterRayBeginsIsSeen) {
         if (!desc.port) continue;
         const Camera camera(desc);
         for (const double x : {600.5, 1000.5, 1300.5}) {
-            const auto ray = camera.water_ray(x, 400.5);
+            const auto ray = camera.refracted_ray(x, 400.5);
             ASSERT_TRUE(ray) << name;
             const auto seen = camera.project(ray->origin);
             ASSERT_TRUE(seen) << name << " " << x;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "media/grid_field.h"
+#include "media/volumes/grid_field.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb_fixtures.h"
 

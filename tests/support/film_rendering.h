@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/scene_rendering.h"
+#include "render/scene_rendering.h"
 #include "tests/support/test_scene.h"
 
 /// Whole images with their layers, forward scatter included, as `uwvdb render` makes them.
@@ -17,7 +17,7 @@ class RenderedFilm {
           film_(desc.camera.width, desc.camera.height,
                 {0, 0, desc.camera.width, desc.camera.height}, plan_.channel_names()) {
         const AssembledScene scene = assemble_scene(desc, [](const std::string&) {});
-        LightFields fields;
+        DeepShadows fields;
         if (desc.render.integrator == RenderDesc::Integrator::volume)
             fields = splat_lamps(scene, {});
         warnings_ = scene.warnings;

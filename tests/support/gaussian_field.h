@@ -1,11 +1,11 @@
 #pragma once
 
-#include "core/concentration_field.h"
+#include "core/optics/concentration_field.h"
 
 namespace uw::test {
 
 /// A Gaussian cloud of one constituent, nu = peak exp(-r^2 / 2 sigma^2), with closed-form columns:
-/// the truth that grids and light fields are measured against. Zero beyond 6 sigma (1.5e-8).
+/// the truth that grids and deep shadow maps are measured against. Zero beyond 6 sigma (1.5e-8).
 class GaussianField : public ConcentrationField {
   public:
     /// `pace`: what it reports as voxel, and twice the spacing of its profiles' knots [m].

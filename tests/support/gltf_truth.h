@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/affine.h"
-#include "core/ray.h"
+#include "core/base/affine.h"
+#include "core/base/ray.h"
 
 namespace uw::test {
 

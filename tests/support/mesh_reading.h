@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/error.h"
-#include "core/mesh_reader.h"
+#include "core/base/error.h"
+#include "core/meshes/files/mesh_reader.h"
 #include "tests/support/mesh_fixtures.h"
 
 namespace uw::test {

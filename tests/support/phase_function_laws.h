@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/phase_function.h"
+#include "core/optics/phase_function.h"
 
 /// The laws every PhaseFunction obeys, for one line per concrete class.
 namespace uw::test {

@@ -60,7 +60,7 @@ inline ProjectionTally tally_projections(const CameraDesc& desc, int count) {
     ProjectionTally tally;
     while (tally.points < count) {
         const double u = x(random), v = y(random), distance = std::exp(exponent(random));
-        const auto ray = camera.water_ray(u, v);
+        const auto ray = camera.refracted_ray(u, v);
         if (!ray) continue;  // a flat port shows less than a fisheye does
         ++tally.points;
         const auto seen = camera.project(ray->at(distance));

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/error.h"
-#include "core/scene_reader.h"
+#include "core/base/error.h"
+#include "core/scene/yaml/scene_reader.h"
 #include "tests/support/scene_folder.h"
 
 namespace uw::test {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/surfaces.h"
+#include "core/surfaces/surfaces.h"
 
 namespace uw::test {
 

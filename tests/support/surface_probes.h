@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry_scene.h"
-#include "core/surfaces.h"
+#include "core/surfaces/geometry_scene.h"
+#include "core/surfaces/surfaces.h"
 
 namespace uw::test {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace uw::test {
 
@@ -46,11 +46,11 @@ GeometryDesc plane_at_z(double z) {
     return plane;
 }
 
-TestScene::TestScene(const SceneDesc& desc, const LightFieldOptions& options)
+TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options)
     : scene_(assemble_scene(desc, [](const std::string&) {})) {
     if (desc.render.integrator == RenderDesc::Integrator::volume)
-        light_fields_ = splat_lamps(scene_, options);
-    integrator_ = make_integrator(scene_, light_fields_);
+        deep_shadows_ = splat_lamps(scene_, options);
+    integrator_ = make_integrator(scene_, deep_shadows_);
     renderer_ =
         std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
                                         desc.render.samples, scene_.slabs, SensorModel(desc));

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "cli/scene_assembly.h"
-#include "core/pixel_renderer.h"
+#include "core/frame/pixel_renderer.h"
+#include "render/scene_assembly.h"
 #include "tests/support/geometry_descs.h"
 
 namespace uw::test {
@@ -21,7 +21,7 @@ GeometryDesc plane_at_z(double z);
 /// A scene with its integrator, ready to render pixels.
 class TestScene {
   public:
-    explicit TestScene(const SceneDesc& desc, const LightFieldOptions& options = {});
+    explicit TestScene(const SceneDesc& desc, const DeepShadowOptions& options = {});
 
     const AssembledScene& assembled() const { return scene_; }
     const Integrator& integrator() const { return *integrator_; }
@@ -30,7 +30,7 @@ class TestScene {
 
   private:
     AssembledScene scene_;
-    std::vector<std::shared_ptr<const LampLightField>> light_fields_;
+    std::vector<std::shared_ptr<const DeepShadowMap>> deep_shadows_;
     std::unique_ptr<Integrator> integrator_;
     std::unique_ptr<PixelRenderer> renderer_;
 };

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/affine.h"
+#include "core/base/affine.h"
 
 /// VDB files made for tests, with OpenVDB itself.
 namespace uw::test {

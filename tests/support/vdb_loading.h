@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/error.h"
-#include "media/vdb_file.h"
+#include "core/base/error.h"
+#include "media/vdb/vdb_file.h"
 #include "tests/support/vdb_fixtures.h"
 
 namespace uw::test {

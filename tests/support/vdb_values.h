@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace uw::test {
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.h"
-#include "core/scene_desc.h"
-#include "media/water_model.h"
+#include "core/base/error.h"
+#include "core/scene/scene_desc.h"
+#include "media/water/water_model.h"
 
 /// Scene descriptions of water and grids for the tests of what is built from them.
 namespace uw::test {

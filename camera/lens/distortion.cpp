@@ -1,0 +1,147 @@
+#include "camera/lens/distortion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "camera/lens/polynomial.h"
+
+namespace uw {
+namespace {
+
+/// Beyond tan(89.999 deg) no ray reaches a flat image.
+constexpr double k_largest_r2 = 1e10;
+constexpr int k_brown_conrady_max_iterations = 100;
+constexpr int k_max_halvings = 60;
+/// Newton's last step bounds what is left of the error; ten times better than promised.
+constexpr double k_brown_conrady_tolerance = 1e-11;
+/// Points nearer to each other are one, but for what the inverse is short of and a fold magnifies.
+constexpr double k_same_point = 1e-6;
+
+/// Radius where d(r f)/dr changes sign or f has a pole. With u = r^2 and f = N/D,
+/// d(r f)/dr = ((N + 2u N') D - 2u N D') / D^2, a polynomial of degree 6 over a square.
+double radial_fold(const DistortionDesc& desc) {
+    const std::array<double, 4> n{1, desc.k[0], desc.k[1], desc.k[2]};
+    const std::array<double, 4> d{1, desc.k[3], desc.k[4], desc.k[5]};
+    std::array<double, 7> growth{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            const double weight = 1 + 2 * static_cast<double>(i) - 2 * static_cast<double>(j);
+            growth[i + j] += weight * n[i] * d[j];
+        }
+    }
+    double r2 = std::numeric_limits<double>::infinity();
+    for (const std::span<const double> c : {std::span<const double>(growth), {d}}) {
+        if (const auto root = first_positive_root(c, k_largest_r2)) r2 = std::min(r2, *root);
+    }
+    return std::sqrt(r2);
+}
+
+}  // namespace
+
+Distortion::Distortion(const DistortionDesc& desc) : desc_(desc), fold_radius_(radial_fold(desc)) {
+    const auto is_zero = [](double c) { return c == 0; };
+    identity_ = std::ranges::all_of(desc.k, is_zero) && std::ranges::all_of(desc.p, is_zero);
+}
+
+Distortion::Radial Distortion::radial(double r2) const {
+    const auto& k = desc_.k;
+    const double n = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[2]));
+    const double d = 1 + r2 * (k[3] + r2 * (k[4] + r2 * k[5]));
+    const double n_slope = k[0] + r2 * (2 * k[1] + r2 * 3 * k[2]);
+    const double d_slope = k[3] + r2 * (2 * k[4] + r2 * 3 * k[5]);
+    return {n / d, (n_slope - n / d * d_slope) / d};
+}
+
+NormalizedPoint Distortion::distort(const NormalizedPoint& undistorted) const {
+    const auto [x, y] = undistorted;
+    const auto [p1, p2] = desc_.p;
+    const double r2 = x * x + y * y;
+    const double f = radial(r2).factor;
+    return {f * x + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+            f * y + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+}
+
+Distortion::Jacobian Distortion::jacobian(const NormalizedPoint& p) const {
+    const auto [x, y] = p;
+    const auto [p1, p2] = desc_.p;
+    const Radial f = radial(x * x + y * y);
+    return {f.factor + 2 * f.slope * x * x + 2 * p1 * y + 6 * p2 * x,
+            2 * f.slope * x * y + 2 * p1 * x + 2 * p2 * y,
+            f.factor + 2 * f.slope * y * y + 6 * p1 * y + 2 * p2 * x};
+}
+
+bool Distortion::in_domain(const NormalizedPoint& p, const Jacobian& j) const {
+    // Where its Jacobian is positive definite the model is the gradient of a convex potential, so
+    // that no two points of a convex part are shown at one place. The radius keeps out the parts
+    // beyond the fold where that holds again.
+    const bool definite = j.xx + j.yy > 0 && j.xx * j.yy > j.xy * j.xy;
+    return definite && std::hypot(p.x, p.y) < fold_radius_;
+}
+
+std::optional<NormalizedPoint> Distortion::undistort(const NormalizedPoint& distorted) const {
+    if (!std::isfinite(distorted.x) || !std::isfinite(distorted.y)) return std::nullopt;
+    if (identity_) return distorted;
+
+    // Newton from the axis, where the Jacobian is 1. A step is halved until it stays in the domain
+    // and brings the image closer; a target without an image stalls at the fold.
+    NormalizedPoint p;
+    Jacobian j = jacobian(p);
+    NormalizedPoint missing = distorted;
+    for (int iteration = 0; iteration < k_brown_conrady_max_iterations; ++iteration) {
+        const double determinant = j.xx * j.yy - j.xy * j.xy;
+        const double dx = (j.yy * missing.x - j.xy * missing.y) / determinant;
+        const double dy = (j.xx * missing.y - j.xy * missing.x) / determinant;
+        if (std::hypot(dx, dy) <= k_brown_conrady_tolerance) {
+            const NormalizedPoint last{p.x + dx, p.y + dy};
+            if (in_domain(last, jacobian(last))) return last;
+            return std::nullopt;
+        }
+        bool closer = false;
+        double fraction = 1;
+        for (int halving = 0; halving < k_max_halvings && !closer; ++halving, fraction *= 0.5) {
+            const NormalizedPoint next{p.x + fraction * dx, p.y + fraction * dy};
+            const Jacobian next_j = jacobian(next);
+            if (!in_domain(next, next_j)) continue;
+            const NormalizedPoint shown = distort(next);
+            const NormalizedPoint left{distorted.x - shown.x, distorted.y - shown.y};
+            closer = std::hypot(left.x, left.y) < std::hypot(missing.x, missing.y);
+            if (closer) {
+                p = next;
+                j = next_j;
+                missing = left;
+            }
+        }
+        if (!closer) return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+std::optional<Vector3> Distortion::direction(const NormalizedPoint& image) const {
+    const auto undistorted = undistort(image);
+    if (!undistorted) return std::nullopt;
+    return glm::normalize(Vector3(undistorted->x, undistorted->y, 1));
+}
+
+std::optional<NormalizedPoint> Distortion::image(const Vector3& direction) const {
+    if (!(direction.z > 0)) return std::nullopt;
+    const NormalizedPoint p{direction.x / direction.z, direction.y / direction.z};
+    if (identity_) return p;
+    if (!in_domain(p, jacobian(p))) return std::nullopt;
+    const NormalizedPoint shown = distort(p);
+    const bool radial_only = desc_.p[0] == 0 && desc_.p[1] == 0;
+    if (radial_only) return shown;
+    // With tangential terms parts beyond the fold may look like the one around the axis.
+    const auto back = undistort(shown);
+    if (!back || std::hypot(back->x - p.x, back->y - p.y) > k_same_point) return std::nullopt;
+    return shown;
+}
+
+double Distortion::falloff(const Vector3& direction) {
+    const double cosine_squared = direction.z * direction.z;
+    return cosine_squared * cosine_squared;
+}
+
+}  // namespace uw

@@ -1,0 +1,99 @@
+#include "camera/port/flat_port.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "camera/port/refract.h"
+
+namespace uw {
+namespace {
+
+constexpr int k_flat_max_iterations = 200;
+/// Newton's last step, relative; it converges quadratically, so that nothing is left of the error,
+/// and goes back only by what is rounded.
+constexpr double k_flat_tolerance = 1e-13;
+/// The origin of a water ray may be rounded into the glass by this share of its depth.
+constexpr double k_flat_rounding = 1e-12;
+
+/// A stretch of the way through one medium, in the plane of refraction.
+struct Layer {
+    double depth;  // along the normal [m]
+    double index;
+};
+
+/// Distance from the normal that is covered by a ray of slope `u` (tangent of its angle to the
+/// normal) in the medium of the least index `n`, and its derivative. With Snell's invariant
+/// s = n u / sqrt(1 + u^2) a layer covers depth * s / sqrt(index^2 - s^2), here without
+/// differences that cancel.
+struct Reach {
+    double distance = 0, slope = 0;
+};
+Reach reach(const std::array<Layer, 3>& layers, double n, double u) {
+    Reach sum;
+    for (const Layer& layer : layers) {
+        const double more = layer.index * layer.index - n * n;  // >= 0
+        const double root = std::sqrt(layer.index * layer.index + more * u * u);
+        sum.distance += layer.depth * n * u / root;
+        sum.slope += layer.depth * n * (layer.index / root) * (layer.index / root) / root;
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::optional<Ray> FlatPort::refracted_ray(const Vector3& direction) const {
+    const Vector3& n = desc_.normal;
+    const double cos_air = glm::dot(direction, n);
+    if (!(cos_air > 0)) return std::nullopt;
+    const auto in_glass = refract(direction, n, desc_.n_air, desc_.n_glass);
+    if (!in_glass) return std::nullopt;
+    const auto in_water = refract(*in_glass, n, desc_.n_glass, desc_.n_water);
+    if (!in_water) return std::nullopt;
+
+    const Vector3 inner = (desc_.distance / cos_air) * direction;
+    const Vector3 outer = inner + (desc_.thickness / glm::dot(*in_glass, n)) * *in_glass;
+    const double reached = glm::dot(outer, outer);
+    if (!std::isfinite(reached)) return std::nullopt;
+    return Ray{at_origin_plus(outer), *in_water};
+}
+
+double FlatPort::transmittance(const Vector3& direction) const {
+    const Vector3& n = desc_.normal;
+    const auto in_glass = refract(direction, n, desc_.n_air, desc_.n_glass);
+    if (!in_glass) return 0;
+    return port_transmittance(desc_, {glm::dot(direction, n), glm::dot(*in_glass, n)});
+}
+
+std::optional<Vector3> FlatPort::direction_to(const Point3& point) const {
+    const Vector3& normal = desc_.normal;
+    const Vector3 to_point = from_origin(point);
+    const double depth = glm::dot(to_point, normal);
+    double water = depth - desc_.distance - desc_.thickness;
+    if (!(water >= -k_flat_rounding * depth) || !(depth > 0)) return std::nullopt;
+    water = std::max(water, 0.0);
+    const Vector3 across = to_point - depth * normal;
+    const double wanted = glm::length(across);
+    if (!std::isfinite(wanted)) return std::nullopt;
+    if (wanted == 0) return normal;
+
+    const std::array<Layer, 3> layers{
+        {{desc_.distance, desc_.n_air}, {desc_.thickness, desc_.n_glass}, {water, desc_.n_water}}};
+    const double n = std::min({desc_.n_air, desc_.n_glass, desc_.n_water});
+    // The distance is a concave function of the slope, so that from below Newton never oversteps.
+    // What it cannot reach (no depth in the medium of the least index) makes it run to infinity.
+    double u = 0;
+    for (int iteration = 0;; ++iteration) {
+        const Reach here = reach(layers, n, u);
+        const double step = (wanted - here.distance) / here.slope;
+        if (iteration == k_flat_max_iterations || !std::isfinite(u + step)) return std::nullopt;
+        u += step;
+        if (step <= k_flat_tolerance * u) break;
+    }
+    const double sine = n / desc_.n_air * u / std::sqrt(1 + u * u);
+    const double cos_squared = desc_.n_air == n ? 1 / (1 + u * u) : 1 - sine * sine;
+    if (!(cos_squared > 0)) return std::nullopt;
+    return glm::normalize(std::sqrt(cos_squared) * normal + (sine / wanted) * across);
+}
+
+}  // namespace uw

@@ -1,0 +1,188 @@
+#include "cli/calibration/calibration_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "camera/camera.h"
+#include "core/base/text.h"
+
+namespace uw {
+namespace {
+
+constexpr double k_degree = std::numbers::pi / 180;
+/// The share of covered pixels is looked at by this many along each side.
+constexpr int k_looks = 256;
+
+double angle_between(const Vector3& a, const Vector3& b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+/// The angle from the ray at `from` to the last one on the way to `to`; 0 without a ray at `from`.
+/// In steps, so that it may exceed 180 degrees.
+template <class Direction>
+double reach(const Direction& direction, const ImagePoint& from, const ImagePoint& to) {
+    constexpr int k_steps = 512;
+    auto last = direction(from.x, from.y);
+    if (!last) return 0;
+    double sum = 0;
+    for (int i = 1; i <= k_steps; ++i) {
+        const double t = static_cast<double>(i) / k_steps;
+        const auto next = direction(from.x + t * (to.x - from.x), from.y + t * (to.y - from.y));
+        if (!next) break;
+        sum += angle_between(*last, *next);
+        last = next;
+    }
+    return sum;
+}
+
+template <class Direction>
+FieldOfView field_of_view(const CameraDesc& camera, const Direction& direction) {
+    const double w = camera.width, h = camera.height;
+    const ImagePoint c{std::clamp(camera.intrinsics.cx, 0.0, w),
+                       std::clamp(camera.intrinsics.cy, 0.0, h)};
+    const auto across = [&](const ImagePoint& a, const ImagePoint& b) {
+        return reach(direction, c, a) + reach(direction, c, b);
+    };
+    return {across({0, c.y}, {w, c.y}), across({c.x, 0}, {c.x, h}), across({0, 0}, {w, h})};
+}
+
+void find_fold(const CameraDesc& camera, CalibrationReport& report) {
+    if (camera.distortion.model == DistortionDesc::Model::fisheye) {
+        const Fisheye lens(camera.distortion);
+        report.fold_angle = lens.largest_angle();
+        const auto edge = lens.image(
+            {std::sin(0.999999 * *report.fold_angle), 0, std::cos(0.999999 * *report.fold_angle)});
+        if (edge) report.fold_radius = camera.intrinsics.fx * edge->x;
+        return;
+    }
+    const Distortion lens(camera.distortion);
+    if (!std::isfinite(lens.fold_radius())) return;
+    report.fold_angle = std::atan(lens.fold_radius());
+    DistortionDesc radial = camera.distortion;
+    radial.p = {};
+    report.fold_radius =
+        camera.intrinsics.fx * Distortion(radial).distort({lens.fold_radius(), 0}).x;
+}
+
+double covered(const Camera& camera) {
+    int with = 0;
+    for (int j = 0; j < k_looks; ++j)
+        for (int i = 0; i < k_looks; ++i)
+            with += camera.refracted_ray((i + 0.5) * camera.width() / k_looks,
+                                         (j + 0.5) * camera.height() / k_looks)
+                        ? 1
+                        : 0;
+    return static_cast<double>(with) / (k_looks * k_looks);
+}
+
+std::string degrees(const FieldOfView& field) {
+    return fmt::format("{:.2f} x {:.2f} deg, diagonal {:.2f}", field.horizontal / k_degree,
+                       field.vertical / k_degree, field.diagonal / k_degree);
+}
+
+std::string glass(const auto& port) {
+    return fmt::format("glass {:.6g} m thick; indices {:.6g} (air), {:.6g} (glass), {:.6g} (water)",
+                       port.thickness, port.n_air, port.n_glass, port.n_water);
+}
+
+std::string port_text(const PortDesc& port) {
+    if (const auto* dome = std::get_if<DomePortDesc>(&port)) {
+        return fmt::format(
+            "dome: centre [{:.6g}, {:.6g}, {:.6g}] m, {:.6g} m off the camera; inner radius {:.6g} "
+            "m, {}",
+            dome->center.x, dome->center.y, dome->center.z, glm::length(from_origin(dome->center)),
+            dome->radius, glass(*dome));
+    }
+    const auto& flat = std::get<FlatPortDesc>(port);
+    return fmt::format(
+        "flat: normal [{:.6g}, {:.6g}, {:.6g}], {:.3f} deg off the axis; {:.6g} m before the "
+        "camera, {}",
+        flat.normal.x, flat.normal.y, flat.normal.z,
+        angle_between(flat.normal, {0, 0, 1}) / k_degree, flat.distance, glass(flat));
+}
+
+std::string title(const CalibrationReport& report) {
+    const Calibration& c = report.calibration;
+    std::string text =
+        fmt::format("{}: {}", printable(report.file.filename().string(), 200), title_of(c.format));
+    if (!c.camera.empty()) text += fmt::format(", camera {}", printable(c.camera));
+    if (c.cameras.size() > 1) text += fmt::format(" of {}", c.cameras.size());
+    return text + "\n";
+}
+
+std::string lens_text(const CameraDesc& camera) {
+    const DistortionDesc& d = camera.distortion;
+    if (d.model == DistortionDesc::Model::fisheye)
+        return fmt::format("fisheye (equidistant), k [{:.6g}, {:.6g}, {:.6g}, {:.6g}]", d.k[0],
+                           d.k[1], d.k[2], d.k[3]);
+    if (d == DistortionDesc{}) return "none";
+    return fmt::format("brown-conrady, k [{:.6g}], p [{:.6g}]", fmt::join(d.k, ", "),
+                       fmt::join(d.p, ", "));
+}
+
+}  // namespace
+
+CalibrationReport report_on(const std::filesystem::path& file, const Calibration& calibration) {
+    CalibrationReport report;
+    report.file = file;
+    report.calibration = calibration;
+    CameraDesc desc = calibration.desc;
+    desc.world_from_camera = Affine{};
+    const Camera camera(desc);
+    report.in_lens =
+        field_of_view(desc, [&](double x, double y) { return camera.lens_direction(x, y); });
+    if (desc.port)
+        report.in_water = field_of_view(desc, [&](double x, double y) -> std::optional<Vector3> {
+            const auto ray = camera.refracted_ray(x, y);
+            if (!ray) return std::nullopt;
+            return ray->direction;
+        });
+    find_fold(desc, report);
+    report.covered = covered(camera);
+    for (const CalibrationFormat format : calibration_formats())
+        report.targets.push_back({format, calibration_obstacle(format, desc)});
+    return report;
+}
+
+std::string calibration_text(const CalibrationReport& report) {
+    const CameraDesc& camera = report.calibration.desc;
+    const IntrinsicsDesc& i = camera.intrinsics;
+    std::string text = title(report);
+    const auto row = [&text](std::string_view name, const std::string& value) {
+        text += fmt::format("  {:<17}{}\n", name, value);
+    };
+    row("model", printable(report.calibration.model));
+    row("resolution", fmt::format("{} x {}", camera.width, camera.height));
+    row("focal length", fmt::format("{:.6f}, {:.6f} pixels", i.fx, i.fy));
+    row("principal point",
+        fmt::format("{:.6f}, {:.6f} pixels from the image's corner", i.cx, i.cy));
+    row("distortion", lens_text(camera));
+    if (report.fold_angle)
+        row("lens shows",
+            fmt::format("up to {:.3f} deg off the axis{}", *report.fold_angle / k_degree,
+                        report.fold_radius ? fmt::format(", {:.1f} pixels from the principal point",
+                                                         *report.fold_radius)
+                                           : std::string()));
+    if (camera.port) row("port", port_text(*camera.port));
+    row("field of view", degrees(report.in_lens) + (camera.port ? " in the housing" : ""));
+    if (report.in_water) row("", degrees(*report.in_water) + " in the water");
+    if (report.covered < 1)
+        row("", fmt::format("{:.1f} % of the pixels have a ray", 100 * report.covered));
+    std::vector<std::string_view> words;
+    for (const auto& target : report.targets)
+        if (target.obstacle.empty()) words.push_back(word_of(target.format));
+    row("--to", fmt::format("{}", fmt::join(words, ", ")));
+    std::map<std::string, std::vector<std::string_view>> obstacles;
+    for (const auto& target : report.targets)
+        if (!target.obstacle.empty()) obstacles[target.obstacle].push_back(word_of(target.format));
+    for (const auto& [obstacle, formats] : obstacles)
+        row("", fmt::format("not {}: {}", fmt::join(formats, ", "), obstacle));
+    return text;
+}
+
+}  // namespace uw

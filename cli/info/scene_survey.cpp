@@ -1,0 +1,198 @@
+#include "cli/info/scene_survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "cli/grid_summary.h"
+#include "cli/info/survey_warnings.h"
+#include "core/base/parallel.h"
+#include "core/optics/optical_depth.h"
+
+namespace uw {
+
+namespace {
+
+constexpr int k_points = 32;                // along each side of a grid's bounds
+constexpr int k_columns = 48, k_rows = 27;  // rays over the image
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+
+/// Optical depths between points, and what lamps reach.
+class Reach {
+  public:
+    explicit Reach(const AssembledScene& scene) : scene_(scene), attenuation_(scene.water.medium) {}
+
+    std::vector<double> depth(const Point3& from, const Point3& to) const {
+        std::vector<double> columns(static_cast<std::size_t>(scene_.field->constituent_count()));
+        scene_.field->column(from, to, columns);
+        std::vector<double> depth;
+        depth.reserve(static_cast<std::size_t>(attenuation_.band_count));
+        for (int band = 0; band < attenuation_.band_count; ++band)
+            depth.push_back(attenuation_.optical_depth(band, distance(from, to), columns));
+        return depth;
+    }
+    /// Whether some lamp's light arrives at `x` (k_reach); with a normal, from its side.
+    bool any(const Point3& x, const Vector3* normal) const {
+        return std::ranges::any_of(scene_.lamps,
+                                   [&](const Lamp& lamp) { return reaches(lamp, x, normal); });
+    }
+
+  private:
+    bool reaches(const Lamp& lamp, const Point3& x, const Vector3* normal) const {
+        const Vector3 way = x - lamp.position();
+        if (normal != nullptr && glm::dot(way, *normal) >= 0) return false;
+        const double share = lamp.relative_intensity(way) / glm::dot(way, way);
+        if (!(share >= k_reach) || scene_.surfaces->occluded(lamp.position(), x)) return false;
+        const std::vector<double> tau = depth(lamp.position(), x);
+        for (std::size_t band = 0; band < tau.size(); ++band)
+            if (lamp.axis_intensity()[band] > 0 && share * std::exp(-tau[band]) >= k_reach)
+                return true;
+        return false;
+    }
+
+    const AssembledScene& scene_;
+    AttenuationTable attenuation_;
+};
+
+bool is_in_view(const AssembledScene& scene, const Point3& x) {
+    const auto pixel = scene.camera->project(x);
+    if (!pixel || pixel->x < 0 || pixel->y < 0 || pixel->x > scene.camera->width() ||
+        pixel->y > scene.camera->height())
+        return false;
+    const auto ray = scene.camera->refracted_ray(pixel->x, pixel->y);
+    return ray && !scene.surfaces->occluded(ray->origin, x);
+}
+
+/// Fills in the shares: sums over points that fill the grid's bounds evenly.
+void measure_shares(const AssembledScene& scene, const Reach& reach, const GridVolume& grid,
+                    GridSurvey& survey) {
+    const Bounds& box = grid.voxel_bounds();
+    if (box.empty()) return;
+    struct Sums {
+        double all = 0, in_view = 0, in_reach = 0, in_both = 0;
+    };
+    std::vector<Sums> parts(k_points);
+    parallel_for(parts.size(), [&](std::size_t slice) {
+        Sums& sums = parts[slice];
+        const auto at = [&](int axis, double n) {
+            return box.min[axis] + (n + 0.5) / k_points * (box.max[axis] - box.min[axis]);
+        };
+        for (int j = 0; j < k_points; ++j)
+            for (int k = 0; k < k_points; ++k) {
+                const Point3 x{at(0, static_cast<double>(slice)), at(1, j), at(2, k)};
+                const double value = grid.value(x);
+                if (value == 0) continue;
+                const bool seen = is_in_view(scene, x), reached = reach.any(x, nullptr);
+                sums.all += value;
+                if (seen) sums.in_view += value;
+                if (reached) sums.in_reach += value;
+                if (seen && reached) sums.in_both += value;
+            }
+    });
+    Sums total;
+    for (const Sums& part : parts) {
+        total.all += part.all;
+        total.in_view += part.in_view;
+        total.in_reach += part.in_reach;
+        total.in_both += part.in_both;
+    }
+    if (total.all == 0) return;
+    survey.in_view = total.in_view / total.all;
+    survey.in_reach = total.in_reach / total.all;
+    survey.in_both = total.in_both / total.all;
+}
+
+std::vector<GridSurvey> survey_grids(const AssembledScene& scene, const Reach& reach) {
+    std::vector<GridSurvey> grids;
+    for (const LoadedVolume& volume : scene.volumes)
+        for (std::size_t g = 0; g < volume.grids.size(); ++g) {
+            GridSurvey survey;
+            survey.report = volume.reports[g];
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                survey.depth[axis] = depth_through_middle(survey.report, scene.water.medium, axis);
+            measure_shares(scene, reach, volume.grids[g], survey);
+            grids.push_back(std::move(survey));
+        }
+    return grids;
+}
+
+CentralRaySurvey survey_central_ray(const AssembledScene& scene) {
+    CentralRaySurvey survey;
+    const CameraDesc& camera = scene.desc.camera;
+    const auto ray = scene.camera->refracted_ray(0.5 * camera.width, 0.5 * camera.height);
+    if (!ray) return survey;
+    survey.enters = true;
+    survey.surface_distance = scene.surfaces->hit_distance(*ray);
+    const Medium& medium = scene.water.medium;
+    const AttenuationTable attenuation(medium);
+    const Bounds bounds = scene.field->bounds();
+    double end = survey.surface_distance;
+    if (!bounds.empty())
+        end = std::min(end, distance(ray->origin, bounds.center()) + bounds.diagonal());
+    std::vector<double> columns(static_cast<std::size_t>(medium.constituent_count()));
+    if (std::isfinite(end)) scene.field->column(ray->origin, ray->at(end), columns);
+    for (int band = 0; band < medium.band_count(); ++band) {
+        survey.water.push_back(medium.uniform.attenuation(band) * survey.surface_distance);
+        survey.volumes.push_back(attenuation.optical_depth(band, 0, columns));
+    }
+    return survey;
+}
+
+ViewSurvey survey_view(const AssembledScene& scene, const Reach& reach) {
+    ViewSurvey view;
+    view.nearest = k_infinity;
+    double rays = 0, hits = 0, lit = 0, hidden = 0;
+    for (int j = 0; j < k_rows; ++j)
+        for (int i = 0; i < k_columns; ++i) {
+            const auto ray =
+                scene.camera->refracted_ray((i + 0.5) / k_columns * scene.desc.camera.width,
+                                            (j + 0.5) / k_rows * scene.desc.camera.height);
+            if (!ray) continue;
+            ++rays;
+            SurfaceHit hit;
+            if (!scene.surfaces->closest_hit(*ray, k_infinity, hit)) continue;
+            ++hits;
+            view.nearest = std::min(view.nearest, hit.distance);
+            view.farthest = std::max(view.farthest, hit.distance);
+            if (reach.any(hit.position, &hit.geometric_normal)) ++lit;
+            if (std::ranges::min(reach.depth(ray->origin, hit.position)) > k_opaque_depth) ++hidden;
+        }
+    view.in_water = rays / (k_columns * k_rows);
+    if (hits == 0) {
+        view.nearest = 0;
+        return view;
+    }
+    view.on_surface = hits / (k_columns * k_rows);
+    view.lit = lit / hits;
+    view.hidden = hidden / hits;
+    return view;
+}
+
+double degrees_between(const std::optional<Ray>& a, const std::optional<Ray>& b) {
+    if (!a || !b) return std::numeric_limits<double>::quiet_NaN();
+    const double sine = glm::length(glm::cross(a->direction, b->direction));
+    return std::atan2(sine, glm::dot(a->direction, b->direction)) * 180 / std::numbers::pi;
+}
+
+}  // namespace
+
+SceneSurvey survey_scene(AssembledScene assembled) {
+    SceneSurvey survey;
+    survey.scene = std::move(assembled);
+    const AssembledScene& scene = survey.scene;
+    const Reach reach(scene);
+    survey.grids = survey_grids(scene, reach);
+    survey.central_ray = survey_central_ray(scene);
+    survey.view = survey_view(scene, reach);
+    const double width = scene.desc.camera.width, height = scene.desc.camera.height;
+    const auto ray = [&](double x, double y) { return scene.camera->refracted_ray(x, y); };
+    survey.field_of_view = {degrees_between(ray(0, height / 2), ray(width, height / 2)),
+                            degrees_between(ray(width / 2, 0), ray(width / 2, height))};
+    survey.warnings = scene.warnings;
+    append_survey_warnings(survey);
+    return survey;
+}
+
+}  // namespace uw

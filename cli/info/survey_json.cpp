@@ -1,0 +1,120 @@
+#include "cli/info/scene_survey.h"
+#include "cli/json.h"
+#include "cli/version.h"
+
+namespace uw {
+
+namespace {
+
+Json water(const AssembledScene& scene) {
+    const Medium& medium = scene.water.medium;
+    std::vector<double> a, b, c;
+    for (int band = 0; band < medium.band_count(); ++band) {
+        c.push_back(medium.uniform.attenuation(band));
+        a.push_back(medium.uniform.absorption[static_cast<std::size_t>(band)]);
+        b.push_back(c.back() - a.back());
+    }
+    return {{"wavelengths_nm", medium.wavelengths_nm},
+            {"a", list_json(a)},
+            {"b", list_json(b)},
+            {"c", list_json(c)}};
+}
+
+/// Of a rig's camera; null without a rig.
+Json camera_name(const SceneSurvey& survey) {
+    const std::string& name = survey.scene.desc.camera_name;
+    return name.empty() ? Json(nullptr) : Json(name);
+}
+
+Json camera(const SceneSurvey& survey) {
+    const CameraDesc& desc = survey.scene.desc.camera;
+    const Vector3& at = desc.world_from_camera.offset();
+    const Vector3 to = desc.world_from_camera.apply_to_vector({0, 0, 1});
+    return {{"name", camera_name(survey)},
+            {"resolution", {desc.width, desc.height}},
+            {"field_of_view_deg", list_json(survey.field_of_view)},
+            {"port", desc.port.has_value()},
+            {"position", vector_json(at)},
+            {"direction", vector_json(to)}};
+}
+
+Json lamps(const AssembledScene& scene) {
+    Json out = Json::array();
+    for (const Lamp& lamp : scene.lamps) {
+        const Point3& at = lamp.position();
+        std::vector<double> intensity(
+            lamp.axis_intensity().begin(),
+            lamp.axis_intensity().begin() + scene.water.medium.band_count());
+        out.push_back({{"name", lamp.name()},
+                       {"position", point_json(at)},
+                       {"axis_intensity", list_json(intensity)}});
+    }
+    return out;
+}
+
+Json grid_json(const GridSurvey& grid, const Medium& medium) {
+    const VolumeReport& r = grid.report;
+    Json out;
+    out["file"] = r.file.string();
+    out["grid"] = r.grid;
+    out["metres_per_voxel"] = vector_json(r.metres_per_voxel);
+    out["world_bounds"] = bounds_json(r.bounds);
+    out["active_voxels"] = r.statistics.active_voxels;
+    out["up"] = r.placement.up == UpAxis::z ? "z" : "y";
+    out["centering"] = r.placement.centering == Centering::cell ? "cell" : "node";
+    out["constituents"] = Json::array();
+    for (const ConstituentReport& c : r.constituents) {
+        const Constituent& constituent =
+            medium.constituents[static_cast<std::size_t>(c.constituent)];
+        out["constituents"].push_back({{"name", constituent.name},
+                                       {"unit", constituent.unit},
+                                       {"min", number_json(c.min)},
+                                       {"mean", number_json(c.mean)},
+                                       {"max", number_json(c.max)}});
+    }
+    out["optical_depth"] = {{"x", list_json(grid.depth[0])},
+                            {"y", list_json(grid.depth[1])},
+                            {"z", list_json(grid.depth[2])}};
+    out["in_view"] = grid.in_view;
+    out["in_reach"] = grid.in_reach;
+    out["in_both"] = grid.in_both;
+    return out;
+}
+
+}  // namespace
+
+std::string survey_json(const SceneSurvey& survey) {
+    const AssembledScene& scene = survey.scene;
+    Json json;
+    json["uwvdb"] = program_version();
+    json["scene"] = scene.desc.file.string();
+    json["sequences"] = Json::array();
+    for (const SequenceReport& s : survey.sequences)
+        json["sequences"].push_back({{"pattern", s.pattern},
+                                     {"frame", s.frame},
+                                     {"found", s.found},
+                                     {"missing", s.missing}});
+    json["water"] = water(scene);
+    json["camera"] = camera(survey);
+    json["lamps"] = lamps(scene);
+    json["geometry"] = {{"entries", scene.desc.geometry.size()},
+                        {"triangles", scene.surfaces->triangle_count()},
+                        {"bounds", bounds_json(scene.surfaces->bounds())}};
+    json["grids"] = Json::array();
+    for (const GridSurvey& grid : survey.grids)
+        json["grids"].push_back(grid_json(grid, scene.water.medium));
+    const CentralRaySurvey& ray = survey.central_ray;
+    json["central_ray"] = {{"enters_water", ray.enters},
+                           {"surface_distance", number_json(ray.surface_distance)},
+                           {"optical_depth_water", list_json(ray.water)},
+                           {"optical_depth_volumes", list_json(ray.volumes)}};
+    const ViewSurvey& view = survey.view;
+    json["view"] = {{"in_water", view.in_water}, {"on_surface", view.on_surface},
+                    {"lit", view.lit},           {"hidden", view.hidden},
+                    {"nearest", view.nearest},   {"farthest", view.farthest}};
+    json["reach"] = k_reach;
+    json["warnings"] = survey.warnings;
+    return json_text(json);
+}
+
+}  // namespace uw

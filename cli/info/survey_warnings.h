@@ -1,0 +1,10 @@
+#pragma once
+
+#include "cli/info/scene_survey.h"
+
+namespace uw {
+
+/// Appends to `survey.warnings` one line for each thing that will be black, opaque or not there.
+void append_survey_warnings(SceneSurvey& survey);
+
+}  // namespace uw

@@ -1,0 +1,146 @@
+#include "cli/render/image_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "cli/version.h"
+#include "core/image/preview.h"
+#include "core/integrators/sensor.h"
+
+namespace uw {
+
+namespace {
+
+std::string name_of(RenderDesc::Integrator integrator) {
+    return std::string(
+        std::ranges::find(k_integrator_names, integrator,
+                          &std::pair<std::string_view, RenderDesc::Integrator>::second)
+            ->first);
+}
+
+std::string name_of(RenderDesc::Quality quality) {
+    return std::string(std::ranges::find(k_quality_names, quality,
+                                         &std::pair<std::string_view, RenderDesc::Quality>::second)
+                           ->first);
+}
+
+std::string band_list(std::span<const double> values) {
+    std::string text;
+    for (const double value : values)
+        text += fmt::format("{}{:g}", text.empty() ? "" : ", ", value);
+    return text;
+}
+
+// The first three rows of the 4 x 4 matrix, the last being 0 0 0 1.
+std::string matrix_rows(const Affine& pose) {
+    std::string text;
+    for (int row = 0; row < 3; ++row)
+        text += fmt::format("{}{:.17g} {:.17g} {:.17g} {:.17g}", text.empty() ? "" : "; ",
+                            pose.linear()[0][row], pose.linear()[1][row], pose.linear()[2][row],
+                            pose.offset()[row]);
+    return text;
+}
+
+// One line if the image shows nothing, or is empty in part; no black image without a word.
+void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
+    const PixelWindow& window = film.window();
+    std::size_t empty = 0;
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) empty += film.pixel(x, y)[k_alpha] == 0 ? 1 : 0;
+    const std::size_t pixels =
+        static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+    if (empty > 0)
+        warn(
+            fmt::format("{} of {} pixels are empty (alpha 0): their rays do not pass the port, "
+                        "or the lens's distortion has no ray for them",
+                        empty, pixels));
+    if (black && empty < pixels)
+        warn(
+            "the image is black: no lamp's light reaches the camera; check the "
+            "lamps' positions, directions and intensities, the camera's pose, and how far "
+            "light comes in this water");
+}
+
+}  // namespace
+
+ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame) {
+    const std::string quantity = SensorModel(scene).description();
+    ImageMetadata m{{"software", "uwvdb " + program_version()},
+                    {"uwvdb/scene", scene.file.filename().string()},
+                    {"uwvdb/scene_hash", scene.hash},
+                    {"uwvdb/integrator", name_of(scene.render.integrator)},
+                    {"uwvdb/quality", name_of(scene.render.quality)},
+                    {"uwvdb/samples", static_cast<double>(scene.render.samples)},
+                    {"uwvdb/seed", std::string("none: deterministic")},
+                    {"uwvdb/rgb_quantity", quantity},
+                    {"uwvdb/units", quantity + ", irradiance and exitance W m^-2, metres"},
+                    {"uwvdb/bands_nm", band_list(scene.water.bands_nm)}};
+    if (frame) m["uwvdb/frame"] = fmt::format("{}", *frame);
+    if (!scene.camera_name.empty()) m["uwvdb/camera"] = scene.camera_name;
+    const IntrinsicsDesc& k = scene.camera.intrinsics;
+    m["uwvdb/intrinsics_fx_fy_cx_cy_px"] =
+        fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", k.fx, k.fy, k.cx, k.cy);
+    m["uwvdb/world_from_camera"] = matrix_rows(scene.camera.world_from_camera);
+    if (scene.render.colour.response == ColourDesc::Response::camera)
+        m["uwvdb/rgb_response"] = scene.render.colour.file.filename().string();
+    if (const ForwardScatterDesc& forward = scene.water.forward_scatter; forward.K > 0) {
+        m["uwvdb/forward_scatter_K"] = forward.K;
+        m["uwvdb/forward_scatter_G_per_m"] = forward.G;
+        m["uwvdb/forward_scatter_B_rad_per_m"] = forward.B;
+        m["uwvdb/forward_scatter_shape"] = std::string(
+            forward.shape == ForwardScatterDesc::Shape::gaussian ? "gaussian" : "exponential");
+    }
+    const auto note_port = [&m](const auto& port) {
+        m["uwvdb/port_fresnel"] = std::string(port.fresnel ? "on" : "off");
+        m["uwvdb/port_radiance_in"] = std::string(port.radiance_in_air ? "air" : "water");
+    };
+    if (scene.camera.port) std::visit(note_port, *scene.camera.port);
+    if (const auto& lens = scene.camera.lens) {
+        m["uwvdb/lens_f_number"] = lens->f_number;
+        m["uwvdb/lens_focal_length_m"] = lens->focal_length;
+        m["uwvdb/lens_transmission"] = lens->transmission;
+    }
+    return m;
+}
+
+ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame) {
+    ImageMetadata m = metadata_of(scene.desc, frame);
+    const Medium& medium = scene.water.medium;
+    std::vector<double> a, b, c;
+    for (int band = 0; band < medium.band_count(); ++band) {
+        a.push_back(medium.uniform.absorption[static_cast<std::size_t>(band)]);
+        c.push_back(medium.uniform.attenuation(band));
+        b.push_back(c.back() - a.back());
+    }
+    std::string phases;
+    for (const auto& phase : medium.phase_functions)
+        phases += (phases.empty() ? "" : "; ") + phase->description();
+    m["uwvdb/water_absorption_per_m"] = band_list(a);
+    m["uwvdb/water_scattering_per_m"] = band_list(b);
+    m["uwvdb/water_attenuation_per_m"] = band_list(c);
+    m["uwvdb/phase_functions"] = phases;
+    m["uwvdb/slab_near_m"] = scene.slabs.near;
+    m["uwvdb/slab_thickness_m"] = scene.slabs.thickness();
+    m["uwvdb/slabs"] = static_cast<double>(scene.slabs.count);
+    return m;
+}
+
+void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata,
+                  const SayCallback& say, const SayCallback& warn) {
+    const std::optional<double> exposure = automatic_exposure(film);
+    const Preview preview = make_preview(film, exposure.value_or(1.0));
+    write_exr(files.image, film, metadata);
+    metadata["exposure"] = exposure.value_or(1.0);
+    write_png(files.preview, preview, metadata);
+    warn_of_darkness(film, !exposure, warn);
+    say(fmt::format("wrote {}", files.image.string()));
+    if (exposure)
+        say(fmt::format("wrote {} (preview, R G B x {:.4g})", files.preview.string(), *exposure));
+    else
+        say(fmt::format("wrote {} (preview, black)", files.preview.string()));
+}
+
+}  // namespace uw

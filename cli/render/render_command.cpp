@@ -1,0 +1,198 @@
+#include "cli/render/render_command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+#include <vector>
+
+#include "camera/image_size.h"
+#include "cli/console.h"
+#include "cli/frame_list.h"
+#include "cli/frame_sequence.h"
+#include "cli/progress.h"
+#include "cli/render/frame_renderer.h"
+#include "cli/render/image_output.h"
+#include "cli/render/stats.h"
+#include "cli/scene_loading.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/base/text.h"
+#include "core/colour/colour_response.h"
+#include "core/image/image_reader.h"
+#include "core/meshes/gltf/gltf_import.h"
+
+namespace uw {
+
+namespace {
+
+RenderDesc::Integrator integrator_named(const std::string& name) {
+    for (const auto& [known, integrator] : k_integrator_names)
+        if (name == known) return integrator;
+    throw UsageError(
+        fmt::format("--integrator: unknown '{}'; use volume, planes or reference", name));
+}
+
+RenderDesc::Quality quality_named(const std::string& name) {
+    for (const auto& [known, quality] : k_quality_names)
+        if (name == known) return quality;
+    throw UsageError(
+        fmt::format("--quality: unknown '{}'; use draft, final or exact", printable(name)));
+}
+
+void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
+    if (!a.quality.empty()) desc.render.quality = quality_named(a.quality);
+    if (desc.render.quality == RenderDesc::Quality::draft) desc.render.samples = 1;
+    if (a.samples) desc.render.samples = *a.samples;
+    if (!a.integrator.empty()) desc.render.integrator = integrator_named(a.integrator);
+    if (!a.size) return;
+    const auto [width, height] = *a.size;
+    if (width < 1 || height < 1 || width > 32768 || height > 32768)
+        throw UsageError("--size: each side must be 1 to 32768 pixels");
+    resize_image(desc.camera, width, height);
+    for (RigCameraDesc& entry : desc.cameras) resize_image(entry.camera, width, height);
+}
+
+std::vector<std::string> names_of(const std::vector<LampDesc>& lamps) {
+    std::vector<std::string> names;
+    names.reserve(lamps.size());
+    for (const LampDesc& lamp : lamps) names.push_back(lamp.name);
+    return names;
+}
+
+// The scene of a frame with the camera and lamps of its glTF files.
+SceneDesc scene_with_gltf(const SceneDesc& desc, const Frame& frame) {
+    SceneDesc scene = scene_of_frame(desc, frame);
+    import_gltf(scene);
+    return scene;
+}
+
+// Likewise, of a frame whose lamps must be `lamp_names`: layers are the same in all frames.
+SceneDesc scene_with_lamps(const SceneDesc& desc, const Frame& frame,
+                           const std::vector<std::string>& lamp_names) {
+    SceneDesc scene = scene_with_gltf(desc, frame);
+    const std::vector<std::string> names = names_of(scene.lamps);
+    if (names != lamp_names)
+        throw InputError(fmt::format(
+            "frame {}: its lamps are {}, those of the first frame {}; export the same lights in "
+            "all frames",
+            frame.number.value_or(0), fmt::join(names, ", "), fmt::join(lamp_names, ", ")));
+    return scene;
+}
+
+PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
+    if (!a.crop) return {0, 0, camera.width, camera.height};
+    const auto [x0, y0, x1, y1] = *a.crop;
+    if (x0 < 0 || y0 < 0 || x1 > camera.width || y1 > camera.height || x0 >= x1 || y0 >= y1)
+        throw UsageError(
+            fmt::format("--crop {},{},{},{}: not a window of the image of {} x {} pixels", x0, y0,
+                        x1, y1, camera.width, camera.height));
+    return {x0, y0, x1, y1};
+}
+
+// The pixels that are written, by camera.
+std::vector<PixelWindow> windows_of(const RenderArguments& a, const SceneDesc& desc) {
+    if (desc.cameras.empty()) return {window_of(a, desc.camera)};
+    std::vector<PixelWindow> windows;
+    for (const RigCameraDesc& entry : desc.cameras)
+        windows.push_back(a.camera.empty() || a.camera == entry.name ? window_of(a, entry.camera)
+                                                                     : PixelWindow{});
+    return windows;
+}
+
+bool is_whole(const PixelWindow& window, const CameraDesc& camera) {
+    return window == PixelWindow{0, 0, camera.width, camera.height};
+}
+
+// Leaves out the images that are there already.
+void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const ImagePlan& plan,
+                        bool quiet) {
+    std::vector<int> there;
+    std::vector<Frame> left;
+    for (Frame& frame : sequence.frames) {
+        const SceneDesc scene = scene_of_frame(desc, frame);
+        const ImageLayout layout{scene.camera.width, scene.camera.height,
+                                 plan.windows[frame.camera], plan.layers.channel_names()};
+        const bool rendered = is_rendered(frame, scene, [&](const std::filesystem::path& file) {
+            return has_header_of(file, layout, metadata_of(scene, frame.number));
+        });
+        if (rendered && (there.empty() || there.back() != *frame.number))
+            there.push_back(*frame.number);
+        if (!rendered) left.push_back(std::move(frame));
+    }
+    sequence.frames = std::move(left);
+    if (!there.empty() && !quiet)
+        print_message(fmt::format("resume: {} {} {} there already, {} {}left\n",
+                                  there.size() == 1 ? "frame" : "frames", format_frame_list(there),
+                                  there.size() == 1 ? "is" : "are", sequence.frames.size(),
+                                  desc.cameras.empty() ? "" : "images "));
+}
+
+// Renders all frames; `done` gets the figures of each, whatever ends the run.
+void render_frames(const FrameSequence& sequence, const SceneDesc& desc,
+                   const std::vector<std::string>& lamp_names, FrameRenderer& renderer,
+                   RunStats stats, std::vector<RunStats>& done) {
+    try {
+        for (const Frame& frame : sequence.frames) {
+            renderer.render(frame, scene_with_lamps(desc, frame, lamp_names), stats);
+            if (!frame.files.stats.empty())
+                stats.write_json(frame.files.stats, desc.file.filename().string());
+            done.push_back(std::exchange(stats, RunStats()));
+        }
+    } catch (const Interrupted&) {
+        if (done.empty()) throw;
+        throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume goes on",
+                                      done.size(), sequence.frames.size()));
+    }
+}
+
+}  // namespace
+
+void run_render(const RenderArguments& a) {
+    RunStats stats;
+    const ThreadLimit limit(a.threads);
+    FrameSequence sequence = frames_of(a);
+
+    stats.begin_stage("scene");
+    SceneDesc desc = load_scene(a.scene, a.overrides);
+    apply_arguments(a, desc);
+    add_cameras(sequence, desc, a.camera);
+    const std::vector<PixelWindow> windows = windows_of(a, desc);
+    const std::vector<std::string> lamp_names =
+        names_of(scene_with_gltf(desc, sequence.frames.front()).lamps);
+    const LayerPlan plan(a.layers, desc.water.bands_nm, lamp_names);
+    const BandColour colour = make_band_colour(desc.render.colour, desc.water.bands_nm);
+    if (!colour.warning().empty()) desc.warnings.push_back(colour.warning());
+    if (const auto warning = frame_warning(a, desc)) desc.warnings.push_back(*warning);
+    const Frame first = sequence.frames.front();
+    const CameraDesc first_camera = scene_of_frame(desc, first).camera;
+    if (desc.water.forward_scatter.K > 0 && !is_whole(windows[first.camera], first_camera))
+        desc.warnings.push_back(
+            "--crop: forward scatter takes light from the whole image: all of it is rendered, then "
+            "cropped; set water.forward_scatter.K=0 to save that time");
+    const ImagePlan images{windows, plan, colour};
+    if (a.resume) leave_out_rendered(sequence, desc, images, a.quiet);
+    if (sequence.frames.empty()) return;
+    check_frames(sequence, desc);
+    FrameRenderer renderer(a, desc, images, sequence.frames.size());
+
+    std::vector<RunStats> done;
+    const auto write_stats = [&] {
+        if (!sequence.stats.empty() && !done.empty())
+            RunStats::write_json(sequence.stats, a.scene.filename().string(), done);
+    };
+    try {
+        render_frames(sequence, desc, lamp_names, renderer, std::move(stats), done);
+    } catch (...) {
+        write_stats();  // of what is done
+        throw;
+    }
+    write_stats();
+    if (a.quiet) return;
+    double seconds = 0;
+    for (const RunStats& frame : done) seconds += frame.total_seconds();
+    print_message(fmt::format("done in {}, peak memory {:.0f} MB\n", format_duration(seconds),
+                              static_cast<double>(RunStats::peak_memory_bytes()) / 1e6));
+}
+
+}  // namespace uw

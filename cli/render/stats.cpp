@@ -1,0 +1,94 @@
+#include "cli/render/stats.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "cli/version.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+
+namespace uw {
+
+void RunStats::begin_stage(const std::string& name) {
+    end_stage();
+    stage_ = name;
+    stage_start_ = std::chrono::steady_clock::now();
+}
+
+void RunStats::end_stage() {
+    if (stage_.empty()) return;
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - stage_start_;
+    stages_.emplace_back(stage_, elapsed.count());
+    stage_.clear();
+}
+
+void RunStats::count(const std::string& name, std::uint64_t value) {
+    counts_.emplace_back(name, value);
+}
+
+double RunStats::total_seconds() const {
+    double total = 0;
+    for (const auto& [name, seconds] : stages_) total += seconds;
+    return total;
+}
+
+std::uint64_t RunStats::peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+void RunStats::set_output(const std::string& name, std::optional<int> frame) {
+    output_ = name;
+    frame_ = frame;
+}
+
+/// The one door to the JSON library.
+struct StatsJson {
+    using Json = nlohmann::ordered_json;
+
+    static Json begin(const std::string& scene) {
+        Json json;
+        json["uwvdb"] = program_version();
+        json["scene"] = scene;
+        return json;
+    }
+
+    static void add(const RunStats& stats, Json& json) {
+        if (stats.frame_) json["frame"] = *stats.frame_;
+        json["output"] = stats.output_;
+        for (const auto& [name, seconds] : stats.stages_) json["seconds"][name] = seconds;
+        json["seconds"]["total"] = stats.total_seconds();
+        for (const auto& [name, value] : stats.counts_) json[name] = value;
+    }
+
+    static void write(const std::filesystem::path& file, Json json) {
+        json["peak_memory_bytes"] = RunStats::peak_memory_bytes();
+        AtomicFile target(file);
+        std::ofstream out(target.temporary_path());
+        out << json.dump(2) << "\n";
+        out.close();
+        if (!out) throw IoError(fmt::format("{}: cannot write", file.string()));
+        target.commit();
+    }
+};
+
+void RunStats::write_json(const std::filesystem::path& file, const std::string& scene) const {
+    StatsJson::Json json = StatsJson::begin(scene);
+    StatsJson::add(*this, json);
+    StatsJson::write(file, std::move(json));
+}
+
+void RunStats::write_json(const std::filesystem::path& file, const std::string& scene,
+                          std::span<const RunStats> images) {
+    StatsJson::Json json = StatsJson::begin(scene);
+    json["frames"] = StatsJson::Json::array();
+    for (const RunStats& stats : images) StatsJson::add(stats, json["frames"].emplace_back());
+    StatsJson::write(file, std::move(json));
+}
+
+}  // namespace uw

@@ -1,0 +1,54 @@
+#include "cli/validate/validate_command.h"
+
+#include <fmt/format.h>
+
+#include <ostream>
+
+#include "cli/console.h"
+#include "cli/scene_loading.h"
+#include "cli/stop_signal.h"
+#include "cli/validate/validation_report.h"
+#include "cli/validate/validation_suite.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/meshes/gltf/gltf_import.h"
+
+namespace uw {
+
+bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
+                  const IntegratorFactory& volume) {
+    const ThreadLimit limit(a.threads);
+    if (a.scene.empty() && !a.overrides.empty())
+        throw UsageError("--set: the built-in suite has no scene file to change; name a scene");
+    if (!a.report.empty()) const AtomicFile probe(a.report);
+    const ValidationSuite suite;
+    std::vector<std::pair<std::string, SceneDesc>> scenes = suite.scenes();
+    if (!a.scene.empty()) {
+        scenes = {{a.scene.filename().string(), load_scene(a.scene, a.overrides)}};
+        import_gltf(scenes.front().second);
+    }
+
+    ValidationOptions options;
+    options.tolerance = a.tolerance;
+    options.volume = volume;
+    options.proceed = [] { return !stop_requested(); };
+    if (!a.quiet) options.say = [](const std::string& what) { print_message(what + "\n"); };
+    std::vector<SceneValidation> results;
+    bool passed = true;
+    for (const auto& [name, desc] : scenes) {
+        results.push_back(validate_scene(desc, name, options));
+        passed = passed && results.back().passed();
+        if (!a.quiet || !results.back().passed()) out << validation_table(results.back(), colour);
+        out.flush();
+    }
+    if (!a.report.empty()) {
+        write_validation_report(a.report, results);
+        if (!a.quiet) print_message(fmt::format("wrote {}\n", a.report.string()));
+    }
+    if (!a.quiet || !passed) out << (passed ? "validation passed\n" : "validation FAILED\n");
+    if (!out.flush()) throw IoError("standard output: cannot write; is the disk full?");
+    return passed;
+}
+
+}  // namespace uw

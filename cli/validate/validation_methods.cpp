@@ -1,0 +1,233 @@
+#include "cli/validate/validation_methods.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/base/scratch_folder.h"
+#include "core/frame/pixel_renderer.h"
+#include "core/optics/optical_depth.h"
+#include "media/vdb/vdb_writer.h"
+#include "render/scene_rendering.h"
+
+namespace uw {
+
+namespace {
+
+constexpr int k_mean_samples = 64;     // along each edge of the field's bounds
+constexpr int k_grid_side = 48;        // voxels of the constant grid along each edge
+constexpr double k_reach_depths = 15;  // optical depths that the constant grid reaches
+
+// A new assembled scene of `desc` without its volumes, in the water of `medium`.
+TrialScene in_water(const SceneDesc& desc, Medium medium) {
+    SceneDesc without = desc;
+    without.volumes.clear();
+    TrialScene trial;
+    trial.scene = assemble_scene(without, [](const std::string&) {});
+    trial.scene.water.medium = std::move(medium);
+    return trial;
+}
+
+// Mean concentration of each constituent over the field's bounds.
+std::vector<double> mean_concentrations(const ConcentrationField& field) {
+    std::vector<double> mean(static_cast<std::size_t>(field.constituent_count()));
+    const Bounds bounds = field.bounds();
+    if (bounds.empty()) return mean;
+    const Vector3 extent = bounds.max - bounds.min;
+    std::vector<double> sample(mean.size());
+    for (int i = 0; i < k_mean_samples; ++i) {
+        for (int j = 0; j < k_mean_samples; ++j) {
+            for (int k = 0; k < k_mean_samples; ++k) {
+                const Vector3 at = (Vector3(i, j, k) + 0.5) / static_cast<double>(k_mean_samples);
+                field.sample(bounds.min + at * extent, sample);
+                for (std::size_t c = 0; c < mean.size(); ++c) mean[c] += sample[c];
+            }
+        }
+    }
+    for (double& value : mean) value /= std::pow(k_mean_samples, 3);
+    return mean;
+}
+
+void add_scaled(OpticalCoefficients& to, const OpticalCoefficients& from, double scale) {
+    for (std::size_t b = 0; b < k_max_bands; ++b) to.absorption[b] += scale * from.absorption[b];
+    for (std::size_t m = 0; m < to.scattering.size(); ++m)
+        for (std::size_t b = 0; b < k_max_bands; ++b)
+            to.scattering[m][b] += scale * from.scattering[m][b];
+}
+
+// Everything that light between lamps and camera can pass before it is used up.
+Bounds reach_of(const TrialScene& trial) {
+    Bounds bounds = trial.scene.surfaces->bounds();
+    for (const Lamp& lamp : trial.scene.lamps) bounds.extend(lamp.position());
+    bounds.extend(at_origin_plus(trial.scene.camera->world_from_camera().offset()));
+    const AttenuationTable c(trial.scene.water.medium);
+    const double least = *std::min_element(c.uniform.begin(), c.uniform.begin() + c.band_count);
+    const double margin = least > 0 ? std::min(k_reach_depths / least, 1e3) : 1e3;
+    return {bounds.min - Vector3(margin), bounds.max + Vector3(margin)};
+}
+
+// Distances at which the lamp's beam ends at once. A soft edge has a slope everywhere and leaves
+// the midpoint rule its order.
+void append_hard_beam_edges(const Ray& ray, const Lamp& lamp, std::vector<double>& edges) {
+    constexpr double k_step = 1e-6;
+    std::vector<double> breaks;
+    lamp.append_profile_breaks(ray, breaks);
+    for (const double s : breaks) {
+        const double before = lamp.relative_intensity(ray.at(s * (1 - k_step)) - lamp.position());
+        const double after = lamp.relative_intensity(ray.at(s * (1 + k_step)) - lamp.position());
+        if (std::abs(after - before) > 0.01) edges.push_back(s);
+    }
+}
+
+void splat(TrialScene& trial) {
+    trial.deep_shadows = splat_lamps(trial.scene, DeepShadowOptions{});
+}
+
+}  // namespace
+
+TrialScene make_trial(const SceneDesc& desc) {
+    TrialScene trial;
+    trial.scene = assemble_scene(desc, [](const std::string&) {});
+    splat(trial);
+    return trial;
+}
+
+TrialScene homogenised(const TrialScene& trial, const SceneDesc& desc) {
+    Medium medium = trial.scene.water.medium;
+    const std::vector<double> mean = mean_concentrations(*trial.scene.field);
+    for (std::size_t k = 0; k < mean.size(); ++k)
+        add_scaled(medium.uniform, medium.constituents[k].per_unit, mean[k]);
+    medium.constituents.clear();
+    TrialScene result = in_water(desc, std::move(medium));
+    splat(result);
+    return result;
+}
+
+TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc, double share) {
+    Medium medium = trial.scene.water.medium;
+    const OpticalCoefficients whole = medium.uniform;
+    const OpticalCoefficients none{{}, std::vector<Spectrum>(whole.scattering.size())};
+    Constituent water{.name = "water", .unit = "1", .per_unit = none};
+    add_scaled(water.per_unit, whole, share);
+    medium.uniform = none;
+    add_scaled(medium.uniform, whole, 1 - share);
+    medium.constituents = {water};
+
+    const Bounds bounds = reach_of(trial);
+    const Vector3 extent = bounds.max - bounds.min;
+    VdbOutputGrid ones;
+    ones.name = "ones";
+    ones.voxel_size = std::max({extent.x, extent.y, extent.z}) / k_grid_side;
+    ones.origin = bounds.min;
+    for (int axis = 0; axis < 3; ++axis)
+        ones.size[static_cast<std::size_t>(axis)] =
+            static_cast<int>(std::ceil(extent[axis] / ones.voxel_size)) + 1;
+    ones.value = [](int, int, int) { return 1.0F; };
+    const ScratchFolder folder;
+    VolumeDesc volume;
+    volume.file = folder.path() / "ones.vdb";
+    volume.where = "constant grid";
+    GridMappingDesc mapping;
+    mapping.grid = ones.name;
+    mapping.where = volume.where;
+    volume.grids = {mapping};
+    volume.centering = Centering::node;
+    volume.up = UpAxis::y;
+    write_vdb(volume.file, {ones}, {{"creator", "uwvdb validate"}});
+
+    TrialScene result = in_water(desc, std::move(medium));
+    result.scene.field = load_volumes({volume}, {{{GridLoad{0, 1.0}}}}, 1,
+                                      result.scene.volume_reports, result.scene.warnings);
+    ForwardScatterDesc& forward = result.scene.desc.water.forward_scatter;
+    forward.G *= 1 - share;
+    forward.B *= 1 - share;
+    splat(result);
+    return result;
+}
+
+Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count) {
+    PlanesDesc planes = desc.render.planes;
+    planes.count = count;
+    return place_slabs(planes, *trial.scene.camera, trial.scene.lit());
+}
+
+MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
+                          const std::function<bool()>& proceed) {
+    const auto pixels =
+        static_cast<std::size_t>(trial.width()) * static_cast<std::size_t>(trial.height());
+    MethodImage image;
+    image.direct.resize(pixels);
+    image.backscatter.resize(pixels);
+    const PixelRenderer renderer(*trial.scene.camera, trial.scene.lit(), integrator, 1,
+                                 trial.scene.slabs);
+    parallel_for(static_cast<std::size_t>(trial.height()), [&](std::size_t row) {
+        if (!proceed()) throw Interrupted();
+        PixelResult result;
+        for (int x = 0; x < trial.width(); ++x) {
+            renderer.render(x, static_cast<int>(row), result);
+            const std::size_t i =
+                row * static_cast<std::size_t>(trial.width()) + static_cast<std::size_t>(x);
+            image.direct[i] = result.direct;
+            image.backscatter[i] = result.backscatter;
+        }
+    });
+    return image;
+}
+
+void render_forward_scatter(const TrialScene& trial,
+                            const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows,
+                            const Integrator& integrator, const std::function<bool()>& proceed,
+                            MethodImage& image) {
+    const SceneDesc& desc = trial.scene.desc;
+    std::vector<std::string> lamps;  // not asked for by name
+    for (std::size_t j = 0; j < desc.lamps.size(); ++j) lamps.push_back(std::to_string(j));
+    const LayerPlan plan("forward,backscatter", desc.water.bands_nm, lamps);
+    Film film(trial.width(), trial.height(), {0, 0, trial.width(), trial.height()},
+              plan.channel_names());
+    render_scene(trial.scene, deep_shadows, integrator, plan, BandColour(desc.water.bands_nm), film,
+                 [&](const std::string&, double) { return proceed(); });
+    const auto read = [&](Layer layer, std::vector<Spectrum>& component) {
+        const auto first = static_cast<std::size_t>(plan.first_channel(layer));
+        for (int y = 0; y < film.height(); ++y) {
+            for (int x = 0; x < film.width(); ++x) {
+                Spectrum& pixel = component.emplace_back();
+                for (std::size_t band = 0; band < desc.water.bands_nm.size(); ++band)
+                    pixel[band] = static_cast<double>(film.pixel(x, y)[first + band]);
+            }
+        }
+    };
+    read(Layer::forward, image.forward);
+    read(Layer::backscatter, image.blurred_backscatter);
+}
+
+std::vector<char> smooth_pixels(const TrialScene& trial) {
+    constexpr double k_edge = 1e-3;  // of the ray's length: nearer to its ends is no edge
+    std::vector<char> smooth(static_cast<std::size_t>(trial.width() * trial.height()), 1);
+    parallel_for(smooth.size(), [&](std::size_t i) {
+        const int x = static_cast<int>(i) % trial.width(), y = static_cast<int>(i) / trial.width();
+        const auto ray = trial.scene.camera->refracted_ray(x + 0.5, y + 0.5);
+        if (!ray) return;
+        SurfaceHit hit;
+        const double end =
+            trial.scene.surfaces->closest_hit(*ray, k_far, hit) ? hit.distance : k_far;
+        std::vector<Interval> lit;
+        std::vector<double> edges;
+        for (std::size_t j = 0; j < trial.scene.lamps.size(); ++j) {
+            const Interval in_beam = trial.scene.lamps[j].beam(*ray, {0, end});
+            trial.deep_shadows[j]->lit_intervals(*ray, in_beam, lit);
+            edges.clear();
+            for (const Interval& interval : lit) {
+                edges.push_back(interval.begin);
+                edges.push_back(interval.end);
+            }
+            append_hard_beam_edges(*ray, trial.scene.lamps[j], edges);
+            for (const double s : edges)
+                if (s > k_edge * end && s < (1 - k_edge) * end) smooth[i] = 0;
+        }
+    });
+    return smooth;
+}
+
+}  // namespace uw

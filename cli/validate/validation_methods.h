@@ -1,0 +1,69 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/scene_assembly.h"
+
+namespace uw {
+
+/// What a method says of every pixel of a scene, row by row, one sample at each pixel's centre
+/// [W m^-2 sr^-1]. Components that the method says nothing of are empty.
+struct MethodImage {
+    std::vector<Spectrum> direct, backscatter;  // before forward scatter
+    std::vector<Spectrum> forward;              // what forward scatter adds to `direct`
+    std::vector<Spectrum> blurred_backscatter;  // with forward scatter
+};
+
+/// Makes the integrator that is on trial; tests slip in wrong ones here.
+using IntegratorFactory = std::function<std::unique_ptr<Integrator>(
+    const AssembledScene& scene,
+    const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows)>;
+
+/// A scene on trial, assembled, with its lamps splatted.
+struct TrialScene {
+    AssembledScene scene;
+    std::vector<std::shared_ptr<const DeepShadowMap>> deep_shadows;
+
+    int width() const { return scene.camera->width(); }
+    int height() const { return scene.camera->height(); }
+};
+
+/// Assembles `desc` and splats its lamps.
+TrialScene make_trial(const SceneDesc& desc);
+
+/// `trial` with its grids replaced by their mean over the field's bounds: uniform water, which
+/// scatters forward with the scene's K, G and B.
+/// `desc` is the description that `trial` was made from.
+TrialScene homogenised(const TrialScene& trial, const SceneDesc& desc);
+
+/// `trial`, whose water is uniform, with a `share` of that water (above 0, at most 1) moved into a
+/// VDB grid of constant value: the grid is written to a file and read back, and outside it is only
+/// the rest. It reaches from all cameras, lamps and surfaces to where 15 optical depths have
+/// passed. G and B of forward scatter are measured by the uniform water that they stand for
+/// (physics section 6): where some of it stays, they are made less with it, so that the blur is the
+/// same.
+TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc, double share);
+
+/// `count` of McGlamery's planes in the water of `trial`, placed as `desc` says.
+Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count);
+
+/// Renders every pixel with `integrator` before forward scatter. Stops with Interrupted when
+/// `proceed` says no.
+MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
+                          const std::function<bool()>& proceed);
+
+/// Likewise with forward scatter, as `uwvdb render` does it: fills the other two components of
+/// `image`. `deep_shadows` are those that `integrator` gathers from, if any.
+void render_forward_scatter(const TrialScene& trial,
+                            const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows,
+                            const Integrator& integrator, const std::function<bool()>& proceed,
+                            MethodImage& image);
+
+/// Pixels whose water ray meets no shadow edge and no hard edge of a lamp's beam, row by row: where
+/// a sum over slabs converges as their thickness squared.
+std::vector<char> smooth_pixels(const TrialScene& trial);
+
+}  // namespace uw

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/validate/validation.h"
+
+namespace uw {
+
+/// The checks of one scene as lines of text; failed ones are red where `colour`.
+std::string validation_table(const SceneValidation& scene, bool colour);
+
+/// Writes one self-contained HTML page: the tables, the pictures of every method, maps of their
+/// differences and the convergence of the planes. Throws IoError.
+void write_validation_report(const std::filesystem::path& file,
+                             const std::vector<SceneValidation>& scenes);
+
+}  // namespace uw

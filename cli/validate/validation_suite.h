@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/scratch_folder.h"
+#include "core/scene/scene_desc.h"
+
+namespace uw {
+
+/// The scenes that `uwvdb validate` looks at by itself: lamps beside, far from, behind and in view
+/// of the camera, both kinds of phase function, a port, a shadow, a spot, and a plume in a grid
+/// that is written to a folder of its own for as long as the suite lives. The last three scatter
+/// forward, by both kernels.
+class ValidationSuite {
+  public:
+    ValidationSuite();
+
+    /// Name and description of each.
+    const std::vector<std::pair<std::string, SceneDesc>>& scenes() const { return scenes_; }
+
+  private:
+    ScratchFolder folder_;
+    std::vector<std::pair<std::string, SceneDesc>> scenes_;
+};
+
+}  // namespace uw

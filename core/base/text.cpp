@@ -1,0 +1,98 @@
+#include "core/base/text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+#include <vector>
+
+namespace uw {
+namespace {
+
+constexpr std::size_t k_longest_word = 64;
+
+char lower(char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
+
+/// Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const bool same = lower(a[i - 1]) == lower(b[j - 1]);
+            d[i][j] =
+                std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (same ? 0 : 1)});
+            if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) &&
+                lower(a[i - 2]) == lower(b[j - 1])) {
+                d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+            }
+        }
+    }
+    return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::size_t max_bytes) {
+    std::size_t end = std::min(text.size(), max_bytes);
+    const bool cut = end < text.size();
+    // never cut inside a multi-byte character
+    while (cut && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+    std::string line(text.substr(0, end));
+    for (char& c : line) {
+        if (static_cast<unsigned char>(c) < 0x20U || c == 0x7F) c = '?';
+    }
+    return cut ? line + "..." : line;
+}
+
+std::string_view nearest_word(std::string_view text, std::span<const std::string_view> candidates) {
+    if (text.size() > k_longest_word) return {};
+    std::string_view best;
+    std::size_t best_distance = 2 + text.size() / 4;  // one slip per four letters, and one more
+    for (const std::string_view candidate : candidates) {
+        // "fov" stands for "fov_x", however much is missing
+        const bool shortened = text.size() > 1 && candidate.starts_with(text);
+        const std::size_t distance = shortened ? 1 : edit_distance(text, candidate);
+        if (distance < best_distance && distance < std::max(text.size(), candidate.size())) {
+            best = candidate;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+std::string suggestion(std::string_view text, std::span<const std::string_view> candidates) {
+    const std::string_view near = nearest_word(text, candidates);
+    if (!near.empty()) return "did you mean '" + std::string(near) + "'?";
+    std::string list = "use one of: ";
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (i > 0) list += ", ";
+        list += candidates[i];
+    }
+    return list;
+}
+
+NumberText parse_number(std::string_view text, double& value) {
+    const bool plus = text.starts_with('+');
+    if (plus) text.remove_prefix(1);
+    if (text.empty() || (plus && text.starts_with('-'))) return NumberText::no_number;
+    const std::string_view bare = text.starts_with('-') ? text.substr(1) : text;
+    if (bare == ".inf" || bare == ".Inf" || bare == ".INF" || bare == ".nan" || bare == ".NaN" ||
+        bare == ".NAN") {
+        return NumberText::not_finite;
+    }
+    double parsed = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, parsed);
+    if (error == std::errc::invalid_argument || stop != end) return NumberText::no_number;
+    if (error == std::errc::result_out_of_range) return NumberText::out_of_range;
+    if (!std::isfinite(parsed)) return NumberText::not_finite;
+    value = parsed == 0.0 ? 0.0 : parsed;  // -0 means 0
+    return NumberText::number;
+}
+
+}  // namespace uw

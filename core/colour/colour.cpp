@@ -1,0 +1,110 @@
+#include "core/colour/colour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "core/colour/band_intervals.h"
+#include "core/colour/cie1931.h"
+
+namespace uw {
+namespace {
+
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+// Linear sRGB and XYZ (D65, Y = 1), derived from the primaries R (.64, .33), G (.30, .60),
+// B (.15, .06) and the white (.3127, .3290) of IEC 61966-2-1.
+constexpr Matrix k_rgb_from_xyz{{{3.2409699419, -1.5373831776, -0.4986107603},
+                                 {-0.9692436363, 1.8759675015, 0.0415550574},
+                                 {0.0556300797, -0.2039769589, 1.0569715142}}};
+constexpr std::array<double, 3> k_luminance_of_rgb{0.2126390059, 0.7151686788, 0.0721923154};
+constexpr std::array<double, 3> k_white_xyz{0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290};
+
+/// Mean response below which a band set is blind to X, Y or Z; the functions peak at 1.06 to 1.78.
+constexpr double k_blind = 1e-6;
+
+/// What X, Y and Z see of a radiance of 1 in each band: the matching functions' means over the
+/// bands' intervals, by the share of the bands' widths; zero in bands that are none apart.
+std::vector<std::array<double, 3>> tristimulus_of_bands(std::span<const double> bands_nm) {
+    const std::vector<BandInterval> intervals = band_intervals(bands_nm);
+    const double mean_width = mean_band_width(intervals);
+    std::vector<std::array<double, 3>> xyz(bands_nm.size());
+    if (!(mean_width > 0)) return xyz;
+    for (std::size_t i = 0; i < xyz.size(); ++i) {
+        const Xyz mean = mean_matching_functions(intervals[i].begin, intervals[i].end);
+        const double share = intervals[i].width() / mean_width;
+        xyz[i] = {share * mean.x, share * mean.y, share * mean.z};
+    }
+    return xyz;
+}
+
+}  // namespace
+
+double luminance(const LinearRgb& rgb) {
+    return std::inner_product(rgb.begin(), rgb.end(), k_luminance_of_rgb.begin(), 0.0);
+}
+
+double srgb_encode(double linear) {
+    if (!(linear > 0)) return 0;
+    if (linear >= 1) return 1;
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+BandColour::BandColour(std::span<const double> bands_nm) : bands_(bands_nm.size()) {
+    if (bands_ == 3) {
+        for (std::size_t i = 0; i < 3; ++i) rgb_of_band_[i][i] = 1;
+    } else if (bands_ == 1) {
+        show_grey();
+    } else {
+        show_cie1931(bands_nm, std::vector<double>(bands_, 1.0));
+    }
+}
+
+BandColour::BandColour(std::span<const double> bands_nm, std::span<const double> white)
+    : bands_(bands_nm.size()) {
+    show_cie1931(bands_nm, white);
+}
+
+void BandColour::show_grey() {
+    for (std::size_t i = 0; i < bands_; ++i) rgb_of_band_[i].fill(1 / static_cast<double>(bands_));
+}
+
+void BandColour::show_cie1931(std::span<const double> bands_nm, std::span<const double> white) {
+    const std::vector<std::array<double, 3>> xyz_of_band = tristimulus_of_bands(bands_nm);
+    std::array<double, 3> equal_values{}, white_values{};
+    for (std::size_t i = 0; i < bands_; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            equal_values[c] += xyz_of_band[i][c];
+            if (!white.empty()) white_values[c] += white[i] * xyz_of_band[i][c];
+        }
+    }
+    const std::array<double, 3>& seen = white.empty() ? equal_values : white_values;
+    if (!(*std::ranges::min_element(seen) > k_blind * static_cast<double>(bands_))) {
+        show_grey();
+        warning_ =
+            "water.bands: no colour can be made of these wavelengths; shown grey, the mean "
+            "of the bands (add bands between 400 and 650 nm for colour)";
+        return;
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+        // Equal values have Y = 1, whatever is white.
+        const double scale =
+            white.empty() ? 1 / equal_values[1]
+                          : k_white_xyz[c] * white_values[1] / white_values[c] / equal_values[1];
+        for (std::size_t i = 0; i < bands_; ++i)
+            for (std::size_t row = 0; row < 3; ++row)
+                rgb_of_band_[i][row] += k_rgb_from_xyz[row][c] * scale * xyz_of_band[i][c];
+    }
+}
+
+LinearRgb BandColour::operator()(const Spectrum& radiance) const {
+    LinearRgb rgb{};
+    for (std::size_t i = 0; i < bands_; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) rgb[c] += rgb_of_band_[i][c] * radiance[i];
+    }
+    return rgb;
+}
+
+}  // namespace uw

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/colour/band_intervals.h"
+#include "core/scene/scene_desc.h"
+#include "core/tables/sampled_curve.h"
+
+namespace uw {
+
+/// Luminous efficacy of light of 555 nm, by which the SI defines the candela [lm/W].
+inline constexpr double k_lumens_per_watt = 683;
+
+/// Light over wavelength, up to a factor.
+struct LampSpectrum {
+    SampledCurve density;  // per nm; none outside the curve
+    double total = 0;      // its integral over all wavelengths, those beyond the curve too
+};
+
+/// The spectrum that `desc` names:
+/// - flat: the same per nm from 380 to 780 nm (equal energy, CIE E), none outside;
+/// - d65, led: tables of the CIE, 5 nm;
+/// - blackbody: Planck's law; its total counts all wavelengths, most of them infrared;
+/// - file: a table, linear in between.
+/// Throws InputError where there is none, IoError for a file that cannot be read.
+LampSpectrum make_lamp_spectrum(const LampSpectrumDesc& desc);
+
+/// Integral of `curve` from `begin` to `end`; outside its samples it is 0.
+double integral(const SampledCurve& curve, double begin, double end);
+
+/// Luminous efficacy of radiation, 683 int V S / int S [lm/W], with V = y of CIE 1931.
+double luminous_efficacy(const LampSpectrum& spectrum);
+
+/// What `total` (in W or W/sr, all wavelengths together) with this spectrum is per band; see
+/// band_intervals.
+PerBand band_values(const LampSpectrum& spectrum, double total,
+                    std::span<const BandInterval> intervals);
+
+}  // namespace uw

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/scene/scene_desc.h"
+
+namespace uw {
+
+/// Width s of a blur along the image's two axes, in pixels: f_px * B * R / (2 pi).
+struct BlurWidth {
+    double x = 0, y = 0;
+};
+
+/// The blur of light scattered by small angles (physics section 6), as the share of a pixel's light
+/// that lands in every other pixel: the kernel, centred on the pixel, integrated over each pixel.
+///
+///   exponential   F^-1{e^{-2 pi s f}} = s / (2 pi (s^2 + r^2)^{3/2})      (Jaffe, McGlamery)
+///   gaussian      of sigma = sqrt(2) s, with the same f where the spectrum is 1/e   (the paper)
+///
+/// The shares are positive and sum to 1 for every width; a width of 0 leaves the light where it is.
+/// Known by its spectrum (period 1 cycle per pixel), the tails have no end that could be cut off.
+class BlurKernel {
+  public:
+    /// The kernel for images of `width` times `height` pixels that go on as their own mirrors.
+    BlurKernel(ForwardScatterDesc::Shape shape, BlurWidth blur, int width, int height);
+
+    /// Number of columns, from 0, whose spectrum is not all below 1e-15.
+    int column_count() const { return column_count_; }
+
+    /// Fills the spectrum of column `column` (column / (2 width) cycles per pixel across, row /
+    /// (2 height) down) from row 0, and returns how many rows were filled; the rest are below
+    /// 1e-15. `spectrum` holds `height` values. Thread safe.
+    int fill_column(int column, std::span<double> spectrum) const;
+
+  private:
+    struct TablePosition {
+        std::size_t first;              // of four nodes
+        std::array<double, 4> weights;  // of cubic interpolation
+    };
+
+    static TablePosition table_position(double f);
+    void tabulate_aliases();
+    int fill_exponential(double across, std::span<double> spectrum) const;
+
+    ForwardScatterDesc::Shape shape_;
+    BlurWidth blur_;
+    int width_;
+    int height_;
+    int column_count_ = 0;
+    std::vector<double> across_, down_;  // per column, per row: factors of the spectrum
+    std::vector<double> aliases_;        // what pixels add to an exponential's spectrum, or empty
+    std::vector<TablePosition> table_rows_;
+};
+
+}  // namespace uw

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "core/forward/forward_scatter.h"
+#include "core/forward/in_scatter_slabs.h"
+#include "core/optics/medium.h"
+#include "core/optics/optical_depth.h"
+
+namespace uw {
+
+/// One value per pixel, row by row.
+using ImagePlane = std::vector<float>;
+
+/// A way through the water for every pixel.
+class PathImage {
+  public:
+    PathImage(std::size_t pixels, std::size_t constituents)
+        : length_(pixels), columns_(constituents, ImagePlane(pixels)) {}
+
+    void set(std::size_t pixel, const WaterPath& path) {
+        length_[pixel] = static_cast<float>(path.length);
+        for (std::size_t k = 0; k < columns_.size(); ++k)
+            columns_[k][pixel] = static_cast<float>(path.columns[k]);
+    }
+    const ImagePlane& length() const { return length_; }
+    const ImagePlane& column(std::size_t constituent) const { return columns_[constituent]; }
+
+  private:
+    ImagePlane length_;
+    std::vector<ImagePlane> columns_;
+};
+
+/// Blurs images of one band after the other over paths of their pixels (ForwardScatter). In water
+/// that varies, path lengths become int b/b_0 ds and optical depths, which are linear in the
+/// columns as attenuation is.
+class PathScatter {
+  public:
+    PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Medium& medium);
+
+    /// Writes into `added` what the light of band `band` adds when each pixel spreads its own over
+    /// its own path. Paths of dark pixels are not looked at.
+    void operator()(std::size_t band, const ImagePlane& light, const PathImage& paths,
+                    ImagePlane& added);
+
+  private:
+    ForwardScatter scatter_;
+    AttenuationTable attenuation_;
+    Spectrum uniform_b_{};                 // b_0 [1/m]
+    std::vector<Spectrum> constituent_b_;  // [1/m per unit]
+    ImagePlane blur_length_, optical_depth_;
+};
+
+/// Throws InputError at `where` unless blur lengths can be measured in `medium`: water that varies
+/// needs a uniform part that scatters.
+void check_blur_length(const Medium& medium, const SourceLocation& where);
+
+}  // namespace uw

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "core/colour/colour.h"
+#include "core/forward/forward_images.h"
+#include "core/forward/in_scatter_slabs.h"
+#include "core/frame/pixel_renderer.h"
+#include "core/frame/render_film.h"
+#include "core/image/film.h"
+#include "core/image/layers.h"
+#include "core/integrators/sensor.h"
+
+namespace uw {
+
+/// How a scene's light is scattered forward.
+struct ForwardScatterSetup {
+    ForwardScatterDesc desc;  // K > 0
+    ScatterPlane plane;       // the whole image
+    /// Camera z of the faces of the layers that the water is split into [m], ascending.
+    std::vector<double> faces;
+    bool shells = false;  // `faces` and `first` are distances along water rays instead
+    int cells = 1;        // InScatterSlabs
+    Interval first;       // camera z of the water of `backscatter_first`; its ends are faces
+    LampPaths::PointColumn lamp_column;
+    SensorModel sensor;  // the renderer's
+};
+
+/// Forward scatter of a rendered image in the paper's four places (physics section 6), a second
+/// pass over the pixels:
+///
+///     (14)  E     = E' + E' * g(R_lamps)      light falling on surfaces
+///     (16)  L_s   = L_d + L_d * g(R_c)        the signal, with (14) in it
+///     (17)  E_s   = E_s' + E_s' * g(R_lamps)  light scattered to the camera by a layer of water
+///     (18)  L_b   = sum_i L_i + L_i * g(R_i)  each layer's way to the camera, with (17) in it
+///
+/// What (14) and (16) add is the layer `forward`; what (17) and (18) add belongs to `backscatter`.
+/// It is radiance in water that is blurred, and the pixel where it lands has its factor
+/// (PixelResult::pixel_factor); in the paper's output (16) and (18) blur what has the factors of
+/// the pixel it comes from.
+/// Layers of water are taken a few at a time: memory does not grow with their number. The result
+/// does not depend on the number of threads.
+class ForwardPass {
+  public:
+    /// All references outlive the pass. Throws InputError if there is not enough memory.
+    ForwardPass(const PixelRenderer& renderer, const LitScene& scene, const Integrator& integrator,
+                const Affine& world_from_camera, const ForwardScatterSetup& setup,
+                const LayerPlan& plan);
+
+    /// Keeps what pixel (x, y) of the first pass needs in the second. From any thread.
+    void keep(int x, int y, const PixelView& view, const PixelResult& result);
+
+    /// Scatters all that was kept. Throws Interrupted if `progress` returned false.
+    void run(const ProgressCallback& progress);
+
+    /// Adds the result to a film that holds the first pass: its window is the whole image.
+    void write(const LayerPlan& plan, const BandColour& colour, Film& film) const;
+
+  private:
+    /// The light of all lamps, or of the one whose layer is asked for.
+    struct Component {
+        std::vector<std::size_t> lamps;
+        std::vector<ImagePlane> direct;   // per band
+        std::vector<ImagePlane> forward;  // per band; irradiance until (14) has been done
+        std::vector<ImagePlane> water;    // per band: backscatter, or what is added to it
+    };
+    struct Layer;
+    struct SurfaceSums;
+
+    void keep_surfaces(std::size_t i, const PixelView& view, const PixelResult& result);
+    void add_surface(const SurfaceSample& sample, SurfaceSums& sums) const;
+    void scatter_surfaces();
+    void gather(std::size_t first, std::vector<Layer>& layers) const;
+    // What light of pixel `i` is multiplied by before and after its blur on the way to the camera.
+    double factor_before(std::size_t i) const {
+        return setup_.sensor.factors_before_blur() ? pixel_factor_[i] : 1.0;
+    }
+    double factor_after(std::size_t i) const {
+        return setup_.sensor.factors_before_blur() ? 1.0 : pixel_factor_[i];
+    }
+    // Puts one pixel's light into the layer; none where no ray enters the water.
+    void store(const SlabLight* from, std::size_t i, Layer& layer) const;
+    void scatter_layer(std::size_t index, Layer& layer);
+    std::size_t pixel(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(setup_.plane.width) +
+               static_cast<std::size_t>(x);
+    }
+
+    const PixelRenderer& renderer_;
+    LitScene scene_;
+    const Integrator& integrator_;
+    const ForwardScatterSetup& setup_;
+    LampPaths lamp_paths_;
+    InScatterSlabs water_;
+    std::size_t bands_, pixels_;
+    std::vector<Component> components_;  // the first: all lamps
+    std::vector<ImagePlane> first_;      // per band: added to backscatter_first
+    std::vector<ImagePlane> response_;   // per band: direct light per irradiance [1/sr]
+    ImagePlane alpha_;
+    std::vector<double> pixel_factor_;
+    PathImage from_lamps_, to_camera_;  // of the surfaces
+    PathScatter scatter_;
+    ImagePlane added_, light_;
+};
+
+}  // namespace uw

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/forward/blur_kernel.h"
+#include "core/forward/cosine_transform.h"
+
+namespace uw {
+
+/// Sums images, each blurred by its own kernel. Beyond its border the scene goes on as its own
+/// mirror image, without end and without padding: no dark frame, and exactly as much light enters
+/// across the border as leaves. Only the sum is kept: two images of doubles, whatever the number
+/// of layers. The result does not depend on the number of threads.
+class MirroredBlur {
+  public:
+    /// Images of `width` times `height` pixels. Throws InputError if there is not enough memory.
+    MirroredBlur(int width, int height);
+
+    /// Writes row `y` of a layer into a row of zeros; returns false if it stays zeros. Called from
+    /// any thread, once per row.
+    using RowSource = std::function<bool(int y, std::span<double> row)>;
+    /// Adds a layer blurred by `kernel`, which was made for images of this size.
+    void add(const RowSource& layer, const BlurKernel& kernel);
+
+    /// Takes row `y` of the sum. Called from any thread, once per row.
+    using RowSink = std::function<void(int y, std::span<const double> row)>;
+    /// Hands over the sum and starts anew.
+    void finish(const RowSink& sink);
+
+  private:
+    void add_columns(const BlurKernel& kernel);
+
+    int width_;
+    int height_;
+    CosineTransform along_rows_;
+    CosineTransform along_columns_;
+    std::vector<double> layer_;     // row by row
+    std::vector<double> spectrum_;  // of the sum, column by column
+    bool any_ = false;
+};
+
+}  // namespace uw

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/integrators/surface_light.h"
+
+namespace uw {
+
+/// What one pixel looks at, before any light is gathered. Reused storage.
+struct PixelView {
+    double alpha = 0;        // share of samples whose ray enters the water
+    std::optional<Ray> ray;  // along which the pixel's water is integrated, if one enters it
+    double x = 0, y = 0;     // image position of that ray
+    /// Where the pixel's water ends [m along `ray`, ascending; k_far without a surface], and the
+    /// shares of the samples that end there. Empty without a ray.
+    std::vector<double> ends, shares;
+
+    std::vector<SurfaceSample> samples;  // those that meet a surface
+
+    // Ground truth at the pixel's centre:
+    bool has_hit = false;
+    SurfaceHit hit;
+    double depth_z = 0;  // camera-frame z of the hit
+    double range = 0;    // from the camera's centre to the hit
+    double path = 0;     // in water, from the outer glass surface to the hit
+};
+
+}  // namespace uw

@@ -1,0 +1,53 @@
+#include "core/image/film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/available_memory.h"
+#include "core/base/error.h"
+
+namespace uw {
+
+Film::Film(int width, int height, const PixelWindow& window, std::vector<std::string> channel_names)
+    : width_(width), height_(height), window_(window), channel_names_(std::move(channel_names)) {
+    if (window.x0 < 0 || window.y0 < 0 || window.x0 >= window.x1 || window.y0 >= window.y1 ||
+        window.x1 > width || window.y1 > height) {
+        throw UsageError(fmt::format(
+            "--crop {},{},{},{}: not a part of the image; columns run from 0 to {}, rows from 0 "
+            "to {}, and x0 < x1, y0 < y1",
+            window.x0, window.y0, window.x1, window.y1, width, height));
+    }
+    const double bytes =
+        4.0 * window.width() * window.height() * static_cast<double>(channel_names_.size());
+    const auto no_memory = [&] {
+        return InputError(fmt::format(
+            "camera.resolution: {} x {} pixels of {} channels need {:.3g} GB of memory, and {:.3g} "
+            "GB are free; ask for fewer --layers, a --crop or a smaller --size",
+            window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9,
+            static_cast<double>(available_memory_bytes()) * 1e-9));
+    };
+    // Asked first, for Linux promises more than it has and ends the program that makes use of it.
+    if (bytes > static_cast<double>(available_memory_bytes())) throw no_memory();
+    try {
+        values_.resize(static_cast<std::size_t>(window.width()) *
+                       static_cast<std::size_t>(window.height()) * channel_names_.size());
+    } catch (const std::bad_alloc&) {
+        throw no_memory();
+    } catch (const std::length_error&) {
+        throw no_memory();
+    }
+}
+
+Film cropped(const Film& film, const PixelWindow& window) {
+    Film part(film.width(), film.height(), window, film.channel_names());
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x)
+            std::ranges::copy(film.pixel(x, y), part.pixel(x, y).begin());
+    return part;
+}
+
+}  // namespace uw

@@ -1,0 +1,174 @@
+#include "core/image/layers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+
+namespace uw {
+namespace {
+
+struct LayerKind {
+    std::string_view name;
+    std::string_view suffixes;  // one channel per letter; one per band if empty
+};
+
+constexpr std::array<LayerKind, k_layer_count> k_layers{{
+    {"total", ""},
+    {"direct", ""},
+    {"forward", ""},
+    {"backscatter", ""},
+    {"backscatter_first", ""},
+    {"irradiance", ""},
+    {"exitance", ""},
+    {"lit", "V"},
+    {"clean", ""},
+    {"transmittance", ""},
+    {"albedo", ""},
+    {"depth", "Z"},
+    {"range", "V"},
+    {"path", "V"},
+    {"normal", "XYZ"},
+    {"position", "XYZ"},
+    {"id", "V"},
+}};
+
+constexpr std::array<std::string_view, 3> k_not_supported{"flow", "flow_back", "flow_occluded"};
+
+constexpr std::string_view k_lamp_prefix = "lamp.";
+/// EXR allows 255 bytes for "lamp.<name>.<band>nm".
+constexpr std::size_t k_longest_lamp_name = 200;
+
+std::string_view trimmed(std::string_view text) {
+    const auto begin = text.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+/// One suffix per band: R, G, B or the wavelengths, with as many digits as tell them apart.
+std::vector<std::string> band_suffixes(std::span<const double> bands_nm) {
+    if (bands_nm.size() == 3) return {"R", "G", "B"};
+    constexpr int k_digits_of_double = 17;
+    for (int digits = 6; digits <= k_digits_of_double; ++digits) {
+        std::vector<std::string> names;
+        for (const double nm : bands_nm) {
+            names.push_back(fmt::format("{:.{}g}nm", nm, digits));
+            std::ranges::replace(names.back(), '.', '_');
+        }
+        if (std::set(names.begin(), names.end()).size() == names.size()) return names;
+    }
+    throw InputError("water.bands: a wavelength stands there twice; leave one out");
+}
+
+std::optional<std::size_t> find_layer(std::string_view name) {
+    const auto found = std::ranges::find(k_layers, name, &LayerKind::name);
+    if (found == k_layers.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - k_layers.begin());
+}
+
+/// Every word that --layers takes, for the message about one that it does not.
+std::string mend_of(std::string_view item) {
+    std::vector<std::string_view> words{"all", "default", "lamps", "lamp.<name>"};
+    for (const LayerKind& layer : k_layers) words.push_back(layer.name);
+    return suggestion(item, words);
+}
+
+/// A lamp becomes part of a channel's name: readers end it at NUL, terminals break at controls.
+void check_lamp_name(const std::string& name) {
+    const auto is_control = [](char c) {
+        const auto byte = static_cast<unsigned char>(c);
+        return byte < 0x20 || byte == 0x7f;
+    };
+    if (name.empty() || name.size() > k_longest_lamp_name ||
+        std::ranges::any_of(name, is_control)) {
+        throw InputError(
+            fmt::format("lamps: a name cannot be that of a layer; use 1 to {} printable characters",
+                        k_longest_lamp_name));
+    }
+}
+
+}  // namespace
+
+/// What --layers asks for.
+struct LayerPlan::Selection {
+    std::array<bool, k_layer_count> layers{};
+    std::vector<bool> lamps;
+
+    void add(std::string_view item, std::span<const std::string> lamp_names);
+    void add_lamp(std::string_view name, std::span<const std::string> lamp_names);
+};
+
+void LayerPlan::Selection::add(std::string_view item, std::span<const std::string> lamp_names) {
+    if (item == "all" || item == "default") layers.fill(true);
+    if (item == "all" || item == "lamps") lamps.assign(lamps.size(), true);
+    if (item == "all" || item == "default" || item == "lamps") return;
+    if (item.starts_with(k_lamp_prefix)) {
+        add_lamp(item.substr(k_lamp_prefix.size()), lamp_names);
+    } else if (const auto layer = find_layer(item)) {
+        layers[*layer] = true;
+    } else if (std::ranges::find(k_not_supported, item) != k_not_supported.end()) {
+        throw UsageError(fmt::format("--layers: {}: not supported yet; leave it out", item));
+    } else {
+        throw UsageError(
+            fmt::format("--layers: '{}': unknown layer; {}", printable(item), mend_of(item)));
+    }
+}
+
+void LayerPlan::Selection::add_lamp(std::string_view name,
+                                    std::span<const std::string> lamp_names) {
+    const auto found = std::ranges::find(lamp_names, name);
+    if (found == lamp_names.end()) {
+        const std::vector<std::string_view> names(lamp_names.begin(), lamp_names.end());
+        throw UsageError(fmt::format("--layers: lamp.{}: the scene has no lamp of that name; {}",
+                                     printable(name),
+                                     names.empty() ? "it has no lamps" : suggestion(name, names)));
+    }
+    lamps[static_cast<std::size_t>(found - lamp_names.begin())] = true;
+}
+
+LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
+                     std::span<const std::string> lamp_names)
+    : first_of_lamp_(lamp_names.size(), -1) {
+    first_.fill(-1);
+    Selection selection;
+    selection.lamps.resize(lamp_names.size());
+    if (trimmed(request).empty()) request = "default";
+    for (std::size_t begin = 0; begin <= request.size();) {
+        const std::size_t end = std::min(request.find(',', begin), request.size());
+        selection.add(trimmed(request.substr(begin, end - begin)), lamp_names);
+        begin = end + 1;
+    }
+
+    const std::vector<std::string> bands = band_suffixes(bands_nm);
+    for (std::size_t i = 0; i < k_layer_count; ++i) {
+        const bool is_rgb = i == static_cast<std::size_t>(Layer::total) && bands_nm.size() == 3;
+        if (!selection.layers[i] || is_rgb) continue;
+        first_[i] = static_cast<int>(channel_names_.size());
+        std::vector<std::string> letters;
+        for (const char letter : k_layers[i].suffixes) letters.emplace_back(1, letter);
+        add_channels(std::string(k_layers[i].name), letters.empty() ? bands : letters);
+    }
+    std::set<std::string_view> named;
+    for (std::size_t lamp = 0; lamp < lamp_names.size(); ++lamp) {
+        if (!selection.lamps[lamp]) continue;
+        check_lamp_name(lamp_names[lamp]);
+        if (!named.insert(lamp_names[lamp]).second) {
+            throw InputError(
+                fmt::format("lamps: two are named '{}'; give each its own name to have its layer",
+                            lamp_names[lamp]));
+        }
+        first_of_lamp_[lamp] = static_cast<int>(channel_names_.size());
+        add_channels(std::string(k_lamp_prefix) + lamp_names[lamp], bands);
+    }
+}
+
+void LayerPlan::add_channels(const std::string& layer, std::span<const std::string> suffixes) {
+    for (const std::string& suffix : suffixes)
+        channel_names_.push_back(fmt::format("{}.{}", layer, suffix));
+}
+
+}  // namespace uw

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "core/lamps/lamp.h"
+#include "core/optics/concentration_field.h"
+#include "core/optics/medium.h"
+#include "core/surfaces/surfaces.h"
+
+namespace uw {
+
+/// Everything the integrators look at; all of it outlives them.
+struct LitScene {
+    const Medium* medium = nullptr;
+    const ConcentrationField* field = nullptr;
+    const Surfaces* surfaces = nullptr;
+    const std::vector<Lamp>* lamps = nullptr;
+};
+
+}  // namespace uw

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "core/base/ray.h"
+
+namespace uw {
+
+/// Gathers the distances along a ray at which quadrature panels begin and end, and leaves out those
+/// that follow too closely on another. Reused between rays.
+class PanelBreaks {
+  public:
+    /// Begins anew; what is added outside `stretch` is passed over.
+    void reset(const Interval& stretch);
+
+    /// The integrand jumps or bends here, or is asked for up to here: always kept.
+    void add_edge(double s) { add_mark(s, 0); }
+    /// The integrand only changes its scale here: left out if another break lies within `spacing`
+    /// [m, > 0] before it, or an edge behind it.
+    void add_mark(double s, double spacing) {
+        if (s > stretch_.begin && s < stretch_.end) candidates_.push_back({s, spacing});
+    }
+
+    /// The ends of the stretch and what is kept between them, ascending. Valid until the next call.
+    const std::vector<double>& kept();
+
+  private:
+    struct Candidate {
+        double s;
+        double spacing;  // 0: an edge
+    };
+
+    Interval stretch_;
+    std::vector<Candidate> candidates_;
+    std::vector<double> kept_;
+};
+
+}  // namespace uw

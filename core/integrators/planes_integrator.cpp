@@ -1,0 +1,125 @@
+#include "core/integrators/planes_integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/integrators/surface_lighting.h"
+
+namespace uw {
+
+struct PlanesIntegrator::Workspace {
+    std::vector<Sample> samples;
+    std::vector<Spectrum> radiance;  // of each sample
+    // Of the samples that the lamp lights:
+    std::vector<std::size_t> lit;
+    std::vector<double> path;    // lamp to sample to camera [m]
+    std::vector<double> weight;  // relative intensity / R^2 * length [1/m]
+    std::vector<double> psi;
+    std::vector<double> phase;
+    std::vector<Spectrum> beta;
+};
+
+PlanesIntegrator::PlanesIntegrator(const LitScene& scene, const Affine& world_from_camera,
+                                   const Slabs& slabs)
+    : scene_(scene),
+      camera_from_world_(world_from_camera.inverse()),
+      slabs_(slabs),
+      attenuation_(*scene.medium) {
+    if (scene.medium->constituent_count() > 0)
+        throw InputError(
+            "the planes integrator is for uniform water: remove `volumes`, or use integrator "
+            "volume");
+}
+
+void PlanesIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
+                                  InScatter& result) const {
+    in_scatter_from(ray, 0, ends, result);
+}
+
+void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                                       InScatter& result) const {
+    thread_local Workspace w;
+    const std::vector<Lamp>& lamps = *scene_.lamps;
+    result.reset(ends.size(), lamps.size());
+    place_samples(ray, begin, ends, w.samples);
+    for (std::size_t j = 0; j < lamps.size(); ++j) {
+        light_samples(ray, lamps[j], w);
+        Spectrum whole{};
+        std::size_t end = 0;
+        const auto finish = [&](std::size_t until) {  // all whole slabs before these are summed
+            for (; end < until; ++end)
+                for (std::size_t b = 0; b < k_max_bands; ++b) result.at(end, j)[b] += whole[b];
+        };
+        for (std::size_t i = 0; i < w.samples.size(); ++i) {
+            const Sample& sample = w.samples[i];
+            if (!sample.cut) finish(sample.end);
+            Spectrum& sum = sample.cut ? result.at(sample.end, j) : whole;
+            for (std::size_t b = 0; b < k_max_bands; ++b) sum[b] += w.radiance[i][b];
+        }
+        finish(ends.size());
+    }
+}
+
+void PlanesIntegrator::place_samples(const Ray& ray, double begin, std::span<const double> ends,
+                                     std::vector<Sample>& samples) const {
+    samples.clear();
+    const RayDepth depth(camera_from_world_, ray);
+    if (depth.cosine() <= 0) return;
+    std::size_t end = 0;  // the first that is not before the slab
+    for (int i = 0; i < slabs_.count; ++i) {
+        const Interval slab{std::max(begin, depth.distance(slabs_.boundary(i))),
+                            depth.distance(slabs_.boundary(i + 1))};
+        if (slab.length() <= 0) continue;
+        for (; end < ends.size() && ends[end] < slab.end; ++end)
+            if (ends[end] > slab.begin)
+                samples.push_back(
+                    {0.5 * (slab.begin + ends[end]), ends[end] - slab.begin, end, true});
+        if (end == ends.size()) return;
+        samples.push_back({0.5 * (slab.begin + slab.end), slab.length(), end, false});
+    }
+}
+
+void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace& w) const {
+    const Medium& medium = *scene_.medium;
+    w.radiance.assign(w.samples.size(), Spectrum{});
+    w.lit.clear();
+    w.path.clear();
+    w.weight.clear();
+    w.psi.clear();
+    for (std::size_t i = 0; i < w.samples.size(); ++i) {
+        const Sample& sample = w.samples[i];
+        const Point3 x = ray.at(sample.s);
+        const Vector3 from_lamp = x - lamp.position();
+        const double radius = glm::length(from_lamp);
+        const double relative = radius < k_lamp_radius ? 0.0 : lamp.relative_intensity(from_lamp);
+        if (relative <= 0 || scene_.surfaces->occluded(lamp.position(), x)) continue;
+        w.lit.push_back(i);
+        w.path.push_back(radius + sample.s);
+        w.weight.push_back(relative / (radius * radius) * sample.length);
+        // Between the directions of travel, lamp to X and X to camera; atan2 is exact near pi.
+        w.psi.push_back(std::atan2(glm::length(glm::cross(ray.direction, from_lamp)),
+                                   -glm::dot(ray.direction, from_lamp)));
+    }
+    const auto bands = static_cast<std::size_t>(medium.band_count());
+    w.phase.resize(w.psi.size());
+    w.beta.assign(w.psi.size(), Spectrum{});
+    for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
+        medium.phase_functions[m]->evaluate(w.psi, w.phase);
+        for (std::size_t i = 0; i < w.psi.size(); ++i)
+            for (std::size_t b = 0; b < bands; ++b)
+                w.beta[i][b] += medium.uniform.scattering[m][b] * w.phase[i];
+    }
+    for (std::size_t i = 0; i < w.lit.size(); ++i)
+        for (std::size_t b = 0; b < bands; ++b)
+            w.radiance[w.lit[i]][b] = lamp.axis_intensity()[b] * w.weight[i] * w.beta[i][b] *
+                                      std::exp(-attenuation_.uniform[b] * w.path[i]);
+}
+
+void PlanesIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
+                                      SurfaceLight& light) const {
+    // Uniform water: there are no columns to fill.
+    light_surfaces(scene_, attenuation_, samples, light);
+}
+
+}  // namespace uw

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/optics/concentration_field.h"
+#include "core/optics/medium.h"
+#include "core/optics/optical_depth.h"
+#include "core/optics/phase_table.h"
+
+namespace uw {
+
+/// Quadrature nodes of one lamp along one ray, as structure of arrays; reused between rays.
+struct ScatterNodes {
+    std::vector<double> s;             // along the ray [m], ascending
+    std::vector<double> weight;        // ds * relative intensity / R^2 [1/m]
+    std::vector<double> radius;        // distance from the lamp R [m]
+    std::vector<double> half_tangent;  // tan(psi / 2) of the scattering angle
+    std::vector<std::size_t> end;      // index of the first of the ray's ends beyond the node
+    std::vector<Point3> position;      // world
+    std::vector<double> lamp_column;   // lamp to node, [node * constituents + k]
+    // Filled by look_up and evaluate_phases:
+    std::vector<double> column;         // lamp to node to ray origin, [k * nodes + node]
+    std::vector<double> concentration;  // at the node, same layout
+    std::vector<double> phase;          // p_m(psi), [m * nodes + node], 1/sr
+
+    std::size_t size() const { return s.size(); }
+    void clear();
+    /// Fills column and concentration from the ray's profile and lamp_column.
+    void look_up(const ConcentrationProfile& profile);
+    /// Fills phase from half_tangent; `phases` is how many the table has.
+    void evaluate_phases(const PhaseTable& table, std::size_t phases);
+};
+
+/// Coefficients of a medium laid out for summing nodes.
+class ScatterSum {
+  public:
+    explicit ScatterSum(const Medium& medium);
+
+    const AttenuationTable& attenuation() const { return attenuation_; }
+
+    /// Adds intensity * weight * e^-tau * beta(psi) of every node to radiance[node.end]:
+    /// the in-scatter between the ends before and after it [W m^-2 sr^-1].
+    void add(const ScatterNodes& nodes, const Spectrum& intensity,
+             std::span<Spectrum> radiance) const;
+
+  private:
+    // Scattering into phase function m by constituent k, or by the uniform water.
+    struct Term {
+        std::size_t m;
+        std::size_t k;
+        Spectrum scattering;
+    };
+
+    void add_depth(const ScatterNodes& nodes, std::size_t band, std::span<double> tau) const;
+    void add_scattering(const ScatterNodes& nodes, std::size_t band, std::span<double> beta) const;
+
+    AttenuationTable attenuation_;
+    std::vector<Spectrum> uniform_;  // b_m [m]
+    std::vector<Term> terms_;        // b*_{k,m} other than 0
+};
+
+}  // namespace uw

@@ -1,0 +1,95 @@
+#include "core/integrators/slabs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/integrators/integrator.h"
+#include "core/optics/optical_depth.h"
+
+namespace uw {
+
+namespace {
+
+// Beyond the farthest lamp by so many optical depths, on the way to the camera and as many on the
+// way from the lamp: e^-10 = 5e-5 of the light is left.
+constexpr double k_reach_optical_depth = 5;
+// The coarse look at the image takes at most so many rays along each side, edges included.
+constexpr int k_looks = 256;
+// Slabs behind `far` are not more than this in all, whatever their thickness.
+constexpr double k_most_slabs = 1 << 20;
+
+// What a coarse look at the image sees of the water, in camera z [m].
+struct View {
+    double near = k_far;  // where it begins
+    double deepest = 0;   // of the surfaces
+    bool open = false;    // some ray meets no surface
+};
+
+View look(const RaySource& rays, const Surfaces& surfaces) {
+    const Affine camera_from_world = rays.world_from_camera().inverse();
+    const int columns = std::min(k_looks, rays.width()), rows = std::min(k_looks, rays.height());
+    View view;
+    bool all_enter = true, any_enters = false;
+    for (int j = 0; j <= rows; ++j) {
+        for (int i = 0; i <= columns; ++i) {
+            const auto ray = rays.refracted_ray(static_cast<double>(i) * rays.width() / columns,
+                                                static_cast<double>(j) * rays.height() / rows);
+            if (!ray) {
+                all_enter = false;
+                continue;
+            }
+            any_enters = true;
+            const RayDepth depth(camera_from_world, *ray);
+            view.near = std::min(view.near, std::max(0.0, depth.z(0)));
+            const double surface = surfaces.hit_distance(*ray);
+            view.open = view.open || surface > k_far;
+            if (surface <= k_far) view.deepest = std::max(view.deepest, depth.z(surface));
+        }
+    }
+    // The border of the image holds the least z of a flat port, if it is seen whole.
+    if (!all_enter) view.near = 0;
+    if (!any_enters) view.open = true;  // a black image all the same
+    return view;
+}
+
+// Camera z beyond which no lamp's light comes back.
+double reach(const RaySource& rays, const LitScene& scene, double near) {
+    const AttenuationTable attenuation(*scene.medium);
+    const double least_c = *std::min_element(attenuation.uniform.begin(),
+                                             attenuation.uniform.begin() + attenuation.band_count);
+    if (least_c <= 0) return k_far;
+    const Point3 camera = rays.world_from_camera() * Point3{};
+    double farthest_lamp = 0;
+    for (const Lamp& lamp : *scene.lamps)
+        farthest_lamp = std::max(farthest_lamp, distance(lamp.position(), camera));
+    return std::min(k_far, near + farthest_lamp + k_reach_optical_depth / least_c);
+}
+
+}  // namespace
+
+Slabs place_slabs(const PlanesDesc& desc, const RaySource& rays, const LitScene& scene) {
+    const View view = look(rays, *scene.surfaces);
+    const double last = reach(rays, scene, view.near);
+    const double seen = view.open ? last : std::min(last, view.deepest);
+    Slabs slabs;
+    slabs.near = desc.near.value_or(view.near);
+    slabs.far = desc.far.value_or(seen);
+    slabs.count = desc.count;
+    if (slabs.far <= view.near || slabs.near >= seen)
+        throw InputError(fmt::format(
+            "{}: the slabs from z = {:.6g} m to {:.6g} m hold no water that is seen: it lies from "
+            "{:.6g} m to {:.6g} m; give near and far around it, or leave them out",
+            desc.where, slabs.near, slabs.far, view.near, seen));
+    if (!desc.far) {
+        const double count = std::ceil((last - slabs.near) / slabs.thickness());
+        const double thickness = slabs.thickness();
+        slabs.count = std::max(desc.count, static_cast<int>(std::min(count, k_most_slabs)));
+        if (slabs.count > desc.count) slabs.far = slabs.near + slabs.count * thickness;
+    }
+    return slabs;
+}
+
+}  // namespace uw

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "core/base/affine.h"
+#include "core/base/ray.h"
+#include "core/base/ray_source.h"
+#include "core/integrators/lit_scene.h"
+#include "core/scene/scene_desc.h"
+
+namespace uw {
+
+/// Slabs of water parallel to the image plane and equally thick, one behind the other along
+/// camera z [m].
+struct Slabs {
+    double near = 0;  // camera z where the first slab begins
+    double far = 0;   // and where the last one ends; > near
+    int count = 1;
+
+    double thickness() const { return (far - near) / count; }
+    /// Camera z between slab `i` - 1 and slab `i`, 0 <= i <= count.
+    double boundary(int i) const { return near + (far - near) * i / count; }
+};
+
+/// Camera z along one ray in the world, or distance from where the ray begins.
+class RayDepth {
+  public:
+    /// Distance from the ray's origin in place of camera z.
+    static RayDepth from_origin() { return {0, 1}; }
+    RayDepth(const Affine& camera_from_world, const Ray& ray)
+        : origin_((camera_from_world * ray.origin).z),
+          cosine_(camera_from_world.apply_to_vector(ray.direction).z) {}
+
+    /// Cosine of the ray's angle to the optical axis; a ray that does not go forward (<= 0) passes
+    /// no slabs.
+    double cosine() const { return cosine_; }
+    double z(double s) const { return origin_ + cosine_ * s; }
+    /// Distance along the ray to camera z = `z` [m], below 0 before its origin.
+    /// Precondition: cosine() > 0.
+    double distance(double z) const { return (z - origin_) / cosine_; }
+
+  private:
+    RayDepth(double origin, double cosine) : origin_(origin), cosine_(cosine) {}
+
+    double origin_;
+    double cosine_;
+};
+
+/// The slabs that `desc` asks for. Where it leaves them out, `near` is where the water begins (the
+/// least camera z of the image's water rays, never below 0) and `far` the greatest camera z of the
+/// surfaces in a coarse look at the image, or, where no surface ends the view, where less than 1e-4
+/// of a lamp's in-scatter lies beyond. With `far` left out, slabs of the same thickness go on
+/// behind it that far too, so that no water is lost; `count` of the result includes them. Throws
+/// InputError where no water lies between near and far.
+Slabs place_slabs(const PlanesDesc& desc, const RaySource& rays, const LitScene& scene);
+
+}  // namespace uw

@@ -1,0 +1,178 @@
+#include "core/integrators/surface_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/base/fast_exp.h"
+
+namespace uw {
+
+namespace {
+
+// Nodes farther than this many voxels from a sample say nothing of it.
+constexpr double k_near_voxels = 4;
+// A surface may lie this many voxels before or behind where its nodes let it be expected.
+constexpr double k_step_voxels = 0.5;
+
+int pixel(double position) {
+    return static_cast<int>(std::floor(position));
+}
+
+}  // namespace
+
+void SurfaceColumns::begin(const LitScene& scene, const AttenuationTable& attenuation,
+                           const ColumnMixing& mixing,
+                           std::span<const SurfaceSample* const> samples) {
+    scene_ = &scene;
+    attenuation_ = &attenuation;
+    mixing_ = mixing;
+    samples_ = samples;
+    constituents_ = attenuation.constituents.size();
+    voxel_ = scene.field->finest_voxel();
+    mixed_ = mixing.tolerance > 0 && constituents_ > 0 && samples.size() > 1;
+    if (mixed_) place_nodes();
+}
+
+void SurfaceColumns::place_nodes() {
+    x0_ = y0_ = std::numeric_limits<int>::max();
+    x1_ = y1_ = std::numeric_limits<int>::min();
+    positions_.clear();
+    for (const SurfaceSample* sample : samples_) {
+        x0_ = std::min(x0_, pixel(sample->x));
+        y0_ = std::min(y0_, pixel(sample->y));
+        x1_ = std::max(x1_, pixel(sample->x));
+        y1_ = std::max(y1_, pixel(sample->y));
+        positions_.push_back(sample->hit.position);
+    }
+    // The last pixels have nodes too, however near the ones before are.
+    columns_ = (x1_ - x0_ + k_spacing - 1) / k_spacing + 1;
+    rows_ = (y1_ - y0_ + k_spacing - 1) / k_spacing + 1;
+    const auto count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+    nodes_.assign(count, Node{});
+    cells_.assign(count, Cell{});
+    node_columns_.resize(count * constituents_);
+    const auto place = [&](int column, int row) {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+               static_cast<std::size_t>(column);
+    };
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+        const int x = pixel(samples_[i]->x) - x0_, y = pixel(samples_[i]->y) - y0_;
+        const bool at_column = x % k_spacing == 0 || x == x1_ - x0_;
+        const bool at_row = y % k_spacing == 0 || y == y1_ - y0_;
+        if (at_column && at_row) {
+            Node& node =
+                nodes_[place((x + k_spacing - 1) / k_spacing, (y + k_spacing - 1) / k_spacing)];
+            if (node.sample == k_none) node.sample = i;
+        } else if (x % k_spacing == k_spacing / 2 && y % k_spacing == k_spacing / 2) {
+            Cell& cell = cells_[place(x / k_spacing, y / k_spacing)];
+            if (cell.middle == k_none) cell.middle = i;
+        }
+    }
+}
+
+void SurfaceColumns::take(int path) {
+    path_ = path;
+    if (!mixed_) return;
+    for (Node& node : nodes_) node.known = false;
+    for (Cell& cell : cells_) cell.state = Cell::State::unknown;
+    if (path == k_camera) return;
+    field_columns_.resize(samples_.size() * constituents_);
+    (*mixing_.deep_shadows)[static_cast<std::size_t>(path)]->columns(positions_, field_columns_);
+}
+
+void SurfaceColumns::integrate(std::size_t sample, std::span<double> column) const {
+    const auto& [ray, hit, x, y] = *samples_[sample];
+    const Point3& end = path_ == k_camera
+                            ? ray.origin
+                            : (*scene_->lamps)[static_cast<std::size_t>(path_)].position();
+    scene_->field->column(end, hit.position, column);
+}
+
+const double* SurfaceColumns::node_column(std::size_t node) {
+    double* const own = &node_columns_[node * constituents_];
+    if (nodes_[node].known) return own;
+    nodes_[node].known = true;
+    const std::size_t sample = nodes_[node].sample;
+    integrate(sample, std::span(own, constituents_));
+    if (path_ != k_camera)
+        for (std::size_t k = 0; k < constituents_; ++k)
+            own[k] -= field_columns_[sample * constituents_ + k];
+    return own;
+}
+
+std::size_t SurfaceColumns::cell_of(const SurfaceSample& sample) const {
+    const int column = std::min((pixel(sample.x) - x0_) / k_spacing, std::max(0, columns_ - 2));
+    const int row = std::min((pixel(sample.y) - y0_) / k_spacing, std::max(0, rows_ - 2));
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+}
+
+bool SurfaceColumns::mix(std::size_t sample, std::size_t cell, std::span<double> column) {
+    const auto across = static_cast<std::size_t>(columns_);
+    if (columns_ < 2 || rows_ < 2) return false;
+    const std::array corners{cell, cell + 1, cell + across, cell + across + 1};
+    const SurfaceSample& here = *samples_[sample];
+    for (const std::size_t corner : corners) {
+        const std::size_t node = nodes_[corner].sample;
+        if (node == k_none) return false;
+        const Vector3 apart = samples_[node]->hit.position - here.hit.position;
+        const double near = k_near_voxels * voxel_;
+        if (glm::dot(apart, apart) > near * near) return false;
+    }
+    const auto at = [&](std::size_t corner) -> const SurfaceSample& {
+        return *samples_[nodes_[corner].sample];
+    };
+    const double u = (here.x - at(corners[0]).x) / (at(corners[1]).x - at(corners[0]).x);
+    const double v = (here.y - at(corners[0]).y) / (at(corners[2]).y - at(corners[0]).y);
+    const std::array weights{(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+    std::fill(column.begin(), column.end(), 0.0);
+    double nearer = here.hit.distance;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+        const double* const own = node_column(corners[c]);
+        for (std::size_t k = 0; k < constituents_; ++k) column[k] += weights[c] * own[k];
+        nearer -= weights[c] * at(corners[c]).hit.distance;
+    }
+    if (path_ != k_camera) {
+        for (std::size_t k = 0; k < constituents_; ++k)
+            column[k] += field_columns_[sample * constituents_ + k];
+        return true;
+    }
+    if (std::abs(nearer) > k_step_voxels * voxel_) return false;
+    exact_.resize(constituents_);
+    scene_->field->sample(here.hit.position, exact_);
+    for (std::size_t k = 0; k < constituents_; ++k) column[k] += nearer * exact_[k];
+    return true;
+}
+
+bool SurfaceColumns::confirmed(std::size_t cell) {
+    Cell& asked = cells_[cell];
+    if (asked.state != Cell::State::unknown) return asked.state == Cell::State::confirmed;
+    asked.state = Cell::State::refused;
+    mixture_.resize(constituents_);
+    if (asked.middle == k_none || !mix(asked.middle, cell, mixture_)) return false;
+    exact_.resize(constituents_);
+    integrate(asked.middle, exact_);
+    const double length =
+        path_ == k_camera ? samples_[asked.middle]->hit.distance
+                          : distance((*scene_->lamps)[static_cast<std::size_t>(path_)].position(),
+                                     samples_[asked.middle]->hit.position);
+    for (int band = 0; band < attenuation_->band_count; ++band) {
+        const double depth = attenuation_->optical_depth(band, length, exact_);
+        const double difference = attenuation_->optical_depth(band, length, mixture_) - depth;
+        if (std::abs(difference) * exp_of_minus(depth) > mixing_.tolerance) return false;
+    }
+    asked.state = Cell::State::confirmed;
+    return true;
+}
+
+void SurfaceColumns::column(std::size_t sample, std::span<double> column) {
+    if (mixed_) {
+        const std::size_t cell = cell_of(*samples_[sample]);
+        if (confirmed(cell) && mix(sample, cell, column)) return;
+    }
+    integrate(sample, column);
+}
+
+}  // namespace uw

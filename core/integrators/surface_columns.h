@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/integrators/deep_shadow.h"
+#include "core/integrators/lit_scene.h"
+#include "core/integrators/surface_light.h"
+#include "core/optics/optical_depth.h"
+
+namespace uw {
+
+/// How the columns of surfaces side by side are mixed instead of integrated one by one.
+struct ColumnMixing {
+    const std::vector<std::shared_ptr<const DeepShadow>>* deep_shadows = nullptr;  // by lamp
+    /// Largest error allowed of what a path lets through (0..1), of a mixture against the exact
+    /// column halfway between the samples it is mixed from; 0 integrates every column.
+    double tolerance = 0;
+};
+
+/// Column concentrations between the surfaces of a tile and the camera or a lamp. Every fourth
+/// sample across and down has exact ones (a node). Between four nodes the mixture of theirs is
+/// taken, where the one in the middle confirms that: from a lamp, of how far the lamp's deep shadow
+/// map is off, since that has the shape already; to the camera, of the columns, with a correction
+/// by the concentration at the surface for how much nearer or farther it is. Elsewhere all are
+/// exact. Reused between tiles.
+class SurfaceColumns {
+  public:
+    /// All of it outlives the columns until the next call. The samples' image positions lie in one
+    /// tile.
+    void begin(const LitScene& scene, const AttenuationTable& attenuation,
+               const ColumnMixing& mixing, std::span<const SurfaceSample* const> samples);
+
+    /// Chooses the other end of the paths.
+    void take_camera() { take(k_camera); }
+    void take_lamp(std::size_t lamp) { take(static_cast<int>(lamp)); }
+
+    /// Column concentrations of a sample's path, one per constituent [unit m].
+    void column(std::size_t sample, std::span<double> column);
+
+  private:
+    static constexpr int k_camera = -1;
+    static constexpr int k_spacing = 4;  // of nodes [pixels]
+    static constexpr std::size_t k_none = static_cast<std::size_t>(-1);
+
+    struct Node {
+        std::size_t sample = k_none;
+        bool known = false;  // of the path taken
+    };
+    struct Cell {
+        std::size_t middle = k_none;  // sample
+        enum class State : char { unknown, confirmed, refused } state = State::unknown;
+    };
+
+    void place_nodes();
+    void take(int path);
+    void integrate(std::size_t sample, std::span<double> column) const;
+    const double* node_column(std::size_t node);
+    std::size_t cell_of(const SurfaceSample& sample) const;
+    bool confirmed(std::size_t cell);
+    // False where the nodes around look at something else.
+    bool mix(std::size_t sample, std::size_t cell, std::span<double> column);
+
+    const LitScene* scene_ = nullptr;
+    const AttenuationTable* attenuation_ = nullptr;
+    ColumnMixing mixing_;
+    std::span<const SurfaceSample* const> samples_;
+    std::size_t constituents_ = 0;
+    double voxel_ = 0;
+    int path_ = k_camera;
+
+    bool mixed_ = false;
+    int x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;  // first and last pixels of the tile
+    int columns_ = 0, rows_ = 0;             // of nodes
+    std::vector<Node> nodes_;
+    std::vector<Cell> cells_;            // each at the place of its first node
+    std::vector<double> node_columns_;   // exact, from a lamp less the deep shadow map's
+    std::vector<double> field_columns_;  // the deep shadow map's, of all samples
+    std::vector<Point3> positions_;
+    std::vector<double> mixture_, exact_;
+};
+
+}  // namespace uw

@@ -1,0 +1,224 @@
+#include "core/integrators/volume_integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/quadrature.h"
+#include "core/integrators/surface_lighting.h"
+
+namespace uw {
+
+namespace {
+
+// A Gauss panel may change the optical depth of the whole light path by this much: with three
+// nodes e^-x over [0, 1.5] is then exact to 1e-5.
+constexpr double k_panel_optical_depth = 1.5;
+// What lies this many optical depths behind the nearest light path adds less than 1e-6 of it.
+constexpr double k_negligible_optical_depth = 15;
+
+// A break that only marks a change of scale is left out where the one before it is nearer than
+// this, relative to the distance from the lamp.
+constexpr double k_least_relative_panel = 0.35;
+
+std::vector<double> cotangents_of_breakpoints(const Medium& medium) {
+    std::vector<double> all;
+    for (const auto& phase : medium.phase_functions) {
+        const std::vector<double> own = phase->breakpoints();
+        all.insert(all.end(), own.begin(), own.end());
+    }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    for (double& psi : all) psi = 1 / std::tan(psi);
+    return all;
+}
+
+// How many Gauss nodes a panel needs: by how much R changes across it, relative to itself.
+int node_count(double length, double nearest_radius) {
+    if (length < 0.12 * nearest_radius) return 2;
+    return length < 0.35 * nearest_radius ? 3 : 4;
+}
+
+// One stretch between two breaks, and what holds all over it.
+struct Panel {
+    Interval stretch;
+    int pieces = 1;       // equal parts, each with its own nodes
+    bool evenly = false;  // the lamp shines as on its axis
+    std::size_t end = 0;  // index of the first of the ray's ends beyond it
+};
+
+void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, const Panel& panel,
+               ScatterNodes& nodes) {
+    const double length = panel.stretch.length() / panel.pieces;
+    for (int piece = 0; piece < panel.pieces; ++piece) {
+        const double begin = panel.stretch.begin + piece * length;
+        const double nearest = passage.radius(glm::clamp(passage.foot, begin, begin + length));
+        for (const QuadratureNode& node : gauss_legendre(node_count(length, nearest))) {
+            const double s = begin + node.position * length;
+            const double radius = passage.radius(s);
+            const Point3 x = ray.at(s);
+            const double relative =
+                panel.evenly ? 1.0 : lamp.relative_intensity(x - lamp.position());
+            nodes.s.push_back(s);
+            nodes.radius.push_back(radius);
+            nodes.weight.push_back(node.weight * length * relative / (radius * radius));
+            nodes.half_tangent.push_back(passage.half_tangent(s, radius));
+            nodes.end.push_back(panel.end);
+            nodes.position.push_back(x);
+        }
+    }
+}
+
+// Adds the knots of a profile, which follow each other from voxel to voxel: every `voxels` one, and
+// where particles begin and end.
+void add_knots(const ConcentrationProfile& profile, int voxels, PanelBreaks& breaks) {
+    const auto pace = static_cast<std::size_t>(voxels);
+    const double least_knots = voxels - 0.1;
+    bool was_empty = true;
+    for (std::size_t i = 0; i + 1 < profile.s.size(); ++i) {
+        const bool is_empty = profile.empty_between(i);
+        if (is_empty != was_empty)
+            breaks.add_edge(profile.s[i]);
+        else if (!is_empty && i % pace == 0)
+            breaks.add_mark(profile.s[i], least_knots * (profile.s[i + 1] - profile.s[i]));
+        was_empty = is_empty;
+    }
+}
+
+double largest_value(const Spectrum& spectrum, int band_count) {
+    return *std::max_element(spectrum.begin(), spectrum.begin() + band_count);
+}
+
+}  // namespace
+
+struct VolumeIntegrator::Workspace {
+    ConcentrationProfile profile;
+    std::vector<Interval> lit;
+    PanelBreaks breaks;
+    std::vector<double> marks;
+    std::vector<Spectrum> radiance;
+    ScatterNodes nodes;
+};
+
+VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
+                                   std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
+                                   const VolumeQuadrature& quadrature)
+    : scene_(scene),
+      quadrature_(quadrature),
+      deep_shadows_(std::move(deep_shadows)),
+      phase_cotangents_(cotangents_of_breakpoints(*scene.medium)),
+      phases_(*scene.medium),
+      sum_(*scene.medium) {
+    const AttenuationTable& c = sum_.attenuation();
+    largest_attenuation_ = largest_value(c.uniform, c.band_count);
+    smallest_attenuation_ = *std::min_element(c.uniform.begin(), c.uniform.begin() + c.band_count);
+    for (const Spectrum& constituent : c.constituents)
+        largest_per_unit_.push_back(largest_value(constituent, c.band_count));
+}
+
+void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
+                                  InScatter& result) const {
+    in_scatter_from(ray, 0, ends, result);
+}
+
+void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                                       InScatter& result) const {
+    thread_local Workspace w;
+    const std::vector<Lamp>& lamps = *scene_.lamps;
+    result.reset(ends.size(), lamps.size());
+    scene_.field->profile(ray, ends.back(), w.profile);
+    for (std::size_t j = 0; j < lamps.size(); ++j) {
+        const LampPassage passage(ray, lamps[j].position());
+        double reach = ends.back();
+        if (smallest_attenuation_ > 0)
+            reach = std::min(
+                reach, passage.radius(0) + k_negligible_optical_depth / smallest_attenuation_);
+        deep_shadows_[j]->lit_intervals(ray, lamps[j].beam(ray, {begin, reach}), w.lit);
+        w.nodes.clear();
+        for (const Interval& interval : w.lit) {
+            const std::vector<double>& breaks = find_breaks(ray, j, passage, interval, ends, w);
+            add_panels(ray, j, passage, ends, breaks, w.profile, w.nodes);
+        }
+        w.nodes.lamp_column.resize(w.nodes.size() *
+                                   static_cast<std::size_t>(w.profile.constituent_count));
+        deep_shadows_[j]->columns(w.nodes.position, w.nodes.lamp_column);
+        w.nodes.look_up(w.profile);
+        w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
+        w.radiance.assign(ends.size(), Spectrum{});
+        sum_.add(w.nodes, lamps[j].axis_intensity(), w.radiance);
+        Spectrum so_far{};
+        for (std::size_t end = 0; end < ends.size(); ++end) {
+            for (std::size_t band = 0; band < k_max_bands; ++band)
+                so_far[band] += w.radiance[end][band];
+            result.at(end, j) = so_far;
+        }
+    }
+}
+
+const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::size_t lamp,
+                                                         const LampPassage& passage,
+                                                         const Interval& interval,
+                                                         std::span<const double> ends,
+                                                         Workspace& w) const {
+    w.breaks.reset(interval);
+    for (const double end : ends) w.breaks.add_edge(end);
+    w.marks.clear();
+    (*scene_.lamps)[lamp].append_profile_breaks(ray, w.marks);
+    for (const double s : w.marks) w.breaks.add_edge(s);
+    if (passage.distance < k_lamp_radius) {
+        const double half =
+            std::sqrt(k_lamp_radius * k_lamp_radius - passage.distance * passage.distance);
+        w.breaks.add_edge(passage.foot - half);
+        w.breaks.add_edge(passage.foot + half);
+    }
+    w.marks.clear();
+    append_octaves(passage, interval, w.marks);
+    for (const double s : w.marks) w.breaks.add_mark(s, k_least_relative_panel * passage.radius(s));
+    for (const double cotangent : phase_cotangents_)
+        w.breaks.add_edge(passage.foot - passage.distance * cotangent);
+    if (w.profile.constituent_count > 0) {
+        add_knots(w.profile, quadrature_.voxels_per_panel, w.breaks);
+        w.marks.clear();
+        deep_shadows_[lamp]->append_column_breaks(ray, interval, w.marks);
+        const double spacing = quadrature_.voxels_per_panel * scene_.field->finest_voxel();
+        for (const double s : w.marks) w.breaks.add_mark(s, spacing);
+    }
+    return w.breaks.kept();
+}
+
+void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPassage& passage,
+                                  std::span<const double> ends, std::span<const double> breaks,
+                                  const ConcentrationProfile& profile, ScatterNodes& nodes) const {
+    const Lamp& source = (*scene_.lamps)[lamp];
+    std::size_t end_index = 0;
+    std::size_t knot = 0;
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+        const Interval panel{breaks[i], breaks[i + 1]};
+        const double middle = 0.5 * (panel.begin + panel.end);
+        if (panel.length() <= 1e-12 * (1 + middle)) continue;
+        if (passage.radius(middle) < k_lamp_radius) continue;
+        // A panel lies between the edges of the lamp's cone: dark in the middle is dark all over.
+        const double relative = source.relative_intensity(ray.at(middle) - source.position());
+        if (relative == 0) continue;
+        while (end_index + 1 < ends.size() && ends[end_index] < middle) ++end_index;
+        while (knot + 2 < profile.s.size() && profile.s[knot + 1] < middle) ++knot;
+        double attenuation = largest_attenuation_;
+        for (std::size_t k = 0; k < largest_per_unit_.size(); ++k)
+            attenuation +=
+                largest_per_unit_[k] * profile.concentration[knot * largest_per_unit_.size() + k];
+        // Light path s + R: it changes by at most twice the panel's length.
+        const double depth = 2 * attenuation * panel.length();
+        const int pieces =
+            static_cast<int>(std::min(64.0, std::ceil(depth / k_panel_optical_depth)));
+        add_nodes(ray, source, passage,
+                  {panel, std::max(1, pieces), relative == 1 && source.has_even_core(), end_index},
+                  nodes);
+    }
+}
+
+void VolumeIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
+                                      SurfaceLight& light) const {
+    light_surfaces(scene_, sum_.attenuation(), samples, light,
+                   {&deep_shadows_, quadrature_.column_tolerance});
+}
+
+}  // namespace uw

@@ -1,0 +1,243 @@
+#include "core/lamps/ies_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+
+namespace uw {
+
+namespace {
+
+constexpr std::uintmax_t k_largest_file = 4 << 20;
+constexpr std::size_t k_most_candelas = 1'100'000;  // a quarter of a degree both ways
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view k_blank = " \t\r";
+    const std::size_t first = text.find_first_not_of(k_blank);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(k_blank) - first + 1);
+}
+
+std::string upper_case(std::string_view text) {
+    std::string upper(text);
+    std::ranges::transform(upper, upper.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return upper;
+}
+
+/// The lines and numbers of the text, one after the other.
+class IesText {
+  public:
+    IesText(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {}
+
+    const std::string& name() const { return name_; }
+    std::size_t bytes_left() const { return rest_.size(); }
+    [[noreturn]] void fail(std::string_view what) const {
+        throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
+    }
+
+    bool at_end() const { return rest_.empty(); }
+    std::string_view line() {
+        const std::size_t end = rest_.find('\n');
+        const std::string_view whole = rest_.substr(0, end);
+        rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+        ++line_;
+        return trimmed(whole);
+    }
+
+    /// Whether another number follows; numbers stand between blanks, commas and line ends.
+    bool has_number() {
+        constexpr std::string_view k_between = " \t\r\n,\x1A";  // ^Z ends files of DOS
+        while (!rest_.empty() && k_between.find(rest_.front()) != std::string_view::npos) {
+            if (rest_.front() == '\n') ++line_;
+            rest_.remove_prefix(1);
+        }
+        return !rest_.empty();
+    }
+
+    double number(std::string_view what) {
+        if (!has_number())
+            fail(fmt::format("ends before {}; the file is cut short: get it again", what));
+        const std::string_view token = rest_.substr(0, rest_.find_first_of(" \t\r\n,\x1A"));
+        double value = 0;
+        if (parse_number(token, value) != NumberText::number || std::abs(value) > k_largest)
+            fail(fmt::format("'{}' is no number for {}; numbers are written like 12.5",
+                             printable(token), what));
+        rest_.remove_prefix(token.size());
+        return value;
+    }
+
+    double non_negative(std::string_view what) {
+        const double value = number(what);
+        if (value < 0) fail(fmt::format("{} must not be negative, found {}", what, value));
+        return value;
+    }
+
+    /// A count of numbers that follow: no more than the rest of the text can hold.
+    std::size_t count(std::string_view what) {
+        const double value = number(what);
+        const double most = 0.5 * static_cast<double>(rest_.size()) + 1;
+        if (!(value >= 1) || value != std::floor(value) || value > most)
+            fail(fmt::format("{} must be a whole number from 1 to what the file holds, found {}",
+                             what, value));
+        return static_cast<std::size_t>(value);
+    }
+
+    std::vector<double> ascending(std::size_t count, double most, std::string_view what) {
+        std::vector<double> angles;
+        while (angles.size() < count) {
+            const double angle = number(what);
+            if (angle < 0 || angle > most)
+                fail(fmt::format("{} lie from 0 to {} degrees, found {}", what, most, angle));
+            if (!angles.empty() && angle <= angles.back())
+                fail(fmt::format("{} must ascend, found {} after {}", what, angle, angles.back()));
+            angles.push_back(angle);
+        }
+        return angles;
+    }
+
+  private:
+    static constexpr double k_largest = 1e12;
+
+    std::string_view rest_;
+    std::string name_;
+    int line_ = 1;
+};
+
+/// The year in "IESNA:LM-63-2002" or "IESNA91"; the first standard had no such line.
+int year_of(std::string_view first_line) {
+    const std::string upper = upper_case(first_line);
+    if (upper.starts_with("IESNA91")) return 1991;
+    if (!upper.starts_with("IESNA")) return 1986;
+    for (const int year : {1991, 1995, 2002, 2019})
+        if (upper.find(std::to_string(year)) != std::string::npos) return year;
+    return 2002;
+}
+
+/// What stands behind TILT=, in upper case; reads up to and with its line.
+std::string read_header(IesText& text, IesFile& file) {
+    const std::string_view first = text.line();
+    file.year = year_of(first);
+    std::string_view line = first;
+    for (;;) {
+        const std::string upper = upper_case(line);
+        if (upper.starts_with("TILT=")) return upper.substr(5);
+        if (text.at_end())
+            text.fail(
+                "there is no line 'TILT=': this is no IES file (LM-63); EULUMDAT (.ldt) and "
+                "others must be converted first");
+        line = text.line();
+    }
+}
+
+void read_tilt(IesText& text, std::string_view tilt, IesFile& file) {
+    if (trimmed(tilt) == "NONE") return;
+    file.warnings.push_back(fmt::format(
+        "{}: its TILT factors, by which a lamp is dimmer in another attitude, are not applied",
+        text.name()));
+    if (trimmed(tilt) != "INCLUDE") return;
+    text.number("the lamp's orientation");
+    const std::size_t pairs = text.count("the number of TILT angles");
+    text.ascending(pairs, 180, "TILT angles");
+    for (std::size_t i = 0; i < pairs; ++i) text.non_negative("a TILT factor");
+}
+
+/// The ten numbers of the first line and three of the second; the factor on all candelas.
+double read_factors(IesText& text, IesFile& file, std::size_t& polar, std::size_t& planes) {
+    const double lamps = text.non_negative("the number of lamps");
+    const double lumens = text.number("the lumens per lamp");
+    // -1: absolute photometry, the candelas are the luminaire's own.
+    file.lumens = lumens < 0 ? -1 : lamps * lumens;
+    double factor = text.non_negative("the multiplier of the candelas");
+    polar = text.count("the number of vertical angles");
+    planes = text.count("the number of horizontal angles");
+    const double type = text.number("the photometric type");
+    if (type == 2 || type == 3)
+        text.fail(
+            fmt::format("its photometry is of type {}; only type C is read: convert it to type "
+                        "C, or ask the maker for that",
+                        type == 2 ? 'B' : 'A'));
+    if (type != 1)
+        text.fail(fmt::format("the photometric type must be 1 (type C), found {}", type));
+    for (const char* const what : {"the type of units", "the width", "the length", "the height"})
+        text.number(what);
+    factor *= text.non_negative("the ballast factor");
+    const double second = text.non_negative("the number behind the ballast factor");
+    // The ballast-lamp factor of the older standards; later ones keep the place for future use.
+    if (file.year <= 1991) factor *= second;
+    text.number("the input watts");
+    return factor;
+}
+
+void check_ranges(const IesText& text, IesFile& file) {
+    const double first = file.polar.front(), last = file.polar.back();
+    if (file.polar.size() < 2) text.fail("has one vertical angle; a distribution needs more");
+    if ((first > 0 && first != 90) || (last != 90 && last != 180))
+        file.warnings.push_back(
+            fmt::format("{}: its vertical angles go from {} to {}, where 0 or 90 to 90 or 180 are "
+                        "usual; it is dark outside them",
+                        text.name(), first, last));
+    if (file.planes.size() == 1) return;
+    const double begin = file.planes.front(), end = file.planes.back();
+    const double widest_gap = 2 * (file.planes[1] - begin);
+    const bool known =
+        (begin == 0 && (end == 90 || end == 180 || end == 360)) || (begin == 90 && end == 270);
+    // Some files leave out 360 degrees, which are 0 degrees again.
+    if (!known && (begin != 0 || end <= 180 || 360 - end > widest_gap))
+        text.fail(
+            fmt::format("its horizontal angles go from {} to {}; of type C they go from 0 to 0, "
+                        "90, 180 or 360, or from 90 to 270",
+                        begin, end));
+}
+
+}  // namespace
+
+IesFile parse_ies(std::string_view content, const std::string& name) {
+    constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
+    if (content.starts_with(k_byte_order_mark)) content.remove_prefix(k_byte_order_mark.size());
+    IesText text(content, printable(name, 300));
+    IesFile file;
+    read_tilt(text, read_header(text, file), file);
+    std::size_t polar = 0, planes = 0;
+    const double factor = read_factors(text, file, polar, planes);
+    if (polar > std::min(k_most_candelas, text.bytes_left() / 2 + 1) / planes)
+        text.fail(fmt::format(
+            "{} x {} angles are more than this file can hold candelas for (at most {}); check both "
+            "counts",
+            polar, planes, k_most_candelas));
+    file.polar = text.ascending(polar, 180, "vertical angles");
+    file.planes = text.ascending(planes, 360, "horizontal angles");
+    check_ranges(text, file);
+    file.candelas.reserve(polar * planes);
+    for (std::size_t i = 0; i < polar * planes; ++i)
+        file.candelas.push_back(factor * text.non_negative("a candela value"));
+    if (*std::ranges::max_element(file.candelas) <= 0)
+        text.fail("all candelas are 0: this luminaire is dark; check the file and its multiplier");
+    if (text.has_number())
+        file.warnings.push_back(
+            text.name() + ": goes on behind the candelas it announces; what follows is not read");
+    return file;
+}
+
+IesFile read_ies(const std::filesystem::path& file) {
+    const std::string name = printable(file.string(), 300);
+    std::ifstream stream(file, std::ios::binary);
+    std::string text(k_largest_file + 1, '\0');
+    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file))
+        throw IoError(name + ": cannot be read; check its name and permissions");
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > k_largest_file)
+        throw InputError(name + ": is larger than 4 MiB: this is no IES file (LM-63)");
+    return parse_ies(text, file.filename().string());
+}
+
+}  // namespace uw

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/lamps/ies_file.h"
+
+namespace uw {
+
+/// The luminous intensity of a luminaire in every direction, from an IES file: linear in both
+/// angles between the file's, each symmetry unfolded to the full circle, 0 outside its vertical
+/// angles. Polar angles are counted from the luminaire's axis (0..pi), azimuths around it (0..2 pi)
+/// [rad].
+class PhotometricWeb {
+  public:
+    /// `file` as parse_ies returns it.
+    explicit PhotometricWeb(const IesFile& file);
+
+    /// Luminous intensity [cd]. `azimuth` within -pi..2 pi.
+    double candelas(double polar, double azimuth) const;
+    /// Luminous intensity in the brightest direction [cd].
+    double peak() const { return peak_; }
+    /// Luminous flux: the intensity integrated over the sphere [lm].
+    double flux() const;
+    /// Whether the intensity is the same all around the axis.
+    bool is_rotational() const { return azimuth_.empty(); }
+
+    /// The polar angle outside which the luminaire is dark; pi if there is none.
+    double dark_angle() const { return dark_angle_; }
+    /// Polar angles and azimuths at which a quadrature should begin anew: where the intensity jumps
+    /// or becomes 0, and so many of the file's that a parabola follows it between two of them to
+    /// 1e-3. Ascending.
+    std::span<const double> polar_breaks() const { return polar_breaks_; }
+    std::span<const double> azimuth_breaks() const { return azimuth_breaks_; }
+
+  private:
+    double value(std::size_t plane, std::size_t i) const {
+        return candelas_[plane * polar_.size() + i];
+    }
+    void unfold(const IesFile& file);
+    void find_breaks();
+
+    std::vector<double> polar_;
+    std::vector<double>
+        azimuth_;  // from 0 to 2 pi, the last plane the first again; empty: one plane
+    std::vector<double> candelas_;  // [plane][polar]
+    std::vector<double> polar_breaks_, azimuth_breaks_;
+    double peak_ = 0;
+    double dark_angle_ = 0;
+};
+
+}  // namespace uw

@@ -1,0 +1,176 @@
+#include "core/meshes/files/assimp_reader.h"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "core/base/affine.h"
+#include "core/base/error.h"
+#include "core/meshes/polygon.h"
+
+namespace uw {
+namespace {
+
+// A few nodes may repeat a large mesh; this is what fits a large machine, not a format's limit.
+constexpr std::uint64_t k_max_corners = 1'500'000'000;
+
+/// Lets Assimp open regular files only, and no material library: a mesh could name a pipe.
+class RegularFiles : public Assimp::DefaultIOSystem {
+  public:
+    bool Exists(const char* name) const override { return allowed(name); }
+    Assimp::IOStream* Open(const char* name, const char* mode) override {
+        return allowed(name) ? DefaultIOSystem::Open(name, mode) : nullptr;
+    }
+
+  private:
+    static bool allowed(const std::filesystem::path& name) {
+        std::error_code status;
+        return name.extension() != ".mtl" && std::filesystem::is_regular_file(name, status);
+    }
+};
+
+/// One node's use of one mesh.
+struct Placement {
+    const aiMesh* mesh = nullptr;
+    Affine file_from_mesh;
+};
+
+Affine affine_of(const aiMatrix4x4& m) {
+    // Assimp's rows, GLM's columns.
+    return {Matrix3(m.a1, m.b1, m.c1, m.a2, m.b2, m.c2, m.a3, m.b3, m.c3),
+            Vector3(m.a4, m.b4, m.c4)};
+}
+
+std::vector<Placement> placements_of(const aiScene& scene) {
+    struct Open {
+        const aiNode* node = nullptr;
+        Affine file_from_parent;
+    };
+    std::vector<Placement> placements;
+    std::vector<Open> open{{scene.mRootNode, Affine()}};
+    while (!open.empty()) {
+        const Open next = open.back();
+        open.pop_back();
+        const Affine file_from_node = next.file_from_parent * affine_of(next.node->mTransformation);
+        for (unsigned k = 0; k < next.node->mNumMeshes; ++k) {
+            placements.push_back({scene.mMeshes[next.node->mMeshes[k]], file_from_node});
+        }
+        for (unsigned k = next.node->mNumChildren; k-- > 0;) {
+            open.push_back({next.node->mChildren[k], file_from_node});
+        }
+    }
+    return placements;
+}
+
+/// Builds one mesh out of all placements.
+class MeshJoiner {
+  public:
+    explicit MeshJoiner(bool normals) : wants_normals_(normals) {}
+
+    TriangleMesh join(const std::vector<Placement>& placements, const std::string& name) {
+        prepare(placements, name);
+        for (const Placement& placement : placements) append(placement);
+        return std::move(mesh_);
+    }
+
+  private:
+    /// Allocates once, and only what some part needs.
+    void prepare(const std::vector<Placement>& placements, const std::string& name) {
+        std::uint64_t vertices = 0, faces = 0;
+        for (const auto& [mesh, transform] : placements) {
+            vertices += mesh->mNumVertices;
+            faces += mesh->mNumFaces;
+            has_normals_ |= wants_normals_ && mesh->mNormals != nullptr;
+        }
+        if (vertices > k_max_corners || 3 * faces > k_max_corners) {
+            throw InputError(
+                fmt::format("{}: more than 500 million triangles; split or thin out "
+                            "the mesh",
+                            name));
+        }
+        mesh_.positions.reserve(3 * vertices + 4);  // Embree reads 16 bytes at the last vertex
+        mesh_.triangles.reserve(3 * faces);
+        if (has_normals_) mesh_.normals.reserve(3 * vertices);
+    }
+
+    void append(const Placement& placement) {
+        const auto first = static_cast<std::uint32_t>(mesh_.vertex_count());
+        append_positions(placement);
+        if (has_normals_) append_normals(placement);
+        append_faces(*placement.mesh, first);
+    }
+
+    void append_positions(const Placement& placement) {
+        const aiMesh& mesh = *placement.mesh;
+        for (const aiVector3D& v : std::span(mesh.mVertices, mesh.mNumVertices)) {
+            const Point3 p = placement.file_from_mesh * Point3{v.x, v.y, v.z};
+            for (const double x : {p.x, p.y, p.z}) mesh_.positions.push_back(static_cast<float>(x));
+        }
+    }
+
+    void append_normals(const Placement& placement) {
+        const aiMesh& mesh = *placement.mesh;
+        const bool usable = mesh.mNormals != nullptr && placement.file_from_mesh.determinant() != 0;
+        const Matrix3 map =
+            usable ? glm::transpose(placement.file_from_mesh.inverse().linear()) : Matrix3(0.0);
+        for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
+            Vector3 n(0.0);
+            if (usable) {
+                n = map * Vector3(mesh.mNormals[k].x, mesh.mNormals[k].y, mesh.mNormals[k].z);
+                const double length = glm::length(n);
+                n = length > 0 ? n / length : Vector3(0.0);
+            }
+            for (int axis = 0; axis < 3; ++axis) {
+                mesh_.normals.push_back(static_cast<float>(n[axis]));
+            }
+        }
+    }
+
+    void append_faces(const aiMesh& mesh, std::uint32_t first) {
+        constexpr std::uint32_t missing = std::numeric_limits<std::uint32_t>::max();
+        std::vector<std::uint32_t> corners;
+        for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+            if (face.mNumIndices < 3) continue;  // points and lines
+            corners.clear();
+            for (const unsigned corner : std::span(face.mIndices, face.mNumIndices)) {
+                if (corner >= mesh.mNumVertices) break;
+                corners.push_back(first + corner);
+            }
+            if (corners.size() != face.mNumIndices) corners.assign(3, missing);
+            if (corners.size() == 3) {
+                mesh_.triangles.insert(mesh_.triangles.end(), corners.begin(), corners.end());
+            } else {
+                triangulate_polygon(corners, mesh_.positions, mesh_.triangles);
+            }
+        }
+    }
+
+    bool wants_normals_ = false;
+    TriangleMesh mesh_;
+    bool has_normals_ = false;
+};
+
+}  // namespace
+
+TriangleMesh read_with_assimp(const std::filesystem::path& file, bool normals) {
+    const std::string name = file.string();
+    Assimp::Importer importer;
+    importer.SetIOHandler(new RegularFiles);  // the importer owns it
+    // No post-processing: joining, validating and sorting copy a mesh of millions of triangles
+    // several times, and nothing here needs it.
+    const aiScene* scene = importer.ReadFile(name, 0);
+    if (scene == nullptr || scene->mRootNode == nullptr) {
+        std::string message = importer.GetErrorString();
+        std::replace(message.begin(), message.end(), '\n', ' ');
+        throw InputError(fmt::format("{}: cannot read the mesh: {}", name, message));
+    }
+    return MeshJoiner(normals).join(placements_of(*scene), name);
+}
+
+}  // namespace uw

@@ -1,0 +1,71 @@
+#include "core/meshes/files/mesh_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/base/error.h"
+#include "core/meshes/files/assimp_reader.h"
+#include "core/meshes/files/ply_reader.h"
+#include "core/meshes/gltf/gltf_reader.h"
+#include "core/meshes/mesh_cleanup.h"
+#include "core/meshes/mesh_tangents.h"
+
+namespace uw {
+namespace {
+
+std::string lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+TriangleMesh read_any(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                      const GltfUse& use) {
+    const std::string extension = lower_extension(file);
+    if (extension == ".ply") return read_ply(file, warnings);
+    if (extension == ".obj") return read_with_assimp(file, true);
+    // STL repeats the face's normal at each corner.
+    if (extension == ".stl") return read_with_assimp(file, false);
+    return read_gltf(file, use, warnings);
+}
+
+void check_file(const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    const bool known = extension == ".gltf" || extension == ".glb" || extension == ".obj" ||
+                       extension == ".ply" || extension == ".stl";
+    if (!known) {
+        throw InputError(
+            fmt::format("{}: unknown kind of mesh '{}'; supported are .gltf, .glb, "
+                        ".obj, .ply and .stl",
+                        file.string(), extension));
+    }
+    std::error_code status;
+    // A pipe or device under a mesh's name would block the reader.
+    if (!std::filesystem::is_regular_file(file, status)) {
+        throw IoError(file.string() + ": no such mesh file; check the name");
+    }
+    if (std::filesystem::file_size(file) == 0) {
+        throw InputError(file.string() + ": the mesh file is empty; export it again");
+    }
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                       const GltfUse& use) {
+    check_file(file);
+    TriangleMesh mesh = read_any(file, warnings, use);
+    DroppedTriangles dropped;
+    drop_bad_triangles(mesh, dropped);
+    dropped.report(file.string(), warnings);
+    compute_tangents(mesh);
+    if (mesh.triangles.empty()) {
+        throw InputError(file.string() + ": the mesh has no triangles; check what was exported");
+    }
+    return mesh;
+}
+
+}  // namespace uw

@@ -1,0 +1,227 @@
+#include "core/meshes/gltf/gltf_import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/colour/reflectance.h"
+#include "core/meshes/gltf/gltf_items.h"
+
+namespace uw {
+namespace {
+
+constexpr double k_candela_per_watt = 683;  // per sr, as Blender converts
+constexpr std::size_t k_longest_name = 64;  // of a lamp, as in scene files
+
+template <class Item>
+std::string names_of(const std::vector<Item>& items) {
+    std::string names;
+    for (const Item& item : items) names += (names.empty() ? "" : ", ") + printable(item.name);
+    return names;
+}
+
+/// The axis `v` of an object as a direction in the world.
+Vector3 direction(const Affine& world_from_object, const Vector3& v, const SourceLocation& where) {
+    const Vector3 mapped = world_from_object.apply_to_vector(v);
+    const double length = glm::length(mapped);
+    if (!(length > 0) || !std::isfinite(length)) {
+        throw InputError(fmt::format("{}: its node or transform has a scale of 0", where));
+    }
+    return mapped / length;
+}
+
+Affine pose_of(const Affine& world_from_camera, const SourceLocation& where) {
+    const Vector3 forward = direction(world_from_camera, {0, 0, -1}, where);
+    const Vector3 up = direction(world_from_camera, {0, 1, 0}, where);
+    const Vector3 side = glm::cross(forward, up);
+    if (!(glm::length(side) > 1e-9)) {
+        throw InputError(fmt::format("{}: its node or transform is sheared flat", where));
+    }
+    const Vector3 right = glm::normalize(side);
+    return {Matrix3(right, glm::cross(forward, right), forward), world_from_camera.offset()};
+}
+
+const GltfCamera& chosen_camera(const GltfItems& items, const GeometryDesc& object) {
+    const SourceLocation& where = object.import.camera_where;
+    const std::string& name = object.import.camera_name;
+    const std::string file = printable(object.file.string(), 300);
+    if (items.cameras.empty()) {
+        throw InputError(
+            fmt::format("{}: '{}' has no camera; export it with its cameras, or place "
+                        "the camera in the scene",
+                        where, file));
+    }
+    if (name.empty()) {
+        if (items.cameras.size() == 1) return items.cameras.front();
+        throw InputError(fmt::format("{}: '{}' has {} cameras; name one of {}", where, file,
+                                     items.cameras.size(), names_of(items.cameras)));
+    }
+    const auto found = std::ranges::find(items.cameras, name, &GltfCamera::name);
+    if (found != items.cameras.end()) return *found;
+    throw InputError(fmt::format("{}: '{}' has no camera '{}'; it has {}", where, file,
+                                 printable(name), names_of(items.cameras)));
+}
+
+void import_camera(const GltfItems& items, const GeometryDesc& object, SceneDesc& scene) {
+    const GltfCamera& source = chosen_camera(items, object);
+    const SourceLocation& where = object.import.camera_where;
+    if (!source.perspective) {
+        throw InputError(fmt::format(
+            "{}: the camera '{}' is orthographic, which no camera under water is; make it "
+            "perspective",
+            where, printable(source.name)));
+    }
+    CameraDesc& camera = scene.camera;
+    if (!camera.has_pose) {
+        camera.world_from_camera =
+            pose_of(object.world_from_object * source.file_from_camera, where);
+    }
+    if (camera.has_intrinsics) return;
+    const double focal = camera.height / 2.0 / std::tan(source.yfov / 2);
+    camera.intrinsics = {focal, focal, camera.width / 2.0, camera.height / 2.0};
+    const double aspect = static_cast<double>(camera.width) / camera.height;
+    if (source.aspect_ratio > 0 && std::abs(aspect / source.aspect_ratio - 1) > 0.01) {
+        scene.warnings.push_back(fmt::format(
+            "{}: the camera '{}' is for pictures of {:.3f} x their height, this is one of {:.3f}: "
+            "it shows {} at its sides",
+            where, printable(source.name), source.aspect_ratio, aspect,
+            aspect > source.aspect_ratio ? "more" : "less"));
+    }
+}
+
+std::string lamp_name(const std::string& source, const std::vector<LampDesc>& others) {
+    const auto is_allowed = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '-';
+    };
+    std::string base = source.substr(0, k_longest_name - 4);
+    std::ranges::replace_if(base, std::not_fn(is_allowed), '_');
+    std::string name = base;
+    for (int number = 2; std::ranges::find(others, name, &LampDesc::name) != others.end();
+         ++number) {
+        name = fmt::format("{}_{}", base, number);
+    }
+    return name;
+}
+
+/// Radiant intensity on the axis [W/sr] of an intensity of 1.
+double intensity_of_one(LightUnits units) {
+    switch (units) {
+        case LightUnits::standard:
+            return 1 / k_candela_per_watt;
+        case LightUnits::compat:
+            return 1;
+        case LightUnits::raw:
+            break;
+    }
+    return 1 / (4 * std::numbers::pi);
+}
+
+LampDesc lamp_of(const GltfLight& source, const GeometryDesc& object,
+                 const ReflectanceBands& bands) {
+    const Affine world_from_light = object.world_from_object * source.file_from_light;
+    LampDesc lamp;
+    lamp.where = object.import.lamps_where;
+    lamp.fixed_to_camera = false;
+    lamp.position = at_origin_plus(world_from_light.offset());
+    lamp.direction = direction(world_from_light, {0, 0, -1}, lamp.where);
+    if (source.type == GltfLight::Type::spot) {
+        constexpr double k_degrees = 180 / std::numbers::pi;
+        lamp.profile.type = LampProfileDesc::Type::spot;
+        lamp.profile.falloff = LampProfileDesc::Falloff::gltf;
+        lamp.profile.beam = (source.outer_cone + source.inner_cone) * k_degrees;
+        lamp.profile.edge = (source.outer_cone - source.inner_cone) * k_degrees;
+    }
+    const Spectrum color = bands.from_rgb(source.color);
+    const double watts_per_sr = source.intensity * intensity_of_one(object.import.units);
+    lamp.intensity.emplace();
+    for (std::size_t b = 0; b < static_cast<std::size_t>(bands.count()); ++b) {
+        lamp.intensity->push_back(watts_per_sr * color[b]);
+    }
+    return lamp;
+}
+
+/// The lights asked for, each once, in the file's order; none for those that cannot be.
+std::vector<const GltfLight*> chosen_lights(const GltfItems& items, const GeometryDesc& object,
+                                            std::vector<std::string>& warnings) {
+    const GltfImportDesc& import = object.import;
+    for (const std::string& name : import.lamps) {
+        const auto found = std::ranges::find(items.lights, name, &GltfLight::name);
+        if (found == items.lights.end()) {
+            throw InputError(fmt::format(
+                "{}: '{}' has no light '{}'; {}", import.lamps_where,
+                printable(object.file.string(), 300), printable(name),
+                items.lights.empty() ? "it has none; export it with its lights (Blender leaves "
+                                       "area lights out)"
+                                     : "it has " + names_of(items.lights)));
+        }
+    }
+    std::vector<const GltfLight*> chosen;
+    std::string directional, ranged;
+    for (const GltfLight& light : items.lights) {
+        const bool is_named = std::ranges::find(import.lamps, light.name) != import.lamps.end();
+        if (!import.all_lamps && !is_named) continue;
+        const auto add_to = [&](std::string& list) {
+            list += (list.empty() ? "" : ", ") + printable(light.name);
+        };
+        if (light.has_range) add_to(ranged);
+        if (light.type != GltfLight::Type::directional) {
+            chosen.push_back(&light);
+        } else if (is_named) {
+            throw InputError(fmt::format(
+                "{}: the light '{}' is directional (a sun), but lamps are points; make it a point "
+                "or spot light",
+                import.lamps_where, printable(light.name)));
+        } else {
+            add_to(directional);
+        }
+    }
+    const auto warn = [&](const std::string& names, const char* what) {
+        if (!names.empty()) {
+            warnings.push_back(fmt::format("{}: {}: {}", import.lamps_where, what, names));
+        }
+    };
+    warn(directional, "directional lights (suns) are left out");
+    warn(ranged, "the range of lights is not used, they shine on by 1/r^2");
+    return chosen;
+}
+
+void import_lamps(const GltfItems& items, const GeometryDesc& object, SceneDesc& scene) {
+    const ReflectanceBands bands(scene.water.bands_nm);
+    const std::vector<const GltfLight*> lights = chosen_lights(items, object, scene.warnings);
+    for (const GltfLight* light : lights) {
+        LampDesc lamp = lamp_of(*light, object, bands);
+        lamp.name = lamp_name(light->name, scene.lamps);
+        scene.lamps.push_back(std::move(lamp));
+    }
+    if (lights.empty()) {
+        scene.warnings.push_back(
+            fmt::format("{}: '{}' has no light to take; export it with its lights (Blender leaves "
+                        "area lights out)",
+                        object.import.lamps_where, printable(object.file.string(), 300)));
+    }
+}
+
+}  // namespace
+
+void import_gltf(SceneDesc& scene) {
+    const bool is_open = std::ranges::any_of(scene.geometry, [](const GeometryDesc& object) {
+        return object.is_sequence && (object.import.camera || object.import.any_lamps());
+    });
+    if (is_open || std::exchange(scene.gltf_is_imported, true)) return;
+    for (const GeometryDesc& object : scene.geometry) {
+        if (!object.import.camera && !object.import.any_lamps()) continue;
+        const GltfItems items = read_gltf_items(object.file);
+        if (object.import.camera) import_camera(items, object, scene);
+        if (object.import.any_lamps()) import_lamps(items, object, scene);
+    }
+}
+
+}  // namespace uw

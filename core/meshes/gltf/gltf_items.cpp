@@ -1,0 +1,114 @@
+#include "core/meshes/gltf/gltf_items.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/meshes/gltf/gltf_nodes.h"
+
+namespace uw {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr auto k_lights = "KHR_lights_punctual";
+
+std::string name_of(const Json& node, const Json& item, const char* kind, std::size_t number) {
+    for (const Json* named : {&node, &item}) {
+        std::string name = named->value("name", "");
+        if (!name.empty()) return name;
+    }
+    return fmt::format("{}{}", kind, number);
+}
+
+GltfCamera read_camera(const GltfDocument& document, const Json& json) {
+    GltfCamera camera;
+    camera.perspective = json.value("type", "") == "perspective";
+    if (!camera.perspective) return camera;
+    const Json& lens = document.object(json, "perspective");
+    camera.yfov = lens.value("yfov", 0.0);
+    camera.aspect_ratio = lens.value("aspectRatio", 0.0);
+    if (!(camera.yfov > 0 && camera.yfov < std::numbers::pi) || camera.aspect_ratio < 0) {
+        document.fail("a glTF camera has an impossible yfov or aspectRatio");
+    }
+    return camera;
+}
+
+void read_cone(const GltfDocument& document, const Json& json, GltfLight& light) {
+    const Json& spot = document.object(json, "spot");
+    light.inner_cone = spot.value("innerConeAngle", 0.0);
+    light.outer_cone = spot.value("outerConeAngle", std::numbers::pi / 4);
+    // Written as floats: half a turn may be a little more than pi/2.
+    constexpr double k_widest = std::numbers::pi / 2;
+    if (light.outer_cone > k_widest && light.outer_cone < k_widest + 1e-6) {
+        light.outer_cone = k_widest;
+    }
+    if (light.inner_cone > light.outer_cone && light.inner_cone < light.outer_cone + 1e-6) {
+        light.inner_cone = light.outer_cone;
+    }
+    if (!(light.outer_cone > 0 && light.outer_cone <= k_widest && light.inner_cone >= 0 &&
+          light.inner_cone <= light.outer_cone)) {
+        document.fail("a glTF spot light has impossible cone angles");
+    }
+}
+
+GltfLight read_light(const GltfDocument& document, const Json& json) {
+    using Type = GltfLight::Type;
+    GltfLight light;
+    const std::string type = json.value("type", "");
+    if (type == "spot") {
+        light.type = Type::spot;
+        read_cone(document, json, light);
+    } else if (type == "directional") {
+        light.type = Type::directional;
+    } else if (type != "point") {
+        document.fail("a glTF light is neither point, spot nor directional");
+    }
+    light.intensity = json.value("intensity", 1.0);
+    light.color = json.value("color", std::array<double, 3>{1, 1, 1});
+    light.has_range = json.contains("range");
+    bool positive = light.intensity >= 0;
+    for (const double c : light.color) positive = positive && c >= 0;
+    if (!positive) document.fail("a glTF light has a negative intensity or colour");
+    return light;
+}
+
+GltfItems read_items(const GltfDocument& document) {
+    const Json& lights = document.list(document.extension(document.root(), k_lights), "lights");
+    GltfItems items;
+    for (const GltfNode& node : gltf_nodes(document)) {
+        if (node.json->contains("camera")) {
+            const Json& json = document.element("cameras", *node.json, "camera");
+            GltfCamera camera = read_camera(document, json);
+            camera.name = name_of(*node.json, json, "camera", items.cameras.size() + 1);
+            camera.file_from_camera = node.file_from_node;
+            items.cameras.push_back(std::move(camera));
+        }
+        const Json& use = document.extension(*node.json, k_lights);
+        if (use.empty()) continue;
+        const std::uint64_t index = document.whole_number(use, "light", UINT64_MAX);
+        if (index >= lights.size()) document.fail("glTF names a light that is not there");
+        GltfLight light = read_light(document, lights[index]);
+        light.name = name_of(*node.json, lights[index], "light", items.lights.size() + 1);
+        light.file_from_light = node.file_from_node;
+        items.lights.push_back(std::move(light));
+    }
+    return items;
+}
+
+}  // namespace
+
+GltfItems read_gltf_items(const std::filesystem::path& file) {
+    try {
+        return read_items(GltfDocument(file));
+    } catch (const Json::exception& error) {
+        throw InputError(
+            fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));
+    }
+}
+
+}  // namespace uw

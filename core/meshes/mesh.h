@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <vector>
+
+#include "core/colour/rgb.h"
+#include "core/meshes/texture.h"
+
+namespace uw {
+
+/// What a mesh file says of a surface's look. Colours are linear; a factor and its map multiply.
+struct MeshMaterial {
+    Rgb base_color{0.5, 0.5, 0.5};  // 0..1; multiplied by vertex colours, too
+    TextureUse base_map;
+    bool double_sided = true;  // as the file has it; surfaces are opaque from both sides
+    /// Where alpha (times that of base map and vertices) is less, there is a hole; 0: nowhere.
+    double alpha = 1, alpha_cutoff = 0;
+    Rgb emission{0, 0, 0};  // radiance [W m^-2 sr^-1], on both sides
+    TextureUse emission_map;
+    TextureUse normal_map;    // linear; x, y, z of the tangent frame as 0..1 for -1..1
+    double normal_scale = 1;  // of its x and y
+    // Metallic-roughness (glTF 2.0, appendix B); read for GltfUse::pbr only.
+    double metallic = 0, roughness = 1;  // 0..1
+    TextureUse metallic_roughness_map;   // linear; green roughness, blue metallic
+    double ior = 1.5;                    // of the dielectric; 0: reflects all
+};
+
+/// The triangles of one mesh file, in the file's own space [m], node hierarchy applied. Inert.
+struct TriangleMesh {
+    std::vector<float> positions;          // x, y, z per vertex
+    std::vector<std::uint32_t> triangles;  // three vertices each; all in range
+    // Per vertex, and empty when the file has none at all. A zero normal stands for "flat".
+    std::vector<float> normals;             // x, y, z, unit
+    std::array<std::vector<float>, 2> uvs;  // u, v; origin at the texture's top left, v down
+    std::vector<float> colors;              // linear r, g, b, 0..1
+    std::vector<float> alphas;              // 0..1
+    /// x, y, z of where the normal map's u grows, unit, and the sign of cross(normal, tangent)
+    /// along its v's shrinking; all zero where there is none.
+    std::vector<float> tangents;
+    std::vector<std::uint32_t> triangle_materials;  // per triangle; empty: all have material 0
+    std::vector<MeshMaterial> materials{MeshMaterial{}};  // at least one
+
+    std::size_t vertex_count() const { return positions.size() / 3; }
+    std::size_t triangle_count() const { return triangles.size() / 3; }
+};
+
+}  // namespace uw

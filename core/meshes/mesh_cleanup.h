@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/meshes/mesh.h"
+
+namespace uw {
+
+/// Largest coordinate a surface may have [m]; beyond it squares and products leave float's range.
+inline constexpr double k_max_coordinate = 1e15;
+
+/// Why triangles of a file were left out.
+struct DroppedTriangles {
+    std::uint64_t missing_corner = 0;  // an index past the last vertex
+    std::uint64_t not_finite = 0;      // a corner is NaN, infinite or beyond k_max_coordinate
+    std::uint64_t no_area = 0;
+
+    /// One warning line per kind that occurred, each starting with `name`.
+    void report(const std::string& name, std::vector<std::string>& warnings) const;
+};
+
+/// Removes the triangles that cannot be traced, in place and in order, and adds to `dropped`.
+/// Normals that are no directions become zero ("flat").
+void drop_bad_triangles(TriangleMesh& mesh, DroppedTriangles& dropped);
+
+}  // namespace uw

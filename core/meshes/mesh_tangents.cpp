@@ -1,0 +1,85 @@
+#include "core/meshes/mesh_tangents.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace uw {
+namespace {
+
+Vector3 vector_at(const std::vector<float>& values, std::size_t at) {
+    return {values[at], values[at + 1], values[at + 2]};
+}
+
+/// The angle of a triangle at its corner `k`.
+double angle_at(const std::array<Vector3, 3>& points, std::size_t k) {
+    const Vector3 a = points[(k + 1) % 3] - points[k], b = points[(k + 2) % 3] - points[k];
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+struct Sums {
+    Vector3 tangent{0.0};
+    double side = 0;
+};
+
+}  // namespace
+
+bool uv_axes(const TriangleMesh& mesh, const std::uint32_t* corners, const TextureUse& use,
+             UvAxes& axes) {
+    const std::vector<float>& uvs = mesh.uvs[use.uv_set];
+    std::array<Vector3, 3> p{};
+    std::array<double, 3> u{}, v{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        p[k] = vector_at(mesh.positions, 3 * std::size_t{corners[k]});
+        const double raw_u = uvs[2 * std::size_t{corners[k]}];
+        const double raw_v = uvs[2 * std::size_t{corners[k]} + 1];
+        const auto& m = use.transform;
+        u[k] = m[0] * raw_u + m[1] * raw_v + m[2];
+        v[k] = m[3] * raw_u + m[4] * raw_v + m[5];
+    }
+    const Vector3 e1 = p[1] - p[0], e2 = p[2] - p[0];
+    const double du1 = u[1] - u[0], du2 = u[2] - u[0], dv1 = v[1] - v[0], dv2 = v[2] - v[0];
+    const double area = du1 * dv2 - du2 * dv1;
+    if (!(std::abs(area) > 0) || !std::isfinite(area)) return false;
+    axes.u_axis = (dv2 * e1 - dv1 * e2) / area;
+    axes.up_axis = (du2 * e1 - du1 * e2) / area;
+    return glm::length(axes.u_axis) > 0 && glm::length(axes.up_axis) > 0;
+}
+
+void compute_tangents(TriangleMesh& mesh) {
+    if (mesh.tangents.empty() || mesh.normals.empty()) return;
+    std::vector<Sums> sums(mesh.vertex_count());
+    for (std::size_t triangle = 0; triangle < mesh.triangle_count(); ++triangle) {
+        const std::size_t index =
+            mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[triangle];
+        const TextureUse& use = mesh.materials[index].normal_map;
+        const std::uint32_t* corners = &mesh.triangles[3 * triangle];
+        UvAxes axes;
+        if (!use || !uv_axes(mesh, corners, use, axes)) continue;
+        std::array<Vector3, 3> points{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            points[k] = vector_at(mesh.positions, 3 * std::size_t{corners[k]});
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vector3 normal = vector_at(mesh.normals, 3 * std::size_t{corners[k]});
+            const Vector3 across = axes.u_axis - glm::dot(axes.u_axis, normal) * normal;
+            const double length = glm::length(across), angle = angle_at(points, k);
+            if (!(length > 0)) continue;
+            sums[corners[k]].tangent += angle / length * across;
+            const double side = glm::dot(glm::cross(normal, axes.u_axis), axes.up_axis);
+            sums[corners[k]].side += side < 0 ? -angle : angle;
+        }
+    }
+    for (std::size_t vertex = 0; vertex < sums.size(); ++vertex) {
+        float* tangent = &mesh.tangents[4 * vertex];
+        const bool is_given = std::any_of(tangent, tangent + 3, [](float x) { return x != 0; });
+        const double length = glm::length(sums[vertex].tangent);
+        if (is_given || !(length > 1e-9)) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+            tangent[axis] = static_cast<float>(sums[vertex].tangent[axis] / length);
+        }
+        tangent[3] = sums[vertex].side < 0 ? -1.0F : 1.0F;
+    }
+}
+
+}  // namespace uw

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace uw {
+
+/// Where a piece of a scene came from.
+struct ConfigPosition {
+    std::shared_ptr<const std::string> origin;  // file name, or "--set key=value"
+    int line = 0;                               // from 1; 0: the origin has no lines
+    int column = 0;                             // from 1, in bytes
+
+    /// "plume.yaml:14:7", or the origin alone where there are no lines.
+    std::string text() const;
+};
+
+/// A piece of a scene file as inert data, with its place in the file. Scalars are still text: what
+/// they mean is decided where they are read (ConfigValue).
+struct ConfigNode {
+    enum class Kind : std::uint8_t { null, scalar, sequence, map };
+    struct Entry;
+
+    Kind kind = Kind::null;
+    bool quoted = false;  // scalar: stood in quotes (or a text block), so it is text
+    std::string scalar;
+    std::vector<ConfigNode> items;  // sequence
+    std::vector<Entry> entries;     // map, in the order of the file; no key twice
+    ConfigPosition position;
+
+    /// The value at `key` of a map; nullptr where there is none or this is no map.
+    const ConfigNode* find(std::string_view key) const;
+    ConfigNode* find(std::string_view key);
+
+    /// What this is, for messages: "a list of 3", "a map", "the text 'abc'", "the number 5".
+    std::string description() const;
+};
+
+/// One key of a map with its value.
+struct ConfigNode::Entry {
+    std::string key;
+    ConfigPosition position;  // of the key
+    ConfigNode value;
+};
+
+/// 64-bit FNV-1a of the tree's meaning, as 16 hex digits: comments, layout, the order of keys and
+/// the spelling of numbers (1, 1.0, 1e0) do not change it.
+std::string config_hash(const ConfigNode& root);
+
+}  // namespace uw

@@ -1,0 +1,230 @@
+#include "core/scene/yaml/scene_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/scene/yaml/config_map.h"
+#include "core/scene/yaml/scene_override.h"
+#include "core/scene/yaml/scene_sections.h"
+#include "core/scene/yaml/yaml_document.h"
+
+namespace uw {
+namespace {
+
+/// The file's text; of a larger file just enough to be refused for its size.
+std::string read_text(const std::filesystem::path& file, const std::string& origin) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored)) {
+        throw IoError(fmt::format("{}: is a folder; name a scene file in it", origin));
+    }
+    if (!std::filesystem::exists(file, ignored)) {
+        throw IoError(fmt::format("{}: no such file; check the name of the scene", origin));
+    }
+    std::ifstream stream(file, std::ios::binary);
+    std::string text(YamlLimits{}.bytes + 1, '\0');
+    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!stream.is_open() || stream.bad()) {
+        throw IoError(fmt::format("{}: cannot be read; check its permissions", origin));
+    }
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    return text;
+}
+
+/// Comes first: another version may have other keys.
+void check_version(const ConfigValue& scene) {
+    const ConfigNode* const version = scene.node().find("uwvdb");
+    if (version == nullptr) return;
+    double number = 0;
+    if (version->kind == ConfigNode::Kind::scalar && !version->quoted &&
+        parse_number(version->scalar, number) == NumberText::number && number == 1) {
+        return;
+    }
+    ConfigValue(*version, "uwvdb")
+        .fail(fmt::format("this program reads scene version 1, found {}; write 'uwvdb: 1', or use "
+                          "the program that goes with that version",
+                          version->description()));
+}
+
+/// What a glTF file is to bring must be missing in the scene, and what is missing be brought.
+void check_gltf_imports(const SceneDesc& desc) {
+    const CameraDesc& camera = desc.camera;
+    const SourceLocation* source = nullptr;
+    for (const GeometryDesc& object : desc.geometry) {
+        if (!object.import.camera) continue;
+        const SourceLocation& where = object.import.camera_where;
+        if (!desc.cameras.empty()) {
+            throw InputError(fmt::format(
+                "{}: the scene has a rig of its own cameras; remove this, or give camera instead "
+                "of cameras",
+                where));
+        }
+        if (source != nullptr) {
+            throw InputError(
+                fmt::format("{}: the camera is taken from {} already; remove one", where, *source));
+        }
+        if (camera.has_intrinsics && camera.has_pose) {
+            throw InputError(fmt::format(
+                "{}: the scene's own camera has intrinsics and pose, which leaves nothing to take "
+                "from the file; remove them, or one of them, or this",
+                where));
+        }
+        source = &where;
+    }
+    if (source != nullptr) return;
+    const auto check = [](const CameraDesc& own) {
+        if (own.has_intrinsics) return;
+        throw InputError(fmt::format(
+            "{}: 'intrinsics' is missing; give intrinsics: {{fov_x: 60}}, or fx, fy, cx, cy in "
+            "pixels, or take a glTF file's with geometry: [{{file: x.glb, camera: true}}]",
+            own.where));
+    };
+    check(camera);
+    for (const RigCameraDesc& entry : desc.cameras) check(entry.camera);
+}
+
+}  // namespace
+
+PlanesDesc read_planes(const ConfigValue& value) {
+    ConfigMap map(value, {"count", "near", "far"}, "write {count: 64, near: 0.1, far: 12}");
+    PlanesDesc planes;
+    planes.where = value.location();
+    if (const auto entry = map.find("count"))
+        planes.count = entry->integer(1, 65536, "give the number of slabs");
+    if (const auto entry = map.find("near")) planes.near = entry->non_negative("give metres");
+    if (const auto entry = map.find("far")) {
+        planes.far = entry->positive("give metres");
+        if (planes.near && *planes.far <= *planes.near) {
+            entry->fail(fmt::format("must be greater than near ({}); give metres along camera z",
+                                    *planes.near));
+        }
+    }
+    return planes;
+}
+
+RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
+    ConfigMap map(value,
+                  {"integrator", "output", "planes", "samples", "shutter", "response", "white"},
+                  "write {samples: 4}");
+    RenderDesc render;
+    render.planes.where = value.location() + ".planes";
+    if (const auto entry = map.find("integrator"))
+        render.integrator = entry->choice(k_integrator_names);
+    if (const auto entry = map.find("output")) {
+        constexpr std::array<std::pair<std::string_view, RenderDesc::Output>, 3> k_outputs{
+            {{"radiance", RenderDesc::Output::radiance},
+             {"sensor_irradiance", RenderDesc::Output::sensor_irradiance},
+             {"paper", RenderDesc::Output::paper}}};
+        render.output = entry->choice(k_outputs);
+        render.output_where = entry->location();
+    }
+    if (const auto entry = map.find("planes")) render.planes = read_planes(*entry);
+    if (const auto entry = map.find("samples")) {
+        render.samples = entry->integer(1, 4096, "give the samples per pixel");
+    }
+    if (const auto entry = map.find("shutter")) {
+        constexpr double k_longest = 60;
+        render.shutter = entry->non_negative("give the exposure time in seconds, such as 0.02");
+        if (render.shutter > k_longest)
+            entry->fail("more than a minute is no exposure; give seconds, such as 0.02");
+    }
+    render.colour = read_colour(map, context);
+    return render;
+}
+
+namespace {
+
+void read_camera_or_rig(ConfigMap& map, SceneContext& context, SceneDesc& desc) {
+    constexpr auto k_mend = "give camera: {resolution: [W, H], intrinsics: {fov_x: 60}}";
+    const auto cameras = map.find("cameras");
+    const auto rig = map.find("rig");
+    if (!cameras) {
+        if (rig) rig->fail("a rig has named cameras; give them as a list, cameras, not camera");
+        desc.camera = read_camera(map.require("camera", k_mend), context);
+        return;
+    }
+    if (const auto camera = map.find("camera"))
+        camera->fail("a scene has either camera or cameras; remove one");
+    desc.cameras = read_cameras(*cameras, rig, context);
+    desc.camera = desc.cameras.front().camera;
+    desc.camera_name = desc.cameras.front().name;
+}
+
+void check_lenses(const SceneDesc& desc) {
+    if (desc.render.output == RenderDesc::Output::radiance) return;
+    const bool all = desc.camera.lens && std::ranges::all_of(desc.cameras, [](const auto& entry) {
+                         return entry.camera.lens.has_value();
+                     });
+    if (!all)
+        throw InputError(desc.render.output_where +
+                         ": needs the camera's lens; give camera.lens: {f_number: 2.8, "
+                         "focal_length: 0.0085}, or write output: radiance");
+}
+
+/// Gives the volumes that move the time they have for it.
+void open_shutter(SceneDesc& desc) {
+    for (VolumeDesc& volume : desc.volumes) {
+        if (!volume.motion) continue;
+        volume.motion->shutter = desc.render.shutter;
+        if (desc.render.shutter == 0)
+            desc.warnings.push_back(volume.motion->where +
+                                    ": has no effect without render.shutter, the exposure time");
+    }
+}
+
+}  // namespace
+
+SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+    const std::string origin = printable(file.string(), 300);
+    ConfigNode root = parse_yaml(read_text(file, origin), origin);
+    for (const std::string& text : overrides) apply_override(root, text);
+
+    const ConfigValue scene(root, "");
+    check_version(scene);
+    ConfigMap map(
+        scene,
+        {"uwvdb", "camera", "cameras", "rig", "water", "volumes", "geometry", "lamps", "render"},
+        "a scene starts with 'uwvdb: 1'");
+    map.require("uwvdb", "a scene starts with 'uwvdb: 1'");
+
+    SceneDesc desc;
+    desc.file = file;
+    SceneContext context{file.parent_path(), desc.water.bands_nm.size(), &desc.warnings,
+                         std::nullopt};
+    desc.water.where = scene.location();
+    desc.render.planes.where = scene.location() + ": render.planes";
+    if (const auto entry = map.find("water")) desc.water = read_water(*entry, context);
+    read_camera_or_rig(map, context, desc);
+    if (const auto entry = map.find("volumes")) desc.volumes = read_volumes(*entry, context);
+    if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
+    if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
+    if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
+    open_shutter(desc);
+    check_lenses(desc);
+    check_gltf_imports(desc);
+    const bool brings_lamps = std::ranges::any_of(
+        desc.geometry, [](const GeometryDesc& object) { return object.import.any_lamps(); });
+    if (desc.lamps.empty() && !brings_lamps) {
+        context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
+    }
+    desc.hash = config_hash(root);
+    return desc;
+}
+
+WaterDesc read_water_overrides(const std::vector<std::string>& overrides) {
+    ConfigNode root = parse_yaml("water: {}", "water");
+    for (const std::string& text : overrides) apply_override(root, text);
+    ConfigMap map(ConfigValue(root, ""), {"water"}, "without a scene only water can be set");
+    std::vector<std::string> warnings;
+    SceneContext context{{}, 0, &warnings, std::nullopt};
+    WaterDesc water = read_water(map.require("water", "give water.bands"), context);
+    water.where = "water";  // no file to point into
+    return water;
+}
+
+}  // namespace uw

@@ -1,0 +1,299 @@
+#include "core/surfaces/embree_surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "core/surfaces/embree_rays.h"
+
+namespace uw {
+namespace {
+
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+/// A closest hit at or behind the origin is passed over this often: a camera in a surface's plane.
+constexpr int k_max_restarts = 16;
+
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, decltype(&rtcReleaseDevice)>;
+using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcReleaseScene)>;
+using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, decltype(&rtcReleaseGeometry)>;
+
+class EmbreeSurfaces final : public Surfaces {
+  public:
+    explicit EmbreeSurfaces(SceneObjects objects)
+        : objects_(std::move(objects)),
+          device_(rtcNewDevice(nullptr), &rtcReleaseDevice),
+          scene_(nullptr, &rtcReleaseScene) {
+        if (!device_) throw std::runtime_error("Embree cannot start on this processor");
+        scene_.reset(rtcNewScene(device_.get()));
+        // Robust: no ray slips between two triangles that share an edge.
+        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+        for (const auto& mesh : objects_.meshes) attach(*mesh);
+        if (!objects_.spheres.empty()) attach_spheres();
+        rtcCommitScene(scene_.get());
+        check("building the acceleration structure");
+    }
+
+    bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const override {
+        return shade(find_nearest(ray, s_end), ray, s_end, hit);
+    }
+
+    SurfaceMaterial material(const SurfaceHit& hit) const override {
+        if (!hit.has_material) return {};
+        return material_of_mesh(*objects_.meshes[hit.geometry], objects_.bands, hit);
+    }
+
+    double hit_distance(const Ray& ray) const override {
+        return find_nearest(ray, k_infinity).distance;
+    }
+
+    bool occluded(const Point3& from, const Point3& to) const override {
+        Query query = shadow_query(from, to);
+        if (query.direction == Vector3(0.0)) return false;
+        return blocked_by_plane(query) || is_occluded(scene_.get(), query);
+    }
+
+    void closest_hits(std::span<const Ray> rays, double s_end, std::span<SurfaceHit> hits,
+                      std::span<char> found) const override {
+        assert(hits.size() == rays.size() && found.size() == rays.size());
+        std::array<Candidate, k_packet_size> nearest;
+        for (std::size_t begin = 0; begin < rays.size(); begin += k_packet_size) {
+            const auto packet = rays.subspan(begin, std::min(k_packet_size, rays.size() - begin));
+            find_nearest(packet, s_end, nearest);
+            for (std::size_t i = 0; i < packet.size(); ++i) {
+                found[begin + i] = shade(nearest[i], packet[i], s_end, hits[begin + i]) ? 1 : 0;
+            }
+        }
+    }
+
+    void hit_distances(const Point3& origin, std::span<const Vector3> directions,
+                       std::span<double> distances) const override {
+        assert(distances.size() == directions.size());
+        std::array<Ray, k_packet_size> rays;
+        std::array<Candidate, k_packet_size> nearest;
+        for (std::size_t begin = 0; begin < directions.size(); begin += k_packet_size) {
+            const std::size_t count = std::min(k_packet_size, directions.size() - begin);
+            for (std::size_t i = 0; i < count; ++i) rays[i] = {origin, directions[begin + i]};
+            find_nearest(std::span(rays).first(count), k_infinity, nearest);
+            for (std::size_t i = 0; i < count; ++i) distances[begin + i] = nearest[i].distance;
+        }
+    }
+
+    void occluded_many(const Point3& from, std::span<const Point3> to,
+                       std::span<char> blocked) const override {
+        assert(blocked.size() == to.size());
+        std::array<Query, k_packet_size> queries;
+        std::array<std::size_t, k_packet_size> places{};
+        std::size_t count = 0;
+        const auto follow = [&] {
+            const unsigned occluded =
+                occluded_packet(scene_.get(), std::span(queries).first(count));
+            for (std::size_t i = 0; i < count; ++i) blocked[places[i]] = (occluded >> i & 1U) != 0;
+            count = 0;
+        };
+        for (std::size_t i = 0; i < to.size(); ++i) {
+            const Query query = shadow_query(from, to[i]);
+            const bool some_way = query.direction != Vector3(0.0);
+            blocked[i] = some_way && blocked_by_plane(query) ? 1 : 0;
+            if (!some_way || blocked[i] != 0) continue;
+            queries[count] = query;
+            places[count++] = i;
+            if (count == k_packet_size) follow();
+        }
+        if (count > 0) follow();
+    }
+
+    Bounds bounds() const override { return objects_.bounds; }
+
+    std::uint64_t triangle_count() const override {
+        std::uint64_t count = 0;
+        for (const auto& object : objects_.meshes) count += object->mesh.triangle_count();
+        return count;
+    }
+
+    bool empty() const override {
+        return objects_.meshes.empty() && objects_.spheres.empty() && objects_.planes.empty();
+    }
+
+  private:
+    struct Candidate {
+        double distance = k_infinity;
+        const PlaneObject* plane = nullptr;  // if set, the rest means nothing
+        unsigned geometry = 0, primitive = 0;
+        TriangleCrossing crossing;  // of meshes
+        bool near_edge = false;     // of a triangle, where rounding decides (embree_rays.h)
+    };
+
+    void check(const char* doing) const {
+        const RTCError error = rtcGetDeviceError(device_.get());
+        if (error == RTC_ERROR_NONE) return;
+        const std::string reason =
+            error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(error);
+        throw std::runtime_error(std::string("Embree failed while ") + doing + ": " + reason);
+    }
+
+    void attach(MeshObject& object) {
+        const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE),
+                                &rtcReleaseGeometry);
+        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   object.mesh.positions.data(), 0, 3 * sizeof(float),
+                                   object.vertex_count);
+        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   object.mesh.triangles.data(), 0, 3 * sizeof(std::uint32_t),
+                                   object.mesh.triangle_count());
+        rtcSetGeometryUserData(geometry.get(), &object);
+        rtcSetGeometryIntersectFilterFunction(
+            geometry.get(), object.has_holes ? filter_closest_with_holes : filter_closest);
+        rtcSetGeometryOccludedFilterFunction(
+            geometry.get(), object.has_holes ? filter_occluder_with_holes : filter_occluder);
+        rtcCommitGeometry(geometry.get());
+        rtcAttachGeometry(scene_.get(), geometry.get());
+        check("taking over a mesh");
+    }
+
+    void attach_spheres() {
+        const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER),
+                                &rtcReleaseGeometry);
+        rtcSetGeometryUserPrimitiveCount(geometry.get(),
+                                         static_cast<unsigned>(objects_.spheres.size()));
+        rtcSetGeometryUserData(geometry.get(), &objects_.spheres);
+        rtcSetGeometryBoundsFunction(geometry.get(), sphere_bounds, nullptr);
+        rtcSetGeometryIntersectFunction(geometry.get(), intersect_sphere);
+        rtcSetGeometryOccludedFunction(geometry.get(), occlude_sphere);
+        rtcCommitGeometry(geometry.get());
+        rtcAttachGeometry(scene_.get(), geometry.get());
+        check("taking over the spheres");
+    }
+
+    /// Fills `hit` unless `nearest` is none or beyond `s_end`.
+    bool shade(const Candidate& nearest, const Ray& ray, double s_end, SurfaceHit& hit) const {
+        if (!(nearest.distance <= s_end) || nearest.distance == k_infinity) return false;
+        hit.distance = nearest.distance;
+        hit.position = ray.at(nearest.distance);
+        if (nearest.plane != nullptr) {
+            shade_plane(*nearest.plane, ray.direction, hit);
+        } else if (nearest.geometry < objects_.meshes.size()) {
+            shade_mesh(*objects_.meshes[nearest.geometry], nearest.primitive, nearest.crossing,
+                       objects_.bands, ray.direction, hit);
+            hit.geometry = nearest.geometry;
+        } else {
+            shade_sphere(objects_.spheres[nearest.primitive], ray.direction, hit);
+        }
+        return true;
+    }
+
+    /// The nearest mesh or sphere, not necessarily within `s_end`.
+    Candidate trace_past_origin(const Ray& ray, double s_end) const {
+        float begin = 0;
+        for (int restart = 0; restart < k_max_restarts; ++restart) {
+            Query query{ray.origin, ray.direction};
+            trace(scene_.get(), query, begin, s_end);
+            if (!query.has_candidate()) break;
+            Candidate candidate = refine(query);
+            if (candidate.near_edge) {
+                query = {ray.origin, ray.direction};
+                trace_edges(scene_.get(), query, begin, s_end);
+                if (!query.has_candidate()) break;
+                candidate = refine(query);
+            }
+            if (candidate.distance > 0) return candidate;
+            begin = std::nextafter(query.t, std::numeric_limits<float>::infinity());
+        }
+        return {};
+    }
+
+    /// Embree's candidate, measured in double.
+    Candidate refine(const Query& query) const {
+        Candidate candidate;
+        candidate.geometry = query.geometry;
+        candidate.primitive = query.primitive;
+        const double coarse = query.t;
+        if (candidate.geometry < objects_.meshes.size()) {
+            const auto crossing =
+                cross_triangle(*objects_.meshes[candidate.geometry], candidate.primitive,
+                               query.origin, query.direction);
+            candidate.crossing = crossing ? *crossing : TriangleCrossing{coarse, query.u, query.v};
+            candidate.distance = candidate.crossing.t;
+            candidate.near_edge = !(crossing && crossing->well_inside());
+            return candidate;
+        }
+        const auto roots =
+            cross_sphere(objects_.spheres[candidate.primitive], query.origin, query.direction);
+        // The callback found these roots; the one it took is the nearer to what it wrote.
+        const bool near = std::abs(roots->near - coarse) <= std::abs(roots->far - coarse);
+        candidate.distance = near ? roots->near : roots->far;
+        return candidate;
+    }
+
+    Candidate nearest_plane(const Ray& ray) const {
+        Candidate nearest;
+        for (const PlaneObject& plane : objects_.planes) {
+            const auto t = cross_plane(plane, ray.origin, ray.direction);
+            if (!t || !(*t > 0) || *t >= nearest.distance) continue;
+            nearest.distance = *t;
+            nearest.plane = &plane;
+        }
+        return nearest;
+    }
+
+    Candidate find_nearest(const Ray& ray, double s_end) const {
+        const Candidate plane = nearest_plane(ray);
+        const Candidate traced = trace_past_origin(ray, std::min(s_end, plane.distance));
+        return traced.distance < plane.distance ? traced : plane;
+    }
+
+    /// The same for up to a packet of rays.
+    void find_nearest(std::span<const Ray> rays, double s_end,
+                      std::array<Candidate, k_packet_size>& nearest) const {
+        std::array<Query, k_packet_size> queries;
+        std::array<double, k_packet_size> ends{};
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            nearest[i] = nearest_plane(rays[i]);
+            queries[i] = {rays[i].origin, rays[i].direction};
+            ends[i] = std::min(s_end, nearest[i].distance);
+        }
+        trace_packet(scene_.get(), std::span(queries).first(rays.size()),
+                     std::span(ends).first(rays.size()));
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (!queries[i].has_candidate()) continue;
+            Candidate traced = refine(queries[i]);
+            if (traced.near_edge || !(traced.distance > 0)) {
+                traced = trace_past_origin(rays[i], ends[i]);
+            }
+            if (traced.distance < nearest[i].distance) nearest[i] = traced;
+        }
+    }
+
+    static Query shadow_query(const Point3& from, const Point3& to) {
+        // One order of the ends for both directions, so that light and view rays agree exactly.
+        const bool forward = std::tie(from.x, from.y, from.z) < std::tie(to.x, to.y, to.z);
+        const Point3& begin = forward ? from : to;
+        return {begin, (forward ? to : from) - begin};
+    }
+
+    bool blocked_by_plane(const Query& shadow) const {
+        return std::any_of(objects_.planes.begin(), objects_.planes.end(),
+                           [&](const PlaneObject& plane) {
+                               const auto t = cross_plane(plane, shadow.origin, shadow.direction);
+                               return t && between_ends(*t);
+                           });
+    }
+
+    SceneObjects objects_;
+    Device device_;
+    Scene scene_;
+};
+
+}  // namespace
+
+std::unique_ptr<Surfaces> make_embree_surfaces(SceneObjects objects) {
+    return std::make_unique<EmbreeSurfaces>(std::move(objects));
+}
+
+}  // namespace uw

@@ -1,0 +1,208 @@
+#include "core/surfaces/geometry_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/meshes/files/mesh_reader.h"
+#include "core/meshes/mesh_cleanup.h"
+#include "core/surfaces/embree_surfaces.h"
+#include "core/surfaces/scene_objects.h"
+
+namespace uw {
+namespace {
+
+constexpr double k_default_reflectance = 0.5;
+
+/// The reflectance given in the scene, if any.
+std::optional<Spectrum> given_reflectance(const GeometryDesc& desc, int band_count) {
+    if (!desc.reflectance) return std::nullopt;
+    if (desc.reflectance->size() != static_cast<std::size_t>(band_count)) {
+        throw InputError(fmt::format("{}: reflectance has {} values; give {}, one per band",
+                                     desc.where, desc.reflectance->size(), band_count));
+    }
+    Spectrum spectrum{};
+    std::copy(desc.reflectance->begin(), desc.reflectance->end(), spectrum.begin());
+    return spectrum;
+}
+
+Spectrum reflectance_or_default(const GeometryDesc& desc, int band_count) {
+    if (const auto given = given_reflectance(desc, band_count)) return *given;
+    Spectrum spectrum{};
+    std::fill_n(spectrum.begin(), band_count, k_default_reflectance);
+    return spectrum;
+}
+
+bool is_identity(const Affine& map) {
+    return map.linear() == Matrix3(1.0) && map.offset() == Vector3(0.0);
+}
+
+/// Brings a mesh to world space, in place: it may have tens of millions of vertices.
+void transform(TriangleMesh& mesh, const Affine& world_from_object) {
+    for (std::size_t at = 0; at + 2 < mesh.positions.size(); at += 3) {
+        float* p = &mesh.positions[at];
+        const Point3 world = world_from_object * Point3{p[0], p[1], p[2]};
+        for (int axis = 0; axis < 3; ++axis) p[axis] = static_cast<float>(world[axis]);
+    }
+    const Matrix3 normal_map = glm::transpose(world_from_object.inverse().linear());
+    for (std::size_t at = 0; at + 2 < mesh.normals.size(); at += 3) {
+        float* n = &mesh.normals[at];
+        const Vector3 world = normal_map * Vector3(n[0], n[1], n[2]);
+        const double length = glm::length(world);
+        if (!(length > 0)) continue;  // zero stands for "flat"
+        for (int axis = 0; axis < 3; ++axis) n[axis] = static_cast<float>(world[axis] / length);
+    }
+    if (mesh.tangents.empty()) return;
+    // A mirror turns corners and cross products round.
+    const bool is_mirror = world_from_object.determinant() < 0;
+    const float side = is_mirror ? -1.0F : 1.0F;
+    for (std::size_t at = 0; is_mirror && at + 2 < mesh.triangles.size(); at += 3) {
+        std::swap(mesh.triangles[at + 1], mesh.triangles[at + 2]);
+    }
+    for (std::size_t at = 0; at + 3 < mesh.tangents.size(); at += 4) {
+        float* t = &mesh.tangents[at];
+        const Vector3 world = world_from_object.apply_to_vector({t[0], t[1], t[2]});
+        const double length = glm::length(world);
+        for (int axis = 0; axis < 3; ++axis) {
+            t[axis] = length > 0 ? static_cast<float>(world[axis] / length) : 0.0F;
+        }
+        t[3] *= side;
+    }
+}
+
+/// Of the corners in use; a file may have broken vertices that no triangle names.
+Bounds bounds_of(const TriangleMesh& mesh) {
+    Bounds bounds;
+    for (const std::uint32_t vertex : mesh.triangles) {
+        const float* p = &mesh.positions[3 * std::size_t{vertex}];
+        bounds.extend(Point3{p[0], p[1], p[2]});
+    }
+    return bounds;
+}
+
+/// Whether a material says more than the colour that a given reflectance replaces.
+bool has_more_than_color(const MeshMaterial& material) {
+    return material.alpha_cutoff > 0 || material.normal_map || material.emission != Rgb{0, 0, 0};
+}
+
+TriangleMesh box_mesh(const GeometryDesc& desc) {
+    TriangleMesh mesh;
+    for (int corner = 0; corner < 8; ++corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const bool high = ((corner >> axis) & 1) != 0;
+            mesh.positions.push_back(static_cast<float>(high ? desc.max[axis] : desc.min[axis]));
+        }
+    }
+    mesh.triangles = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                      2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+    return mesh;
+}
+
+class Builder {
+  public:
+    explicit Builder(const std::vector<double>& wavelengths_nm)
+        : objects_{{}, {}, {}, {}, ReflectanceBands(wavelengths_nm)} {}
+
+    void add(const GeometryDesc& desc, std::uint32_t object_id,
+             std::vector<std::string>& warnings) {
+        const double determinant = desc.world_from_object.determinant();
+        if (determinant == 0 || !std::isfinite(determinant)) {
+            throw InputError(
+                fmt::format("{}: the transform squeezes the object flat; give a scale "
+                            "other than 0",
+                            desc.where));
+        }
+        switch (desc.type) {
+            case GeometryDesc::Type::file:
+                add_mesh(desc,
+                         read_mesh(desc.file, warnings,
+                                   {desc.import.camera, desc.import.any_lamps(), desc.is_pbr}),
+                         object_id, given_reflectance(desc, objects_.bands.count()));
+                break;
+            case GeometryDesc::Type::box:
+                add_mesh(desc, box_mesh(desc), object_id, reflectance(desc));
+                break;
+            case GeometryDesc::Type::sphere:
+                add_sphere(desc, object_id);
+                break;
+            case GeometryDesc::Type::plane:
+                add_plane(desc, object_id);
+                break;
+        }
+    }
+
+    SceneObjects take() { return std::move(objects_); }
+
+  private:
+    Spectrum reflectance(const GeometryDesc& desc) const {
+        return reflectance_or_default(desc, objects_.bands.count());
+    }
+
+    void extend_bounds(const GeometryDesc& desc, const Bounds& bounds) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(bounds.min[axis] >= -k_max_coordinate && bounds.max[axis] <= k_max_coordinate)) {
+                throw InputError(
+                    fmt::format("{}: reaches beyond 1e15 m; check its transform", desc.where));
+            }
+        }
+        objects_.bounds.extend(bounds);
+    }
+
+    void add_mesh(const GeometryDesc& desc, TriangleMesh mesh, std::uint32_t object_id,
+                  const std::optional<Spectrum>& reflectance) {
+        auto object = std::make_unique<MeshObject>();
+        object->mesh = std::move(mesh);
+        object->object_id = object_id;
+        object->reflectance = reflectance;
+        object->is_pbr = desc.is_pbr;
+        object->vertex_count = object->mesh.vertex_count();
+        const auto& materials = object->mesh.materials;
+        object->has_holes = std::ranges::any_of(
+            materials, [](const MeshMaterial& material) { return material.alpha_cutoff > 0; });
+        if (reflectance && !desc.is_pbr && std::ranges::none_of(materials, has_more_than_color)) {
+            object->mesh.uvs = {};
+            object->mesh.colors = {};
+            object->mesh.triangle_materials = {};
+            object->mesh.materials = {MeshMaterial{}};
+        }
+        if (!is_identity(desc.world_from_object)) transform(object->mesh, desc.world_from_object);
+        extend_bounds(desc, bounds_of(object->mesh));
+        object->mesh.positions.resize(object->mesh.positions.size() + 4);  // Embree's padding
+        objects_.meshes.push_back(std::move(object));
+    }
+
+    void add_sphere(const GeometryDesc& desc, std::uint32_t object_id) {
+        const SphereObject sphere{desc.world_from_object,
+                                  desc.world_from_object.inverse(),
+                                  desc.center,
+                                  desc.radius,
+                                  object_id,
+                                  reflectance(desc)};
+        extend_bounds(desc, sphere.world_bounds());
+        objects_.spheres.push_back(sphere);
+    }
+
+    void add_plane(const GeometryDesc& desc, std::uint32_t object_id) {
+        objects_.planes.push_back({desc.world_from_object * desc.point,
+                                   desc.world_from_object.apply_to_normal(desc.normal), object_id,
+                                   reflectance(desc)});
+    }
+
+    SceneObjects objects_;
+};
+
+}  // namespace
+
+std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
+                                         const std::vector<double>& wavelengths_nm,
+                                         std::vector<std::string>& warnings) {
+    Builder builder(wavelengths_nm);
+    std::uint32_t object_id = 0;
+    for (const GeometryDesc& desc : geometry) builder.add(desc, ++object_id, warnings);
+    return make_embree_surfaces(builder.take());
+}
+
+}  // namespace uw

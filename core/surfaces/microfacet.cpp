@@ -1,0 +1,39 @@
+#include "core/surfaces/microfacet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace uw {
+
+double dielectric_f0(double ior) {
+    if (ior == 0) return 1;
+    const double root = (ior - k_surface_water_index) / (ior + k_surface_water_index);
+    return root * root;
+}
+
+MicrofacetLobe microfacet_lobe(const Vector3& normal, const Vector3& to_camera,
+                               const Vector3& to_lamp, double roughness) {
+    const Vector3 sum = to_camera + to_lamp;
+    const double length = glm::length(sum);
+    if (!(length > 0)) return {};  // the lamp shines from straight behind
+    const Vector3 half = sum / length;
+    const double rough = std::max(roughness, k_smallest_roughness);
+    const double alpha2 = rough * rough * rough * rough;  // alpha is the roughness squared
+    // A shading normal may lean past the horizon of what is seen.
+    constexpr double k_grazing = 1e-4;
+    const double nl = glm::dot(normal, to_lamp);
+    const double nv = std::max(glm::dot(normal, to_camera), k_grazing);
+    const double nh = std::min(glm::dot(normal, half), 1.0);
+    if (nl <= 0 || nh <= 0) return {};
+    // (n.h)^2 (alpha^2 - 1) + 1 with the sine where the cosine rounds off.
+    const Vector3 across = glm::cross(normal, half);
+    const double spread = alpha2 * nh * nh + glm::dot(across, across);
+    const double distribution = alpha2 / (std::numbers::pi * spread * spread);
+    const double visibility = 0.5 / (nl * std::sqrt(nv * nv * (1 - alpha2) + alpha2) +
+                                     nv * std::sqrt(nl * nl * (1 - alpha2) + alpha2));
+    const double vh = std::clamp(glm::dot(to_camera, half), 0.0, 1.0);
+    return {distribution * visibility, std::pow(1 - vh, 5)};
+}
+
+}  // namespace uw

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/base/affine.h"
+#include "core/base/ray.h"
+#include "core/base/spectrum.h"
+#include "core/colour/reflectance.h"
+#include "core/meshes/mesh.h"
+#include "core/surfaces/surfaces.h"
+
+namespace uw {
+
+/// Where a line meets something, in units of its direction's length.
+struct TriangleCrossing {
+    double t = 0;
+    double u = 0, v = 0;  // barycentric: (1 - u - v) a + u b + v c
+
+    /// Whether the crossing lies in the triangle and off its edges by more than floats round.
+    bool well_inside() const {
+        return u > k_edge_margin && v > k_edge_margin && u + v < 1 - k_edge_margin;
+    }
+    /// Share of the triangle's size that single precision may err by.
+    static constexpr double k_edge_margin = 1e-3;
+};
+
+/// A triangle mesh in world space. Its positions are followed by the 4 floats that Embree may read
+/// past the last vertex.
+struct MeshObject {
+    TriangleMesh mesh;
+    std::uint32_t object_id = 0;
+    std::optional<Spectrum> reflectance;  // instead of the mesh's colours
+    std::size_t vertex_count = 0;
+    bool has_holes = false;  // some material has an alpha cutoff
+    bool is_pbr = false;     // metallic-roughness counts; else it is diffuse
+
+    /// Whether there is a hole where a line crosses a triangle. For meshes with holes.
+    bool is_hole(std::uint32_t triangle, const TriangleCrossing& crossing) const;
+    /// Corner `k` (0..2) of a triangle.
+    Point3 corner(std::uint32_t triangle, int k) const;
+};
+
+/// A sphere in object space, an ellipsoid in the world.
+struct SphereObject {
+    Affine world_from_object, object_from_world;
+    Point3 center;
+    double radius = 0;
+    std::uint32_t object_id = 0;
+    Spectrum reflectance{};
+
+    Bounds world_bounds() const;
+};
+
+/// An infinite plane in world space.
+struct PlaneObject {
+    Point3 point;
+    Vector3 normal{0, 0, 1};  // unit
+    std::uint32_t object_id = 0;
+    Spectrum reflectance{};
+};
+
+/// All surfaces of a scene, before and after Embree has its acceleration structure over them.
+struct SceneObjects {
+    std::vector<std::unique_ptr<MeshObject>> meshes;
+    std::vector<SphereObject> spheres;
+    std::vector<PlaneObject> planes;
+    Bounds bounds;  // of meshes and spheres
+    ReflectanceBands bands;
+};
+
+/// The crossing of a line with the plane of a triangle (Moeller & Trumbore 1997) in double
+/// precision. Nothing if it misses the triangle by more than k_edge_margin, as happens to lines
+/// nearly in its plane.
+std::optional<TriangleCrossing> cross_triangle(const MeshObject& object, std::uint32_t triangle,
+                                               const Point3& origin, const Vector3& direction);
+
+/// Both crossings of a line with a sphere, the smaller first, or nothing.
+struct SphereCrossings {
+    double near = 0, far = 0;
+};
+std::optional<SphereCrossings> cross_sphere(const SphereObject& sphere, const Point3& origin,
+                                            const Vector3& direction);
+
+/// Where a line crosses a plane; nothing if it runs parallel.
+std::optional<double> cross_plane(const PlaneObject& plane, const Point3& origin,
+                                  const Vector3& direction);
+
+/// Fill everything of `hit` but `distance` and `position`, which are given; `direction` is the
+/// ray's, whose side the normals are turned to.
+void shade_mesh(const MeshObject& object, std::uint32_t triangle, const TriangleCrossing& crossing,
+                const ReflectanceBands& bands, const Vector3& direction, SurfaceHit& hit);
+/// What a triangle of `hit` (SurfaceHit::triangle) does beside reflecting diffusely.
+SurfaceMaterial material_of_mesh(const MeshObject& object, const ReflectanceBands& bands,
+                                 const SurfaceHit& hit);
+void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceHit& hit);
+void shade_plane(const PlaneObject& plane, const Vector3& direction, SurfaceHit& hit);
+
+}  // namespace uw

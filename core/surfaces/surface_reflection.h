@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+
+#include "core/surfaces/surface_material.h"
+#include "core/surfaces/surface_sample.h"
+
+namespace uw {
+
+/// What the camera sees of a surface under light: its BRDF towards the camera, and its own light.
+class SurfaceReflection {
+  public:
+    /// Refers to `sample`.
+    SurfaceReflection(const Surfaces& surfaces, const SurfaceSample& sample, int band_count);
+
+    /// BRDF per band [1/sr] for light from a lamp at `position`: rho/pi of a diffuse surface;
+    /// (1 - F) rho/pi + F D V of a glossy one (glTF 2.0, appendix B).
+    void brdf(const Point3& position, Spectrum& values) const;
+
+    /// Whether the surface shines by itself.
+    bool emits() const { return emits_; }
+    /// Precondition: emits().
+    const Spectrum& emission() const { return material_->emission; }
+
+  private:
+    const SurfaceSample* sample_;
+    std::size_t bands_;
+    std::optional<SurfaceMaterial> material_;  // none: diffuse and dark
+    bool emits_ = false;
+};
+
+}  // namespace uw

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/base/ray.h"
+#include "core/base/spectrum.h"
+#include "core/surfaces/surface_material.h"
+
+namespace uw {
+
+/// Where a ray meets a surface. World space.
+struct SurfaceHit {
+    double distance = 0;  // along the ray [m]
+    Point3 position;
+    Vector3 normal{0, 0, 1};            // shading normal, unit, on the side the ray comes from
+    Vector3 geometric_normal{0, 0, 1};  // of the true surface, unit, same side
+    Spectrum reflectance{};             // diffuse reflectance rho per band, 0..1
+    std::uint32_t object_id = 0;        // index of the entry of `geometry`, from 1
+    bool has_material = false;          // does more than reflect diffusely: ask Surfaces::material
+    // For Surfaces::material: the triangle and where on it.
+    std::uint32_t geometry = 0, triangle = 0;
+    double u = 0, v = 0;
+};
+
+/// The opaque surfaces of a scene: what stops camera rays and casts shadows. Thread safe.
+class Surfaces {
+  public:
+    virtual ~Surfaces() = default;
+
+    /// The nearest surface along `ray` within (0, s_end]; false if there is none.
+    virtual bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const = 0;
+
+    /// What a surface that was hit does beside reflecting diffusely; nothing unless
+    /// SurfaceHit::has_material, and by default.
+    virtual SurfaceMaterial material(const SurfaceHit& /*hit*/) const { return {}; }
+
+    /// Distance to the nearest surface from the ray's origin, infinity if there is none. Cheaper
+    /// than closest_hit: no shading.
+    virtual double hit_distance(const Ray& ray) const = 0;
+
+    /// Whether something stands between `from` and `to`. Surfaces that hold either end (within
+    /// 1e-5 of the distance) do not count.
+    virtual bool occluded(const Point3& from, const Point3& to) const = 0;
+
+    /// The three queries above for many rays at once, with the same results to the bit (but for
+    /// triangles as small as 1000 times the rounding of their coordinates to floats, where rounding
+    /// may differ). Faster where rays that follow one another in steps of 8 go much the same way;
+    /// slower where they do not. All spans of a call have the same length.
+    ///
+    /// `found[i]` is closest_hit(rays[i], s_end, hits[i]), as 0 or 1.
+    virtual void closest_hits(std::span<const Ray> rays, double s_end, std::span<SurfaceHit> hits,
+                              std::span<char> found) const;
+    /// `distances[i]` is hit_distance({origin, directions[i]}); unit directions.
+    virtual void hit_distances(const Point3& origin, std::span<const Vector3> directions,
+                               std::span<double> distances) const;
+    /// `blocked[i]` is occluded(from, to[i]), as 0 or 1.
+    virtual void occluded_many(const Point3& from, std::span<const Point3> to,
+                               std::span<char> blocked) const;
+
+    /// World bounds of everything finite; empty if there is nothing.
+    virtual Bounds bounds() const = 0;
+    virtual std::uint64_t triangle_count() const = 0;
+    virtual bool empty() const = 0;
+};
+
+}  // namespace uw

@@ -1,0 +1,284 @@
+#include "media/light/shadow_map.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/integrators/ray_panels.h"
+
+namespace uw {
+
+namespace {
+
+constexpr float k_nothing = std::numeric_limits<float>::infinity();
+constexpr float k_untraced = -1;
+// A cell reaches this far from a direction in it: its diagonal, and as much again.
+constexpr double k_beam_margin_texels = 3;
+// The map's depths are float and its texels are compared with points between their centres; a
+// decision needs this relative margin, or the search goes on to exact shadow rays.
+constexpr double k_margin = 1e-3;
+// A shadow's edge is found to this share of its distance from the lamp, half of it off on average:
+// in-scatter over that is less than 1e-4 of what the ray gathers on its way past the lamp.
+constexpr double k_edge_width = 3e-4;
+
+std::size_t square(int n) {
+    return static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+}
+
+// Place of a value in rows of `width`.
+std::size_t texel_index(int row, int column, int width) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(column);
+}
+
+}  // namespace
+
+ShadowMap::ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution,
+                     const DirectionCone& beam)
+    : surfaces_(&surfaces), lamp_(lamp), resolution_(resolution), beam_(beam) {
+    if (surfaces.empty()) return;
+    for (int face = 0; face < 6; ++face) trace_face(face);
+}
+
+void ShadowMap::trace_face(int face_index) {
+    const CubeFace face(face_index);
+    const int n = resolution_;
+    const int padded = n + 2;  // one texel beyond each edge, so that neighbours always exist
+    // Cells that the beam touches have all their samples within this.
+    const DirectionCone wide = beam_.widened(k_beam_margin_texels * 2.0 / n);
+    std::vector<float> depth(square(padded), k_untraced);
+    std::atomic<std::uint64_t> traced = 0;
+    parallel_for(static_cast<std::size_t>(padded), [&](std::size_t row) {
+        thread_local std::vector<Vector3> directions;
+        thread_local std::vector<double> hits;
+        thread_local std::vector<std::size_t> columns;
+        directions.clear();
+        columns.clear();
+        const double v = (2.0 * static_cast<double>(row) - 1.0) / n - 1.0;
+        const Vector3 middle = face.direction(0, v), across = face.direction(1, v) - middle;
+        for (int column = 0; column < padded; ++column) {
+            const Vector3 direction = middle + ((2.0 * column - 1.0) / n - 1.0) * across;
+            if (!wide.has(direction)) continue;
+            directions.push_back(glm::normalize(direction));
+            columns.push_back(static_cast<std::size_t>(column));
+        }
+        hits.resize(directions.size());
+        surfaces_->hit_distances(lamp_, directions, hits);
+        // Depth is along the face's axis.
+        for (std::size_t i = 0; i < hits.size(); ++i)
+            depth[row * static_cast<std::size_t>(padded) + columns[i]] =
+                static_cast<float>(hits[i] * face.depth(directions[i]));
+        traced += hits.size();
+    });
+    if (traced == 0) return;
+    rays_traced_ += traced;
+
+    Pyramid& pyramid = faces_[static_cast<std::size_t>(face_index)];
+    pyramid.push_back(cell_ranges(depth));
+    while (pyramid.back().size > 1) pyramid.push_back(halved(pyramid.back()));
+}
+
+// Four samples bound what lies between them: 1 / depth is linear over a plane.
+ShadowMap::Level ShadowMap::cell_ranges(const std::vector<float>& padded_depth) const {
+    const int n = resolution_ + 1;
+    Level level{n, std::vector<DepthRange>(square(n))};
+    for (int row = 0; row < n; ++row) {
+        for (int column = 0; column < n; ++column) {
+            const float* above = &padded_depth[texel_index(row, column, n + 1)];
+            const float* below = above + n + 1;
+            const float nearest = std::min({above[0], above[1], below[0], below[1]});
+            // Cells that the beam does not touch have no say.
+            level.texels[texel_index(row, column, n)] =
+                nearest == k_untraced
+                    ? DepthRange{k_nothing, 0}
+                    : DepthRange{nearest, std::max({above[0], above[1], below[0], below[1]})};
+        }
+    }
+    return level;
+}
+
+ShadowMap::Level ShadowMap::halved(const Level& fine) {
+    const int size = (fine.size + 1) / 2;
+    Level coarse{size, std::vector<DepthRange>(square(size), DepthRange{k_nothing, 0})};
+    const auto last = fine.size - 1;
+    for (int row = 0; row < size; ++row) {
+        const DepthRange* const above = &fine.texels[texel_index(2 * row, 0, fine.size)];
+        const DepthRange* const below =
+            &fine.texels[texel_index(std::min(2 * row + 1, last), 0, fine.size)];
+        for (int column = 0; column < size; ++column) {
+            const int left = 2 * column, right = std::min(2 * column + 1, last);
+            coarse.texels[texel_index(row, column, size)] = {
+                std::min({above[left].nearest, above[right].nearest, below[left].nearest,
+                          below[right].nearest}),
+                std::max({above[left].farthest, above[right].farthest, below[left].farthest,
+                          below[right].farthest})};
+        }
+    }
+    return coarse;
+}
+
+std::size_t ShadowMap::bytes() const {
+    std::size_t total = 0;
+    for (const Pyramid& pyramid : faces_)
+        for (const Level& level : pyramid) total += level.texels.size() * sizeof(DepthRange);
+    return total;
+}
+
+/// The walk along one ray: halves stretches until the pyramid decides or a texel is reached.
+class ShadowMap::Search {
+  public:
+    Search(const ShadowMap& map, const Ray& ray, std::vector<Interval>& lit)
+        : map_(map), ray_(ray), lit_(lit) {}
+
+    void run(const Interval& stretch) {
+        whole_ = stretch;
+        thread_local std::vector<FaceSegment> segments;
+        split_by_face(ray_, map_.lamp_, stretch, segments);
+        for (const FaceSegment& segment : segments) {
+            face_ = CubeFace(segment.face);
+            pyramid_ = &map_.faces_[static_cast<std::size_t>(segment.face)];
+            if (pyramid_->empty()) continue;  // beside the beam, but for rounding
+            descend(project(segment.stretch.begin), project(segment.stretch.end));
+        }
+    }
+
+    void append(const Interval& interval) {
+        if (!lit_.empty() && lit_.back().end == interval.begin)
+            lit_.back().end = interval.end;
+        else
+            lit_.push_back(interval);
+    }
+
+  private:
+    struct MapPoint {
+        double s;      // along the ray
+        double depth;  // along the face's axis
+        double u, v;   // in texels
+    };
+
+    MapPoint project(double s) const {
+        const Vector3 x = ray_.at(s) - map_.lamp_;
+        const double half = 0.5 * map_.resolution_;
+        const double depth = face_.depth(x), texels_per_metre = half / depth;
+        return {s, depth, half + x[face_.u_axis] * texels_per_metre,
+                half + x[face_.v_axis] * texels_per_metre};
+    }
+
+    void descend(const MapPoint& a, const MapPoint& b) {
+        const DepthRange range = bound(a, b);
+        if (std::max(a.depth, b.depth) * (1 + k_margin) < range.nearest)
+            append({a.s, b.s});
+        else if (std::min(a.depth, b.depth) > range.farthest * (1 + k_margin))
+            return;
+        else if (std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) <= 1.0 &&
+                 std::max(a.depth, b.depth) < 2 * std::min(a.depth, b.depth))
+            resolve(a.s, b.s);
+        else {
+            // Halfway on the face where the stretch is long there, else halfway in depth.
+            const bool far_on_face = std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) > 1.0;
+            const MapPoint middle =
+                project(far_on_face ? (a.s * b.depth + b.s * a.depth) / (a.depth + b.depth)
+                                    : 0.5 * (a.s + b.s));
+            descend(a, middle);
+            descend(middle, b);
+        }
+    }
+
+    // Nearest and farthest surface over the texels that the stretch touches.
+    DepthRange bound(const MapPoint& a, const MapPoint& b) const {
+        const auto texel = [&](double t) {  // the cell between the samples around t
+            return std::clamp(static_cast<int>(std::floor(t + 0.5)), 0, map_.resolution_);
+        };
+        int u0 = texel(std::min(a.u, b.u)), u1 = texel(std::max(a.u, b.u));
+        int v0 = texel(std::min(a.v, b.v)), v1 = texel(std::max(a.v, b.v));
+        std::size_t level = 0;
+        while (u1 - u0 > 1 || v1 - v0 > 1) {
+            u0 /= 2, u1 /= 2, v0 /= 2, v1 /= 2;
+            ++level;
+        }
+        const Level& texels = (*pyramid_)[level];
+        DepthRange range{k_nothing, 0};
+        for (int v = v0; v <= v1; ++v) {
+            for (int u = u0; u <= u1; ++u) {
+                const DepthRange& t = texels.texels[texel_index(v, u, texels.size)];
+                range.nearest = std::min(range.nearest, t.nearest);
+                range.farthest = std::max(range.farthest, t.farthest);
+            }
+        }
+        return range;
+    }
+
+    bool visible(double s) const { return !map_.surfaces_->occluded(map_.lamp_, ray_.at(s)); }
+
+    // At the end of a stretch, which is looked at a little inside where the ray ends too: there it
+    // may lie on a surface, which hides nothing within 1e-5 of the distance (Surfaces::occluded).
+    bool visible_at_end(double s, double into) {
+        if (s == last_seen_.s) return last_seen_.visible;
+        const bool is_end = s == whole_.begin || s == whole_.end;
+        const double inset =
+            std::min(0.25 * std::abs(into - s), 3e-5 * distance(map_.lamp_, ray_.at(s)));
+        last_seen_ = {s, visible(is_end ? s + std::copysign(inset, into - s) : s)};
+        return last_seen_.visible;
+    }
+
+    // A stretch of at most a texel that the map cannot decide.
+    void resolve(double begin, double end) {
+        const bool lit_at_begin = visible_at_end(begin, end);
+        const bool lit_at_end = visible_at_end(end, begin);
+        if (lit_at_begin == lit_at_end) {
+            if (lit_at_begin) append({begin, end});
+            return;
+        }
+        double a = begin, b = end;
+        const double width = k_edge_width * distance(map_.lamp_, ray_.at(0.5 * (begin + end)));
+        while (b - a > width) {
+            const double middle = 0.5 * (a + b);
+            (visible(middle) == lit_at_begin ? a : b) = middle;
+        }
+        const double edge = 0.5 * (a + b);
+        append(lit_at_begin ? Interval{begin, edge} : Interval{edge, end});
+    }
+
+    // Neighbouring stretches share an end.
+    struct Seen {
+        double s = -1;
+        bool visible = false;
+    };
+
+    const ShadowMap& map_;
+    const Ray& ray_;
+    std::vector<Interval>& lit_;
+    CubeFace face_{0};
+    const Pyramid* pyramid_ = nullptr;
+    Interval whole_;
+    Seen last_seen_;
+};
+
+void ShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
+                              std::vector<Interval>& lit) const {
+    lit.clear();
+    if (!(stretch.length() > 0)) return;
+    if (surfaces_->empty()) {
+        lit.push_back(stretch);
+        return;
+    }
+    Search search(*this, ray, lit);
+    // The lamp's own place has no direction to look up; what is that near sees the lamp.
+    const double foot = glm::dot(lamp_ - ray.origin, ray.direction);
+    const double offset = distance(lamp_, ray.at(foot));
+    const double half =
+        offset < k_lamp_radius ? std::sqrt(k_lamp_radius * k_lamp_radius - offset * offset) : 0.0;
+    const Interval core{std::clamp(foot - half, stretch.begin, stretch.end),
+                        std::clamp(foot + half, stretch.begin, stretch.end)};
+    if (half == 0 || core.length() == 0) {
+        search.run(stretch);
+        return;
+    }
+    search.run({stretch.begin, core.begin});
+    search.append(core);
+    search.run({core.end, stretch.end});
+}
+
+}  // namespace uw

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/lamps/lamp.h"
+#include "core/surfaces/surfaces.h"
+#include "media/light/cube_face.h"
+
+namespace uw {
+
+/// What one lamp sees: the depth of the nearest surface over all directions, as pyramids of
+/// nearest and farthest depth on the faces of a cube. It tells whole stretches of a ray lit or
+/// dark at once; where the map cannot decide, exact shadow rays find the edge.
+class ShadowMap {
+  public:
+    /// Traces those of the `resolution`^2 rays on each face that go within `beam`. `surfaces`
+    /// outlives the map.
+    ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution,
+              const DirectionCone& beam = {});
+
+    /// Directions that the map knows.
+    const DirectionCone& beam() const { return beam_; }
+
+    /// The parts of a stretch of `ray` within the beam that the lamp sees, ascending and disjoint.
+    /// Edges lie within 2e-4 of their distance from the lamp. A shadow narrower than a texel may be
+    /// missed.
+    void lit_intervals(const Ray& ray, const Interval& stretch, std::vector<Interval>& lit) const;
+
+    std::uint64_t rays_traced() const { return rays_traced_; }
+    std::size_t bytes() const;
+
+  private:
+    struct DepthRange {
+        float nearest;
+        float farthest;
+    };
+    struct Level {
+        int size = 0;
+        std::vector<DepthRange> texels;
+    };
+    using Pyramid = std::vector<Level>;
+    class Search;
+
+    void trace_face(int face);
+    Level cell_ranges(const std::vector<float>& padded_depth) const;
+    static Level halved(const Level& fine);
+
+    const Surfaces* surfaces_;
+    Point3 lamp_;
+    int resolution_;
+    DirectionCone beam_;
+    std::array<Pyramid, 6> faces_;  // none of faces beside the beam
+    std::uint64_t rays_traced_ = 0;
+};
+
+}  // namespace uw

@@ -1,0 +1,77 @@
+#include "media/vdb/grid_bricks.h"
+
+#define NANOVDB_USE_TBB
+#include <nanovdb/util/OpenToNanoVDB.h>
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tree/LeafManager.h>
+
+#include <array>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+namespace uw {
+namespace {
+
+constexpr int k_largest_index = 1 << 30;
+
+void append_brick(const openvdb::FloatGrid& grid, std::vector<NanoGrid>& bricks) {
+    openvdb::CoordBBox box;
+    if (!grid.tree().evalActiveVoxelBoundingBox(box)) return;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (box.min()[axis] <= -k_largest_index || box.max()[axis] >= k_largest_index)
+            throw std::range_error("it has voxels further than 2^30 from its origin");
+    nanovdb::OpenToNanoVDB<float, nanovdb::Fp16> converter;
+    converter.setStats(nanovdb::StatsMode::Disable);
+    converter.setChecksum(nanovdb::ChecksumMode::Disable);
+    auto handle = std::make_shared<nanovdb::GridHandle<nanovdb::HostBuffer>>(converter(grid));
+    const void* data = handle->data();
+    const std::size_t bytes = handle->size();
+    bricks.emplace_back(std::move(handle), data, bytes,
+                        std::array{box.min().x(), box.min().y(), box.min().z()},
+                        std::array{box.max().x(), box.max().y(), box.max().z()});
+}
+
+}  // namespace
+
+GridIntake sanitize(openvdb::FloatTree& tree) {
+    using Tree = openvdb::FloatTree;
+    tree.root().setBackground(0.0F, /*updateChildNodes=*/false);
+    GridIntake total;
+    auto tiles = tree.beginValueAll();
+    tiles.setMaxDepth(Tree::ValueAllIter::LEAF_DEPTH - 1);
+    for (; tiles; ++tiles) {
+        const auto voxels = static_cast<std::int64_t>(tiles.getVoxelCount());
+        const float value = tiles.isValueOn() ? total.take(*tiles, voxels) : 0.0F;
+        tiles.setValue(value);
+        tiles.setActiveState(value > 0);
+    }
+    openvdb::tree::LeafManager<Tree> leaves(tree);
+    std::vector<GridIntake> parts(leaves.leafCount());  // summed in order: the same for any threads
+    leaves.foreach ([&parts](Tree::LeafNodeType& leaf, std::size_t index) {
+        float* values = leaf.buffer().data();
+        for (openvdb::Index n = 0; n < Tree::LeafNodeType::SIZE; ++n) {
+            values[n] = leaf.isValueOn(n) ? parts[index].take(values[n], 1) : 0.0F;
+            leaf.setActiveState(n, values[n] > 0);
+        }
+    });
+    for (const GridIntake& part : parts) total.add(part);
+    openvdb::tools::prune(tree);  // blocks of one value become tiles, which cost nothing
+    return total;
+}
+
+GridIntake take_slab(const openvdb::FloatGrid::Ptr& grid, std::vector<NanoGrid>& bricks) {
+    const GridIntake intake = sanitize(grid->tree());
+    grid->setTransform(openvdb::math::Transform::createLinearTransform());
+    append_brick(*grid, bricks);
+    return intake;
+}
+
+openvdb::FloatGrid::Ptr to_float(const openvdb::DoubleGrid::Ptr& grid) {
+    auto tree = std::make_shared<openvdb::FloatTree>(grid->tree());
+    auto result = openvdb::FloatGrid::create(tree);
+    result->setTransform(grid->transformPtr());
+    return result;
+}
+
+}  // namespace uw

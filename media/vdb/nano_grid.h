@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/base/ray.h"
+
+namespace uw {
+
+/// A stretch of a line within which a grid may differ from zero.
+struct GridStretch {
+    double begin = 0, end = 0;  // line parameter
+    bool constant = false;      // one value all along
+};
+
+/// A straight line in lattice space: p(t) = origin + t * direction.
+struct LatticeLine {
+    Point3 origin;
+    Vector3 direction{0, 0, 1};
+};
+
+/// One sparse grid of 16-bit quantised values (NanoVDB, Fp16: within a block of 8^3 voxels the
+/// error is at most 1/131070 of the block's range), interpolated trilinearly, zero outside. Works
+/// in lattice space, where the value of voxel (i, j, k) sits at (i, j, k). Thread safe.
+class NanoGrid {
+  public:
+    /// `grid` points to the NanoVDB grid inside what `storage` owns (media/vdb_file.cpp makes it).
+    /// `min` and `max` bound its nonzero voxels, both included, |coordinates| < 2^30.
+    NanoGrid(std::shared_ptr<const void> storage, const void* grid, std::size_t bytes,
+             const std::array<int, 3>& min, const std::array<int, 3>& max);
+
+    /// Lattice box outside which the interpolated value is zero.
+    const Bounds& support() const { return support_; }
+    std::size_t bytes() const { return bytes_; }
+
+    double sample(const Point3& p) const;
+    /// values[n] += p(t[n])'s value. `t` must be ascending.
+    void add_samples(const LatticeLine& line, std::span<const double> t,
+                     std::span<double> values) const;
+    /// The exact integral of the interpolated value over t in [0, 1], in units of t.
+    double integrate(const LatticeLine& line) const;
+    /// Appends the stretches of [begin, end] outside which the value is exactly zero; ascending,
+    /// disjoint, touching ones of a kind joined.
+    void append_stretches(const LatticeLine& line, double begin, double end,
+                          std::vector<GridStretch>& stretches) const;
+    /// The sum of all values but those of regions that are one value throughout (tiles): the least
+    /// that touching every voxel in memory takes, on all threads allowed.
+    double stored_sum() const;
+
+  private:
+    std::shared_ptr<const void> storage_;
+    const void* grid_;
+    std::size_t bytes_;
+    Bounds support_;
+};
+
+}  // namespace uw

@@ -1,0 +1,273 @@
+#include <nanovdb/NanoVDB.h>
+#include <nanovdb/util/GridChecksum.h>
+
+#include <cstdint>
+#include <memory>
+#include <unordered_set>
+#include <vector>
+
+#include "media/vdb/byte_reader.h"
+#include "media/vdb/nvdb_bytes.h"
+#include "media/vdb/vdb_stream.h"
+
+// A NanoVDB file is a copy of memory: nodes that point at each other by offsets. Nothing of it is
+// followed before it is known to lead to a node of the right kind that nothing else leads to.
+namespace uw {
+namespace {
+
+constexpr std::size_t k_alignment = NANOVDB_DATA_ALIGNMENT;
+
+openvdb::math::Transform::Ptr to_transform(const nanovdb::GridData& data) {
+    openvdb::Mat4d m = openvdb::Mat4d::identity();
+    for (int row = 0; row < 3; ++row) {  // OpenVDB multiplies row vectors from the left
+        for (int column = 0; column < 3; ++column)
+            m[column][row] = data.mMap.mMatD[3 * row + column];
+        m[3][row] = data.mMap.mVecD[row];
+    }
+    return openvdb::math::Transform::createLinearTransform(m);
+}
+
+float convert(float value) {
+    return value;
+}
+double convert(double value) {
+    return value;
+}
+std::int32_t convert(std::int32_t value) {
+    return value;
+}
+std::int64_t convert(std::int64_t value) {
+    return value;
+}
+template <class T>
+openvdb::math::Vec3<T> convert(const nanovdb::Vec3<T>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+/// The nodes of one level: where they may lie, and which have been met.
+class Level {
+  public:
+    /// `offset`: from the tree, as the file has it. Nodes of one size.
+    Level(const std::uint8_t* begin, std::uint64_t available, std::uint64_t offset,
+          std::uint64_t count, std::uint64_t size)
+        : begin_(begin + (offset <= available ? offset : 0)), size_(size) {
+        valid_ = count == 0 || (offset <= available && offset % k_alignment == 0 &&
+                                count <= (available - offset) / size);
+        if (valid_) met_.resize(count);
+    }
+    bool valid() const { return valid_; }
+    /// Marks the node at `at` as met; false if there is none, or it has been met before.
+    bool take(std::uint64_t at, const std::uint8_t* origin) {
+        const auto first = static_cast<std::uint64_t>(begin_ - origin);
+        if (at < first || (at - first) % size_ != 0) return false;
+        const std::uint64_t index = (at - first) / size_;
+        if (index >= met_.size() || met_[index]) return false;
+        met_[index] = true;
+        return true;
+    }
+
+  private:
+    const std::uint8_t* begin_;
+    std::uint64_t size_;
+    bool valid_ = false;
+    std::vector<bool> met_;
+};
+
+template <class BuildT, class GridT>
+class Conversion {
+    using Root = typename nanovdb::NanoRoot<BuildT>::DataType;
+    using Upper = typename nanovdb::NanoUpper<BuildT>::DataType;
+    using Lower = typename nanovdb::NanoLower<BuildT>::DataType;
+    using Leaf = nanovdb::NanoLeaf<BuildT>;
+    static constexpr bool k_leaves_vary = !Leaf::DataType::FIXED_SIZE;
+
+  public:
+    Conversion(const NvdbBytes& bytes, ByteReader& in)
+        : in_(in),
+          data_(*reinterpret_cast<const nanovdb::GridData*>(bytes.data.get())),
+          tree_(bytes.data.get() + sizeof(nanovdb::GridData)),
+          available_(bytes.size - sizeof(nanovdb::GridData)),
+          head_(*reinterpret_cast<const nanovdb::TreeData<3>*>(tree_)),
+          uppers_(tree_, available_, head_.mNodeOffset[2], head_.mNodeCount[2], sizeof(Upper)),
+          lowers_(tree_, available_, head_.mNodeOffset[1], head_.mNodeCount[1], sizeof(Lower)),
+          leaves_(tree_, available_, head_.mNodeOffset[0], k_leaves_vary ? 0 : head_.mNodeCount[0],
+                  sizeof(typename Leaf::DataType)) {}
+
+    typename GridT::Ptr run() {
+        require(uppers_.valid() && lowers_.valid() && leaves_.valid());
+        if constexpr (k_leaves_vary) find_varying_leaves();
+        const std::uint64_t at = head_.mNodeOffset[3];
+        require(at % k_alignment == 0 && at >= sizeof head_ && at <= available_ &&
+                available_ - at >= sizeof(Root));
+        const auto* root = reinterpret_cast<const Root*>(tree_ + at);
+        require(root->mTableSize <= (available_ - at - sizeof(Root)) / sizeof(typename Root::Tile));
+        grid_ = GridT::create(convert(root->mBackground));
+        for (std::uint32_t n = 0; n < root->mTableSize; ++n) take_root_tile(*root, n);
+        check_sum();
+        grid_->setTransform(to_transform(data_));
+        return grid_;
+    }
+
+  private:
+    void require(bool holds) const {
+        if (!holds) in_.fail_damaged();
+    }
+    static openvdb::Coord coord(const nanovdb::Coord& c) { return {c[0], c[1], c[2]}; }
+    template <class Node>
+    std::uint64_t offset_of(const Node& node, std::int64_t child) const {
+        const auto at =
+            static_cast<std::uint64_t>(reinterpret_cast<const std::uint8_t*>(&node) - tree_);
+        return at + static_cast<std::uint64_t>(child);  // a wild one wraps to what is no node
+    }
+    /// Leaves of different sizes lie one behind the other; each says how large it is.
+    void find_varying_leaves() {
+        std::uint64_t at = head_.mNodeOffset[0];
+        require(head_.mNodeCount[0] == 0 || (at <= available_ && at % k_alignment == 0));
+        for (std::uint32_t n = 0; n < head_.mNodeCount[0]; ++n) {
+            require(available_ - at >= sizeof(typename Leaf::DataType));
+            const auto* leaf = reinterpret_cast<const typename Leaf::DataType*>(tree_ + at);
+            constexpr unsigned k_widest = 4;  // 2^4 bits a value
+            require((leaf->mFlags >> 5U) <= k_widest && leaf->memUsage() <= available_ - at);
+            varying_.insert(at);
+            at += leaf->memUsage();
+        }
+    }
+    bool take_leaf_offset(std::uint64_t at) {
+        if constexpr (k_leaves_vary) return varying_.erase(at) == 1;
+        return leaves_.take(at, tree_);
+    }
+
+    void take_root_tile(const Root& root, std::uint32_t n) {
+        const auto& tile = *(reinterpret_cast<const typename Root::Tile*>(&root + 1) + n);
+        const openvdb::Coord origin = coord(tile.origin());
+        if (tile.child == 0) {
+            if (tile.state != 0) grid_->tree().addTile(3, origin, convert(tile.value), true);
+            return;
+        }
+        const std::uint64_t at = offset_of(root, tile.child);
+        require(uppers_.take(at, tree_));
+        const auto& upper = *reinterpret_cast<const Upper*>(tree_ + at);
+        take_table(
+            upper, origin, 5, 7, 2, [this](std::uint64_t child, const openvdb::Coord& begin) {
+                require(lowers_.take(child, tree_));
+                const auto& lower = *reinterpret_cast<const Lower*>(tree_ + child);
+                take_table(
+                    lower, begin, 4, 3, 1,
+                    [this](std::uint64_t leaf, const openvdb::Coord& o) { take_leaf(leaf, o); });
+            });
+    }
+    /// The children and active tiles of an internal node of 2^log2 children a side, each of
+    /// 2^child_log2 voxels a side.
+    template <class Node, class TakeChild>
+    void take_table(const Node& node, const openvdb::Coord& origin, unsigned log2,
+                    unsigned child_log2, openvdb::Index level, const TakeChild& take_child) {
+        const std::uint32_t side = (1U << log2) - 1;
+        for (std::uint32_t n = 0; n < (1U << (3 * log2)); ++n) {
+            const bool child = node.mChildMask.isOn(n);
+            if (!child && !node.mValueMask.isOn(n)) continue;
+            const openvdb::Coord begin =
+                origin.offsetBy(static_cast<int>((n >> (2 * log2)) << child_log2),
+                                static_cast<int>((n >> log2 & side) << child_log2),
+                                static_cast<int>((n & side) << child_log2));
+            if (child)
+                take_child(offset_of(node, node.mTable[n].child), begin);
+            else
+                grid_->tree().addTile(level, begin, convert(node.mTable[n].value), true);
+        }
+    }
+    void take_leaf(std::uint64_t at, const openvdb::Coord& origin) {
+        require(take_leaf_offset(at));
+        const auto& leaf = *reinterpret_cast<const Leaf*>(tree_ + at);
+        auto made =
+            std::make_unique<typename GridT::TreeType::LeafNodeType>(origin, grid_->background());
+        for (std::uint32_t n = 0; n < 512; ++n)
+            if (leaf.data()->mValueMask.isOn(n)) made->setValueOn(n, convert(leaf.getValue(n)));
+        grid_->tree().addLeaf(made.release());  // the tree owns it
+    }
+    /// Where this library made the checksum. Others count it differently.
+    void check_sum() const {
+        const std::uint64_t stated = data_.mChecksum;
+        if (data_.mVersion.getMinor() != NANOVDB_MINOR_VERSION_NUMBER || stated == 0 ||
+            stated == ~std::uint64_t{0})
+            return;
+        const auto* grid = reinterpret_cast<const nanovdb::NanoGrid<BuildT>*>(&data_);
+        require(nanovdb::validateChecksum(*grid));
+    }
+
+    ByteReader& in_;
+    const nanovdb::GridData& data_;
+    const std::uint8_t* tree_;
+    std::uint64_t available_;
+    const nanovdb::TreeData<3>& head_;
+    Level uppers_, lowers_, leaves_;
+    std::unordered_set<std::uint64_t> varying_;
+    typename GridT::Ptr grid_;
+};
+
+template <class BuildT, class GridT>
+typename GridT::Ptr convert_grid(const VdbHeader& header, const GridSummary& grid,
+                                 const SourceLocation& where) {
+    const NvdbBytes bytes = read_nvdb_bytes(header, grid, where);
+    ByteReader in(header.file, where);
+    const auto* data = reinterpret_cast<const nanovdb::GridData*>(bytes.data.get());
+    if (data->mGridType != nanovdb::mapToGridType<BuildT>()) in.fail_damaged();
+    return Conversion<BuildT, GridT>(bytes, in).run();
+}
+
+}  // namespace
+
+template <>
+openvdb::FloatGrid::Ptr read_nvdb_grid<openvdb::FloatGrid>(const VdbHeader& header,
+                                                           const GridSummary& grid,
+                                                           const SourceLocation& where) {
+    using Grid = openvdb::FloatGrid;
+    if (grid.quantised == "fp4") return convert_grid<nanovdb::Fp4, Grid>(header, grid, where);
+    if (grid.quantised == "fp8") return convert_grid<nanovdb::Fp8, Grid>(header, grid, where);
+    if (grid.quantised == "fp16") return convert_grid<nanovdb::Fp16, Grid>(header, grid, where);
+    if (grid.quantised == "fpN") return convert_grid<nanovdb::FpN, Grid>(header, grid, where);
+    return convert_grid<float, Grid>(header, grid, where);
+}
+template <>
+openvdb::DoubleGrid::Ptr read_nvdb_grid<openvdb::DoubleGrid>(const VdbHeader& header,
+                                                             const GridSummary& grid,
+                                                             const SourceLocation& where) {
+    return convert_grid<double, openvdb::DoubleGrid>(header, grid, where);
+}
+template <>
+openvdb::Int32Grid::Ptr read_nvdb_grid<openvdb::Int32Grid>(const VdbHeader& header,
+                                                           const GridSummary& grid,
+                                                           const SourceLocation& where) {
+    return convert_grid<std::int32_t, openvdb::Int32Grid>(header, grid, where);
+}
+template <>
+openvdb::Int64Grid::Ptr read_nvdb_grid<openvdb::Int64Grid>(const VdbHeader& header,
+                                                           const GridSummary& grid,
+                                                           const SourceLocation& where) {
+    return convert_grid<std::int64_t, openvdb::Int64Grid>(header, grid, where);
+}
+template <>
+openvdb::Vec3SGrid::Ptr read_nvdb_grid<openvdb::Vec3SGrid>(const VdbHeader& header,
+                                                           const GridSummary& grid,
+                                                           const SourceLocation& where) {
+    return convert_grid<nanovdb::Vec3f, openvdb::Vec3SGrid>(header, grid, where);
+}
+template <>
+openvdb::Vec3DGrid::Ptr read_nvdb_grid<openvdb::Vec3DGrid>(const VdbHeader& header,
+                                                           const GridSummary& grid,
+                                                           const SourceLocation& where) {
+    return convert_grid<nanovdb::Vec3d, openvdb::Vec3DGrid>(header, grid, where);
+}
+template <>
+openvdb::Vec3IGrid::Ptr read_nvdb_grid<openvdb::Vec3IGrid>(const VdbHeader& header,
+                                                           const GridSummary&,
+                                                           const SourceLocation& where) {
+    ByteReader(header.file, where).fail_damaged();  // NanoVDB has no such grids
+}
+
+openvdb::math::Transform::Ptr read_nvdb_transform(const VdbHeader& header, const GridSummary& grid,
+                                                  const SourceLocation& where) {
+    const NvdbBytes bytes = read_nvdb_bytes(header, grid, where);
+    return to_transform(*reinterpret_cast<const nanovdb::GridData*>(bytes.data.get()));
+}
+
+}  // namespace uw

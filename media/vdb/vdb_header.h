@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene_desc.h"
+
+namespace uw {
+
+/// Voxels min to max, both included.
+struct IndexBox {
+    std::array<std::int32_t, 3> min{}, max{};
+};
+
+/// What a VDB file says about one of its grids, read without its voxels. Names are made printable.
+struct GridSummary {
+    std::string name;        // as scenes address it: "density", or "density[1]" among namesakes
+    std::string base_name;   // "density" in both cases
+    std::string value_type;  // "float", "double", "vec3s", "ptdataidx32", ...
+    bool half = false;       // saved with 16 bits per number
+    std::string quantised;   // NanoVDB: "fp4", "fp8", "fp16" or "fpN" if saved so, else ""
+    std::string grid_class = "unknown";         // "fog volume", "level set", "staggered", "unknown"
+    std::optional<std::int64_t> active_voxels;  // if the file says so
+    std::string map_type;                       // e.g. "UniformScaleMap", "NonlinearFrustumMap"
+    bool has_base_resolution = false;           // Blender's fluid solver notes it with each grid
+    std::optional<IndexBox> active_box;         // of the active voxels, if the file says so
+
+    // For the reader: where in the file things are.
+    std::string tree_type;    // "Tree_float_5_4_3"
+    std::string unique_name;  // raw
+    std::string instance_of;  // raw unique name of the grid whose voxels this one shares, or ""
+    std::uint32_t compression = 0;
+    std::int64_t transform_offset = 0;
+    std::int64_t blocks_offset = 0;  // NanoVDB: where the grid's bytes begin
+    std::int64_t stored_bytes = 0;   // NanoVDB: their number in the file,
+    std::int64_t grid_bytes = 0;     // and once unpacked
+};
+
+/// What a VDB file says about itself.
+struct VdbHeader {
+    std::filesystem::path file;
+    bool is_nano = false;       // NanoVDB's own format (.nvdb); it has no version of its own
+    std::uint32_t version = 0;  // of the format: 224 for OpenVDB 4 to 12
+    std::uint32_t library_major = 0, library_minor = 0;
+    std::string creator;  // file metadata "creator"; "" if there is none
+    std::vector<GridSummary> grids;
+
+    /// True for a cache of Blender's fluid solver (Mantaflow): no creator, and either the solver's
+    /// own metadata or nothing but the names it uses.
+    bool from_blender_fluid() const;
+    /// One line that lists the grids with type and class, for messages.
+    std::string describe_grids() const;
+};
+
+/// Voxels along an edge of a leaf of VDB trees, OpenVDB's and NanoVDB's alike.
+inline constexpr int k_leaf_edge = 8;
+
+inline constexpr std::uint32_t k_oldest_vdb_version = 220;
+inline constexpr std::uint32_t k_newest_vdb_version = 224;
+
+/// Reads the header and the metadata of all grids of a VDB or NanoVDB file, told apart by how they
+/// begin; sizes the file claims are checked against its length first. Throws IoError if the file
+/// cannot be opened; InputError, starting with `where`, if it is neither, is cut short, or has a
+/// version other than 220 to 224 (NanoVDB: 32).
+VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocation& where);
+
+/// The summaries alone.
+std::vector<GridSummary> list_grids(const std::filesystem::path& file, const SourceLocation& where);
+
+/// Why the grid's values are no concentrations, to follow "grid 'x' "; "" if nothing in its header
+/// speaks against them.
+std::string unusable_because(const GridSummary& grid);
+
+/// The grid a scene calls `name`, if its concentrations can be used. Throws InputError, starting
+/// with `where`, for a name that is missing or shared by several grids, and for level sets, points,
+/// vectors, other types, and transforms that are not affine; the message lists what the file has.
+const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
+                               const SourceLocation& where);
+
+}  // namespace uw

@@ -1,0 +1,90 @@
+#include <cmath>
+#include <utility>
+
+#include "core/base/error.h"
+#include "media/vdb/moving_grid.h"
+#include "media/volumes/grid_field.h"
+
+namespace uw {
+namespace {
+
+/// Integrals along the world's axes through the middle of `bounds`.
+std::array<double, 3> columns_through_middle(const GridVolume& volume) {
+    std::array<double, 3> columns{};
+    if (volume.bricks().empty()) return columns;
+    for (int axis = 0; axis < 3; ++axis) {
+        Point3 a = volume.bounds().center(), b = a;
+        a[axis] = volume.bounds().min[axis];
+        b[axis] = volume.bounds().max[axis];
+        columns[static_cast<std::size_t>(axis)] = volume.column(a, b);
+    }
+    return columns;
+}
+
+VolumeReport report_on(const VolumeDesc& desc, const LoadedGrid& loaded, const GridVolume& volume,
+                       const Placement& placement) {
+    VolumeReport report;
+    report.file = desc.file;
+    report.grid = loaded.name;
+    report.metres_per_voxel = volume.voxel_size();
+    report.bounds = volume.voxel_bounds();
+    report.placement = placement;
+    report.statistics = loaded.statistics;
+    report.column = columns_through_middle(volume);
+    report.bricks = volume.bricks().size();
+    for (const NanoGrid& brick : volume.bricks()) report.bytes += brick.bytes();
+    for (const GridLoad& load : volume.loads()) {
+        ConstituentReport part;
+        part.constituent = load.constituent;
+        part.min = load.per_unit * loaded.statistics.min;
+        part.mean = load.per_unit * loaded.statistics.mean;
+        part.max = load.per_unit * loaded.statistics.max;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            part.column[axis] = load.per_unit * report.column[axis];
+        report.constituents.push_back(part);
+    }
+    return report;
+}
+
+}  // namespace
+
+LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
+                         std::size_t slab_bytes) {
+    LoadedVolume volume;
+    const VdbHeader header = read_vdb_header(desc.file, desc.where);
+    const Placement placement = decide_placement(header, desc);
+    for (std::size_t g = 0; g < desc.grids.size(); ++g) {
+        const GridMappingDesc& mapping = desc.grids[g];
+        LoadedGrid loaded = desc.motion && desc.motion->shutter > 0
+                                ? load_moving_grid(header, mapping.grid, mapping.where,
+                                                   *desc.motion, placement.centering)
+                                : load_grid(header, mapping.grid, mapping.where, slab_bytes);
+        volume.warnings.insert(volume.warnings.end(), loaded.warnings.begin(),
+                               loaded.warnings.end());
+        const Affine place = world_from_index(loaded, placement, desc.world_from_upright);
+        const double determinant = place.determinant();
+        if (!std::isfinite(determinant) || determinant == 0)
+            throw InputError(desc.where + ": its transform leaves the volume no extent");
+        volume.grids.emplace_back(std::move(loaded.bricks), place, placement.centering,
+                                  loads.at(g));
+        volume.reports.push_back(report_on(desc, loaded, volume.grids.back(), placement));
+    }
+    return volume;
+}
+
+std::unique_ptr<ConcentrationField> load_volumes(
+    const std::vector<VolumeDesc>& volumes,
+    const std::vector<std::vector<std::vector<GridLoad>>>& loads, int constituent_count,
+    std::vector<VolumeReport>& reports, std::vector<std::string>& warnings,
+    std::size_t slab_bytes) {
+    std::vector<GridVolume> grids;
+    for (std::size_t v = 0; v < volumes.size(); ++v) {
+        LoadedVolume volume = load_volume(volumes[v], loads.at(v), slab_bytes);
+        grids.insert(grids.end(), volume.grids.begin(), volume.grids.end());
+        reports.insert(reports.end(), volume.reports.begin(), volume.reports.end());
+        warnings.insert(warnings.end(), volume.warnings.begin(), volume.warnings.end());
+    }
+    return std::make_unique<GridField>(std::move(grids), constituent_count);
+}
+
+}  // namespace uw

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/base/affine.h"
+#include "core/scene/scene_desc.h"
+
+namespace uw {
+
+/// Finds out, from the headers of the files alone, whether the frames of a volume go together.
+class VolumeSequenceCheck {
+  public:
+    /// Takes the next frame. Throws InputError with the file's name if a grid that the scene uses
+    /// is missing or cannot be used (select_grid), or if its transform is not that of the first
+    /// frame taken: then the same voxel means another place; IoError.
+    void take(const VolumeDesc& frame);
+
+  private:
+    VolumeDesc first_;
+    std::vector<Affine> transforms_;  // of the first frame's grids
+};
+
+}  // namespace uw

@@ -1,0 +1,293 @@
+#include "media/water/water_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "core/base/error.h"
+#include "media/phase/phase_factory.h"
+#include "media/phase/phase_functions.h"
+#include "media/phase/tabulated_phase.h"
+#include "media/water/jerlov.h"
+#include "media/water/kopelevich.h"
+#include "media/water/pure_water.h"
+#include "media/water/uniform_absorption.h"
+
+namespace uw {
+
+namespace {
+
+/// One kind of Kopelevich's particles.
+struct ParticleKind {
+    const char* name;
+    double density;
+    double (*scattering)(double wavelength_nm);
+    std::shared_ptr<const PhaseFunction> (*make_phase)();
+};
+
+constexpr ParticleKind k_small_particles{
+    "small", k_small_particle_density, kopelevich_small_scattering,
+    [] { return std::shared_ptr<const PhaseFunction>(std::make_shared<KopelevichSmall>()); }};
+constexpr ParticleKind k_large_particles{
+    "large", k_large_particle_density, kopelevich_large_scattering,
+    [] { return std::shared_ptr<const PhaseFunction>(std::make_shared<KopelevichLarge>()); }};
+
+/// Assembles the model step by step: the uniform water first, since grids may refer to it.
+class Builder {
+  public:
+    explicit Builder(const WaterDesc& water);
+
+    void add_uniform();
+    void add_grid(const GridMappingDesc& grid, std::vector<GridLoad>& loads);
+    WaterModel finish();
+
+    WaterModel model;
+
+  private:
+    template <class Make>
+    std::size_t phase_index(const std::string& key, const Make& make);
+    std::size_t phase_index(const PhaseDesc& desc);
+    static Spectrum& scattering(OpticalCoefficients& x, std::size_t phase);
+
+    void add_uniform_particles(const ParticleKind& kind, double ppm, double absorbing_ppm);
+    int particle_constituent(const ParticleKind& kind);
+    int optics_constituent(const GridMappingDesc& grid);
+    void scatter_like_water(const GridMappingDesc& grid, OpticalCoefficients& x) const;
+    std::string unique_name(const std::string& wanted) const;
+    double mineral_absorption(const ParticleKind& kind, std::size_t band) const;
+    void drop_unused_phases();
+
+    struct OpticsEntry {
+        const GridMappingDesc::Optics* optics;
+        int constituent;
+    };
+
+    const WaterDesc& water_;
+    const std::size_t band_count_;
+    std::vector<std::string> phase_keys_;  // one per medium phase function
+    std::vector<OpticsEntry> optics_;
+};
+
+void check_bands(const WaterDesc& water) {
+    if (water.bands_nm.empty() || water.bands_nm.size() > static_cast<std::size_t>(k_max_bands))
+        throw InputError(fmt::format("{}: {} bands; give 1 to {} wavelengths in nm", water.where,
+                                     water.bands_nm.size(), k_max_bands));
+    for (const double band : water.bands_nm)
+        if (!(band >= 100 && band <= 10000))
+            throw InputError(
+                fmt::format("{}: band {} is no wavelength of light in water; give "
+                            "nanometres, 100 to 10000",
+                            water.where, band));
+}
+
+void check_per_band(const PerBand& values, std::size_t bands, const std::string& what,
+                    const SourceLocation& where) {
+    if (values.size() != bands)
+        throw InputError(fmt::format("{}: {} has {} values for {} bands; give one per band", where,
+                                     what, values.size(), bands));
+}
+
+bool same_optics(const GridMappingDesc::Optics& a, const GridMappingDesc::Optics& b) {
+    const auto key = [](const GridMappingDesc::Optics& optics) {
+        return optics.phase ? phase_key(*optics.phase) : std::string();
+    };
+    return a.absorption == b.absorption && a.scattering == b.scattering && key(a) == key(b);
+}
+
+bool is_zero(const Spectrum& x) {
+    return std::all_of(x.begin(), x.end(), [](double value) { return value == 0; });
+}
+
+Builder::Builder(const WaterDesc& water) : water_(water), band_count_(water.bands_nm.size()) {
+    check_bands(water);
+    if (water.absorption) check_per_band(*water.absorption, band_count_, "absorption", water.where);
+    if (water.scattering)
+        check_per_band(water.scattering->b, band_count_, "scattering.b", water.where);
+    model.medium.wavelengths_nm = water.bands_nm;
+}
+
+template <class Make>
+std::size_t Builder::phase_index(const std::string& key, const Make& make) {
+    const auto found = std::find(phase_keys_.begin(), phase_keys_.end(), key);
+    const auto index = static_cast<std::size_t>(found - phase_keys_.begin());
+    if (found == phase_keys_.end()) {
+        model.medium.phase_functions.push_back(make());
+        phase_keys_.push_back(key);
+    }
+    return index;
+}
+
+std::size_t Builder::phase_index(const PhaseDesc& desc) {
+    return phase_index(phase_key(desc), [&] { return make_phase_function(desc, model.warnings); });
+}
+
+Spectrum& Builder::scattering(OpticalCoefficients& x, std::size_t phase) {
+    if (x.scattering.size() <= phase) x.scattering.resize(phase + 1);
+    return x.scattering[phase];
+}
+
+double Builder::mineral_absorption(const ParticleKind& kind, std::size_t band) const {
+    return water_.mineral_absorption ? kind.density * mineral_mass_absorption(water_.bands_nm[band])
+                                     : 0;
+}
+
+void Builder::add_uniform_particles(const ParticleKind& kind, double ppm, double absorbing_ppm) {
+    if (ppm == 0) return;
+    OpticalCoefficients& uniform = model.medium.uniform;
+    Spectrum& b = scattering(uniform, phase_index(kind.name, kind.make_phase));
+    for (std::size_t i = 0; i < band_count_; ++i) {
+        b[i] += ppm * kind.scattering(water_.bands_nm[i]);
+        uniform.absorption[i] += absorbing_ppm * mineral_absorption(kind, i);
+    }
+}
+
+void Builder::add_uniform() {
+    const JerlovPreset* preset = nullptr;
+    try {
+        if (!water_.preset.empty()) preset = &jerlov_preset(water_.preset);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", water_.where, error.what()));
+    }
+    OpticalCoefficients& uniform = model.medium.uniform;
+    uniform.absorption = uniform_absorption(water_, preset, model.warnings);
+
+    if (water_.scattering) {
+        const PerBand& given = water_.scattering->b;
+        Spectrum& b = scattering(uniform, phase_index(water_.scattering->phase));
+        std::copy(given.begin(), given.end(), b.begin());
+        if (water_.small_ppm.value_or(0) > 0 || water_.large_ppm.value_or(0) > 0)
+            model.warnings.push_back(
+                fmt::format("{}: scattering is given, so particles are not "
+                            "used; leave either out",
+                            water_.where));
+        return;
+    }
+    PhaseDesc molecules;
+    molecules.type = PhaseDesc::Type::water;
+    Spectrum& b = scattering(uniform, phase_index(molecules));
+    for (std::size_t i = 0; i < band_count_; ++i)
+        b[i] = water_scattering(water_.bands_nm[i], water_.salinity);
+    model.small_ppm = water_.small_ppm.value_or(preset ? preset->small_ppm : 0);
+    model.large_ppm = water_.large_ppm.value_or(preset ? preset->large_ppm : 0);
+    // A preset's measured absorption includes what its own particles absorb.
+    const bool measured = preset && !water_.absorption;
+    const double small_counted = measured ? preset->small_ppm : 0;
+    const double large_counted = measured ? preset->large_ppm : 0;
+    add_uniform_particles(k_small_particles, model.small_ppm,
+                          std::max(0.0, model.small_ppm - small_counted));
+    add_uniform_particles(k_large_particles, model.large_ppm,
+                          std::max(0.0, model.large_ppm - large_counted));
+}
+
+int Builder::particle_constituent(const ParticleKind& kind) {
+    std::vector<Constituent>& all = model.medium.constituents;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Constituent& other) {
+        return other.unit == "ppm" && other.name == kind.name;
+    });
+    if (found != all.end()) return static_cast<int>(found - all.begin());
+    Constituent particles{kind.name, "ppm", {}};
+    Spectrum& b = scattering(particles.per_unit, phase_index(kind.name, kind.make_phase));
+    for (std::size_t i = 0; i < band_count_; ++i) {
+        b[i] = kind.scattering(water_.bands_nm[i]);
+        particles.per_unit.absorption[i] = mineral_absorption(kind, i);
+    }
+    all.push_back(std::move(particles));
+    return static_cast<int>(all.size()) - 1;
+}
+
+std::string Builder::unique_name(const std::string& wanted) const {
+    const auto taken = [&](const std::string& name) {
+        return name == k_small_particles.name || name == k_large_particles.name ||
+               std::any_of(model.medium.constituents.begin(), model.medium.constituents.end(),
+                           [&](const Constituent& other) { return other.name == name; });
+    };
+    std::string name = wanted;
+    for (int i = 2; taken(name); ++i) name = fmt::format("{}-{}", wanted, i);
+    return name;
+}
+
+void Builder::scatter_like_water(const GridMappingDesc& grid, OpticalCoefficients& x) const {
+    const std::vector<Spectrum>& water = model.medium.uniform.scattering;
+    x.scattering.resize(std::max(x.scattering.size(), water.size()));
+    for (std::size_t i = 0; i < band_count_; ++i) {
+        const double b = grid.optics->scattering[i];
+        if (b == 0) continue;
+        double total = 0;
+        for (const Spectrum& b_m : water) total += b_m[i];
+        if (total == 0)
+            throw InputError(
+                fmt::format("{}: {} scatters at {} nm and gives no phase function, "
+                            "but the water does not scatter there; give it a phase",
+                            grid.where, grid.grid, water_.bands_nm[i]));
+        for (std::size_t m = 0; m < water.size(); ++m)
+            x.scattering[m][i] = b * (water[m][i] / total);
+    }
+}
+
+int Builder::optics_constituent(const GridMappingDesc& grid) {
+    const GridMappingDesc::Optics& optics = *grid.optics;
+    for (const OpticsEntry& entry : optics_)
+        if (same_optics(*entry.optics, optics)) return entry.constituent;
+    check_per_band(optics.absorption, band_count_, "absorption", grid.where);
+    check_per_band(optics.scattering, band_count_, "scattering", grid.where);
+    Constituent own{unique_name(grid.grid), "1", {}};
+    std::copy(optics.absorption.begin(), optics.absorption.end(), own.per_unit.absorption.begin());
+    if (optics.phase) {
+        Spectrum& b = scattering(own.per_unit, phase_index(*optics.phase));
+        std::copy(optics.scattering.begin(), optics.scattering.end(), b.begin());
+    } else {
+        scatter_like_water(grid, own.per_unit);
+    }
+    model.medium.constituents.push_back(std::move(own));
+    const int index = model.medium.constituent_count() - 1;
+    optics_.push_back({&optics, index});
+    return index;
+}
+
+void Builder::add_grid(const GridMappingDesc& grid, std::vector<GridLoad>& loads) {
+    if (grid.optics) {
+        loads.push_back({optics_constituent(grid), 1});
+        return;
+    }
+    if (grid.small_ppm != 0)
+        loads.push_back({particle_constituent(k_small_particles), grid.small_ppm});
+    if (grid.large_ppm != 0)
+        loads.push_back({particle_constituent(k_large_particles), grid.large_ppm});
+}
+
+void Builder::drop_unused_phases() {
+    Medium& medium = model.medium;
+    std::vector<OpticalCoefficients*> all{&medium.uniform};
+    for (Constituent& constituent : medium.constituents) all.push_back(&constituent.per_unit);
+    for (OpticalCoefficients* x : all) x->scattering.resize(medium.phase_functions.size());
+    for (std::size_t m = medium.phase_functions.size(); m-- > 0;) {
+        const bool unused = std::all_of(all.begin(), all.end(), [m](OpticalCoefficients* x) {
+            return is_zero(x->scattering[m]);
+        });
+        if (!unused) continue;
+        const auto at = static_cast<std::ptrdiff_t>(m);
+        medium.phase_functions.erase(medium.phase_functions.begin() + at);
+        for (OpticalCoefficients* x : all) x->scattering.erase(x->scattering.begin() + at);
+    }
+}
+
+WaterModel Builder::finish() {
+    drop_unused_phases();
+    return std::move(model);
+}
+
+}  // namespace
+
+WaterModel build_water_model(const WaterDesc& water, const std::vector<VolumeDesc>& volumes) {
+    Builder builder(water);
+    builder.add_uniform();
+    for (const VolumeDesc& volume : volumes) {
+        std::vector<std::vector<GridLoad>>& loads = builder.model.loads.emplace_back();
+        for (const GridMappingDesc& grid : volume.grids)
+            builder.add_grid(grid, loads.emplace_back());
+    }
+    return builder.finish();
+}
+
+}  // namespace uw

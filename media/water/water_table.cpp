@@ -1,0 +1,167 @@
+#include "media/water/water_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/base/quadrature.h"
+#include "media/phase/phase_functions.h"
+#include "media/phase/tabulated_phase.h"
+#include "media/water/water_model.h"
+
+namespace uw {
+
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+
+/// 2 pi int p f sin over [from, pi]: Gauss-Legendre on panels between the phase function's
+/// breakpoints, each cut into 32.
+template <class F>
+double moment(const PhaseFunction& phase, double from, F f) {
+    constexpr int k_panels = 32;
+    std::vector<double> edges{from};
+    for (const double at : phase.breakpoints())
+        if (at > from) edges.push_back(at);
+    edges.push_back(k_pi);
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+        const double width = (edges[i + 1] - edges[i]) / k_panels;
+        for (int panel = 0; panel < k_panels; ++panel)
+            for (const QuadratureNode& node : gauss_legendre(4)) {
+                const double psi = edges[i] + width * (panel + node.position);
+                sum += node.weight * width * phase.evaluate(psi) * f(psi) * std::sin(psi);
+            }
+    }
+    return 2 * k_pi * sum;
+}
+
+/// The names of figure 4 of the paper for its own components.
+std::string part_name(const PhaseFunction& phase) {
+    if (dynamic_cast<const MolecularPhase*>(&phase)) return "water";
+    if (dynamic_cast<const KopelevichSmall*>(&phase)) return "small";
+    if (dynamic_cast<const KopelevichLarge*>(&phase)) return "large";
+    return phase.description();
+}
+
+/// Appends the first `count` bands of `x` to `table`.
+void append(const OpticalCoefficients& x, const Medium& medium, CoefficientTable& table) {
+    const auto count = static_cast<std::ptrdiff_t>(medium.band_count());
+    const std::size_t known = table.absorption.size();
+    table.absorption.insert(table.absorption.end(), x.absorption.begin(),
+                            x.absorption.begin() + count);
+    for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
+        const Spectrum& b = x.scattering[m];
+        if (std::all_of(b.begin(), b.end(), [](double value) { return value == 0; })) continue;
+        const std::shared_ptr<const PhaseFunction>& phase = medium.phase_functions[m];
+        const std::string name = part_name(*phase);
+        auto part = std::find_if(table.parts.begin(), table.parts.end(),
+                                 [&](const ScatteringPart& other) { return other.name == name; });
+        // Within one medium phase functions differ, even where their descriptions do not.
+        if (part == table.parts.end() || part->b.size() > known) {
+            table.parts.push_back({name, phase, std::vector<double>(known, 0.0),
+                                   backscatter_fraction(*phase), mean_cosine(*phase)});
+            part = table.parts.end() - 1;
+        }
+        part->b.insert(part->b.end(), b.begin(), b.begin() + count);
+    }
+}
+
+double ratio(double a, double b) {
+    return b > 0 ? a / b : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+double backscatter_fraction(const PhaseFunction& phase) {
+    return moment(phase, k_pi / 2, [](double) { return 1.0; });
+}
+
+double mean_cosine(const PhaseFunction& phase) {
+    // What is left of symmetric scattering is the rounding of the sum, and means 0.
+    constexpr double k_rounding = 1e-13;
+    const double mean = moment(phase, 0, [](double psi) { return std::cos(psi); });
+    return std::abs(mean) < k_rounding ? 0 : mean;
+}
+
+double CoefficientTable::scattering(std::size_t i) const {
+    double b = 0;
+    for (const ScatteringPart& part : parts) b += part.b[i];
+    return b;
+}
+
+double CoefficientTable::attenuation(std::size_t i) const {
+    return absorption[i] + scattering(i);
+}
+
+double CoefficientTable::backscattering(std::size_t i) const {
+    double b = 0;
+    for (const ScatteringPart& part : parts) b += part.b[i] * part.backscatter_fraction;
+    return b;
+}
+
+double CoefficientTable::backscatter_fraction(std::size_t i) const {
+    return ratio(backscattering(i), scattering(i));
+}
+
+double CoefficientTable::mean_cosine(std::size_t i) const {
+    double sum = 0;
+    for (const ScatteringPart& part : parts) sum += part.b[i] * part.mean_cosine;
+    return ratio(sum, scattering(i));
+}
+
+double CoefficientTable::albedo(std::size_t i) const {
+    return ratio(scattering(i), attenuation(i));
+}
+
+double CoefficientTable::vsf(std::size_t i, std::size_t part, double psi) const {
+    return parts[part].b[i] * parts[part].phase->evaluate(psi);
+}
+
+double CoefficientTable::vsf(std::size_t i, double psi) const {
+    double beta = 0;
+    for (std::size_t part = 0; part < parts.size(); ++part) beta += vsf(i, part, psi);
+    return beta;
+}
+
+bool is_given_per_band(const WaterDesc& water, const std::vector<VolumeDesc>& volumes) {
+    if (water.absorption || water.scattering) return true;
+    return std::any_of(volumes.begin(), volumes.end(), [](const VolumeDesc& volume) {
+        return std::any_of(volume.grids.begin(), volume.grids.end(),
+                           [](const GridMappingDesc& grid) { return grid.optics.has_value(); });
+    });
+}
+
+WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes) {
+    WaterTable table;
+    table.wavelengths_nm = water.bands_nm;
+    const auto most = is_given_per_band(water, volumes)
+                          ? std::max<std::size_t>(1, water.bands_nm.size())
+                          : static_cast<std::size_t>(k_max_bands);
+    // At least one round, so that water without bands is refused like everywhere.
+    for (std::size_t first = 0; first == 0 || first < water.bands_nm.size(); first += most) {
+        WaterDesc piece = water;
+        const std::size_t last = std::min(first + most, water.bands_nm.size());
+        piece.bands_nm.assign(water.bands_nm.begin() + static_cast<std::ptrdiff_t>(first),
+                              water.bands_nm.begin() + static_cast<std::ptrdiff_t>(last));
+        const WaterModel model = build_water_model(piece, volumes);
+        append(model.medium.uniform, model.medium, table.uniform);
+        table.constituents.resize(model.medium.constituents.size());
+        for (std::size_t k = 0; k < table.constituents.size(); ++k) {
+            const Constituent& constituent = model.medium.constituents[k];
+            table.constituents[k].name = constituent.name;
+            table.constituents[k].unit = constituent.unit;
+            append(constituent.per_unit, model.medium, table.constituents[k]);
+        }
+        table.small_ppm = model.small_ppm;
+        table.large_ppm = model.large_ppm;
+        for (const std::string& warning : model.warnings)
+            if (std::find(table.warnings.begin(), table.warnings.end(), warning) ==
+                table.warnings.end())
+                table.warnings.push_back(warning);
+    }
+    return table;
+}
+
+}  // namespace uw

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/optics/phase_function.h"
+#include "core/scene/scene_desc.h"
+
+namespace uw {
+
+/// One additive part of what scatters: b of each wavelength, with one phase function.
+struct ScatteringPart {
+    std::string name;  // "water", "small", "large"; else the phase function's description
+    std::shared_ptr<const PhaseFunction> phase;
+    std::vector<double> b;            // per wavelength, in the unit of its CoefficientTable
+    double backscatter_fraction = 0;  // of this part alone: 2 pi int p sin(psi), 90 to 180 degrees
+    double mean_cosine = 0;           // 2 pi int p cos(psi) sin(psi)
+};
+
+/// Coefficients over wavelength of the uniform water [1/m], or of a constituent that grids add
+/// [1/m per unit of its concentration]. `i` is an index into WaterTable::wavelengths_nm.
+struct CoefficientTable {
+    std::string name;  // of the constituent; empty for the uniform water
+    std::string unit;  // of its concentration: "ppm", or "1" for a bare grid value; else empty
+    std::vector<double> absorption;
+    std::vector<ScatteringPart> parts;  // those that scatter at any wavelength
+
+    /// b = sum over the parts.
+    double scattering(std::size_t i) const;
+    /// c = a + b.
+    double attenuation(std::size_t i) const;
+    /// b_b, what is scattered by more than 90 degrees.
+    double backscattering(std::size_t i) const;
+    /// b_b / b; NaN where nothing scatters.
+    double backscatter_fraction(std::size_t i) const;
+    /// Mean cosine of the scattering angle; NaN where nothing scatters.
+    double mean_cosine(std::size_t i) const;
+    /// b / c, the single-scattering albedo; NaN where nothing attenuates.
+    double albedo(std::size_t i) const;
+    /// beta(psi) of all parts [1/sr of the table's unit] (physics section 1).
+    double vsf(std::size_t i, double psi) const;
+    /// beta(psi) of one part.
+    double vsf(std::size_t i, std::size_t part, double psi) const;
+};
+
+/// The optical properties of a scene's water, by wavelength and by what they are due to.
+struct WaterTable {
+    std::vector<double> wavelengths_nm;
+    CoefficientTable uniform;                    // everything that is the same everywhere
+    std::vector<CoefficientTable> constituents;  // what the grids add, per unit
+    double small_ppm = 0, large_ppm = 0;         // background particles, part of `uniform`
+    std::vector<std::string> warnings;           // as WaterModel's
+};
+
+/// Whether coefficients of the water or of a grid are given as numbers per band, and so are
+/// known at the scene's own bands only.
+bool is_given_per_band(const WaterDesc& water, const std::vector<VolumeDesc>& volumes);
+
+/// Tabulates what build_water_model makes of `water` at `water.bands_nm`, of which there may be
+/// more than a medium's most unless numbers are given per band. Throws as build_water_model.
+WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes);
+
+/// 2 pi int p(psi) f(psi) sin(psi) dpsi over [90, 180] degrees with f = 1.
+double backscatter_fraction(const PhaseFunction& phase);
+
+/// 2 pi int p(psi) cos(psi) sin(psi) dpsi over [0, 180] degrees.
+double mean_cosine(const PhaseFunction& phase);
+
+}  // namespace uw

@@ -1,0 +1,66 @@
+#include "render/light_splatter.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace uw {
+
+void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowOptions& share) {
+    const bool same_shadows =
+        surfaces_ == scene.surfaces && options_.shadow_resolution == share.shadow_resolution;
+    const bool same_columns = field_.lock() == scene.field &&
+                              options_.columns_per_voxel == share.columns_per_voxel &&
+                              options_.column_budget == share.column_budget;
+    for (Maps& maps : maps_) {
+        if (!same_shadows) maps.shadows.reset();
+        if (!same_columns) maps.columns.reset();
+    }
+    surfaces_ = scene.surfaces;
+    field_ = scene.field;
+    options_ = share;
+}
+
+void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam) {
+    if (!maps.shadows) {
+        maps.shadows = std::make_shared<ShadowMap>(*scene.surfaces, maps.lamp,
+                                                   options_.shadow_resolution, beam);
+        ++counts_.shadow_maps;
+        counts_.rays += maps.shadows->rays_traced();
+    }
+    if (!maps.columns) {
+        maps.columns = std::make_shared<ColumnMap>(
+            *scene.field, maps.lamp, options_.columns_per_voxel, options_.column_budget);
+        ++counts_.column_maps;
+        counts_.rays += maps.columns->rays_traced();
+    }
+}
+
+std::vector<std::shared_ptr<const DeepShadowMap>> LightSplatter::splat(
+    const AssembledScene& scene, const DeepShadowOptions& options, const ShareCallback& progress) {
+    counts_ = {};
+    DeepShadowOptions share = options;
+    share.column_budget /= std::max(std::size_t{1}, scene.lamps.size());
+    drop_outdated(scene, share);
+    std::vector<Maps> before = std::exchange(maps_, {});
+    std::vector<std::shared_ptr<const DeepShadowMap>> fields;
+    for (const Lamp& lamp : scene.lamps) {
+        const DirectionCone beam = lamp.cone();
+        Maps maps{lamp.position(), nullptr, nullptr};
+        // Lamps that stand in one place share their maps.
+        for (const std::vector<Maps>* known : {&maps_, &before}) {
+            for (const Maps& other : *known) {
+                if (other.lamp != maps.lamp) continue;
+                if (!maps.columns) maps.columns = other.columns;
+                if (!maps.shadows && other.shadows && other.shadows->beam().includes(beam))
+                    maps.shadows = other.shadows;
+            }
+        }
+        complete(maps, scene, beam);
+        fields.push_back(std::make_shared<DeepShadowMap>(maps.shadows, maps.columns));
+        maps_.push_back(std::move(maps));
+        progress(static_cast<double>(fields.size()) / static_cast<double>(scene.lamps.size()));
+    }
+    return fields;
+}
+
+}  // namespace uw

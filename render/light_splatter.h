@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "media/light/deep_shadow_map.h"
+#include "render/scene_assembly.h"
+
+namespace uw {
+
+/// What one splat made rather than took over.
+struct SplatCounts {
+    std::size_t shadow_maps = 0, column_maps = 0;
+    std::uint64_t rays = 0;  // traced for them
+};
+
+/// Splats the light of a scene's lamps and keeps it for the next render. A shadow map hangs on the
+/// lamp's position, the surfaces and the map's resolution; a column map on the lamp's position, the
+/// concentration field, the map's fineness and the memory given to it. Where these are the same as
+/// at the splat before it is taken over: another camera, intensity or colour of a lamp needs no
+/// splat, a lamp that moved one, another frame of a volume new columns only, and a lamp that turned
+/// or widened its beam new shadows only, of its beam.
+class LightSplatter {
+  public:
+    /// The light of every lamp of `scene`, to the bit what splat_lamps makes. Surfaces and field
+    /// are the same if they are the same objects. The surfaces are kept alive; a field is not, so
+    /// that its memory is free for the one that follows.
+    std::vector<std::shared_ptr<const DeepShadowMap>> splat(
+        const AssembledScene& scene, const DeepShadowOptions& options,
+        const ShareCallback& progress = [](double) {});
+
+    /// Of the last splat.
+    const SplatCounts& counts() const { return counts_; }
+
+  private:
+    struct Maps {
+        Point3 lamp;
+        std::shared_ptr<const ShadowMap> shadows;
+        std::shared_ptr<const ColumnMap> columns;
+    };
+
+    void drop_outdated(const AssembledScene& scene, const DeepShadowOptions& share);
+    void complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam);
+
+    std::shared_ptr<const Surfaces> surfaces_;
+    std::weak_ptr<const ConcentrationField> field_;
+    DeepShadowOptions options_;  // each lamp's
+    std::vector<Maps> maps_;
+    SplatCounts counts_;
+};
+
+}  // namespace uw

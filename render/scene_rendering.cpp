@@ -1,0 +1,154 @@
+#include "render/scene_rendering.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/frame/render_film.h"
+#include "core/integrators/sensor.h"
+
+namespace uw {
+
+namespace {
+
+// Layers of water that begin at a distance s are k_growth (s + offset) thick, the offset the lesser
+// of two bounds. Water that a surface cuts in the middle of a layer lights the whole layer beside
+// it: a halo around depth edges, of first order in the thickness. It is up to 0.25 % of the
+// backscatter in what `uwvdb validate` looks at, no more than the ladder of blur widths leaves.
+constexpr double k_growth = 0.06;
+constexpr double k_offset = 0.3;        // m
+constexpr double k_offset_depth = 0.6;  // optical depth
+// How far water mixed from pixels around may be from its own (InScatterLattice), relative, where
+// the lattice is confirmed; what is shown is mixed from nearer ones: a quarter of it.
+constexpr double k_water_tolerance = 2e-3;
+constexpr double k_draft_tolerance = 0.05;
+
+std::vector<double> growing_layers(double near, double far, double attenuation) {
+    double offset = k_offset;
+    if (attenuation > 0) offset = std::min(offset, k_offset_depth / attenuation);
+    const double count =
+        std::max(1.0, std::ceil(std::log1p((far - near) / offset) / std::log1p(k_growth)));
+    std::vector<double> faces;
+    for (int i = 0; i <= static_cast<int>(count); ++i)
+        faces.push_back(near + offset * std::expm1(std::log1p((far - near) / offset) * i / count));
+    faces.back() = far;
+    return faces;
+}
+
+std::vector<double> layer_faces(const AssembledScene& scene) {
+    const Slabs& slabs = scene.slabs;
+    std::vector<double> faces;
+    if (scene.desc.render.integrator == RenderDesc::Integrator::planes) {
+        for (int i = 0; i <= slabs.count; ++i) faces.push_back(slabs.boundary(i));
+        return faces;
+    }
+    // All of the water, wherever the slabs of `backscatter_first` are.
+    PlanesDesc all;
+    const Slabs water = place_slabs(all, *scene.camera, scene.lit());
+    double attenuation = 0;
+    const Medium& medium = scene.water.medium;
+    for (int band = 0; band < medium.band_count(); ++band)
+        attenuation = std::max(attenuation, medium.uniform.attenuation(band));
+    faces = growing_layers(water.near, water.far, attenuation);
+    for (const double face : {slabs.boundary(0), slabs.boundary(1)})
+        if (face > water.near && face < water.far) faces.push_back(face);
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+}
+
+double angle_between(const Ray& a, const Ray& b) {
+    return std::atan2(glm::length(glm::cross(a.direction, b.direction)),
+                      glm::dot(a.direction, b.direction));
+}
+
+// Pixels per radian in the water, at the centre of the image; of a port that the centre does not
+// look through, at the place nearest to it that does.
+ScatterPlane scatter_plane(const Camera& camera) {
+    ScatterPlane plane{camera.width(), camera.height(), 1, 1};
+    constexpr int k_steps = 64;
+    double nearest = 1e300;
+    for (int j = 0; j <= k_steps; ++j) {
+        for (int i = 0; i <= k_steps; ++i) {
+            const double u = static_cast<double>(i) / k_steps - 0.5;
+            const double v = static_cast<double>(j) / k_steps - 0.5;
+            if (u * u + v * v >= nearest) continue;
+            const double x = (u + 0.5) * plane.width, y = (v + 0.5) * plane.height;
+            const auto left = camera.refracted_ray(x - 0.5, y),
+                       right = camera.refracted_ray(x + 0.5, y);
+            const auto above = camera.refracted_ray(x, y - 0.5),
+                       below = camera.refracted_ray(x, y + 0.5);
+            if (!left || !right || !above || !below) continue;
+            nearest = u * u + v * v;
+            plane.focal_x = 1 / angle_between(*left, *right);
+            plane.focal_y = 1 / angle_between(*above, *below);
+        }
+    }
+    return plane;
+}
+
+}  // namespace
+
+ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
+                                          const DeepShadows& deep_shadows) {
+    ForwardScatterSetup setup;
+    setup.desc = scene.desc.water.forward_scatter;
+    setup.plane = scatter_plane(*scene.camera);
+    setup.faces = layer_faces(scene);
+    // Planes of camera z do not reach around a view that is wider than a hemisphere.
+    setup.shells = scene.desc.camera.distortion.model == DistortionDesc::Model::fisheye;
+    setup.sensor = SensorModel(scene.desc);
+    setup.first = {scene.slabs.boundary(0), scene.slabs.boundary(1)};
+    const ConcentrationField* field = scene.field.get();
+    const std::vector<Lamp>* lamps = &scene.lamps;
+    setup.lamp_column = [&deep_shadows, field, lamps](std::size_t lamp, const Point3& x,
+                                                      std::span<double> column) {
+        if (deep_shadows.empty())
+            field->column((*lamps)[lamp].position(), x, column);
+        else
+            deep_shadows[lamp]->columns(std::span<const Point3>(&x, 1), column);
+    };
+    return setup;
+}
+
+DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality) {
+    DeepShadowOptions options;
+    if (quality != RenderDesc::Quality::draft) return options;
+    options.shadow_resolution = 128;
+    options.columns_per_voxel = 0.75;
+    return options;
+}
+
+double in_scatter_tolerance(const RenderDesc& render) {
+    const bool exact = render.quality == RenderDesc::Quality::exact;
+    if (exact || render.integrator != RenderDesc::Integrator::volume) return 0;
+    return render.quality == RenderDesc::Quality::draft ? k_draft_tolerance : k_water_tolerance;
+}
+
+void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
+                  const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
+                  Film& film, const PassProgress& progress) {
+    InScatterParts parts{false, plan.has(Layer::backscatter_first)};
+    for (std::size_t j = 0; j < scene.lamps.size(); ++j)
+        if (plan.first_channel_of_lamp(j) >= 0) parts.lamps = true;
+    const PixelRenderer renderer(*scene.camera, scene.lit(), integrator, scene.desc.render.samples,
+                                 scene.slabs, SensorModel(scene.desc), parts);
+    const double tolerance = in_scatter_tolerance(scene.desc.render);
+    const auto told = [&progress](const std::string& pass) {
+        return [&progress, pass](double fraction) { return progress(pass, fraction); };
+    };
+    if (scene.desc.water.forward_scatter.K == 0) {
+        render_film(renderer, tolerance, plan, colour, film, told("render"));
+        return;
+    }
+    const ForwardScatterSetup setup = forward_scatter_setup(scene, deep_shadows);
+    ForwardPass forward(renderer, scene.lit(), integrator, scene.camera->world_from_camera(), setup,
+                        plan);
+    render_film(renderer, tolerance, plan, colour, film, told("render"),
+                [&](int x, int y, const PixelView& view, const PixelResult& result) {
+                    forward.keep(x, y, view, result);
+                });
+    forward.run(told("forward scatter"));
+    forward.write(plan, colour, film);
+}
+
+}  // namespace uw

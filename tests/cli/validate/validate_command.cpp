@@ -1,0 +1,236 @@
+// ctest labels: analytic
+#include "cli/validate/validate_command.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "tests/support/temp_dir.h"
+
+namespace uw::test {
+namespace {
+
+/// The volume integrator with one fault.
+class FaultyIntegrator : public Integrator {
+  public:
+    FaultyIntegrator(std::unique_ptr<Integrator> honest, double in_scatter, double direct)
+        : honest_(std::move(honest)), in_scatter_(in_scatter), direct_(direct) {}
+
+    void in_scatter(const Ray& ray, std::span<const double> ends,
+                    InScatter& result) const override {
+        honest_->in_scatter(ray, ends, result);
+        for (std::size_t end = 0; end < ends.size(); ++end)
+            for (double& value : result.at(end, 0)) value *= in_scatter_;
+    }
+    void surface_lights(std::span<const SurfaceSample* const> samples,
+                        SurfaceLight& light) const override {
+        honest_->surface_lights(samples, light);
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            for (std::size_t j = 0; j < light.lamp_count(); ++j)
+                for (double& value : light.from_lamp(i, j)) value *= direct_;
+    }
+
+  private:
+    std::unique_ptr<Integrator> honest_;
+    double in_scatter_, direct_;
+};
+
+IntegratorFactory faulty(double in_scatter, double direct) {
+    return [=](const AssembledScene& scene,
+               const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
+        return std::make_unique<FaultyIntegrator>(make_integrator(scene, deep_shadows), in_scatter,
+                                                  direct);
+    };
+}
+
+/// Honest before forward scatter, which alone asks for the light from a distance on, and for what
+/// falls on surfaces apart from what they send back.
+class FaultyInForwardScatter : public Integrator {
+  public:
+    enum class Fault { layers, irradiance };
+    FaultyInForwardScatter(std::unique_ptr<Integrator> honest, Fault fault)
+        : honest_(std::move(honest)), fault_(fault) {}
+
+    void in_scatter(const Ray& ray, std::span<const double> ends,
+                    InScatter& result) const override {
+        honest_->in_scatter(ray, ends, result);
+    }
+    // Each layer's light is its neighbour's.
+    void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+                         InScatter& result) const override {
+        honest_->in_scatter_from(ray, begin, ends, result);
+        if (fault_ != Fault::layers) return;
+        for (std::size_t lamp = 0; lamp < result.lamp_count(); ++lamp)
+            for (std::size_t end = 0; end + 1 < ends.size(); ++end)
+                result.at(end, lamp) = result.at(end + 1, lamp);
+    }
+    // Where more falls on a surface, as much less of it comes to the camera.
+    void surface_lights(std::span<const SurfaceSample* const> samples,
+                        SurfaceLight& light) const override {
+        honest_->surface_lights(samples, light);
+        if (fault_ != Fault::irradiance) return;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const double more = 1 + 0.3 * std::sin(3 * samples[i]->hit.position.x);
+            for (double& value : light.to_camera(i)) value /= more;
+            for (std::size_t j = 0; j < light.lamp_count(); ++j)
+                for (double& value : light.from_lamp(i, j)) value *= more;
+        }
+    }
+
+  private:
+    std::unique_ptr<Integrator> honest_;
+    Fault fault_;
+};
+
+IntegratorFactory faulty_in_forward_scatter(FaultyInForwardScatter::Fault fault) {
+    return [=](const AssembledScene& scene,
+               const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
+        return std::make_unique<FaultyInForwardScatter>(make_integrator(scene, deep_shadows),
+                                                        fault);
+    };
+}
+
+// The components of the checks in `table` that failed.
+std::set<std::string> failed_components(const std::string& table) {
+    std::set<std::string> failed;
+    std::istringstream lines(table);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.find("FAILED") == std::string::npos || line.find(" nm ") == std::string::npos)
+            continue;
+        for (const char* name : {"direct", "forward", "blurred backscatter", "  backscatter"})
+            if (line.find(name + std::string("  ")) != std::string::npos) failed.insert(name);
+    }
+    return failed;
+}
+
+class Validate : public ::testing::Test {
+  protected:
+    Validate() {
+        arguments_.quiet = true;
+        arguments_.scene = std::string(UWVDB_SOURCE_DIR) + "/assets/scenes/uniform.yaml";
+        arguments_.overrides = {"camera.resolution=[24,14]"};
+    }
+    void scatter_forward(const std::string& shape) {
+        arguments_.overrides.push_back(
+            "water.forward_scatter={K: 1, G: 0.02, B: 0.1, shape: " + shape + "}");
+    }
+    TempDir dir_;
+    ValidateArguments arguments_;
+    std::ostringstream out_;
+};
+
+TEST_F(Validate, PassesOnTheExampleOfUniformWater) {
+    EXPECT_TRUE(run_validate(arguments_, false, out_)) << out_.str();
+    EXPECT_EQ(out_.str(), "");  // quiet
+}
+
+TEST_F(Validate, FailsOnWrongBackscatterAndNamesItInRed) {
+    // One lamp of two by half a percent: more than the tolerance of a tenth.
+    EXPECT_FALSE(run_validate(arguments_, true, out_, faulty(1.005, 1)));
+    const std::string text = out_.str();
+    EXPECT_NE(text.find("validation FAILED"), std::string::npos);
+    const std::size_t red = text.find("\033[31m");
+    ASSERT_NE(red, std::string::npos);
+    EXPECT_NE(text.substr(red, text.find('\n', red) - red).find("backscatter"), std::string::npos);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.find("direct") != std::string::npos) {
+            EXPECT_EQ(line.find("FAILED"), std::string::npos) << line;
+        }
+    }
+}
+
+TEST_F(Validate, FailsOnWrongDirectLight) {
+    EXPECT_FALSE(run_validate(arguments_, false, out_, faulty(1, 0.99)));
+    std::istringstream lines(out_.str());
+    bool named = false;
+    for (std::string line; std::getline(lines, line);)
+        named = named || (line.find("direct") != std::string::npos &&
+                          line.find("FAILED") != std::string::npos);
+    EXPECT_TRUE(named);
+}
+
+TEST_F(Validate, PassesWithForwardScatterOfBothShapes) {
+    arguments_.quiet = false;
+    for (const char* shape : {"gaussian", "exponential"}) {
+        scatter_forward(shape);
+        EXPECT_TRUE(run_validate(arguments_, false, out_)) << out_.str();
+    }
+    EXPECT_NE(out_.str().find("volume - direct sum"), std::string::npos);
+    EXPECT_NE(out_.str().find("blurred backscatter"), std::string::npos);
+}
+
+TEST_F(Validate, FailsOnWrongLayersOfWaterThatOnlyForwardScatterSees) {
+    scatter_forward("gaussian");
+    EXPECT_FALSE(run_validate(arguments_, true, out_,
+                              faulty_in_forward_scatter(FaultyInForwardScatter::Fault::layers)));
+    EXPECT_EQ(failed_components(out_.str()), std::set<std::string>{"blurred backscatter"})
+        << out_.str();
+    EXPECT_NE(out_.str().find("\033[31m"), std::string::npos);
+}
+
+TEST_F(Validate, FailsOnWrongIrradianceThatOnlyForwardScatterSees) {
+    scatter_forward("exponential");
+    EXPECT_FALSE(
+        run_validate(arguments_, false, out_,
+                     faulty_in_forward_scatter(FaultyInForwardScatter::Fault::irradiance)));
+    EXPECT_EQ(failed_components(out_.str()), std::set<std::string>{"forward"}) << out_.str();
+}
+
+// How much the water scatters cannot measure the blur in a VDB then.
+TEST_F(Validate, WorksWithForwardScatterInWaterThatDoesNotScatterInOneBand) {
+    scatter_forward("gaussian");
+    arguments_.overrides.emplace_back(
+        "water.scattering={b: [0.2, 0, 0.25], phase: {type: hg, g: 0.9}}");
+    EXPECT_TRUE(run_validate(arguments_, false, out_)) << out_.str();
+}
+
+TEST_F(Validate, WritesOnePageThatNeedsNothingElse) {
+    arguments_.report = dir_ / "report.html";
+    scatter_forward("gaussian");
+    EXPECT_TRUE(run_validate(arguments_, false, out_));
+    std::ifstream in(arguments_.report);
+    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+    EXPECT_NE(html.find("<svg"), std::string::npos);
+    EXPECT_NE(html.find("Pictures with forward scatter"), std::string::npos);
+    EXPECT_EQ(html.find("<script"), std::string::npos);
+    EXPECT_EQ(html.find("src=\"http"), std::string::npos);
+    EXPECT_EQ(html.find("href="), std::string::npos);
+}
+
+TEST(Validation, PlanesConvergeAsTheSquareOfTheirThickness) {
+    SceneDesc desc;
+    desc.file = "test";
+    desc.camera.width = 12;
+    desc.camera.height = 9;
+    desc.camera.intrinsics = {10, 10, 6, 4.5};
+    desc.water.absorption = PerBand{0.35, 0.08, 0.05};
+    desc.water.scattering = ScatteringDesc{{0.20, 0.22, 0.25}, {}};
+    desc.water.scattering->phase.g = 0.9;
+    GeometryDesc wall;
+    wall.type = GeometryDesc::Type::plane;
+    wall.point = {0, 0, 4};
+    wall.normal = {0, 0, -1};
+    desc.geometry = {wall};
+    LampDesc lamp;
+    lamp.name = "lamp";
+    lamp.position = {1, -0.5, 0};
+    lamp.intensity = PerBand{50, 50, 50};
+    desc.lamps = {lamp};
+    const SceneValidation result = validate_scene(desc, "test", {});
+    EXPECT_TRUE(result.passed());
+    ASSERT_EQ(result.planes.back().count, 512);
+    for (const PlanesStep& step : result.planes) {
+        if (step.count >= 64) {
+            EXPECT_NEAR(step.order, 2, 0.05) << step.count;
+        }
+    }
+    EXPECT_LT(result.planes.back().error, 1e-3);
+}
+
+}  // namespace
+}  // namespace uw::test

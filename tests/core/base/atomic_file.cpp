@@ -1,0 +1,143 @@
+// ctest labels: unit
+#include "core/base/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "core/base/error.h"
+#include "tests/support/temp_dir.h"
+
+namespace uw {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& file, const std::string& text) {
+    std::ofstream(file) << text;
+}
+
+std::string read(const fs::path& file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::ptrdiff_t files_in(const fs::path& folder) {
+    return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+}
+
+std::string error_of(const fs::path& target) {
+    try {
+        const AtomicFile file(target);
+    } catch (const IoError& error) {
+        return error.what();
+    }
+    return "nothing thrown";
+}
+
+class AtomicFileTest : public testing::Test {
+  protected:
+    test::TempDir directory_;
+    fs::path folder_ = directory_.path();
+    fs::path target_ = folder_ / "image.exr";
+};
+
+TEST_F(AtomicFileTest, CommitReplacesTheTarget) {
+    write(target_, "old");
+    AtomicFile file(target_);
+    EXPECT_EQ(file.temporary_path().parent_path(), folder_);
+    write(file.temporary_path(), "new");
+    EXPECT_EQ(read(target_), "old");
+    file.commit();
+    EXPECT_EQ(read(target_), "new");
+    EXPECT_EQ(files_in(folder_), 1);
+}
+
+TEST_F(AtomicFileTest, WithoutCommitTheTargetIsUntouched) {
+    write(target_, "old");
+    {
+        const AtomicFile file(target_);
+        write(file.temporary_path(), "half");
+    }
+    EXPECT_EQ(read(target_), "old");
+    EXPECT_EQ(files_in(folder_), 1);
+}
+
+TEST_F(AtomicFileTest, CommitThatFailsLeavesNothingBehind) {
+    AtomicFile file(target_);
+    fs::create_directories(target_ / "in the way");
+    EXPECT_THROW(file.commit(), IoError);
+    EXPECT_TRUE(fs::is_directory(target_));
+}
+
+TEST_F(AtomicFileTest, SeveralAtOnceDoNotMeet) {
+    AtomicFile a(target_), b(target_);
+    EXPECT_NE(a.temporary_path(), b.temporary_path());
+}
+
+TEST_F(AtomicFileTest, PermissionsAreThoseOfAnyNewFile) {
+    write(folder_ / "plain", "");
+    AtomicFile file(target_);
+    file.commit();
+    EXPECT_EQ(fs::status(target_).permissions(), fs::status(folder_ / "plain").permissions());
+}
+
+TEST_F(AtomicFileTest, SymbolicLinksAreWrittenThrough) {
+    fs::create_directory(folder_ / "elsewhere");
+    write(folder_ / "elsewhere" / "real.exr", "old");
+    fs::create_symlink("elsewhere/real.exr", target_);
+    AtomicFile file(target_);
+    write(file.temporary_path(), "new");
+    file.commit();
+    EXPECT_TRUE(fs::is_symlink(target_));
+    EXPECT_EQ(read(folder_ / "elsewhere" / "real.exr"), "new");
+}
+
+TEST_F(AtomicFileTest, SymbolicLinksToWhatIsNotThereYet) {
+    fs::create_directory(folder_ / "elsewhere");
+    fs::create_symlink("second", folder_ / "elsewhere" / "first");
+    fs::create_symlink("elsewhere/first", target_);
+    AtomicFile file(target_);
+    write(file.temporary_path(), "new");
+    file.commit();
+    EXPECT_TRUE(fs::is_symlink(target_));
+    EXPECT_EQ(read(folder_ / "elsewhere" / "second"), "new");
+    fs::create_symlink("no folder/image.exr", folder_ / "astray.exr");
+    EXPECT_NE(error_of(folder_ / "astray.exr").find("create it first"), std::string::npos);
+    fs::create_symlink("circle.exr", folder_ / "circle.exr");
+    EXPECT_NE(error_of(folder_ / "circle.exr").find("circle"), std::string::npos);
+}
+
+TEST_F(AtomicFileTest, SaysWhatIsWrongWithTheTarget) {
+    const std::string missing = error_of(folder_ / "no" / "image.exr");
+    EXPECT_NE(missing.find((folder_ / "no" / "image.exr").string()), std::string::npos);
+    EXPECT_NE(missing.find("does not exist; create it"), std::string::npos);
+    write(folder_ / "file", "");
+    EXPECT_NE(error_of(folder_ / "file" / "image.exr").find("not a folder"), std::string::npos);
+    EXPECT_NE(error_of(folder_).find("it is a folder"), std::string::npos);
+    EXPECT_NE(error_of(folder_ / "").find("file name"), std::string::npos);
+    EXPECT_NE(error_of("/dev/null").find("not a regular file"), std::string::npos);
+    EXPECT_EQ(files_in(folder_), 1);
+}
+
+TEST_F(AtomicFileTest, FolderWithoutPermission) {
+    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+    // The permissions of files do not bind root: look as somebody else then.
+    constexpr uid_t k_nobody = 65534;
+    const bool is_root = ::geteuid() == 0;
+    if (is_root) {
+        fs::permissions(folder_, fs::perms::others_read | fs::perms::others_exec);
+        ASSERT_EQ(::seteuid(k_nobody), 0);
+    }
+    const std::string error = error_of(target_);
+    if (is_root) {
+        ASSERT_EQ(::seteuid(0), 0);
+    }
+    fs::permissions(folder_, fs::perms::owner_all);
+    EXPECT_NE(error.find("no permission to write"), std::string::npos) << error;
+}
+
+}  // namespace
+}  // namespace uw

@@ -1,0 +1,153 @@
+// ctest labels: unit
+#include "core/image/layers.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/base/error.h"
+
+namespace uw {
+namespace {
+
+using Names = std::vector<std::string>;
+const std::vector<double> k_rgb{620, 540, 450};
+const Names k_lamps{"left", "right.top"};
+
+template <typename Error>
+std::string message_of(std::string_view request, const std::vector<double>& bands = k_rgb,
+                       const Names& lamps = k_lamps) {
+    try {
+        const LayerPlan plan(request, bands, lamps);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "nothing thrown";
+}
+
+TEST(Layers, DefaultIsEverythingButLamps) {
+    const LayerPlan plan("", k_rgb, k_lamps);
+    const Names truth{"R",
+                      "G",
+                      "B",
+                      "A",
+                      "direct.R",
+                      "direct.G",
+                      "direct.B",
+                      "forward.R",
+                      "forward.G",
+                      "forward.B",
+                      "backscatter.R",
+                      "backscatter.G",
+                      "backscatter.B",
+                      "backscatter_first.R",
+                      "backscatter_first.G",
+                      "backscatter_first.B",
+                      "irradiance.R",
+                      "irradiance.G",
+                      "irradiance.B",
+                      "exitance.R",
+                      "exitance.G",
+                      "exitance.B",
+                      "lit.V",
+                      "clean.R",
+                      "clean.G",
+                      "clean.B",
+                      "transmittance.R",
+                      "transmittance.G",
+                      "transmittance.B",
+                      "albedo.R",
+                      "albedo.G",
+                      "albedo.B",
+                      "depth.Z",
+                      "range.V",
+                      "path.V",
+                      "normal.X",
+                      "normal.Y",
+                      "normal.Z",
+                      "position.X",
+                      "position.Y",
+                      "position.Z",
+                      "id.V"};
+    EXPECT_EQ(plan.channel_names(), truth);
+    EXPECT_EQ(plan.first_channel(Layer::total), -1);  // R G B
+    EXPECT_EQ(plan.first_channel(Layer::direct), 4);
+    EXPECT_EQ(plan.first_channel(Layer::position), 38);
+    EXPECT_EQ(plan.first_channel_of_lamp(0), -1);
+    EXPECT_EQ(LayerPlan("default", k_rgb, k_lamps).channel_names(), truth);
+}
+
+TEST(Layers, AllAddsTheLamps) {
+    const LayerPlan plan("all", k_rgb, k_lamps);
+    ASSERT_EQ(plan.channel_names().size(), 42u + 6u);
+    EXPECT_EQ(plan.first_channel_of_lamp(0), 42);
+    EXPECT_EQ(plan.first_channel_of_lamp(1), 45);
+    EXPECT_EQ(plan.channel_names()[42], "lamp.left.R");
+    EXPECT_EQ(plan.channel_names()[47], "lamp.right.top.B");
+}
+
+TEST(Layers, ListInAnyOrderWithSpacesAndRepetition) {
+    const LayerPlan plan(" id, depth ,lamp.right.top,id", k_rgb, k_lamps);
+    EXPECT_EQ(plan.channel_names(),
+              (Names{"R", "G", "B", "A", "depth.Z", "id.V", "lamp.right.top.R", "lamp.right.top.G",
+                     "lamp.right.top.B"}));
+    EXPECT_TRUE(plan.has(Layer::id));
+    EXPECT_FALSE(plan.has(Layer::range));
+    EXPECT_EQ(plan.first_channel_of_lamp(0), -1);
+    EXPECT_EQ(plan.first_channel_of_lamp(1), 6);
+}
+
+TEST(Layers, OtherNumbersOfBandsAreNamedByWavelength) {
+    const std::vector<double> bands{450, 540.5};
+    const LayerPlan plan("direct,total,lamps", bands, Names{"a"});
+    EXPECT_EQ(plan.channel_names(),
+              (Names{"R", "G", "B", "A", "total.450nm", "total.540_5nm", "direct.450nm",
+                     "direct.540_5nm", "lamp.a.450nm", "lamp.a.540_5nm"}));
+    EXPECT_EQ(plan.first_channel(Layer::total), 4);
+    const std::vector<double> one{532};
+    EXPECT_EQ(LayerPlan("clean", one, {}).channel_names().back(), "clean.532nm");
+}
+
+TEST(Layers, CloseWavelengthsKeepTheirOwnNames) {
+    const std::vector<double> bands{540, 540.0001, 540.00000001, 600};
+    const Names names = LayerPlan("direct", bands, {}).channel_names();
+    EXPECT_EQ(std::set(names.begin(), names.end()).size(), names.size());
+    EXPECT_NE(message_of<InputError>("direct", {540, 540}).find("twice"), std::string::npos);
+}
+
+TEST(Layers, ManyBandsAndLamps) {
+    std::vector<double> bands;
+    for (int i = 0; i < 32; ++i) bands.push_back(400 + 10 * i);
+    Names lamps;
+    for (int i = 0; i < 40; ++i) lamps.push_back("lamp" + std::to_string(i));
+    const LayerPlan plan("all", bands, lamps);
+    EXPECT_EQ(plan.channel_names().size(), 4u + 10u * 32u + 11u + 40u * 32u);
+    EXPECT_EQ(plan.channel_names()[static_cast<std::size_t>(plan.first_channel_of_lamp(39)) + 31],
+              "lamp.lamp39.710nm");
+}
+
+TEST(Layers, RefusesWithOneUsefulLine) {
+    EXPECT_EQ(message_of<UsageError>("flow"), "--layers: flow: not supported yet; leave it out");
+    for (const char* name : {"flow_back", "flow_occluded"}) {
+        EXPECT_NE(message_of<UsageError>(name).find("not supported yet"), std::string::npos);
+    }
+    const std::string unknown = message_of<UsageError>("depth,dirct");
+    EXPECT_NE(unknown.find("'dirct'"), std::string::npos);
+    EXPECT_NE(unknown.find("did you mean 'direct'?"), std::string::npos);
+    EXPECT_NE(message_of<UsageError>("everything").find("direct, forward"), std::string::npos);
+    EXPECT_NE(message_of<UsageError>("depth,,id").find("unknown layer"), std::string::npos);
+    EXPECT_NE(message_of<UsageError>("lamp.middle").find("left, right.top"), std::string::npos);
+    EXPECT_NE(message_of<UsageError>("lamp.x", k_rgb, {}).find("no lamps"), std::string::npos);
+}
+
+TEST(Layers, LampNamesThatCannotBeChannels) {
+    EXPECT_NE(message_of<InputError>("lamps", k_rgb, {"a", "a"}).find("'a'"), std::string::npos);
+    for (const std::string& name :
+         {std::string(), std::string("a\0b", 3), std::string("a\nb"), std::string(300, 'x')}) {
+        EXPECT_NE(message_of<InputError>("lamps", k_rgb, {name}).find("lamps:"), std::string::npos);
+        EXPECT_NO_THROW(LayerPlan("default", k_rgb, Names{name}));
+    }
+}
+
+}  // namespace
+}  // namespace uw
