@@ -1,6 +1,7 @@
 #pragma once
 
-#include "cli/info/vdb_advice.h"
+#include "cli/info/vdb_advice_data.h"
+#include "media/vdb/vdb_inspect.h"
 
 namespace uw {
 
