@@ -4,7 +4,8 @@
 # scripts/check-layers reads; LIBRARIES are third-party ones that only its sources see.
 #
 # The linker checks the list as well: the target uwvdb_modules_alone links each module's objects
-# once more, as a shared library that finds all of its symbols in what the module says it uses.
+# once more, as a shared library that finds all of its symbols in the modules that it says it uses
+# and in what these hand on of those that they use.
 add_custom_target(uwvdb_modules_alone)
 
 function(uwvdb_add_module folder)
@@ -21,6 +22,7 @@ function(uwvdb_add_module folder)
         add_library(${target} INTERFACE)
         target_link_libraries(${target} INTERFACE uwvdb_options ${arg_USES})
         add_library(${target}_alone INTERFACE)
+        target_link_libraries(${target}_alone INTERFACE ${uses_alone})
         return()
     endif()
     add_library(${target} STATIC ${sources})
@@ -28,7 +30,8 @@ function(uwvdb_add_module folder)
     set_property(GLOBAL APPEND PROPERTY UWVDB_MODULES ${target})
 
     add_library(${target}_alone SHARED EXCLUDE_FROM_ALL $<TARGET_OBJECTS:${target}>)
-    target_link_libraries(${target}_alone PRIVATE uwvdb_options ${uses_alone} ${arg_LIBRARIES})
+    target_link_libraries(${target}_alone
+        PUBLIC ${uses_alone} PRIVATE uwvdb_options ${arg_LIBRARIES})
     target_link_options(${target}_alone PRIVATE -Wl,--no-undefined)
     set_target_properties(${target}_alone PROPERTIES LINKER_LANGUAGE CXX)
     add_dependencies(uwvdb_modules_alone ${target}_alone)
