@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/arguments.h"
 #include "cli/output_files.h"
+#include "cli/render_arguments.h"
 #include "core/scene/scene_desc.h"
 
 namespace uw {

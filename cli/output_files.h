@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "cli/arguments.h"
+#include "cli/render_arguments.h"
 #include "core/scene/scene_desc.h"
 
 namespace uw {

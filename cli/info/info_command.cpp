@@ -16,6 +16,8 @@
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
 
+#include <memory>
+#include "cli/console.h"
 namespace uw {
 
 namespace {
@@ -118,6 +120,15 @@ bool is_volume_file(const fs::path& file) {
 
 std::string run_info(const InfoArguments& a) {
     return is_volume_file(a.subject) ? info_on_vdb(a) : info_on_scene(a);
+}
+
+Command info_command() {
+    const auto arguments = std::make_shared<InfoArguments>();
+    return {"info", "what a VDB file or a scene holds, and what to mend", k_info_examples,
+            info_options(*arguments), [arguments] {
+                print_output(run_info(*arguments));
+                return k_exit_done;
+            }};
 }
 
 }  // namespace uw

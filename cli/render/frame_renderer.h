@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/arguments.h"
 #include "cli/frame_sequence.h"
 #include "cli/render/sequence_clock.h"
 #include "cli/render/stats.h"
+#include "cli/render_arguments.h"
 #include "core/colour/colour.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"

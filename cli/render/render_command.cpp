@@ -22,6 +22,8 @@
 #include "core/image/image_reader.h"
 #include "core/meshes/gltf/gltf_import.h"
 
+#include <memory>
+#include "cli/stop_signal.h"
 namespace uw {
 
 namespace {
@@ -149,6 +151,8 @@ void render_frames(const FrameSequence& sequence, const SceneDesc& desc,
 }  // namespace
 
 void run_render(const RenderArguments& a) {
+    if (a.resume && a.frames.empty())
+        throw UsageError("--resume: goes on with a sequence; give its --frames");
     RunStats stats;
     const ThreadLimit limit(a.threads);
     FrameSequence sequence = frames_of(a);
@@ -193,6 +197,16 @@ void run_render(const RenderArguments& a) {
     for (const RunStats& frame : done) seconds += frame.total_seconds();
     print_message(fmt::format("done in {}, peak memory {:.0f} MB\n", format_duration(seconds),
                               static_cast<double>(RunStats::peak_memory_bytes()) / 1e6));
+}
+
+Command render_command() {
+    const auto arguments = std::make_shared<RenderArguments>();
+    return {"render", "render a scene to a multi-layer EXR", k_render_examples,
+            render_options(*arguments), [arguments] {
+                install_stop_signal();
+                run_render(*arguments);
+                return k_exit_done;
+            }};
 }
 
 }  // namespace uw

@@ -14,6 +14,9 @@
 #include "core/base/parallel.h"
 #include "core/meshes/gltf/gltf_import.h"
 
+#include <unistd.h>
+#include <iostream>
+#include <memory>
 namespace uw {
 
 bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
@@ -49,6 +52,17 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     if (!a.quiet || !passed) out << (passed ? "validation passed\n" : "validation FAILED\n");
     if (!out.flush()) throw IoError("standard output: cannot write; is the disk full?");
     return passed;
+}
+
+Command validate_command() {
+    const auto arguments = std::make_shared<ValidateArguments>();
+    return {"validate", "compare every way of computing a scene with the others",
+            k_validate_examples, validate_options(*arguments), [arguments] {
+                install_stop_signal();
+                const bool colour = isatty(STDOUT_FILENO) != 0;
+                return run_validate(*arguments, colour, std::cout) ? k_exit_done
+                                                                   : k_exit_validation;
+            }};
 }
 
 }  // namespace uw

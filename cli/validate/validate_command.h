@@ -2,7 +2,8 @@
 
 #include <iosfwd>
 
-#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/validate/validate_options.h"
 #include "cli/validate/validation.h"
 
 namespace uw {
@@ -13,5 +14,8 @@ namespace uw {
 /// Throws UsageError, InputError, IoError and Interrupted.
 bool run_validate(const ValidateArguments& arguments, bool colour, std::ostream& out,
                   const IntegratorFactory& volume = {});
+
+/// `uwvdb validate` as the command line knows it.
+Command validate_command();
 
 }  // namespace uw

@@ -16,6 +16,7 @@
 #include "media/water/jerlov.h"
 #include "media/water/water_sources.h"
 
+#include <iostream>
 namespace uw {
 
 namespace {
@@ -149,6 +150,15 @@ void run_water(const WaterArguments& a, std::ostream& out) {
     files.commit();
     out << (a.json ? water_json(report) : water_text(report)) << std::flush;
     if (!out) throw IoError("standard output: cannot write; is the disk full?");
+}
+
+Command water_command() {
+    const auto arguments = std::make_shared<WaterArguments>();
+    return {"water", "tables and plots of a water's optical properties", k_water_examples,
+            water_options(*arguments), [arguments] {
+                run_water(*arguments, std::cout);
+                return k_exit_done;
+            }};
 }
 
 }  // namespace uw
