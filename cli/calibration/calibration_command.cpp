@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <iostream>
+#include <memory>
 #include <ostream>
 
 #include "cli/calibration/calibration_report.h"
@@ -11,8 +13,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 
-#include <iostream>
-#include <memory>
 namespace uw {
 namespace {
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <system_error>
 
+#include "cli/console.h"
 #include "cli/frame_sequence.h"
 #include "cli/info/scene_survey.h"
 #include "cli/info/vdb_report.h"
@@ -16,8 +18,6 @@
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
 
-#include <memory>
-#include "cli/console.h"
 namespace uw {
 
 namespace {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "cli/render/image_output.h"
 #include "cli/render/stats.h"
 #include "cli/scene_loading.h"
+#include "cli/stop_signal.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
@@ -22,8 +24,6 @@
 #include "core/image/image_reader.h"
 #include "core/meshes/gltf/gltf_import.h"
 
-#include <memory>
-#include "cli/stop_signal.h"
 namespace uw {
 
 namespace {

@@ -1,7 +1,10 @@
 #include "cli/validate/validate_command.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <iostream>
+#include <memory>
 #include <ostream>
 
 #include "cli/console.h"
@@ -14,9 +17,6 @@
 #include "core/base/parallel.h"
 #include "core/meshes/gltf/gltf_import.h"
 
-#include <unistd.h>
-#include <iostream>
-#include <memory>
 namespace uw {
 
 bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,

@@ -5,18 +5,21 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iostream>
 #include <memory>
 #include <ostream>
 
 #include "cli/console.h"
-#include "cli/water/water_report.h"
+#include "cli/water/water_csv.h"
+#include "cli/water/water_json.h"
+#include "cli/water/water_plot.h"
+#include "cli/water/water_text.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/scene/yaml/scene_reader.h"
 #include "media/water/jerlov.h"
 #include "media/water/water_sources.h"
 
-#include <iostream>
 namespace uw {
 
 namespace {
