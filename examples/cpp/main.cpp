@@ -20,7 +20,9 @@ void print_center(const std::string& file) {
         uw::splat_lamps(scene, uw::deep_shadow_options(desc.render.quality));
     const auto integrator = uw::make_integrator(scene, light);
 
-    const uw::LayerPlan layers("depth", desc.water.bands_nm, {});
+    std::vector<std::string> lamp_names;
+    for (const uw::LampDesc& lamp : scene.desc.lamps) lamp_names.push_back(lamp.name);
+    const uw::LayerPlan layers("depth", desc.water.bands_nm, lamp_names);
     const uw::BandColour colour(desc.water.bands_nm);
     const int width = desc.camera.width, height = desc.camera.height;
     uw::Film image(width, height, {0, 0, width, height}, layers.channel_names());
