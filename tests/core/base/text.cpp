@@ -50,6 +50,7 @@ TEST(Text, NearestWordForgivesOneSlip) {
 TEST(Text, NearestWordGuessesNothingFarAway) {
     EXPECT_EQ(nearest_word("colour", k_keys), "");
     EXPECT_EQ(nearest_word("x", k_keys), "");
+    EXPECT_EQ(nearest_word("brightness", k_keys), "");
     EXPECT_EQ(nearest_word("", k_keys), "");
     EXPECT_EQ(nearest_word("position", {}), "");
     EXPECT_EQ(nearest_word(std::string(100000, 'p'), k_keys), "");
@@ -92,6 +93,14 @@ TEST(Text, ParseNumberReadsAllOfTheText) {
                                            {"0x10", NumberText::no_number},
                                            {"1e", NumberText::no_number},
                                            {"one", NumberText::no_number},
+                                           {"2m", NumberText::no_number},
+                                           {"--1", NumberText::no_number},
+                                           {"1_000", NumberText::no_number},
+                                           {"1 2", NumberText::no_number},
+                                           {"5.", NumberText::number, 5},
+                                           {"infinity", NumberText::not_finite},
+                                           {"-inf", NumberText::not_finite},
+                                           {"1e999", NumberText::out_of_range},
                                            {"inf", NumberText::not_finite},
                                            {"-.inf", NumberText::not_finite},
                                            {"+.INF", NumberText::not_finite},

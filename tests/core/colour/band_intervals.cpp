@@ -8,10 +8,10 @@
 namespace uw {
 namespace {
 
-using Bands = std::vector<double>;
+using BandList = std::vector<double>;
 
 TEST(BandIntervals, MeetHalfway) {
-    const auto intervals = band_intervals(Bands{400, 420, 500});
+    const auto intervals = band_intervals(BandList{400, 420, 500});
     ASSERT_EQ(intervals.size(), 3U);
     EXPECT_EQ(intervals[0].begin, 390);  // as far out as in
     EXPECT_EQ(intervals[0].end, 410);
@@ -23,10 +23,10 @@ TEST(BandIntervals, MeetHalfway) {
 }
 
 TEST(BandIntervals, KeepTheOrderOfTheBands) {
-    const Bands ascending{450, 540, 620};
+    const BandList ascending{450, 540, 620};
     const auto sorted = band_intervals(ascending);
     const std::array<std::size_t, 3> order{2, 0, 1};
-    Bands shuffled;
+    BandList shuffled;
     for (const std::size_t i : order) shuffled.push_back(ascending[i]);
     const auto intervals = band_intervals(shuffled);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -36,7 +36,7 @@ TEST(BandIntervals, KeepTheOrderOfTheBands) {
 }
 
 TEST(BandIntervals, OfEvenBandsAreTheirStep) {
-    Bands bands;
+    BandList bands;
     for (int i = 0; i < 31; ++i) bands.push_back(400 + 10 * i);
     const auto intervals = band_intervals(bands);
     for (const BandInterval& interval : intervals) EXPECT_EQ(interval.width(), 10);
@@ -44,7 +44,7 @@ TEST(BandIntervals, OfEvenBandsAreTheirStep) {
 }
 
 TEST(BandIntervals, OfOneBandHasNoWidth) {
-    const auto intervals = band_intervals(Bands{550});
+    const auto intervals = band_intervals(BandList{550});
     ASSERT_EQ(intervals.size(), 1U);
     EXPECT_EQ(intervals[0].begin, 550);
     EXPECT_EQ(intervals[0].width(), 0);

@@ -8,16 +8,16 @@
 namespace uw {
 namespace {
 
-using Indices = std::vector<std::uint32_t>;
+using TriangleIndices = std::vector<std::uint32_t>;
 
-constexpr float k_nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float k_infinity = std::numeric_limits<float>::infinity();
+constexpr float k_broken_nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float k_broken_infinity = std::numeric_limits<float>::infinity();
 
 /// Vertices 0, 1, 2 are a triangle, 3 lies on the line of 0 and 1; 4 to 6 are broken.
 TriangleMesh corners_good_and_bad() {
     TriangleMesh mesh;
-    mesh.positions = {0, 0, 0,     1, 0,          0, 0, 1, 0, 5,    0,
-                      0, 0, k_nan, 0, k_infinity, 0, 0, 0, 0, 2e15F};
+    mesh.positions = {0, 0, 0, 1, 0,    0, 0, 1, 0, 5, 0, 0, 0, k_broken_nan, 0, k_broken_infinity,
+                      0, 0, 0, 0, 2e15F};
     return mesh;
 }
 
@@ -27,8 +27,8 @@ TEST(MeshCleanup, KeepsWhatCanBeTracedInItsOrder) {
     mesh.triangle_materials = {7, 8, 9, 10, 11};
     DroppedTriangles dropped;
     drop_bad_triangles(mesh, dropped);
-    EXPECT_EQ(mesh.triangles, (Indices{0, 1, 2, 2, 1, 3, 3, 2, 1}));
-    EXPECT_EQ(mesh.triangle_materials, (Indices{7, 9, 11}));
+    EXPECT_EQ(mesh.triangles, (TriangleIndices{0, 1, 2, 2, 1, 3, 3, 2, 1}));
+    EXPECT_EQ(mesh.triangle_materials, (TriangleIndices{7, 9, 11}));
     EXPECT_EQ(mesh.vertex_count(), 7U);  // vertices stay
 }
 
@@ -59,8 +59,8 @@ TEST(MeshCleanup, SmallTrianglesAreNoFault) {
 
 TEST(MeshCleanup, FlattensNormalsThatAreNoDirections) {
     TriangleMesh mesh = corners_good_and_bad();
-    mesh.normals = {0, 0, 1,     0, 0, 0, k_nan, 0,    1, k_infinity, 0,
-                    0, 0, 1e-7F, 0, 2, 0, 0,     3e6F, 0, 0};
+    mesh.normals = {0, 0,     1, 0, 0, 0, k_broken_nan, 0, 1, k_broken_infinity, 0, 0,
+                    0, 1e-7F, 0, 2, 0, 0, 3e6F,         0, 0};
     DroppedTriangles dropped;
     drop_bad_triangles(mesh, dropped);
     EXPECT_EQ(mesh.normals,

@@ -12,7 +12,7 @@
 namespace uw {
 namespace {
 
-using Numbers = std::vector<double>;
+using CsvNumbers = std::vector<double>;
 
 constexpr std::string_view k_small_table =
     "# a comment, with commas, before the header\n"
@@ -32,27 +32,27 @@ TEST(CsvTable, ReadsColumnsByName) {
     EXPECT_EQ(table.name(), "t.csv");
     EXPECT_EQ(table.row_count(), 3U);
     EXPECT_EQ(table.columns(), (std::vector<std::string>{"nm", "a", "b", "kind"}));
-    EXPECT_EQ(table.numbers("nm"), (Numbers{400, 500, 600}));
-    EXPECT_EQ(table.numbers("b"), (Numbers{1, 2, 3}));
+    EXPECT_EQ(table.numbers("nm"), (CsvNumbers{400, 500, 600}));
+    EXPECT_EQ(table.numbers("b"), (CsvNumbers{1, 2, 3}));
     EXPECT_EQ(table.text("a"), (std::vector<std::string>{"0.5", "", "1.5e-1"}));
 }
 
 TEST(CsvTable, CurvesLeaveBlankRowsOut) {
     const SampledCurve curve = CsvTable(k_small_table, "t.csv").curve("nm", "a");
-    EXPECT_EQ(curve.x, (Numbers{400, 600}));
-    EXPECT_EQ(curve.y, (Numbers{0.5, 0.15}));
+    EXPECT_EQ(curve.x, (CsvNumbers{400, 600}));
+    EXPECT_EQ(curve.y, (CsvNumbers{0.5, 0.15}));
 }
 
 TEST(CsvTable, SelectsRowsByValue) {
     const CsvTable water = CsvTable(k_small_table, "t.csv").where("kind", "water");
-    EXPECT_EQ(water.numbers("nm"), (Numbers{400, 600}));
+    EXPECT_EQ(water.numbers("nm"), (CsvNumbers{400, 600}));
     EXPECT_EQ(CsvTable(k_small_table, "t.csv").where("kind", "stone").row_count(), 0U);
 }
 
 TEST(CsvTable, ReadsWhatSpreadsheetsWrite) {
     const CsvTable table("\xEF\xBB\xBFx,y\r\n1,2\r\n3,4", "t.csv");  // a byte order mark, CR LF
-    EXPECT_EQ(table.numbers("x"), (Numbers{1, 3}));
-    EXPECT_EQ(table.numbers("y"), (Numbers{2, 4}));
+    EXPECT_EQ(table.numbers("x"), (CsvNumbers{1, 3}));
+    EXPECT_EQ(table.numbers("y"), (CsvNumbers{2, 4}));
 }
 
 TEST(CsvTable, SaysWhereAndWhat) {

@@ -10,54 +10,56 @@
 namespace uw {
 namespace {
 
-using Changes = std::map<std::string, std::string>;
-using Names = std::vector<std::string>;
+using GltfChanges = std::map<std::string, std::string>;
+using IgnoredNames = std::vector<std::string>;
 
 class GltfInspection : public testing::Test {
   protected:
-    Names inspect(const Changes& changes, const GltfUse& use = {}) const {
+    IgnoredNames inspect(const GltfChanges& changes, const GltfUse& use = {}) const {
         return inspect_gltf(GltfDocument(folder_.write("m.gltf", test::gltf_text(changes))), use);
     }
-    void expect_refused(const Changes& changes, const std::string& what) const {
+    void expect_refused(const GltfChanges& changes, const std::string& what) const {
         const std::string message = test::message_of<InputError>([&] { inspect(changes); });
         EXPECT_TRUE(message.starts_with(folder_.path("m.gltf").string() + ": ")) << message;
         EXPECT_NE(message.find(what), std::string::npos) << message;
     }
     /// The accessors of gltf_text with another one in the place of the positions.
-    static Changes positions(const std::string& accessor) {
+    static GltfChanges positions(const std::string& accessor) {
         return {{"accessors", "[" + accessor + R"(,{"bufferView":1,"componentType":5123,"count":3,
                                       "type":"SCALAR"}])"}};
     }
     /// One primitive whose attributes are these.
-    static Changes attributes(const std::string& attributes) {
+    static GltfChanges attributes(const std::string& attributes) {
         return {{"meshes", R"([{"primitives":[{"attributes":{)" + attributes + "}}]}]"}};
     }
     test::MeshFolder folder_;
 };
 
 TEST_F(GltfInspection, FindsNothingToSayOfAPlainMesh) {
-    EXPECT_EQ(inspect({}), Names{});
+    EXPECT_EQ(inspect({}), IgnoredNames{});
 }
 
 TEST_F(GltfInspection, NamesWhatIsNotUsedSorted) {
-    const Changes all{
+    const GltfChanges all{
         {"cameras", R"([{"type":"orthographic"}])"},
         {"skins", "[{}]"},
         {"animations", "[{}]"},
         {"materials", R"([{"alphaMode":"BLEND","occlusionTexture":{}},{"occlusionTexture":{}}])"},
         {"extensionsUsed",
          R"(["KHR_lights_punctual","KHR_materials_ior","KHR_texture_transform","EXT_other"])"}};
-    EXPECT_EQ(inspect(all), (Names{"EXT_other", "KHR_materials_ior", "alpha blending", "animations",
-                                   "cameras", "lights", "metallic", "occlusion maps", "skins"}));
-    EXPECT_EQ(inspect(all, {.camera = true, .lamps = true, .pbr = true}),
-              (Names{"EXT_other", "alpha blending", "animations", "occlusion maps", "skins"}));
+    EXPECT_EQ(inspect(all),
+              (IgnoredNames{"EXT_other", "KHR_materials_ior", "alpha blending", "animations",
+                            "cameras", "lights", "metallic", "occlusion maps", "skins"}));
+    EXPECT_EQ(
+        inspect(all, {.camera = true, .lamps = true, .pbr = true}),
+        (IgnoredNames{"EXT_other", "alpha blending", "animations", "occlusion maps", "skins"}));
 }
 
 TEST_F(GltfInspection, MetallicIsTheDefaultOfASurface) {
     // glTF 2.0, 3.9.2: metallicFactor is 1 where it is left out.
-    EXPECT_EQ(inspect({{"materials", "[{}]"}}), Names{"metallic"});
+    EXPECT_EQ(inspect({{"materials", "[{}]"}}), IgnoredNames{"metallic"});
     EXPECT_EQ(inspect({{"materials", R"([{"pbrMetallicRoughness":{"metallicFactor":0}}])"}}),
-              Names{});
+              IgnoredNames{});
 }
 
 TEST_F(GltfInspection, SomeExtensionsCannotBeDoneWithout) {
@@ -65,14 +67,14 @@ TEST_F(GltfInspection, SomeExtensionsCannotBeDoneWithout) {
                    "needs the glTF extension KHR_draco_mesh_compression");
     EXPECT_EQ(inspect({{"extensionsRequired",
                         R"(["KHR_lights_punctual","KHR_texture_transform","KHR_materials_x"])"}}),
-              Names{});
+              IgnoredNames{});
 }
 
 TEST_F(GltfInspection, AccessorsLieInTheirViews) {
     const auto vec3 = [](const std::string& more) {
         return positions(R"({"bufferView":0,"componentType":5126,"type":"VEC3",)" + more + "}");
     };
-    EXPECT_EQ(inspect(vec3(R"("count":3)")), Names{});
+    EXPECT_EQ(inspect(vec3(R"("count":3)")), IgnoredNames{});
     expect_refused(vec3(R"("count":4)"), "reaches past its bufferView");
     expect_refused(vec3(R"("count":3,"byteOffset":4)"), "reaches past its bufferView");
     expect_refused(vec3(R"("count":4000000000)"), "counts more than its file can hold");
@@ -86,7 +88,7 @@ TEST_F(GltfInspection, AccessorsLieInTheirViews) {
 
 TEST_F(GltfInspection, ViewsLieInTheirBuffers) {
     const auto view = [](const std::string& rest) {
-        return Changes{{"bufferViews", R"([{"buffer":0,)" + rest + "}]"}};
+        return GltfChanges{{"bufferViews", R"([{"buffer":0,)" + rest + "}]"}};
     };
     expect_refused(view(R"("byteLength":1000)"), "reaches past its buffer");
     expect_refused(view(R"("byteOffset":100,"byteLength":36)"), "reaches past its buffer");
@@ -118,11 +120,11 @@ TEST_F(GltfInspection, AttributesAreOfTheirKind) {
     expect_refused(attributes(R"("POSITION":0,"COLOR_0":2)"), "COLOR_0 has the impossible type");
     expect_refused(attributes(R"("POSITION":0,"TANGENT":0)"), "TANGENT has the impossible type");
     EXPECT_EQ(inspect(attributes(R"("POSITION":0,"NORMAL":0,"TEXCOORD_0":2,"TANGENT":3)")),
-              Names{});
+              IgnoredNames{});
 }
 
 TEST_F(GltfInspection, VerticesHaveAllOfTheirAttributes) {
-    Changes changes = attributes(R"("POSITION":0,"TEXCOORD_0":1)");
+    GltfChanges changes = attributes(R"("POSITION":0,"TEXCOORD_0":1)");
     changes["accessors"] = R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
                                {"bufferView":2,"componentType":5126,"count":2,"type":"VEC2"}])";
     expect_refused(changes, "TEXCOORD_0 has another count than POSITION");
@@ -132,10 +134,10 @@ TEST_F(GltfInspection, VerticesHaveAllOfTheirAttributes) {
 
 TEST_F(GltfInspection, PrimitivesMayBeNoTriangles) {
     EXPECT_EQ(inspect({{"meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"mode":1}]}])"}}),
-              Names{"points and lines"});
+              IgnoredNames{"points and lines"});
     EXPECT_EQ(inspect({{"meshes", R"([{"primitives":[{"attributes":{"POSITION":0},
                                       "targets":[{"POSITION":0}]}]}])"}}),
-              Names{"morph targets"});
+              IgnoredNames{"morph targets"});
     expect_refused({{"meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"indices":0}]}])"}},
                    "indices are not whole numbers");
 }

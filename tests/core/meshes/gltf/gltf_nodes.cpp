@@ -39,15 +39,15 @@ class GltfNodes : public testing::Test {
     std::optional<GltfDocument> document_;
 };
 
-using Order = std::vector<std::size_t>;
+using NodeOrder = std::vector<std::size_t>;
 
 TEST_F(GltfNodes, AreThoseOfTheSceneParentsFirst) {
     const std::string tree = R"([{"children":[2,1]},{},{"children":[3]},{},{"children":[5]},{}])";
     EXPECT_EQ(indices(tree, R"("scene":1,"scenes":[{"nodes":[4]},{"nodes":[0]}])"),
-              (Order{0, 2, 3, 1}));
+              (NodeOrder{0, 2, 3, 1}));
     EXPECT_EQ(indices(tree, R"("scenes":[{"nodes":[4,0]},{"nodes":[0]}])"),
-              (Order{4, 5, 0, 2, 3, 1}));
-    EXPECT_EQ(indices(tree), (Order{0, 2, 3, 1, 4, 5}));  // without scenes all
+              (NodeOrder{4, 5, 0, 2, 3, 1}));
+    EXPECT_EQ(indices(tree), (NodeOrder{0, 2, 3, 1, 4, 5}));  // without scenes all
     EXPECT_TRUE(indices(tree, R"("scenes":[{}])").empty());
 }
 
