@@ -105,8 +105,10 @@ void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const La
         const SceneDesc scene = scene_of_image(desc, frame.choice());
         const ImageLayout layout{scene.camera.width, scene.camera.height, windows[frame.camera],
                                  layers.channel_names()};
+        // Headers tell of the camera that was rendered, be it a glTF file's.
         const auto is_image_of = [&](const std::filesystem::path& file) {
-            return has_header_of(file, layout, metadata_of(scene, frame.number));
+            const ResolvedScene resolved{SceneDesc(scene)};
+            return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number));
         };
         const bool rendered = is_rendered(frame, input_files(scene, known), is_image_of);
         if (rendered && (there.empty() || there.back() != *frame.number))

@@ -4,8 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdlib>
-#include <type_traits>
+#include <mutex>
 
 #include "core/base/error.h"
 #include "core/integrators/reference_integrator.h"
@@ -14,12 +13,6 @@
 
 namespace uw::test {
 namespace {
-
-// What glTF files bring is imported by making a resolved scene. None is made from another, nor
-// from a description that others still use, but by a copy that one sees.
-static_assert(std::is_convertible_v<SceneDesc, ResolvedScene>);
-static_assert(!std::is_constructible_v<ResolvedScene, const SceneDesc&>);
-static_assert(!std::is_constructible_v<ResolvedScene, SceneDesc&>);
 
 /// A box before a wall, two lamps that stand in the world, and a small cloud.
 class Images : public testing::Test {

@@ -283,6 +283,20 @@ TEST_F(Frames, ResumeNoticesEveryFileWrittenSince) {
     }
 }
 
+TEST_F(Frames, ResumeKnowsImagesOfAGltfCamera) {
+    write("smoke.yaml",
+          "uwvdb: 1\ncamera: {resolution: [8, 6]}\n"
+          "water: {absorption: 0.1, scattering: {b: 0.1, phase: {type: water}}}\n"
+          "volumes: [{file: smoke_####.vdb, grids: {density: {absorption: 0.1}}}]\n"
+          "geometry: [{file: '" UWVDB_SOURCE_DIR
+          "/assets/meshes/seabed.glb', camera: Camera, lamps: all}]\nrender: {samples: 1}\n");
+    expect_done(sequence({"--frames", "1-2"}));
+    const test::ProgramResult again = sequence({"--frames", "1-3", "--resume"});
+    expect_done(again);
+    EXPECT_NE(again.err.find("resume: frames 1-2 are there already, 1 left"), std::string::npos)
+        << again.err;
+}
+
 TEST_F(Frames, ThatAreDoneStayWhenInterrupted) {
     test::Program program({"render", "smoke.yaml", "--frames", "1-3", "--integrator", "reference",
                            "--size", "200x114", "--stats", "s.json"},
