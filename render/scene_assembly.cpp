@@ -3,16 +3,13 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/forward/forward_images.h"
 #include "core/integrators/focus_weighted_integrator.h"
 #include "core/integrators/planes_integrator.h"
 #include "core/integrators/reference_integrator.h"
 #include "core/integrators/volume_integrator.h"
 #include "core/lamps/lamp_factory.h"
-#include "core/meshes/gltf/gltf_import.h"
 #include "core/surfaces/geometry_scene.h"
-#include "render/light_splatter.h"
 
 namespace uw {
 
@@ -29,14 +26,14 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 }
 
 // A lamp where the camera's rays begin has in-scatter that grows without bound (1/r^2).
-void warn_of_lamps_at_the_camera(AssembledScene& scene) {
-    const CameraDesc& camera = scene.desc.camera;
+void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
+    const CameraDesc& camera = desc.camera;
     const std::optional<Ray> ray =
         scene.camera->refracted_ray(0.5 * camera.width, 0.5 * camera.height);
     if (!ray) {
         scene.warnings.push_back(fmt::format(
             "{}: camera: no ray of the image centre enters the water; check camera.port",
-            scene.desc.file.filename().string()));
+            desc.file.filename().string()));
         return;
     }
     for (std::size_t j = 0; j < scene.lamps.size(); ++j) {
@@ -44,7 +41,7 @@ void warn_of_lamps_at_the_camera(AssembledScene& scene) {
             scene.warnings.push_back(fmt::format(
                 "{}: the lamp stands where the camera's rays enter the water; its in-scatter "
                 "grows without bound there and is cut at {} m from it; move it aside",
-                scene.desc.lamps[j].where, k_lamp_radius));
+                desc.lamps[j].where, k_lamp_radius));
     }
 }
 
@@ -59,30 +56,14 @@ void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
     check_blur_length(medium, desc.where);
 }
 
-void refuse_open_sequences(const SceneDesc& desc) {
-    const auto refuse = [](const SourceLocation& where, const std::filesystem::path& file) {
-        throw InputError(
-            fmt::format("{}.file: there is no '{}', and as the name of a sequence it wants frames; "
-                        "render it with --frames 1-10, or name one file",
-                        where, printable(file.string(), 300)));
-    };
-    for (const VolumeDesc& volume : desc.volumes) {
-        if (volume.is_sequence) refuse(volume.where, volume.file);
-        if (volume.motion && volume.motion->is_sequence)
-            refuse(volume.motion->where, volume.motion->file);
-    }
-    for (const GeometryDesc& geometry : desc.geometry)
-        if (geometry.is_sequence) refuse(geometry.where, geometry.file);
-}
-
 // Whether volumes mean the same for the water; their files are no matter.
 bool same_water(const SceneDesc& a, const SceneDesc& b) {
     return a.water == b.water &&
            std::ranges::equal(a.volumes, b.volumes, {}, &VolumeDesc::grids, &VolumeDesc::grids);
 }
 
-void take_over_volumes(AssembledScene& scene, AssembledScene& before) {
-    const std::vector<VolumeDesc>& volumes = scene.desc.volumes;
+void take_over_volumes(const std::vector<VolumeDesc>& volumes, AssembledScene& scene,
+                       AssembledScene& before) {
     bool all = volumes.size() == before.volumes.size() && before.field != nullptr &&
                before.field->constituent_count() == scene.water.medium.constituent_count();
     scene.volumes.resize(volumes.size());
@@ -97,10 +78,10 @@ void take_over_volumes(AssembledScene& scene, AssembledScene& before) {
     before.field.reset();
 }
 
-void load_volumes(AssembledScene& scene) {
+void load_volumes(const std::vector<VolumeDesc>& volumes, AssembledScene& scene) {
     for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
         LoadedVolume& volume = scene.volumes[v];
-        if (volume.grids.empty()) volume = load_volume(scene.desc.volumes[v], scene.water.loads[v]);
+        if (volume.grids.empty()) volume = load_volume(volumes[v], scene.water.loads[v]);
         append(scene.warnings, volume.warnings);
         scene.volume_reports.insert(scene.volume_reports.end(), volume.reports.begin(),
                                     volume.reports.end());
@@ -113,9 +94,9 @@ void load_volumes(AssembledScene& scene) {
         std::make_shared<GridField>(std::move(grids), scene.water.medium.constituent_count());
 }
 
-void take_over_surfaces(AssembledScene& scene, AssembledScene& before) {
-    if (before.surfaces && before.desc.geometry == scene.desc.geometry &&
-        before.desc.water.bands_nm == scene.desc.water.bands_nm) {
+void take_over_surfaces(const SceneDesc& desc, AssembledScene& scene, AssembledScene& before) {
+    if (before.surfaces && before.desc.geometry == desc.geometry &&
+        before.desc.water.bands_nm == desc.water.bands_nm) {
         scene.surfaces = before.surfaces;
         scene.geometry_warnings = std::move(before.geometry_warnings);
     }
@@ -124,13 +105,9 @@ void take_over_surfaces(AssembledScene& scene, AssembledScene& before) {
 
 }  // namespace
 
-AssembledScene assemble_scene(const SceneDesc& given, const StageCallback& begin_stage,
+AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
                               AssembledScene before) {
-    refuse_open_sequences(given);
     AssembledScene scene;
-    scene.desc = given;
-    import_gltf(scene.desc);
-    const SceneDesc& desc = scene.desc;
     if (desc.render.integrator == RenderDesc::Integrator::planes && !desc.volumes.empty())
         throw InputError(
             fmt::format("{}: the planes integrator is for uniform water: remove `volumes`, or use "
@@ -150,10 +127,10 @@ AssembledScene assemble_scene(const SceneDesc& given, const StageCallback& begin
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
     check_forward_scatter_of(desc, medium);
-    take_over_volumes(scene, before);
-    take_over_surfaces(scene, before);
+    take_over_volumes(desc.volumes, scene, before);
+    take_over_surfaces(desc, scene, before);
     begin_stage("volumes");
-    load_volumes(scene);
+    load_volumes(desc.volumes, scene);
     begin_stage("geometry");
     if (!scene.surfaces)
         scene.surfaces =
@@ -162,20 +139,13 @@ AssembledScene assemble_scene(const SceneDesc& given, const StageCallback& begin
     for (const LampDesc& lamp : desc.lamps)
         scene.lamps.push_back(
             make_lamp(lamp, desc.camera.world_from_camera, medium.wavelengths_nm, scene.warnings));
-    warn_of_lamps_at_the_camera(scene);
+    warn_of_lamps_at_the_camera(desc, scene);
     scene.slabs = place_slabs(desc.render.planes, *scene.camera, scene.lit());
     return scene;
 }
 
-std::vector<std::shared_ptr<const DeepShadowMap>> splat_lamps(const AssembledScene& scene,
-                                                              const DeepShadowOptions& options,
-                                                              const ShareCallback& progress) {
-    return LightSplatter().splat(scene, options, progress);
-}
-
-static std::unique_ptr<Integrator> make_unweighted_integrator(
-    const AssembledScene& scene,
-    const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
+static std::unique_ptr<Integrator> make_unweighted_integrator(const AssembledScene& scene,
+                                                              const DeepShadows& deep_shadows) {
     if (scene.desc.render.integrator == RenderDesc::Integrator::reference)
         return std::make_unique<ReferenceIntegrator>(scene.lit());
     if (scene.desc.render.integrator == RenderDesc::Integrator::planes)
@@ -192,9 +162,8 @@ static std::unique_ptr<Integrator> make_unweighted_integrator(
         quadrature);
 }
 
-std::unique_ptr<Integrator> make_integrator(
-    const AssembledScene& scene,
-    const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
+std::unique_ptr<Integrator> make_integrator(const AssembledScene& scene,
+                                            const DeepShadows& deep_shadows) {
     std::unique_ptr<Integrator> integrator = make_unweighted_integrator(scene, deep_shadows);
     if (scene.desc.render.output != RenderDesc::Output::paper) return integrator;
     return std::make_unique<FocusWeightedIntegrator>(std::move(integrator),

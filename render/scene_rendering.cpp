@@ -124,17 +124,30 @@ double in_scatter_tolerance(const RenderDesc& render) {
     return render.quality == RenderDesc::Quality::draft ? k_draft_tolerance : k_water_tolerance;
 }
 
+LayerPlan layer_plan(const SceneDesc& scene, std::string_view request) {
+    std::vector<std::string> names;
+    names.reserve(scene.lamps.size());
+    for (const LampDesc& lamp : scene.lamps) names.push_back(lamp.name);
+    return {request, scene.water.bands_nm, names};
+}
+
+PixelRenderer pixel_renderer(const AssembledScene& scene, const Integrator& integrator,
+                             const InScatterParts& parts) {
+    return {
+        *scene.camera,           scene.lit(), integrator, scene.desc.render.samples, scene.slabs,
+        SensorModel(scene.desc), parts};
+}
+
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
-                  Film& film, const PassProgress& progress) {
+                  Film& film, const RenderProgress& progress) {
     InScatterParts parts{false, plan.has(Layer::backscatter_first)};
     for (std::size_t j = 0; j < scene.lamps.size(); ++j)
         if (plan.first_channel_of_lamp(j) >= 0) parts.lamps = true;
-    const PixelRenderer renderer(*scene.camera, scene.lit(), integrator, scene.desc.render.samples,
-                                 scene.slabs, SensorModel(scene.desc), parts);
+    const PixelRenderer renderer = pixel_renderer(scene, integrator, parts);
     const double tolerance = in_scatter_tolerance(scene.desc.render);
-    const auto told = [&progress](const std::string& pass) {
-        return [&progress, pass](double fraction) { return progress(pass, fraction); };
+    const auto told = [&progress](const std::string& stage) {
+        return [&progress, stage](double fraction) { return progress(stage, fraction); };
     };
     if (scene.desc.water.forward_scatter.K == 0) {
         render_film(renderer, tolerance, plan, colour, film, told("render"));

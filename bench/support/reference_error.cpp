@@ -26,8 +26,7 @@ std::vector<Pixel> lattice(int width, int height, int wanted) {
 // Total radiance, band by band, pixel after pixel.
 std::vector<double> radiance(const AssembledScene& scene, const Integrator& integrator,
                              const std::vector<Pixel>& pixels) {
-    const PixelRenderer renderer(*scene.camera, scene.lit(), integrator, 1, scene.slabs,
-                                 SensorModel(scene.desc));
+    const PixelRenderer renderer = pixel_renderer(scene, integrator);
     const auto bands = static_cast<std::size_t>(renderer.band_count());
     std::vector<double> values(pixels.size() * bands);
     parallel_for(pixels.size(), [&](std::size_t i) {

@@ -9,9 +9,9 @@
 
 #include "cli/calibration/calibration_report.h"
 #include "cli/console.h"
-#include "cli/scene_loading.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "render/scene_loading.h"
 
 namespace uw {
 namespace {

@@ -10,13 +10,13 @@
 #include <system_error>
 
 #include "cli/console.h"
-#include "cli/frame_sequence.h"
 #include "cli/info/scene_survey.h"
 #include "cli/info/vdb_report.h"
-#include "cli/scene_loading.h"
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
+#include "render/renderer.h"
+#include "render/scene_loading.h"
 
 namespace uw {
 
@@ -93,12 +93,10 @@ std::string info_on_scene(const InfoArguments& a) {
     std::ranges::for_each(desc.volumes, look);
     std::ranges::for_each(desc.geometry, look);
     if (sequences.empty() && a.frame) refuse_frame(a.subject);
-    if (!sequences.empty()) {
-        Frame one;
-        one.number = frame;
-        desc = scene_of_frame(desc, one);
-    }
-    SceneSurvey survey = survey_scene(assemble_scene(desc, [](const std::string&) {}));
+    if (!sequences.empty()) desc = scene_of_image(desc, {frame});
+    Renderer renderer;
+    renderer.set_scene(std::move(desc));
+    SceneSurvey survey = survey_scene(renderer.assemble());
     survey.sequences = std::move(sequences);
     return a.json ? survey_json(survey) : survey_text(survey);
 }

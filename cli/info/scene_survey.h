@@ -44,7 +44,9 @@ struct ViewSurvey {
 
 /// What `uwvdb info` finds out about a scene without rendering it.
 struct SceneSurvey {
-    AssembledScene scene;
+    explicit SceneSurvey(const AssembledScene& of) : scene(of) {}
+
+    const AssembledScene& scene;
     std::vector<SequenceReport> sequences;
     std::vector<GridSurvey> grids;
     CentralRaySurvey central_ray;
@@ -53,8 +55,8 @@ struct SceneSurvey {
     std::vector<std::string> warnings;      // the scene's, then what will be black or opaque
 };
 
-/// Looks at an assembled scene. Deterministic.
-SceneSurvey survey_scene(AssembledScene scene);
+/// Looks at an assembled scene, which outlives the result. Deterministic.
+SceneSurvey survey_scene(const AssembledScene& scene);
 
 /// For people.
 std::string survey_text(const SceneSurvey& survey);

@@ -6,31 +6,29 @@
 #include <iostream>
 #include <memory>
 #include <ostream>
+#include <utility>
 
 #include "cli/console.h"
-#include "cli/scene_loading.h"
 #include "cli/stop_signal.h"
 #include "cli/validate/validation_report.h"
 #include "cli/validate/validation_suite.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/meshes/gltf/gltf_import.h"
+#include "render/scene_loading.h"
 
 namespace uw {
 
 bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
-                  const IntegratorFactory& volume) {
+                  const IntegratorWrapper& volume) {
     const ThreadLimit limit(a.threads);
     if (a.scene.empty() && !a.overrides.empty())
         throw UsageError("--set: the built-in suite has no scene file to change; name a scene");
     if (!a.report.empty()) const AtomicFile probe(a.report);
     const ValidationSuite suite;
     std::vector<std::pair<std::string, SceneDesc>> scenes = suite.scenes();
-    if (!a.scene.empty()) {
+    if (!a.scene.empty())
         scenes = {{a.scene.filename().string(), load_scene(a.scene, a.overrides)}};
-        import_gltf(scenes.front().second);
-    }
 
     ValidationOptions options;
     options.tolerance = a.tolerance;
@@ -39,8 +37,8 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     if (!a.quiet) options.say = [](const std::string& what) { print_message(what + "\n"); };
     std::vector<SceneValidation> results;
     bool passed = true;
-    for (const auto& [name, desc] : scenes) {
-        results.push_back(validate_scene(desc, name, options));
+    for (auto& [name, desc] : scenes) {
+        results.push_back(validate_scene(std::move(desc), name, options));
         passed = passed && results.back().passed();
         if (!a.quiet || !results.back().passed()) out << validation_table(results.back(), colour);
         out.flush();

@@ -192,9 +192,6 @@ struct LampDesc {
     SourceLocation where;
 };
 
-/// The files that a lamp is read from.
-std::vector<std::filesystem::path> files_of(const LampDesc& lamp);
-
 /// Slabs of water parallel to the image plane, in camera z [m]: what the planes integrator sums
 /// over, and the first of them is the layer `backscatter_first`.
 struct PlanesDesc {
@@ -259,7 +256,6 @@ struct SceneDesc {
     std::vector<GeometryDesc> geometry;
     std::vector<LampDesc> lamps;
     RenderDesc render;
-    bool gltf_is_imported = false;      // import_gltf has put in what `geometry` asks for
     std::string hash;                   // of the text as read with overrides, for image headers
     std::vector<std::string> warnings;  // one line each
 };

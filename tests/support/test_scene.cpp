@@ -46,27 +46,24 @@ GeometryDesc plane_at_z(double z) {
     return plane;
 }
 
-TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options)
-    : scene_(assemble_scene(desc, [](const std::string&) {})) {
-    if (desc.render.integrator == RenderDesc::Integrator::volume)
-        deep_shadows_ = splat_lamps(scene_, options);
-    integrator_ = make_integrator(scene_, deep_shadows_);
-    renderer_ =
-        std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
-                                        desc.render.samples, scene_.slabs, SensorModel(desc));
+TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options) {
+    scene_.set_scene(SceneDesc(desc));
+    if (desc.render.integrator == RenderDesc::Integrator::volume) scene_.splat(options);
+    integrator_ = scene_.make_integrator();
+    pixels_ = std::make_unique<PixelRenderer>(pixel_renderer(assembled(), *integrator_));
 }
 
 PixelResult TestScene::pixel(int x, int y) const {
     PixelResult result;
-    renderer_->render(x, y, result);
+    pixels_->render(x, y, result);
     return result;
 }
 
 std::vector<PixelResult> TestScene::image() const {
-    const int width = scene_.camera->width(), height = scene_.camera->height();
+    const int width = assembled().camera->width(), height = assembled().camera->height();
     std::vector<PixelResult> pixels(static_cast<std::size_t>(width * height));
     parallel_for(pixels.size(), [&](std::size_t i) {
-        renderer_->render(static_cast<int>(i) % width, static_cast<int>(i) / width, pixels[i]);
+        pixels_->render(static_cast<int>(i) % width, static_cast<int>(i) / width, pixels[i]);
     });
     return pixels;
 }

@@ -212,10 +212,6 @@ void import_lamps(const GltfItems& items, const GeometryDesc& object, SceneDesc&
 }  // namespace
 
 void import_gltf(SceneDesc& scene) {
-    const bool is_open = std::ranges::any_of(scene.geometry, [](const GeometryDesc& object) {
-        return object.is_sequence && (object.import.camera || object.import.any_lamps());
-    });
-    if (is_open || std::exchange(scene.gltf_is_imported, true)) return;
     for (const GeometryDesc& object : scene.geometry) {
         if (!object.import.camera && !object.import.any_lamps()) continue;
         const GltfItems items = read_gltf_items(object.file);

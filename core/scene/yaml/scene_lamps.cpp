@@ -215,14 +215,6 @@ std::string read_short_name(const ConfigValue& value, std::string_view of, std::
     return name;
 }
 
-std::vector<std::filesystem::path> files_of(const LampDesc& lamp) {
-    std::vector<std::filesystem::path> files;
-    if (lamp.profile.type == LampProfileDesc::Type::ies) files.push_back(lamp.profile.file);
-    if (lamp.spectrum && lamp.spectrum->type == LampSpectrumDesc::Type::file)
-        files.push_back(lamp.spectrum->file);
-    return files;
-}
-
 std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context) {
     std::vector<LampDesc> lamps;
     for (const ConfigValue& entry : value.list("write one '- name: ...' per lamp")) {

@@ -38,11 +38,9 @@ class FaultyIntegrator : public Integrator {
     double in_scatter_, direct_;
 };
 
-IntegratorFactory faulty(double in_scatter, double direct) {
-    return [=](const AssembledScene& scene,
-               const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
-        return std::make_unique<FaultyIntegrator>(make_integrator(scene, deep_shadows), in_scatter,
-                                                  direct);
+IntegratorWrapper faulty(double in_scatter, double direct) {
+    return [=](std::unique_ptr<Integrator> honest) {
+        return std::make_unique<FaultyIntegrator>(std::move(honest), in_scatter, direct);
     };
 }
 
@@ -85,11 +83,9 @@ class FaultyInForwardScatter : public Integrator {
     Fault fault_;
 };
 
-IntegratorFactory faulty_in_forward_scatter(FaultyInForwardScatter::Fault fault) {
-    return [=](const AssembledScene& scene,
-               const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
-        return std::make_unique<FaultyInForwardScatter>(make_integrator(scene, deep_shadows),
-                                                        fault);
+IntegratorWrapper faulty_in_forward_scatter(FaultyInForwardScatter::Fault fault) {
+    return [=](std::unique_ptr<Integrator> honest) {
+        return std::make_unique<FaultyInForwardScatter>(std::move(honest), fault);
     };
 }
 
@@ -221,7 +217,7 @@ TEST(Validation, PlanesConvergeAsTheSquareOfTheirThickness) {
     lamp.position = {1, -0.5, 0};
     lamp.intensity = PerBand{50, 50, 50};
     desc.lamps = {lamp};
-    const SceneValidation result = validate_scene(desc, "test", {});
+    const SceneValidation result = validate_scene(std::move(desc), "test", {});
     EXPECT_TRUE(result.passed());
     ASSERT_EQ(result.planes.back().count, 512);
     for (const PlanesStep& step : result.planes) {

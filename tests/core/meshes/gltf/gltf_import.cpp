@@ -80,7 +80,6 @@ TEST(GltfImportOfBlender, LampsAreWattsOverFourPiInAllThreeUnits) {
             {});
         EXPECT_TRUE(scene.warnings.empty());
         import_gltf(scene);
-        import_gltf(scene);  // once is enough
         EXPECT_TRUE(scene.warnings.empty());
         ASSERT_EQ(scene.lamps.size(), 3U) << file;
         const double watts[] = {120, 80, 30};

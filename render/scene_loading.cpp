@@ -1,4 +1,4 @@
-#include "cli/scene_loading.h"
+#include "render/scene_loading.h"
 
 #include "camera/calibration/calibration.h"
 #include "core/scene/yaml/config_node.h"
