@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <variant>
 
 #include "core/meshes/gltf/gltf_files.h"
 
@@ -30,8 +31,7 @@ class InputCollection {
         for (const VolumeDesc& volume : scene.volumes) add(volume);
         for (const GeometryDesc& geometry : scene.geometry) add(geometry);
         for (const LampDesc& lamp : scene.lamps) {
-            if (lamp.profile.type == LampProfileDesc::Type::ies)
-                add(lamp.profile.file, "a lamp's profile of the scene");
+            add_named(lamp.profile, "a lamp's profile of the scene");
             if (lamp.spectrum) add(*lamp.spectrum, "a lamp's spectrum of the scene");
         }
         const ColourDesc& colour = scene.render.colour;
@@ -47,9 +47,15 @@ class InputCollection {
     void add(const CameraDesc& camera) {
         if (camera.calibration) add(camera.calibration->file, "a calibration of the scene", true);
     }
-    void add(const PhaseDesc& phase) {
-        if (phase.type == PhaseDesc::Type::table) add(phase.file, "a phase function of the scene");
+    // The file of those alternatives of a variant that have one.
+    void add_named(const auto& variant, const char* what) {
+        std::visit(
+            [&](const auto& desc) {
+                if constexpr (requires { desc.file; }) add(desc.file, what);
+            },
+            variant);
     }
+    void add(const PhaseDesc& phase) { add_named(phase.function, "a phase function of the scene"); }
     void add(const LampSpectrumDesc& spectrum, const char* what) {
         if (spectrum.type == LampSpectrumDesc::Type::file) add(spectrum.file, what);
     }

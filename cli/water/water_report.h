@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene_desc.h"
+#include "core/scene/volume_desc.h"
+#include "core/scene/water_desc.h"
 #include "media/water/water_table.h"
 
 namespace uw {
