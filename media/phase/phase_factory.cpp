@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <string_view>
-#include <system_error>
 #include <variant>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/base/text_file.h"
 #include "media/phase/fournier_forand.h"
 #include "media/phase/henyey_greenstein.h"
 #include "media/phase/molecular_phase.h"
@@ -18,34 +18,16 @@ namespace uw {
 namespace {
 
 /// A phase table is a few kilobytes; more is some other file.
-constexpr std::uintmax_t k_largest_table_file = 4 << 20;
-
-std::string file_text(const TabulatedPhaseDesc& desc, const SourceLocation& where) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(desc.file, error))
-        throw IoError(
-            fmt::format("{}: cannot read {}: no such file; give a CSV file with columns "
-                        "angle_deg,phase",
-                        where, desc.file.string()));
-    const std::uintmax_t size = std::filesystem::file_size(desc.file, error);
-    if (error || size > k_largest_table_file)
-        throw InputError(
-            fmt::format("{}: {} is too large for a phase function table; give a CSV "
-                        "file with columns angle_deg,phase",
-                        where, desc.file.string()));
-    std::ifstream stream(desc.file, std::ios::binary);
-    std::string text(static_cast<std::size_t>(size), '\0');
-    if (!stream.read(text.data(), static_cast<std::streamsize>(size)))
-        throw IoError(
-            fmt::format("{}: cannot read {}; check its permissions", where, desc.file.string()));
-    return text;
-}
+constexpr std::size_t k_largest_table_file = std::size_t{4} << 20;
 
 std::shared_ptr<const PhaseFunction> table_phase(const TabulatedPhaseDesc& desc,
                                                  const SourceLocation& where,
                                                  std::vector<std::string>& warnings) {
     const std::string name = desc.file.filename().string();
-    auto phase = std::make_shared<TabulatedPhase>(read_phase_table(file_text(desc, where), name));
+    const std::string text = read_text_file(
+        desc.file, fmt::format("{}: {}", where, printable(desc.file.string(), 300)),
+        k_largest_table_file, "phase function table (CSV with columns angle_deg,phase)");
+    auto phase = std::make_shared<TabulatedPhase>(read_phase_table(text, name));
     // Published tables integrate to 1 within a few per cent.
     const double integral = phase->table_integral();
     if (integral < 0.9 || integral > 1.1)

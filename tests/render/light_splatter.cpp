@@ -106,13 +106,13 @@ TEST_F(LightReuse, ALampThatTurnsOutOfItsShadowsNeedsOthers) {
     expect_splat(2, 2);
     const std::uint64_t all = 6 * 66 * 66;
     EXPECT_LT(counts().rays, all + all / 2);  // the spot's are those of its beam
-    change([&](SceneDesc& d) { d.lamps[1].profile = spot(30, 4); });
+    change([](SceneDesc& d) { d.lamps[1].profile = SpotProfileDesc{30, 4}; });
     expect_splat(0, 0);
     change([&](SceneDesc& d) { d.lamps[1].direction = glm::normalize(Vector3(0.05, 0, 1)); });
     expect_splat(0, 0);
     change([&](SceneDesc& d) { d.lamps[1].direction = glm::normalize(Vector3(0.5, 0, 1)); });
     expect_splat(1, 0);
-    change([&](SceneDesc& d) { d.lamps[1].profile = spot(60, 4); });
+    change([](SceneDesc& d) { d.lamps[1].profile = SpotProfileDesc{60, 4}; });
     expect_splat(1, 0);
 }
 

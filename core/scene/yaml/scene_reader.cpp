@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/text_file.h"
 #include "core/scene/yaml/camera_reader.h"
 #include "core/scene/yaml/config_map.h"
 #include "core/scene/yaml/geometry_reader.h"
@@ -22,25 +21,6 @@
 
 namespace uw {
 namespace {
-
-/// The file's text; of a larger file just enough to be refused for its size.
-std::string read_text(const std::filesystem::path& file, const std::string& origin) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored)) {
-        throw IoError(fmt::format("{}: is a folder; name a scene file in it", origin));
-    }
-    if (!std::filesystem::exists(file, ignored)) {
-        throw IoError(fmt::format("{}: no such file; check the name of the scene", origin));
-    }
-    std::ifstream stream(file, std::ios::binary);
-    std::string text(YamlLimits{}.bytes + 1, '\0');
-    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream.is_open() || stream.bad()) {
-        throw IoError(fmt::format("{}: cannot be read; check its permissions", origin));
-    }
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    return text;
-}
 
 /// Comes first: another version may have other keys.
 void check_version(const ConfigValue& scene) {
@@ -136,7 +116,7 @@ void open_shutter(SceneDesc& desc) {
 
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
     const std::string origin = printable(file.string(), 300);
-    ConfigNode root = parse_yaml(read_text(file, origin), origin);
+    ConfigNode root = parse_yaml(read_text_file(file, origin, YamlLimits{}.bytes, "scene"), origin);
     for (const std::string& text : overrides) apply_override(root, text);
 
     const ConfigValue scene(root, "");
