@@ -12,6 +12,7 @@
 #include "core/lamps/lamp_factory.h"
 #include "core/meshes/gltf/gltf_import.h"
 #include "core/surfaces/geometry_scene.h"
+#include "media/volumes/grid_field.h"
 #include "render/light_splatter.h"
 
 namespace uw {

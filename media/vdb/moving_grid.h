@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "media/vdb/vdb_file.h"
+#include "media/vdb/loaded_grid.h"
 
 namespace uw {
 

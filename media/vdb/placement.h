@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/base/affine.h"
-#include "media/vdb/vdb_file.h"
+#include "media/vdb/loaded_grid.h"
 
 namespace uw {
 

@@ -5,7 +5,7 @@
 #include <csignal>
 
 #include "tests/support/cli_test.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw {
 namespace {
