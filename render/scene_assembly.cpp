@@ -10,6 +10,7 @@
 #include "core/integrators/volume_integrator.h"
 #include "core/lamps/lamp_factory.h"
 #include "core/surfaces/geometry_scene.h"
+#include "media/volumes/grid_field.h"
 
 namespace uw {
 

@@ -11,7 +11,7 @@
 #include "core/integrators/slabs.h"
 #include "core/scene/scene_desc.h"
 #include "media/light/deep_shadow_map.h"
-#include "media/volumes/grid_field.h"
+#include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
 
 namespace uw {

@@ -7,6 +7,7 @@
 
 #include "bench/support/process.h"
 #include "core/base/parallel.h"
+#include "media/volumes/grid_field.h"
 
 namespace uw::bench {
 namespace {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <ostream>
 
+#include "cli/calibration/calibration_json.h"
 #include "cli/calibration/calibration_report.h"
 #include "cli/console.h"
 #include "core/base/atomic_file.h"

@@ -11,7 +11,11 @@
 
 #include "cli/console.h"
 #include "cli/info/scene_survey.h"
-#include "cli/info/vdb_report.h"
+#include "cli/info/survey_json.h"
+#include "cli/info/survey_text.h"
+#include "cli/info/vdb_advice.h"
+#include "cli/info/vdb_json.h"
+#include "cli/info/vdb_text.h"
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"

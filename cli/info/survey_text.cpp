@@ -1,10 +1,11 @@
+#include "cli/info/survey_text.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "cli/frame_list.h"
 #include "cli/grid_summary.h"
-#include "cli/info/scene_survey.h"
 
 namespace uw {
 

@@ -4,7 +4,7 @@
 
 #include "core/scene/source_location.h"
 #include "core/scene/volume_desc.h"
-#include "media/vdb/vdb_file.h"
+#include "media/vdb/loaded_grid.h"
 
 namespace uw {
 

@@ -2,7 +2,7 @@
 
 #include "core/base/affine.h"
 #include "core/scene/volume_desc.h"
-#include "media/vdb/vdb_file.h"
+#include "media/vdb/loaded_grid.h"
 
 namespace uw {
 

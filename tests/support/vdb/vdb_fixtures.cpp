@@ -1,8 +1,10 @@
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointDataGrid.h>
 #include <openvdb/tools/LevelSetSphere.h>
+
+#include "media/vdb/openvdb_grids.h"
 
 namespace uw::test {
 namespace {
@@ -24,7 +26,7 @@ openvdb::CoordBBox to_box(const VdbBox& box) {
 template <class GridT>
 openvdb::GridBase::Ptr make_grid(const VdbFixture& fixture) {
     using Value = typename GridT::ValueType;
-    auto grid = GridT::create(static_cast<Value>(fixture.background));
+    auto grid = make_empty_grid<GridT>(static_cast<Value>(fixture.background));
     grid->setName(fixture.name);
     if (!fixture.grid_class.empty())
         grid->setGridClass(openvdb::GridBase::stringToGridClass(fixture.grid_class));
@@ -58,7 +60,7 @@ void write_grids(const std::filesystem::path& file, const openvdb::GridPtrVec& g
 
 void write_fixture(const std::filesystem::path& file, const std::vector<VdbFixture>& grids,
                    const std::string& creator) {
-    openvdb::initialize();
+    initialize_openvdb();
     openvdb::GridPtrVec made;
     for (const VdbFixture& fixture : grids)
         made.push_back(fixture.numbers == VdbNumbers::float64
@@ -68,33 +70,33 @@ void write_fixture(const std::filesystem::path& file, const std::vector<VdbFixtu
 }
 
 void write_point_grid(const std::filesystem::path& file) {
-    openvdb::initialize();
-    auto grid = openvdb::points::PointDataGrid::create();
+    initialize_openvdb();
+    const auto grid = openvdb::GridBase::createGrid(openvdb::points::PointDataGrid::gridType());
     grid->setName("points");
     write_grids(file, {grid}, "");
 }
 
 void write_vector_grid(const std::filesystem::path& file) {
-    openvdb::initialize();
-    auto grid = openvdb::Vec3SGrid::create();
+    initialize_openvdb();
+    auto grid = make_empty_grid<openvdb::Vec3SGrid>(openvdb::Vec3f(0));
     grid->setName("vel");
     grid->getAccessor().setValue({0, 0, 0}, openvdb::Vec3f(1, 2, 3));
     write_grids(file, {grid}, "");
 }
 
 void write_bool_and_int_grids(const std::filesystem::path& file) {
-    openvdb::initialize();
-    auto flag = openvdb::BoolGrid::create();
+    initialize_openvdb();
+    auto flag = make_empty_grid<openvdb::BoolGrid>(false);
     flag->setName("flag");
     flag->getAccessor().setValue({0, 0, 0}, true);
-    auto flags = openvdb::Int32Grid::create();
+    auto flags = make_empty_grid<openvdb::Int32Grid>(0);
     flags->setName("flags");
     flags->getAccessor().setValue({0, 0, 0}, 3);
     write_grids(file, {flag, flags}, "");
 }
 
 void write_level_set(const std::filesystem::path& file, bool with_class) {
-    openvdb::initialize();
+    initialize_openvdb();
     auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
         1.0F, openvdb::Vec3f(0, 0, 0), 0.1F);
     grid->setName("surface");
@@ -103,8 +105,8 @@ void write_level_set(const std::filesystem::path& file, bool with_class) {
 }
 
 void write_frustum_grid(const std::filesystem::path& file) {
-    openvdb::initialize();
-    auto grid = openvdb::FloatGrid::create();
+    initialize_openvdb();
+    auto grid = make_empty_grid<openvdb::FloatGrid>(0.0F);
     grid->setName("density");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     grid->getAccessor().setValue({1, 1, 1}, 1.0F);
@@ -114,12 +116,13 @@ void write_frustum_grid(const std::filesystem::path& file) {
 }
 
 void write_instanced_grids(const std::filesystem::path& file) {
-    openvdb::initialize();
-    auto grid = openvdb::FloatGrid::create();
+    initialize_openvdb();
+    auto grid = make_empty_grid<openvdb::FloatGrid>(0.0F);
     grid->setName("density");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     grid->getAccessor().setValue({1, 1, 1}, 2.0F);
-    auto copy = openvdb::FloatGrid::create(grid->treePtr());
+    auto copy = make_empty_grid<openvdb::FloatGrid>(0.0F);
+    copy->setTree(grid->baseTreePtr());
     copy->setName("copy");
     copy->setGridClass(openvdb::GRID_FOG_VOLUME);
     copy->setTransform(openvdb::math::Transform::createLinearTransform(0.25));
@@ -128,7 +131,7 @@ void write_instanced_grids(const std::filesystem::path& file) {
 
 void write_moving_grid(const std::filesystem::path& file, const VdbFixture& density,
                        const Vector3& velocity, VelocityKind kind) {
-    openvdb::initialize();
+    initialize_openvdb();
     const openvdb::CoordBBox box(openvdb::Coord(-64), openvdb::Coord(63));
     openvdb::GridPtrVec grids{make_grid<openvdb::FloatGrid>(density)};
     const auto add = [&](auto grid, const std::string& name, const auto& value) {
@@ -139,10 +142,10 @@ void write_moving_grid(const std::filesystem::path& file, const VdbFixture& dens
     };
     if (kind == VelocityKind::three_numbers) {
         for (int c = 0; c < 3; ++c)
-            add(openvdb::FloatGrid::create(), std::string("vel.") + "xyz"[c],
+            add(make_empty_grid<openvdb::FloatGrid>(0.0F), std::string("vel.") + "xyz"[c],
                 static_cast<float>(velocity[c]));
     } else {
-        auto vectors = openvdb::Vec3SGrid::create();
+        auto vectors = make_empty_grid<openvdb::Vec3SGrid>(openvdb::Vec3f(0));
         if (kind == VelocityKind::staggered) vectors->setGridClass(openvdb::GRID_STAGGERED);
         add(vectors, "vel", openvdb::Vec3f(openvdb::Vec3d(velocity.x, velocity.y, velocity.z)));
     }

@@ -7,7 +7,8 @@
 
 #include "core/base/error.h"
 #include "media/vdb/vdb_file.h"
-#include "tests/support/vdb_fixtures.h"
+#include "media/vdb/vdb_header_reader.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw::test {
 

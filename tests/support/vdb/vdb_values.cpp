@@ -1,4 +1,4 @@
-#include "tests/support/vdb_values.h"
+#include "tests/support/vdb/vdb_values.h"
 
 #include <openvdb/openvdb.h>
 
@@ -16,7 +16,7 @@ std::map<std::string, VdbValues> read_vdb_values(const std::filesystem::path& fi
         for (auto entry = grid->beginMeta(); entry != grid->endMeta(); ++entry)
             values.metadata[entry->first] = entry->second->str();
         const auto accessor = grid->getConstAccessor();
-        const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+        const openvdb::CoordBBox box = base->evalActiveVoxelBoundingBox();
         for (auto at = box.begin(); at != box.end(); ++at) {
             const openvdb::Vec3d p = grid->indexToWorld(*at);
             values.voxels.push_back({Point3{p.x(), p.y(), p.z()},

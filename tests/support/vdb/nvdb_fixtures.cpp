@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "tests/support/temp_dir.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw::test {
 namespace {

@@ -1,42 +1,30 @@
+#include "media/vdb/grid_selection.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <string_view>
+#include <vector>
 
 #include "core/base/error.h"
-#include "media/vdb/vdb_header.h"
+#include "core/base/text.h"
 
 namespace uw {
 namespace {
 
-/// Levenshtein's distance: least number of letters to insert, delete or replace.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row.back();
-}
-
 std::string did_you_mean(const VdbHeader& header, const std::string& name) {
-    const GridSummary* best = nullptr;
-    std::size_t best_distance = std::max<std::size_t>(2, name.size() / 3) + 1;
+    std::vector<std::string_view> names;
     for (const GridSummary& grid : header.grids) {
-        const std::size_t distance =
-            std::min(edit_distance(name, grid.name), edit_distance(name, grid.base_name));
-        if (distance < best_distance) {
-            best = &grid;
-            best_distance = distance;
-        }
+        names.emplace_back(grid.name);
+        names.emplace_back(grid.base_name);
     }
-    return best != nullptr ? fmt::format("; did you mean '{}'?", best->name) : "";
+    const std::string_view near = nearest_word(name, names);
+    if (near.empty()) return "";
+    // Of namesakes, which share a base name, the first.
+    const auto grid = std::ranges::find_if(header.grids, [&](const GridSummary& candidate) {
+        return candidate.name == near || candidate.base_name == near;
+    });
+    return fmt::format("; did you mean '{}'?", grid->name);
 }
 
 }  // namespace
