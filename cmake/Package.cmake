@@ -14,6 +14,7 @@ function(uwvdb_of_last_commit result format otherwise)
 endfunction()
 uwvdb_of_last_commit(uwvdb_maintainer "%an <%ae>" "uwvdb maintainers <uwvdb@localhost>")
 uwvdb_of_last_commit(uwvdb_package_date "%aD" "Thu, 01 Jan 1970 00:00:00 +0000")
+string(REGEX MATCH "[0-9][0-9][0-9][0-9]" uwvdb_package_year "${uwvdb_package_date}")
 
 # Packages of different systems have different versions: a newer system's replaces an older's.
 cmake_host_system_information(RESULT uwvdb_system QUERY DISTRIB_INFO)
@@ -29,7 +30,7 @@ endforeach()
 set(CPACK_PACKAGE_NAME uwvdb)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "${uwvdb_maintainer}")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "renderer of physically exact underwater images")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL program debian)
 set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
@@ -43,7 +44,8 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE ${uwvdb_package_release})
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-    "Renders what a camera behind a glass port sees of a lamp-lit scene under water: absorption,
-scattering and refraction, particle plumes from VDB files, and exact ground truth beside the
-image. Example scenes are in /usr/share/uwvdb/scenes.")
+    "Renders what a camera behind a glass port sees of a lamp-lit scene under
+water: absorption, scattering and refraction, particle plumes from VDB files,
+and exact ground truth beside the image. Example scenes are in
+/usr/share/uwvdb/scenes.")
 include(CPack)
