@@ -112,23 +112,22 @@ double rms_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum
 class SceneTrial {
   public:
     SceneTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options)
-        : scene_(small_image(std::move(scene), options.longest_side)),
-          desc_(scene_.desc()),
-          options_(options) {
+        : scene_(small_image(std::move(scene), options.longest_side)), options_(options) {
         result_.name = name;
-        result_.width = desc_.camera.width;
-        result_.height = desc_.camera.height;
-        result_.bands_nm = desc_.water.bands_nm;
+        result_.width = scene_.desc().camera.width;
+        result_.height = scene_.desc().camera.height;
+        result_.bands_nm = scene_.desc().water.bands_nm;
     }
 
     SceneValidation run() {
         const auto start = std::chrono::steady_clock::now();
         TrialScene trial = make_trial(scene_, options_.proceed);
-        TrialScene uniform = desc_.volumes.empty() ? make_trial(scene_, options_.proceed)
-                                                   : homogenised(trial, scene_, options_.proceed);
+        TrialScene uniform = scene_.desc().volumes.empty()
+                                 ? make_trial(scene_, options_.proceed)
+                                 : homogenised(trial, scene_, options_.proceed);
         result_.smooth = smooth_pixels(uniform);
         compare_before_forward_scatter(trial, uniform);
-        if (desc_.water.forward_scatter.K > 0) compare_forward_scatter(trial, uniform);
+        if (scene_.desc().water.forward_scatter.K > 0) compare_forward_scatter(trial, uniform);
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         result_.seconds = elapsed.count();
         return std::move(result_);
@@ -148,7 +147,7 @@ class SceneTrial {
         compare(k_constant_grid, k_volume, both, {});
         render(k_reference, uniform, ReferenceIntegrator(uniform.scene().lit()));
         compare(k_volume, k_reference, both, {.where = k_smooth});
-        if (desc_.volumes.empty()) return;
+        if (scene_.desc().volumes.empty()) return;
         render(k_volume_on_grids, trial, *on_trial(trial));
         render(k_reference_on_grids, trial, ReferenceIntegrator(trial.scene().lit()));
         compare(k_volume_on_grids, k_reference_on_grids, both,
@@ -167,7 +166,7 @@ class SceneTrial {
         compare_half_constant_grid(uniform);
         scatter_without_splats(k_reference, uniform, RenderDesc::Integrator::reference);
         compare(k_volume, k_reference, both, {.where = k_smooth});
-        if (!desc_.volumes.empty()) {
+        if (!scene_.desc().volumes.empty()) {
             scatter(k_volume_on_grids, trial, *on_trial(trial));
             scatter_without_splats(k_reference_on_grids, trial, RenderDesc::Integrator::reference);
             compare(k_volume_on_grids, k_reference_on_grids, both,
@@ -277,7 +276,6 @@ class SceneTrial {
     }
 
     ResolvedScene scene_;
-    const SceneDesc& desc_;  // its own
     const ValidationOptions& options_;
     SceneValidation result_;
 };

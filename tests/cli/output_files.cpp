@@ -98,7 +98,7 @@ TEST_F(OutputFiles, NeverReplaceATableOrATexture) {
     };
     refused("water.scattering.phase={type: table, file: phase.csv}", "phase.csv",
             "a phase function of the scene");
-    refused("render={response: cie, white: {type: file, file: white.csv}}", "white.csv",
+    refused("render={response: cie, white: {file: white.csv}}", "white.csv",
             "the white light of the scene");
     refused("geometry=[{file: wall.gltf}]", "wall.png", "a mesh's texture or buffer");
     EXPECT_EQ(file_count(), 5U);

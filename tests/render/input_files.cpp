@@ -30,9 +30,10 @@ geometry:
   - {file: sub/ship_####.gltf}
 lamps:
   - name: lamp
+    position: [0, 0, 0]
     profile: {type: ies, file: lamp.ies}
-    spectrum: {type: file, file: spectrum.csv}
-render: {shutter: 0.01, response: camera.csv, white: {type: file, file: white.csv}}
+    spectrum: {file: spectrum.csv}
+render: {shutter: 0.01, response: camera.csv, white: {file: white.csv}}
 )";
 
 std::string camchain() {
@@ -88,7 +89,7 @@ TEST_F(InputFiles, AreAllThatASceneNames) {
 TEST_F(InputFiles, OfASceneWithoutAnyAreTheSceneAlone) {
     folder_.write("scene.yaml",
                   "uwvdb: 1\ncamera: {resolution: [4, 3], intrinsics: {fov_x: 60}}\n"
-                  "lamps: [{name: a, intensity: 1}]\n");
+                  "lamps: [{name: a, position: [0, 0, 0], intensity: 1}]\n");
     const SceneDesc scene = load_scene(folder_.path() / "scene.yaml", {});
     EXPECT_EQ(names_of(scene), std::multiset<std::string>{"scene.yaml"});
 }

@@ -249,54 +249,6 @@ TEST_F(Frames, ResumeRendersWhatIsMissingOrOfAnotherScene) {
     EXPECT_NE(resumed({}).find("frames 1,3 are there"), std::string::npos);
 }
 
-TEST_F(Frames, ResumeNoticesEveryFileWrittenSince) {
-    const std::string table = "angle_deg,phase\n0,3\n60,1\n120,1\n180,1\n";
-    write("water.csv", table);
-    write("smoke.csv", table);
-    write("white.csv", "wavelength_nm,power\n300,1\n900,2\n");
-    write("wall.gltf", test::gltf_text({{"images", R"([{"uri":"wall.png"}])"}}));
-    write("wall.png", test::four_texel_png());
-    write("smoke.yaml",
-          std::string(test::k_small_scene) +
-              "volumes: [{file: smoke_####.vdb, grids: {density: {scattering: 0.2, phase: {type: "
-              "table, file: smoke.csv}}}}]\n"
-              "render: {samples: 1, response: cie, white: {type: file, file: white.csv}}\n");
-    const auto resumed = [&] {
-        const test::ProgramResult result =
-            sequence({"--frames", "2", "-o", "{frame}.exr", "--resume", "--size", "8x4", "--set",
-                      "water.scattering.phase={type: table, file: water.csv}", "--set",
-                      "geometry=[{file: wall.gltf}]"});
-        expect_done(result);
-        return result.err.find("resume: frame 2 is there already") != std::string::npos;
-    };
-    EXPECT_FALSE(resumed());
-    EXPECT_TRUE(resumed());
-    for (const char* file :
-         {"water.csv", "smoke.csv", "white.csv", "wall.gltf", "wall.png", "smoke_0002.vdb"}) {
-        const auto before = std::filesystem::last_write_time(folder_ / file);
-        std::filesystem::last_write_time(
-            folder_ / file,
-            std::filesystem::file_time_type::clock::now() + std::chrono::seconds(5));
-        EXPECT_FALSE(resumed()) << file;
-        std::filesystem::last_write_time(folder_ / file, before);
-        EXPECT_TRUE(resumed()) << file;
-    }
-}
-
-TEST_F(Frames, ResumeKnowsImagesOfAGltfCamera) {
-    write("smoke.yaml",
-          "uwvdb: 1\ncamera: {resolution: [8, 6]}\n"
-          "water: {absorption: 0.1, scattering: {b: 0.1, phase: {type: water}}}\n"
-          "volumes: [{file: smoke_####.vdb, grids: {density: {absorption: 0.1}}}]\n"
-          "geometry: [{file: '" UWVDB_SOURCE_DIR
-          "/assets/meshes/seabed.glb', camera: Camera, lamps: all}]\nrender: {samples: 1}\n");
-    expect_done(sequence({"--frames", "1-2"}));
-    const test::ProgramResult again = sequence({"--frames", "1-3", "--resume"});
-    expect_done(again);
-    EXPECT_NE(again.err.find("resume: frames 1-2 are there already, 1 left"), std::string::npos)
-        << again.err;
-}
-
 TEST_F(Frames, ThatAreDoneStayWhenInterrupted) {
     test::Program program({"render", "smoke.yaml", "--frames", "1-3", "--integrator", "reference",
                            "--size", "200x114", "--stats", "s.json"},
