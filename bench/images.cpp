@@ -77,7 +77,7 @@ class ImageRun {
         film_.emplace(camera.width, camera.height, PixelWindow{0, 0, camera.width, camera.height},
                       plan().channel_names());
         film_bytes_ = film_->values().size_bytes();
-        render_scene(scene_, deep_shadows, *make_integrator(scene_, deep_shadows), plan(),
+        render_scene(scene_, deep_shadows, make_light_transport(scene_, deep_shadows), plan(),
                      BandColour(scene_.desc.water.bands_nm), *film_,
                      [](const std::string&, double) { return true; });
         benchmark::DoNotOptimize(film_->values().data());

@@ -37,12 +37,12 @@ class StageRun {
         if (deep_shadows_.empty()) deep_shadows_ = splat_lamps(scene_, DeepShadowOptions{});
         return deep_shadows_;
     }
-    const Integrator& integrator() {
-        if (!integrator_) integrator_ = make_integrator(scene_, deep_shadows());
-        return *integrator_;
+    const LightTransport& transport() {
+        if (!transport_.integrator) transport_ = make_light_transport(scene_, deep_shadows());
+        return transport_;
     }
     PixelRenderer renderer() {
-        return {*scene_.camera, scene_.lit(),        integrator(), 1,
+        return {*scene_.camera, scene_.lit(),        transport(),  1,
                 scene_.slabs,   SensorModel(desc()), {false, true}};
     }
     LayerPlan plan() const { return {"default", desc().water.bands_nm, lamp_names(desc())}; }
@@ -69,7 +69,7 @@ class StageRun {
     SceneFiles files_;
     AssembledScene scene_;
     DeepShadows deep_shadows_;
-    std::unique_ptr<Integrator> integrator_;
+    LightTransport transport_;
 };
 
 void load_volumes(StageRun& run, benchmark::State& state) {
@@ -126,8 +126,7 @@ void forward_scatter(StageRun& run, benchmark::State& state) {
     Film film = run.film();
     const auto setup = forward_scatter_setup(scene, run.deep_shadows());
     const auto go_on = [](double) { return true; };
-    ForwardPass pass(renderer, scene.lit(), run.integrator(), scene.camera->world_from_camera(),
-                     setup, plan);
+    ForwardPass pass(renderer, scene.lit(), setup, plan);
     const BandColour colour(run.desc().water.bands_nm);
     render_film(renderer, in_scatter_tolerance(run.desc().render), plan, colour, film, go_on,
                 [&](int x, int y, const PixelView& view, const PixelResult& result) {
@@ -148,7 +147,7 @@ void store_film(StageRun& run, benchmark::State& state) {
         Film film = run.film();
         for (int y = 0; y < camera.height; ++y)
             for (int x = 0; x < camera.width; ++x)
-                store_pixel(result, plan, colour, renderer.band_count(), film.pixel(x, y));
+                store_pixel(result, plan, colour, film.pixel(x, y));
         benchmark::DoNotOptimize(film.values().data());
     });
 }

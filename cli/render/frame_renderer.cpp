@@ -13,6 +13,7 @@
 #include "cli/render/irradiance_export.h"
 #include "cli/stop_signal.h"
 #include "core/base/error.h"
+#include "core/integrators/integrator_table.h"
 
 namespace uw {
 
@@ -116,8 +117,8 @@ void FrameRenderer::assemble(const Frame& frame, const SceneDesc& desc, RunStats
 }
 
 DeepShadows FrameRenderer::splat(bool with_irradiance) {
-    const bool volume = scene_.desc.render.integrator == RenderDesc::Integrator::volume;
-    if (!volume && !with_irradiance) return {};
+    const IntegratorKind& integrator = integrator_kind(scene_.desc.render.integrator);
+    if (!integrator.needs_deep_shadows && !with_irradiance) return {};
     Progress progress(clock_.label("splat"), "lamps", static_cast<double>(scene_.lamps.size()),
                       arguments_.quiet, clock_.seconds_left());
     return splatter_.splat(scene_, deep_shadow_options(scene_.desc.render.quality),
@@ -128,13 +129,13 @@ DeepShadows FrameRenderer::splat(bool with_irradiance) {
 }
 
 void FrameRenderer::render_image(const DeepShadows& deep_shadows) {
-    const auto integrator = make_integrator(scene_, deep_shadows);
+    const LightTransport transport = make_light_transport(scene_, deep_shadows);
     const double megapixels = 1e-6 * film_.window().width() * film_.window().height();
     std::unique_ptr<Progress> progress;
     std::string pass;
     std::mutex mutex;
     film_.clear();
-    render_scene(scene_, deep_shadows, *integrator, plan_.layers, plan_.colour, film_,
+    render_scene(scene_, deep_shadows, transport, plan_.layers, plan_.colour, film_,
                  [&](const std::string& name, double fraction) {
                      const std::lock_guard lock(mutex);
                      if (name != pass) {

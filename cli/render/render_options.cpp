@@ -7,6 +7,7 @@
 #include "cli/frame_list.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene/scene_desc.h"
 
 namespace uw {
 
@@ -73,7 +74,9 @@ Command add_render_command(CLI::App& app) {
         ->type_name("x0,y0,x1,y1");
     render.add_option("--camera", p->arguments.camera, "of a rig's cameras render this one only")
         ->type_name("NAME");
-    render.add_option("--integrator", p->arguments.integrator, "volume, planes or reference")
+    render
+        .add_option("--integrator", p->arguments.integrator,
+                    alternatives(words_of(k_integrator_names)))
         ->type_name("NAME");
     render
         .add_option("--layers", p->arguments.layers,

@@ -17,7 +17,7 @@
 namespace uw {
 
 bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
-                  const IntegratorFactory& volume) {
+                  const TransportFactory& volume) {
     const ThreadLimit limit(a.threads);
     if (a.scene.empty() && !a.overrides.empty())
         throw UsageError("--set: the built-in suite has no scene file to change; name a scene");

@@ -12,6 +12,6 @@ namespace uw {
 /// `volume` replaces the volume integrator where it is given: a test that the checks can fail.
 /// Throws UsageError, InputError, IoError and Interrupted.
 bool run_validate(const ValidateArguments& arguments, bool colour, std::ostream& out,
-                  const IntegratorFactory& volume = {});
+                  const TransportFactory& volume = {});
 
 }  // namespace uw

@@ -10,10 +10,10 @@
 namespace uw {
 
 struct ValidationOptions {
-    double tolerance = 1e-3;   // largest relative difference allowed at a smooth pixel
-    int longest_side = 48;     // of the image that is compared [pixels]
-    int most_planes = 512;     // slabs of the finest sum
-    IntegratorFactory volume;  // the integrator on trial; empty: the scene's volume integrator
+    double tolerance = 1e-3;  // largest relative difference allowed at a smooth pixel
+    int longest_side = 48;    // of the image that is compared [pixels]
+    int most_planes = 512;    // slabs of the finest sum
+    TransportFactory volume;  // the light transport on trial; empty: that of the volume integrator
     std::function<bool()> proceed = [] { return true; };  // false stops with Interrupted
     std::function<void(const std::string&)> say = [](const std::string&) {};
 };

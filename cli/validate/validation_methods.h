@@ -17,8 +17,8 @@ struct MethodImage {
     std::vector<Spectrum> blurred_backscatter;  // with forward scatter
 };
 
-/// Makes the integrator that is on trial; tests slip in wrong ones here.
-using IntegratorFactory = std::function<std::unique_ptr<Integrator>(
+/// Makes the light transport that is on trial; tests slip in wrong ones here.
+using TransportFactory = std::function<LightTransport(
     const AssembledScene& scene,
     const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows)>;
 
@@ -50,16 +50,16 @@ TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc, do
 /// `count` of McGlamery's planes in the water of `trial`, placed as `desc` says.
 Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count);
 
-/// Renders every pixel with `integrator` before forward scatter. Stops with Interrupted when
+/// Renders every pixel by `transport` before forward scatter. Stops with Interrupted when
 /// `proceed` says no.
-MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
+MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
                           const std::function<bool()>& proceed);
 
 /// Likewise with forward scatter, as `uwvdb render` does it: fills the other two components of
-/// `image`. `deep_shadows` are those that `integrator` gathers from, if any.
+/// `image`. `deep_shadows` are those that `transport` takes light from, if any.
 void render_forward_scatter(const TrialScene& trial,
                             const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows,
-                            const Integrator& integrator, const std::function<bool()>& proceed,
+                            const LightTransport& transport, const std::function<bool()>& proceed,
                             MethodImage& image);
 
 /// Pixels whose water ray meets no shadow edge and no hard edge of a lamp's beam, row by row: where

@@ -17,15 +17,22 @@ std::mutex& planner_mutex() {
     return mutex;
 }
 
-struct DestroyPlan {
-    void operator()(fftw_plan_s* plan) const {
-        const std::lock_guard lock(planner_mutex());
-        fftw_destroy_plan(plan);
-    }
-};
-using Plan = std::unique_ptr<fftw_plan_s, DestroyPlan>;
+}  // namespace
 
-Plan plan_line(int length, fftw_r2r_kind kind) {
+struct CosineTransform::Plans {
+    struct Destroy {
+        void operator()(fftw_plan_s* plan) const {
+            const std::lock_guard lock(planner_mutex());
+            fftw_destroy_plan(plan);
+        }
+    };
+    using Plan = std::unique_ptr<fftw_plan_s, Destroy>;
+    static Plan plan_line(int length, fftw_r2r_kind kind);
+
+    Plan forward, inverse;
+};
+
+CosineTransform::Plans::Plan CosineTransform::Plans::plan_line(int length, fftw_r2r_kind kind) {
     std::vector<double> line(static_cast<std::size_t>(length));
     const std::lock_guard lock(planner_mutex());
     // Estimated, not measured: the plan, and so the rounding, is the same in every run. Lines of an
@@ -36,16 +43,10 @@ Plan plan_line(int length, fftw_r2r_kind kind) {
     return plan;
 }
 
-}  // namespace
-
-struct CosineTransform::Plans {
-    Plan forward, inverse;
-};
-
 CosineTransform::CosineTransform(int length) : length_(length) {
     if (length < 1) throw std::invalid_argument("a cosine transform needs at least one value");
     plans_ = std::make_shared<Plans>(
-        Plans{plan_line(length, FFTW_REDFT10), plan_line(length, FFTW_REDFT01)});
+        Plans{Plans::plan_line(length, FFTW_REDFT10), Plans::plan_line(length, FFTW_REDFT01)});
 }
 
 void CosineTransform::forward(double* line) const {

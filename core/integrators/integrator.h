@@ -42,7 +42,7 @@ class Integrator {
                             InScatter& result) const = 0;
 
     /// Likewise from the water between `begin` [m] and each of `distances`, all of which lie beyond
-    /// `begin`. By default the difference of what in_scatter says of both ends; integrators that
+    /// `begin`. By default the difference of in_scatter at both ends; integrators that
     /// can skip the water before `begin` do so.
     virtual void in_scatter_from(const Ray& ray, double begin, std::span<const double> distances,
                                  InScatter& result) const;

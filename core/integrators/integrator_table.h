@@ -4,7 +4,8 @@
 
 namespace uw {
 
-/// What the integrator that users know by this name (k_integrator_names) says of itself.
+/// The needs, refusals and factory of an integrator, which users know by its name in
+/// k_integrator_names.
 const IntegratorKind& integrator_kind(RenderDesc::Integrator integrator);
 
 }  // namespace uw

@@ -32,7 +32,8 @@ class QuadratureIntegrator::RayIntegral {
         : owner_(owner), ray_(ray), lamp_(lamp) {
         const Vector3 to_lamp = lamp.position() - ray.origin;
         foot_ = glm::dot(to_lamp, ray.direction);
-        // A ray straight through the lamp has no angle to integrate over; a hair beside it has.
+        // A ray straight through the lamp has no angle to integrate over; one that just misses it
+        // has.
         distance_ = std::max(1e-9, glm::length(to_lamp - foot_ * ray.direction));
     }
 

@@ -28,8 +28,8 @@ class SurfaceLighting {
 };
 
 /// One exact shadow ray for each lamp that a surface faces. Columns are exact too, or interpolated
-/// between those of neighbours (SurfaceColumns). The deep shadow maps' columns alone would not do:
-/// a surface shows a single one of them, and their interpolation with it.
+/// between those of neighbours (SurfaceColumns). The columns of the deep shadow maps alone would
+/// not do: each point of a surface shows a single column, and so the error of its interpolation.
 class DirectLighting final : public SurfaceLighting {
   public:
     /// With exact columns.

@@ -19,9 +19,8 @@ constexpr double k_negligible_optical_depth = 15;
 // this, relative to the distance from the lamp.
 constexpr double k_least_relative_panel = 0.35;
 
-// How finely images are followed by quality: drafts take more voxels to a panel than the usual two,
-// and how far interpolated columns may be off in what a path to a surface lets through is far below
-// what an eye or a camera of 12 bits tells apart.
+// By quality: drafts have more voxels to a panel than the usual two, and the error of a surface's
+// transmittance by interpolated columns is far below what an eye or a camera of 12 bits can see.
 constexpr int k_draft_voxels_per_panel = 6;
 constexpr double k_column_tolerance = 1e-3;
 constexpr double k_draft_column_tolerance = 0.01;

@@ -51,7 +51,8 @@ class LightReuse : public testing::Test {
         const AssembledScene fresh_scene = assemble_scene(desc_, [](const std::string&) {});
         const auto fresh = splat_lamps(fresh_scene, options);
         ASSERT_EQ(light.size(), fresh.size());
-        const auto a = make_integrator(scene_, light), b = make_integrator(fresh_scene, fresh);
+        const LightTransport a = make_light_transport(scene_, light);
+        const LightTransport b = make_light_transport(fresh_scene, fresh);
         double brightest = 0;
         for (int y = 0; y < scene_.camera->height(); ++y) {
             for (int x = 0; x < scene_.camera->width(); ++x) {
@@ -59,8 +60,8 @@ class LightReuse : public testing::Test {
                 ASSERT_TRUE(ray);
                 InScatter taken_over, splatted;
                 const std::array<double, 2> ends{1.8, 3.5};
-                a->in_scatter(*ray, ends, taken_over);
-                b->in_scatter(*ray, ends, splatted);
+                a.integrator->in_scatter(*ray, ends, taken_over);
+                b.integrator->in_scatter(*ray, ends, splatted);
                 for (std::size_t end = 0; end < ends.size(); ++end)
                     for (std::size_t lamp = 0; lamp < light.size(); ++lamp) {
                         EXPECT_EQ(taken_over.at(end, lamp), splatted.at(end, lamp));

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/integrators/integrator_table.h"
 #include "render/scene_rendering.h"
 #include "tests/support/test_scene.h"
 
@@ -18,11 +19,11 @@ class RenderedFilm {
                 {0, 0, desc.camera.width, desc.camera.height}, plan_.channel_names()) {
         const AssembledScene scene = assemble_scene(desc, [](const std::string&) {});
         DeepShadows fields;
-        if (desc.render.integrator == RenderDesc::Integrator::volume)
+        if (integrator_kind(desc.render.integrator).needs_deep_shadows)
             fields = splat_lamps(scene, {});
         warnings_ = scene.warnings;
-        const auto integrator = make_integrator(scene, fields);
-        render_scene(scene, fields, *integrator, plan_, BandColour(desc.water.bands_nm), film_,
+        render_scene(scene, fields, make_light_transport(scene, fields), plan_,
+                     BandColour(desc.water.bands_nm), film_,
                      [](const std::string&, double) { return true; });
     }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/integrators/integrator_table.h"
 
 namespace uw::test {
 
@@ -48,11 +49,11 @@ GeometryDesc plane_at_z(double z) {
 
 TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options)
     : scene_(assemble_scene(desc, [](const std::string&) {})) {
-    if (desc.render.integrator == RenderDesc::Integrator::volume)
+    if (integrator_kind(desc.render.integrator).needs_deep_shadows)
         deep_shadows_ = splat_lamps(scene_, options);
-    integrator_ = make_integrator(scene_, deep_shadows_);
+    transport_ = make_light_transport(scene_, deep_shadows_);
     renderer_ =
-        std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
+        std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), transport_,
                                         desc.render.samples, scene_.slabs, SensorModel(desc));
 }
 

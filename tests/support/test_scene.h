@@ -24,14 +24,14 @@ class TestScene {
     explicit TestScene(const SceneDesc& desc, const DeepShadowOptions& options = {});
 
     const AssembledScene& assembled() const { return scene_; }
-    const Integrator& integrator() const { return *integrator_; }
+    const Integrator& integrator() const { return *transport_.integrator; }
     PixelResult pixel(int x, int y) const;
     std::vector<PixelResult> image() const;
 
   private:
     AssembledScene scene_;
     std::vector<std::shared_ptr<const DeepShadowMap>> deep_shadows_;
-    std::unique_ptr<Integrator> integrator_;
+    LightTransport transport_;
     std::unique_ptr<PixelRenderer> renderer_;
 };
 

@@ -22,8 +22,8 @@ class MixedImage {
     explicit MixedImage(const SceneDesc& desc, const InScatterParts& parts = {})
         : scene_(assemble_scene(desc, [](const std::string&) {})),
           fields_(splat_lamps(scene_, {})),
-          integrator_(make_integrator(scene_, fields_)),
-          renderer_(*scene_.camera, scene_.lit(), *integrator_, desc.render.samples, scene_.slabs,
+          transport_(make_light_transport(scene_, fields_)),
+          renderer_(*scene_.camera, scene_.lit(), transport_, desc.render.samples, scene_.slabs,
                     SensorModel(desc), parts) {}
 
     std::vector<PixelResult> render(double tolerance) const {
@@ -49,7 +49,7 @@ class MixedImage {
   private:
     AssembledScene scene_;
     std::vector<std::shared_ptr<const DeepShadowMap>> fields_;
-    std::unique_ptr<Integrator> integrator_;
+    LightTransport transport_;
     PixelRenderer renderer_;
 };
 
