@@ -36,11 +36,11 @@ class StageRun {
     const AssembledScene& scene() const { return renderer_.assembled(); }
     const SceneDesc& desc() const { return scene().desc; }
     Renderer& renderer() { return renderer_; }
-    const Integrator& integrator() {
-        if (!integrator_) integrator_ = renderer_.make_integrator();
-        return *integrator_;
+    const LightTransport& transport() {
+        if (!transport_.integrator) transport_ = renderer_.make_transport();
+        return transport_;
     }
-    PixelRenderer pixels() { return pixel_renderer(scene(), integrator(), {false, true}); }
+    PixelRenderer pixels() { return pixel_renderer(scene(), transport(), {false, true}); }
     LayerPlan plan() const { return layer_plan(desc(), "default"); }
     Film film() const {
         const CameraDesc& camera = desc().camera;
@@ -64,7 +64,7 @@ class StageRun {
     int threads_;
     SceneFiles files_;
     Renderer renderer_;
-    std::unique_ptr<Integrator> integrator_;
+    LightTransport transport_;
 };
 
 void load_volumes(StageRun& run, benchmark::State& state) {
@@ -123,8 +123,7 @@ void forward_scatter(StageRun& run, benchmark::State& state) {
     Film film = run.film();
     const auto setup = forward_scatter_setup(scene, run.renderer().splat());
     const auto go_on = [](double) { return true; };
-    ForwardPass pass(renderer, scene.lit(), run.integrator(), scene.camera->world_from_camera(),
-                     setup, plan);
+    ForwardPass pass(renderer, scene.lit(), setup, plan);
     const BandColour colour(run.desc().water.bands_nm);
     render_film(renderer, in_scatter_tolerance(run.desc().render), plan, colour, film, go_on,
                 [&](int x, int y, const PixelView& view, const PixelResult& result) {
@@ -145,7 +144,7 @@ void store_film(StageRun& run, benchmark::State& state) {
         Film film = run.film();
         for (int y = 0; y < camera.height; ++y)
             for (int x = 0; x < camera.width; ++x)
-                store_pixel(result, plan, colour, renderer.band_count(), film.pixel(x, y));
+                store_pixel(result, plan, colour, film.pixel(x, y));
         benchmark::DoNotOptimize(film.values().data());
     });
 }

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/colour/colour_response.h"
+#include "core/integrators/integrator_table.h"
 
 namespace uw {
 
@@ -30,7 +31,7 @@ void Renderer::tell(const std::string& stage, double fraction) const {
 }
 
 bool Renderer::needs_light() const {
-    return scene_.desc.render.integrator == RenderDesc::Integrator::volume;
+    return integrator_kind(scene_.desc.render.integrator).needs_deep_shadows;
 }
 
 void Renderer::set_scene(ResolvedScene scene) {
@@ -69,10 +70,10 @@ const DeepShadows& Renderer::splat(const DeepShadowOptions& options) {
     return light_;
 }
 
-std::unique_ptr<Integrator> Renderer::make_integrator() {
+LightTransport Renderer::make_transport() {
     assemble();
     if (needs_light()) splat();
-    return uw::make_integrator(scene_, light_);
+    return make_light_transport(scene_, light_);
 }
 
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
@@ -139,10 +140,11 @@ const Film& Renderer::render(const RenderOptions& options) {
         splat();
     else
         begin("splat");
-    const auto own = options.integrator ? nullptr : uw::make_integrator(scene_, light_);
+    LightTransport own;
+    if (!options.transport) own = make_light_transport(scene_, light_);
     begin("render");
     is_film_clear_ = false;
-    render_scene(scene_, light_, options.integrator ? *options.integrator : *own, *plan_, *colour_,
+    render_scene(scene_, light_, options.transport ? *options.transport : own, *plan_, *colour_,
                  *film_, [this](const std::string& stage, double fraction) {
                      return !progress_ || progress_(stage, fraction);
                  });

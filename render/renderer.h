@@ -17,9 +17,9 @@ namespace uw {
 
 /// What is wanted of one image beyond what its scene says.
 struct RenderOptions {
-    std::string layers{};                    // as LayerPlan takes them; empty: the default set
-    std::optional<PixelWindow> window{};     // the pixels wanted; none: the whole image
-    const Integrator* integrator = nullptr;  // in place of the scene's, to try one out; not owned
+    std::string layers{};                       // as LayerPlan takes them; empty: the default set
+    std::optional<PixelWindow> window{};        // the pixels wanted; none: the whole image
+    const LightTransport* transport = nullptr;  // in place of the scene's, to try one; not owned
 };
 
 /// What an image was made of, and what is to be said about it.
@@ -83,8 +83,8 @@ class Renderer {
     const DeepShadows& splat(const DeepShadowOptions& options);
     /// Of the last splat.
     const SplatCounts& splat_counts() const { return splatter_.counts(); }
-    /// The scene's integrator, with its light if it needs any.
-    std::unique_ptr<Integrator> make_integrator();
+    /// The light transport of the scene's integrator, with its light if it needs any.
+    LightTransport make_transport();
 
     /// What assemble() and splat() gave last. Precondition: they have been called.
     const AssembledScene& assembled() const { return scene_; }

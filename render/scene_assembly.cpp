@@ -5,9 +5,7 @@
 #include "core/base/error.h"
 #include "core/forward/forward_images.h"
 #include "core/integrators/focus_weighted_integrator.h"
-#include "core/integrators/planes_integrator.h"
-#include "core/integrators/reference_integrator.h"
-#include "core/integrators/volume_integrator.h"
+#include "core/integrators/integrator_table.h"
 #include "core/lamps/lamp_factory.h"
 #include "core/surfaces/geometry_scene.h"
 #include "media/volumes/grid_field.h"
@@ -15,12 +13,6 @@
 namespace uw {
 
 namespace {
-
-// Of what a path through a volume to a surface lets through: far below what an eye or a camera of
-// 12 bits tells apart.
-constexpr double k_column_tolerance = 1e-3;
-constexpr double k_draft_column_tolerance = 0.01;
-constexpr int k_draft_voxels_per_panel = 6;
 
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
     to.insert(to.end(), from.begin(), from.end());
@@ -51,7 +43,7 @@ void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
     if (desc.K == 0) return;
     std::vector<double> attenuation;
     attenuation.reserve(medium.wavelengths_nm.size());
-    for (int band = 0; band < medium.band_count(); ++band)
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band)
         attenuation.push_back(medium.uniform.attenuation(band));
     check_forward_scatter(desc, attenuation, desc.where);
     check_blur_length(medium, desc.where);
@@ -109,17 +101,7 @@ void take_over_surfaces(const SceneDesc& desc, AssembledScene& scene, AssembledS
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
                               AssembledScene before) {
     AssembledScene scene;
-    if (desc.render.integrator == RenderDesc::Integrator::planes && !desc.volumes.empty())
-        throw InputError(
-            fmt::format("{}: the planes integrator is for uniform water: remove `volumes`, or use "
-                        "integrator volume",
-                        desc.volumes.front().where));
-    if (desc.render.integrator == RenderDesc::Integrator::planes &&
-        desc.camera.distortion.model == DistortionDesc::Model::fisheye)
-        throw InputError(fmt::format(
-            "{}: render.integrator: the planes integrator sums over slabs parallel to the image "
-            "plane, which a fisheye lens looks past; use integrator volume",
-            desc.file.filename().string()));
+    integrator_kind(desc.render.integrator).check(desc);
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
     scene.water = before.camera && same_water(before.desc, desc)
@@ -145,30 +127,18 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
     return scene;
 }
 
-static std::unique_ptr<Integrator> make_unweighted_integrator(const AssembledScene& scene,
-                                                              const DeepShadows& deep_shadows) {
-    if (scene.desc.render.integrator == RenderDesc::Integrator::reference)
-        return std::make_unique<ReferenceIntegrator>(scene.lit());
-    if (scene.desc.render.integrator == RenderDesc::Integrator::planes)
-        return std::make_unique<PlanesIntegrator>(scene.lit(), scene.desc.camera.world_from_camera,
-                                                  scene.slabs);
-    VolumeQuadrature quadrature;
-    if (scene.desc.render.quality == RenderDesc::Quality::final)
-        quadrature.column_tolerance = k_column_tolerance;
-    if (scene.desc.render.quality == RenderDesc::Quality::draft)
-        quadrature = {k_draft_voxels_per_panel, k_draft_column_tolerance};
-    return std::make_unique<VolumeIntegrator>(
-        scene.lit(),
-        std::vector<std::shared_ptr<const DeepShadow>>(deep_shadows.begin(), deep_shadows.end()),
-        quadrature);
-}
-
-std::unique_ptr<Integrator> make_integrator(const AssembledScene& scene,
-                                            const DeepShadows& deep_shadows) {
-    std::unique_ptr<Integrator> integrator = make_unweighted_integrator(scene, deep_shadows);
-    if (scene.desc.render.output != RenderDesc::Output::paper) return integrator;
-    return std::make_unique<FocusWeightedIntegrator>(std::move(integrator),
-                                                     scene.desc.camera.lens.value().focal_length);
+LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows) {
+    const RenderDesc& render = scene.desc.render;
+    LightTransport transport = integrator_kind(render.integrator)
+                                   .make({scene.lit(),
+                                          scene.desc.camera.world_from_camera,
+                                          scene.slabs,
+                                          render.quality,
+                                          {deep_shadows.begin(), deep_shadows.end()}});
+    if (render.output == RenderDesc::Output::paper)
+        transport.integrator = std::make_unique<FocusWeightedIntegrator>(
+            std::move(transport.integrator), scene.desc.camera.lens.value().focal_length);
+    return transport;
 }
 
 }  // namespace uw

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "core/integrators/integrator.h"
+#include "core/integrators/light_transport.h"
 #include "core/integrators/lit_scene.h"
 #include "core/integrators/slabs.h"
 #include "core/scene/scene_desc.h"
@@ -50,10 +50,9 @@ using StageCallback = std::function<void(const std::string& stage)>;
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
                               AssembledScene before = {});
 
-/// The integrator that the scene asks for, on light splatted before; `deep_shadows` may be empty
-/// for all but the volume integrator. Throws InputError for one that cannot do the scene.
-/// Weighted by distance where the output is the paper's.
-std::unique_ptr<Integrator> make_integrator(const AssembledScene& scene,
-                                            const DeepShadows& deep_shadows);
+/// The light transport of the integrator that the scene asks for, from light splatted before;
+/// `deep_shadows` may be empty unless IntegratorKind::needs_deep_shadows. In-scatter is weighted by
+/// distance where the output is the paper's.
+LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows);
 
 }  // namespace uw

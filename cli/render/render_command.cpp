@@ -30,8 +30,8 @@ namespace {
 RenderDesc::Integrator integrator_named(const std::string& name) {
     for (const auto& [known, integrator] : k_integrator_names)
         if (name == known) return integrator;
-    throw UsageError(
-        fmt::format("--integrator: unknown '{}'; use volume, planes or reference", name));
+    throw UsageError(fmt::format("--integrator: unknown '{}'; use {}", printable(name),
+                                 alternatives(words_of(k_integrator_names))));
 }
 
 RenderDesc::Quality quality_named(const std::string& name) {

@@ -47,7 +47,7 @@ std::array<int, N> parse_integers(const std::string& text, char separator, const
 }
 
 /// Makes `option` one of the words of `names`, a table of words and what they mean.
-void words_of(Option& option, const auto& names) {
+void accept_words(Option& option, const auto& names) {
     option.value = Option::Value::word;
     for (const auto& [word, meaning] : names) option.words.emplace_back(word);
 }
@@ -78,15 +78,16 @@ Options render_options(RenderArguments& a) {
         },
         "render these pixels only; x1 and y1 are excluded");
     options.text("--camera", "NAME", a.camera, "of a rig's cameras render this one only");
-    words_of(options.text("--integrator", "NAME", a.integrator, "volume, planes or reference"),
-             k_integrator_names);
+    accept_words(options.text("--integrator", "NAME", a.integrator,
+                              alternatives(words_of(k_integrator_names))),
+                 k_integrator_names);
     options.text("--layers", "NAMES", a.layers,
                  "all, or names separated by commas, among them default and lamps");
     options.integer("--samples", "N", a.samples, 1, 4096, "surface samples per pixel, 1 to 4096");
-    words_of(options.text("--quality", "NAME", a.quality,
-                          "draft: within 3 %, one sample, for looking; final; or exact: every "
-                          "pixel's water by itself"),
-             k_quality_names);
+    accept_words(options.text("--quality", "NAME", a.quality,
+                              "draft: within 3 %, one sample, for looking; final; or exact: every "
+                              "pixel's water by itself"),
+                 k_quality_names);
     options.threads(a.threads);
     options.path("--stats", "FILE", a.stats, "write times, rays, voxels and memory as JSON");
     options.path("--irradiance-vdb", "FILE", a.irradiance_vdb,

@@ -86,8 +86,8 @@ class DirectSum {
           bands_(static_cast<std::size_t>(trial.scene().water.medium.band_count())),
           pixels_(static_cast<std::size_t>(trial.width() * trial.height())) {}
 
-    Image forward(const Integrator& light) const {
-        const SurfaceImage seen = look(light);
+    Image forward(const SurfaceLighting& lighting) const {
+        const SurfaceImage seen = trace(lighting);
         Image forward = scattered(seen.irradiance, seen.to_lamps);  // (14)
         Image radiance(pixels_);
         for_each([&](std::size_t i, std::size_t b) {
@@ -107,7 +107,7 @@ class DirectSum {
             for (std::size_t b = 0; b < bands_; ++b) body(i, b);
     }
 
-    SurfaceImage look(const Integrator& integrator) const {
+    SurfaceImage trace(const SurfaceLighting& lighting) const {
         SurfaceImage seen{Image(pixels_),
                           Image(pixels_),
                           Image(pixels_),
@@ -125,14 +125,14 @@ class DirectSum {
             const SurfaceHit& hit = sample.hit;
             if (!trial_.scene().surfaces->closest_hit(*ray, k_far, sample.hit)) return;
             SurfaceLight light;
-            integrator.surface_light(sample, light);
+            lighting.evaluate_one(sample, light);
             seen.to_camera[i] = hit.distance;
             for (std::size_t j = 0; j < lamps.size(); ++j)
                 seen.to_lamps[i] +=
                     distance(lamps[j].position(), hit.position) / static_cast<double>(lamps.size());
             const SurfaceReflection reflection(*trial_.scene().surfaces, sample,
                                                static_cast<int>(bands_));
-            Spectrum brdf{};
+            Spectrum brdf;
             for (std::size_t j = 0; j < lamps.size(); ++j) {
                 if (!light.visible(0, j)) continue;
                 reflection.brdf(lamps[j].position(), brdf);
@@ -203,9 +203,10 @@ class DirectSum {
 
 }  // namespace
 
-std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial, const Integrator& light,
+std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial,
+                                            const SurfaceLighting& lighting,
                                             const std::function<bool()>& proceed) {
-    return DirectSum(trial, proceed).forward(light);
+    return DirectSum(trial, proceed).forward(lighting);
 }
 
 }  // namespace uw

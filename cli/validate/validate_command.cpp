@@ -20,7 +20,7 @@
 namespace uw {
 
 bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
-                  const IntegratorWrapper& volume) {
+                  const TransportWrapper& volume) {
     const ThreadLimit limit(a.threads);
     if (a.scene.empty() && !a.overrides.empty())
         throw UsageError("--set: the built-in suite has no scene file to change; name a scene");

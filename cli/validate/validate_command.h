@@ -13,7 +13,7 @@ namespace uw {
 /// `volume` wraps the volume integrator where it is given: a test that the checks can fail.
 /// Throws UsageError, InputError, IoError and Interrupted.
 bool run_validate(const ValidateArguments& arguments, bool colour, std::ostream& out,
-                  const IntegratorWrapper& volume = {});
+                  const TransportWrapper& volume = {});
 
 /// `uwvdb validate` as the command line knows it.
 Command validate_command();

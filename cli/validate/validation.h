@@ -10,15 +10,14 @@
 
 namespace uw {
 
-/// Wraps the integrator that is on trial; tests make it wrong here.
-using IntegratorWrapper =
-    std::function<std::unique_ptr<Integrator>(std::unique_ptr<Integrator> honest)>;
+/// Wraps the light transport that is on trial; tests make it wrong here.
+using TransportWrapper = std::function<LightTransport(LightTransport honest)>;
 
 struct ValidationOptions {
-    double tolerance = 1e-3;   // largest relative difference allowed at a smooth pixel
-    int longest_side = 48;     // of the image that is compared [pixels]
-    int most_planes = 512;     // slabs of the finest sum
-    IntegratorWrapper volume;  // of the volume integrator; empty: it is on trial as it is
+    double tolerance = 1e-3;  // largest relative difference allowed at a smooth pixel
+    int longest_side = 48;    // of the image that is compared [pixels]
+    int most_planes = 512;    // slabs of the finest sum
+    TransportWrapper volume;  // of the volume integrator's; empty: it is on trial as it is
     std::function<bool()> proceed = [] { return true; };  // false stops with Interrupted
     std::function<void(const std::string&)> say = [](const std::string&) {};
 };

@@ -54,10 +54,9 @@ std::vector<double> mean_concentrations(const ConcentrationField& field) {
 }
 
 void add_scaled(OpticalCoefficients& to, const OpticalCoefficients& from, double scale) {
-    for (std::size_t b = 0; b < k_max_bands; ++b) to.absorption[b] += scale * from.absorption[b];
+    to.absorption += scale * from.absorption;
     for (std::size_t m = 0; m < to.scattering.size(); ++m)
-        for (std::size_t b = 0; b < k_max_bands; ++b)
-            to.scattering[m][b] += scale * from.scattering[m][b];
+        to.scattering[m] += scale * from.scattering[m];
 }
 
 // Everything that light between lamps and camera can pass before it is used up.
@@ -66,7 +65,7 @@ Bounds reach_of(const TrialScene& trial) {
     for (const Lamp& lamp : trial.scene().lamps) bounds.extend(lamp.position());
     bounds.extend(at_origin_plus(trial.scene().camera->world_from_camera().offset()));
     const AttenuationTable c(trial.scene().water.medium);
-    const double least = *std::min_element(c.uniform.begin(), c.uniform.begin() + c.band_count);
+    const double least = c.uniform.least(static_cast<std::size_t>(c.band_count));
     const double margin = least > 0 ? std::min(k_reach_depths / least, 1e3) : 1e3;
     return {bounds.min - Vector3(margin), bounds.max + Vector3(margin)};
 }
@@ -155,14 +154,14 @@ Slabs planes_of(const TrialScene& trial, int count) {
     return place_slabs(planes, *trial.scene().camera, trial.scene().lit());
 }
 
-MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
+MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
                           const std::function<bool()>& proceed) {
     const auto pixels =
         static_cast<std::size_t>(trial.width()) * static_cast<std::size_t>(trial.height());
     MethodImage image;
     image.direct.resize(pixels);
     image.backscatter.resize(pixels);
-    const PixelRenderer renderer(*trial.scene().camera, trial.scene().lit(), integrator, 1,
+    const PixelRenderer renderer(*trial.scene().camera, trial.scene().lit(), transport, 1,
                                  trial.scene().slabs);
     parallel_for(static_cast<std::size_t>(trial.height()), [&](std::size_t row) {
         if (!proceed()) throw Interrupted();
@@ -178,10 +177,11 @@ MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
     return image;
 }
 
-void render_forward_scatter(TrialScene& trial, const Integrator& integrator, MethodImage& image) {
+void render_forward_scatter(TrialScene& trial, const LightTransport& transport,
+                            MethodImage& image) {
     const std::string layers = "forward,backscatter";
     const Film& film =
-        trial.renderer.render({.layers = layers, .window = {}, .integrator = &integrator});
+        trial.renderer.render({.layers = layers, .window = {}, .transport = &transport});
     const LayerPlan plan = layer_plan(trial.scene().desc, layers);
     const std::size_t bands = trial.scene().desc.water.bands_nm.size();
     const auto read = [&](Layer layer, std::vector<Spectrum>& component) {

@@ -48,14 +48,14 @@ TrialScene with_constant_grid(const TrialScene& trial, const ResolvedScene& scen
 /// `count` of McGlamery's planes in the water of `trial`, placed as its scene says.
 Slabs planes_of(const TrialScene& trial, int count);
 
-/// Renders every pixel with `integrator` before forward scatter. Stops with Interrupted when
+/// Renders every pixel by `transport` before forward scatter. Stops with Interrupted when
 /// `proceed` says no.
-MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
+MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
                           const std::function<bool()>& proceed);
 
 /// Likewise with forward scatter, as `uwvdb render` does it: fills the other two components of
 /// `image`.
-void render_forward_scatter(TrialScene& trial, const Integrator& integrator, MethodImage& image);
+void render_forward_scatter(TrialScene& trial, const LightTransport& transport, MethodImage& image);
 
 /// Pixels whose water ray meets no shadow edge and no hard edge of a lamp's beam, row by row: where
 /// a sum over slabs converges as their thickness squared.

@@ -53,7 +53,7 @@ class LightReuse : public testing::Test {
         Renderer fresh;
         fresh.set_scene(SceneDesc(desc_));
         ASSERT_EQ(light.size(), fresh.splat(options).size());
-        const auto a = renderer_.make_integrator(), b = fresh.make_integrator();
+        const auto a = renderer_.make_transport(), b = fresh.make_transport();
         const Camera& camera = *scene().camera;
         double brightest = 0;
         for (int y = 0; y < camera.height(); ++y) {
@@ -62,8 +62,8 @@ class LightReuse : public testing::Test {
                 ASSERT_TRUE(ray);
                 InScatter taken_over, splatted;
                 const std::array<double, 2> ends{1.8, 3.5};
-                a->in_scatter(*ray, ends, taken_over);
-                b->in_scatter(*ray, ends, splatted);
+                a.integrator->in_scatter(*ray, ends, taken_over);
+                b.integrator->in_scatter(*ray, ends, splatted);
                 for (std::size_t end = 0; end < ends.size(); ++end)
                     for (std::size_t lamp = 0; lamp < light.size(); ++lamp) {
                         EXPECT_EQ(taken_over.at(end, lamp), splatted.at(end, lamp));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/integrators/integrator_table.h"
 
 namespace uw::test {
 
@@ -47,9 +48,9 @@ GeometryDesc plane_at_z(double z) {
 
 TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options) {
     scene_.set_scene(SceneDesc(desc));
-    if (desc.render.integrator == RenderDesc::Integrator::volume) scene_.splat(options);
-    integrator_ = scene_.make_integrator();
-    pixels_ = std::make_unique<PixelRenderer>(pixel_renderer(assembled(), *integrator_));
+    if (integrator_kind(desc.render.integrator).needs_deep_shadows) scene_.splat(options);
+    transport_ = scene_.make_transport();
+    pixels_ = std::make_unique<PixelRenderer>(pixel_renderer(assembled(), transport_));
 }
 
 PixelResult TestScene::pixel(int x, int y) const {

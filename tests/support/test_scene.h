@@ -24,13 +24,13 @@ class TestScene {
     explicit TestScene(const SceneDesc& desc, const DeepShadowOptions& options = {});
 
     const AssembledScene& assembled() const { return scene_.assembled(); }
-    const Integrator& integrator() const { return *integrator_; }
+    const Integrator& integrator() const { return *transport_.integrator; }
     PixelResult pixel(int x, int y) const;
     std::vector<PixelResult> image() const;
 
   private:
     Renderer scene_;
-    std::unique_ptr<Integrator> integrator_;
+    LightTransport transport_;
     std::unique_ptr<PixelRenderer> pixels_;
 };
 

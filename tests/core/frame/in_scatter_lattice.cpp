@@ -21,8 +21,8 @@ class MixedImage {
   public:
     explicit MixedImage(const SceneDesc& desc, const InScatterParts& parts = {})
         : renderer_(with_scene(desc)),
-          integrator_(renderer_.make_integrator()),
-          pixels_(pixel_renderer(renderer_.assembled(), *integrator_, parts)) {}
+          transport_(renderer_.make_transport()),
+          pixels_(pixel_renderer(renderer_.assembled(), transport_, parts)) {}
 
     std::vector<PixelResult> render(double tolerance) const {
         const CameraDesc& camera = renderer_.scene().camera;
@@ -52,7 +52,7 @@ class MixedImage {
     }
 
     Renderer renderer_;
-    std::unique_ptr<Integrator> integrator_;
+    LightTransport transport_;
     PixelRenderer pixels_;
 };
 
