@@ -75,14 +75,16 @@ ShadowMap::Level ShadowMap::cell_ranges(const Grid2D<float>& samples) {
     const int n = samples.width() - 1;
     Level level(n, n);
     for (int v = 0; v < n; ++v) {
-        const std::span<const float> above = samples.row(v), below = samples.row(v + 1);
-        const std::span<DepthRange> cells = level.row(v);
-        for (std::size_t u = 0; u < cells.size(); ++u) {
-            const auto corners = {above[u], above[u + 1], below[u], below[u + 1]};
-            const float nearest = std::min(corners);
+        const float* const above = samples.row(v).data();
+        const float* const below = samples.row(v + 1).data();
+        DepthRange* const cells = level.row(v).data();
+        for (int u = 0; u < n; ++u) {
+            const float nearest = std::min({above[u], above[u + 1], below[u], below[u + 1]});
             // Cells outside the beam bound nothing.
-            cells[u] = nearest == k_untraced ? DepthRange{k_nothing, 0}
-                                             : DepthRange{nearest, std::max(corners)};
+            cells[u] = nearest == k_untraced
+                           ? DepthRange{k_nothing, 0}
+                           : DepthRange{nearest,
+                                        std::max({above[u], above[u + 1], below[u], below[u + 1]})};
         }
     }
     return level;
@@ -92,15 +94,15 @@ ShadowMap::Level ShadowMap::halved(const Level& fine) {
     const int size = (fine.width() + 1) / 2, last = fine.width() - 1;
     Level coarse(size, size);
     for (int v = 0; v < size; ++v) {
-        const std::span<const DepthRange> above = fine.row(2 * v);
-        const std::span<const DepthRange> below = fine.row(std::min(2 * v + 1, last));
+        const DepthRange* const above = fine.row(2 * v).data();
+        const DepthRange* const below = fine.row(std::min(2 * v + 1, last)).data();
+        DepthRange* const cells = coarse.row(v).data();
         for (int u = 0; u < size; ++u) {
-            const auto left = static_cast<std::size_t>(2 * u);
-            const auto right = static_cast<std::size_t>(std::min(2 * u + 1, last));
-            coarse(u, v) = {std::min({above[left].nearest, above[right].nearest,
-                                      below[left].nearest, below[right].nearest}),
-                            std::max({above[left].farthest, above[right].farthest,
-                                      below[left].farthest, below[right].farthest})};
+            const int left = 2 * u, right = std::min(2 * u + 1, last);
+            cells[u] = {std::min({above[left].nearest, above[right].nearest, below[left].nearest,
+                                  below[right].nearest}),
+                        std::max({above[left].farthest, above[right].farthest, below[left].farthest,
+                                  below[right].farthest})};
         }
     }
     return coarse;
