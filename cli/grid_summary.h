@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/optics/medium.h"
-#include "media/volumes/grid_field.h"
+#include "media/volumes/load_volumes.h"
 
 namespace uw {
 

@@ -22,25 +22,13 @@ function(uwvdb_install_printed file folder)
     install(FILES ${printed} DESTINATION ${folder} COMPONENT program)
 endfunction()
 
-# Only where the program can print them.
-set(uwvdb_prints_completion OFF)
-file(GLOB_RECURSE uwvdb_cli_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cli/*.cpp)
-foreach(source IN LISTS uwvdb_cli_sources)
-    file(STRINGS ${source} found REGEX "\"completion\"" LIMIT_COUNT 1)
-    if(found)
-        set(uwvdb_prints_completion ON)
-    endif()
-endforeach()
-if(uwvdb_prints_completion)
-    uwvdb_install_printed(uwvdb.1 ${CMAKE_INSTALL_MANDIR}/man1 man)
-    uwvdb_install_printed(uwvdb ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
-                          completion bash)
-    uwvdb_install_printed(_uwvdb ${CMAKE_INSTALL_DATADIR}/zsh/site-functions completion zsh)
-    uwvdb_install_printed(uwvdb.fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
-                          completion fish)
-    get_property(uwvdb_printed GLOBAL PROPERTY UWVDB_PRINTED)
-    add_custom_target(uwvdb_printed ALL DEPENDS ${uwvdb_printed})
-endif()
+uwvdb_install_printed(uwvdb.1 ${CMAKE_INSTALL_MANDIR}/man1 man)
+uwvdb_install_printed(uwvdb ${CMAKE_INSTALL_DATADIR}/bash-completion/completions completion bash)
+uwvdb_install_printed(_uwvdb ${CMAKE_INSTALL_DATADIR}/zsh/site-functions completion zsh)
+uwvdb_install_printed(uwvdb.fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
+                      completion fish)
+get_property(uwvdb_printed GLOBAL PROPERTY UWVDB_PRINTED)
+add_custom_target(uwvdb_printed ALL DEPENDS ${uwvdb_printed})
 
 # The library: all modules but the command line's. Between minor versions, anything may change.
 get_property(uwvdb_library_modules GLOBAL PROPERTY UWVDB_MODULES)

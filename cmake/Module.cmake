@@ -3,29 +3,33 @@
 # core/scene/yaml is uwvdb_core_scene_yaml. USES lists the modules that it may include, and is what
 # scripts/check-layers reads; LIBRARIES are third-party ones that only its sources see.
 #
-# With UWVDB_SHARED_MODULES each module is a shared library that must find all of its symbols in what it
-# links, so that the linker checks the list as well.
+# The linker checks the list as well: the target uwvdb_modules_alone links each module's objects
+# once more, as a shared library that finds all of its symbols in what the module says it uses.
+add_custom_target(uwvdb_modules_alone)
+
 function(uwvdb_add_module folder)
     cmake_parse_arguments(arg "" "" "USES;LIBRARIES;GENERATED" ${ARGN})
     string(REPLACE "/" "_" target uwvdb_${folder})
     list(TRANSFORM arg_USES REPLACE "/" "_")
     list(TRANSFORM arg_USES PREPEND "uwvdb_")
+    set(uses_alone ${arg_USES})
+    list(TRANSFORM uses_alone APPEND "_alone")
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
     list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
     list(APPEND sources ${arg_GENERATED})
     if(NOT sources)
         add_library(${target} INTERFACE)
         target_link_libraries(${target} INTERFACE uwvdb_options ${arg_USES})
+        add_library(${target}_alone INTERFACE)
         return()
     endif()
-    if(UWVDB_SHARED_MODULES)
-        add_library(${target} SHARED ${sources})
-    else()
-        add_library(${target} STATIC ${sources})
-    endif()
+    add_library(${target} STATIC ${sources})
     target_link_libraries(${target} PUBLIC uwvdb_options ${arg_USES} PRIVATE ${arg_LIBRARIES})
-    if(UWVDB_SHARED_MODULES)
-        target_link_options(${target} PRIVATE -Wl,--no-undefined)
-    endif()
     set_property(GLOBAL APPEND PROPERTY UWVDB_MODULES ${target})
+
+    add_library(${target}_alone SHARED EXCLUDE_FROM_ALL $<TARGET_OBJECTS:${target}>)
+    target_link_libraries(${target}_alone PRIVATE uwvdb_options ${uses_alone} ${arg_LIBRARIES})
+    target_link_options(${target}_alone PRIVATE -Wl,--no-undefined)
+    set_target_properties(${target}_alone PROPERTIES LINKER_LANGUAGE CXX)
+    add_dependencies(uwvdb_modules_alone ${target}_alone)
 endfunction()

@@ -36,6 +36,8 @@ find_path(NANOVDB_INCLUDE_DIR nanovdb/NanoVDB.h REQUIRED)
 add_library(uwvdb_nanovdb INTERFACE)
 target_include_directories(uwvdb_nanovdb SYSTEM INTERFACE ${NANOVDB_INCLUDE_DIR})
 target_link_libraries(uwvdb_nanovdb INTERFACE OpenVDB::openvdb)
+# Its conversions and checksums run on all threads; one setting for all files, unity or not.
+target_compile_definitions(uwvdb_nanovdb INTERFACE NANOVDB_USE_TBB)
 
 # OpenImageIO's exported target names an OpenCV include folder that its package does not bring.
 find_package(OpenImageIO REQUIRED)

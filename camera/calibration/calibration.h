@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -8,19 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/camera_desc.h"
+#include "camera/calibration/camera_calibration.h"
 
 namespace uw {
-
-/// A file format of camera calibrations (docs/calibration.md).
-enum class CalibrationFormat : std::uint8_t {
-    opencv,    // YAML of OpenCV's FileStorage
-    ros,       // YAML of ROS camera_info
-    kalibr,    // camchain.yaml
-    calibmar,  // calibration.yaml
-    colmap,    // cameras.txt, stock and refractive
-    scene,     // the camera of a scene of ours
-};
 
 /// Every format in which calibrations are written.
 std::span<const CalibrationFormat> calibration_formats();
@@ -28,18 +17,6 @@ std::span<const CalibrationFormat> calibration_formats();
 std::string_view word_of(CalibrationFormat format);
 /// "Kalibr camchain", for people.
 std::string_view title_of(CalibrationFormat format);
-
-/// What a calibration file says of one camera.
-struct Calibration {
-    CalibrationFormat format = CalibrationFormat::opencv;
-    std::string camera;                // its name in the file; "" if it has none
-    std::vector<std::string> cameras;  // all names in the file
-    std::string model;                 // in the file's own words: "pinhole, radtan"
-    /// Resolution, intrinsics in our convention (image corner at 0), distortion and port alone.
-    CameraDesc desc;
-    std::vector<std::string> warnings;  // one line each
-    std::string hash;                   // of the file's text
-};
 
 /// Reads a calibration of any format but a scene; which one is found out from the content.
 /// `camera` names one of several in the file; it may be empty where there is one. Throws IoError if

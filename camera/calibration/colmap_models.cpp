@@ -13,7 +13,7 @@
 namespace uw {
 namespace {
 
-constexpr std::array<ColmapModel, 9> k_models{{
+constexpr std::array<ColmapModel, 9> k_colmap_models{{
     {"SIMPLE_PINHOLE", "f cx cy", false},
     {"PINHOLE", "fx fy cx cy", false},
     {"SIMPLE_RADIAL", "f cx cy k1", false},
@@ -43,7 +43,7 @@ std::vector<std::string> words(std::string_view text) {
 
 const ColmapModel& model_called(const ConfigValue& value) {
     const std::string name = value.text("give a camera model of COLMAP, such as OPENCV");
-    for (const ColmapModel& model : k_models)
+    for (const ColmapModel& model : k_colmap_models)
         if (model.name == name) return model;
     if (std::ranges::find(k_others, name) != k_others.end()) {
         value.fail(
@@ -51,8 +51,8 @@ const ColmapModel& model_called(const ConfigValue& value) {
                         "FULL_OPENCV or OPENCV_FISHEYE instead",
                         name));
     }
-    std::array<std::string_view, k_models.size()> names;
-    std::ranges::transform(k_models, names.begin(), &ColmapModel::name);
+    std::array<std::string_view, k_colmap_models.size()> names;
+    std::ranges::transform(k_colmap_models, names.begin(), &ColmapModel::name);
     value.fail(
         fmt::format("unknown camera model '{}'; {}", printable(name), suggestion(name, names)));
 }
@@ -148,7 +148,7 @@ ColmapParameters colmap_model_of(const CameraDesc& camera) {
         wanted = "FULL_OPENCV";
     else if (!any_above(0) && d.p[0] == 0 && d.p[1] == 0)
         wanted = "PINHOLE";
-    const ColmapModel& model = *std::ranges::find(k_models, wanted, &ColmapModel::name);
+    const ColmapModel& model = *std::ranges::find(k_colmap_models, wanted, &ColmapModel::name);
     ColmapParameters result{model.name, model.parameters, {}};
     CameraDesc copy = camera;
     for (const std::string& name : words(model.parameters))

@@ -8,6 +8,7 @@
 
 #include "core/optics/optical_depth.h"
 #include "media/volumes/grid_field.h"
+#include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
 
 namespace uw {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "cli/info/vdb_advice.h"
+#include "cli/info/advice.h"
+#include "media/vdb/vdb_inspect.h"
 
 namespace uw {
 

@@ -24,11 +24,11 @@ LampSpectrum whole(SampledCurve curve) {
 }
 
 LampSpectrum blackbody(double temperature) {
-    constexpr int k_first_nm = 100, k_last_nm = 2000;                // more than bands can reach
+    constexpr int k_lowest_nm = 100, k_highest_nm = 2000;            // more than bands can reach
     const double scale = k_second_radiation_constant / temperature;  // [m]
     // Planck's law over x = lambda T / c_2, up to a factor: x^-5 / (e^{1/x} - 1), integral pi^4/15.
     LampSpectrum spectrum;
-    for (int nm = k_first_nm; nm <= k_last_nm; ++nm) {
+    for (int nm = k_lowest_nm; nm <= k_highest_nm; ++nm) {
         const double x = nm * 1e-9 / scale;
         spectrum.density.x.push_back(nm);
         spectrum.density.y.push_back(std::pow(x, -5) / std::expm1(1 / x));

@@ -17,35 +17,38 @@ std::mutex& planner_mutex() {
     return mutex;
 }
 
-struct DestroyPlan {
-    void operator()(fftw_plan_s* plan) const {
-        const std::lock_guard lock(planner_mutex());
-        fftw_destroy_plan(plan);
-    }
-};
-using Plan = std::unique_ptr<fftw_plan_s, DestroyPlan>;
-
-Plan plan_line(int length, fftw_r2r_kind kind) {
-    std::vector<double> line(static_cast<std::size_t>(length));
-    const std::lock_guard lock(planner_mutex());
-    // Estimated, not measured: the plan, and so the rounding, is the same in every run. Lines of an
-    // image are not aligned alike.
-    Plan plan(
-        fftw_plan_r2r_1d(length, line.data(), line.data(), kind, FFTW_ESTIMATE | FFTW_UNALIGNED));
-    if (!plan) throw std::bad_alloc();
-    return plan;
-}
-
 }  // namespace
 
 struct CosineTransform::Plans {
+    struct Destroy {
+        void operator()(fftw_plan_s* plan) const {
+            const std::lock_guard lock(planner_mutex());
+            fftw_destroy_plan(plan);
+        }
+    };
+    using Plan = std::unique_ptr<fftw_plan_s, Destroy>;
+
+    explicit Plans(int length)
+        : forward(plan_line(length, FFTW_REDFT10)), inverse(plan_line(length, FFTW_REDFT01)) {}
+
     Plan forward, inverse;
+
+  private:
+    static Plan plan_line(int length, fftw_r2r_kind kind) {
+        std::vector<double> line(static_cast<std::size_t>(length));
+        const std::lock_guard lock(planner_mutex());
+        // Estimated, not measured: the plan, and so the rounding, is the same in every run. Lines
+        // of an image are not aligned alike.
+        Plan plan(fftw_plan_r2r_1d(length, line.data(), line.data(), kind,
+                                   FFTW_ESTIMATE | FFTW_UNALIGNED));
+        if (!plan) throw std::bad_alloc();
+        return plan;
+    }
 };
 
 CosineTransform::CosineTransform(int length) : length_(length) {
     if (length < 1) throw std::invalid_argument("a cosine transform needs at least one value");
-    plans_ = std::make_shared<Plans>(
-        Plans{plan_line(length, FFTW_REDFT10), plan_line(length, FFTW_REDFT01)});
+    plans_ = std::make_shared<Plans>(length);
 }
 
 void CosineTransform::forward(double* line) const {

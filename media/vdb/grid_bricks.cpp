@@ -1,6 +1,5 @@
 #include "media/vdb/grid_bricks.h"
 
-#define NANOVDB_USE_TBB
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tree/LeafManager.h>
@@ -10,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "media/vdb/openvdb_grids.h"
+
 namespace uw {
 namespace {
 
@@ -17,7 +18,7 @@ constexpr int k_largest_index = 1 << 30;
 
 void append_brick(const openvdb::FloatGrid& grid, std::vector<NanoGrid>& bricks) {
     openvdb::CoordBBox box;
-    if (!grid.tree().evalActiveVoxelBoundingBox(box)) return;
+    if (!grid.baseTree().evalActiveVoxelBoundingBox(box)) return;
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (box.min()[axis] <= -k_largest_index || box.max()[axis] >= k_largest_index)
             throw std::range_error("it has voxels further than 2^30 from its origin");
@@ -67,11 +68,20 @@ GridIntake take_slab(const openvdb::FloatGrid::Ptr& grid, std::vector<NanoGrid>&
     return intake;
 }
 
-openvdb::FloatGrid::Ptr to_float(const openvdb::DoubleGrid::Ptr& grid) {
-    auto tree = std::make_shared<openvdb::FloatTree>(grid->tree());
-    auto result = openvdb::FloatGrid::create(tree);
-    result->setTransform(grid->transformPtr());
-    return result;
+openvdb::FloatGrid::Ptr to_float(const openvdb::GridBase::Ptr& grid) {
+    const auto doubles = openvdb::gridPtrCast<openvdb::DoubleGrid>(grid);
+    if (!doubles) return openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+    auto floats = make_empty_grid<openvdb::FloatGrid>(0.0F);
+    floats->tree().root() = doubles->tree().root();
+    floats->setTransform(doubles->transformPtr());
+    return floats;
+}
+
+double background_of(const openvdb::GridBase& grid) {
+    double background = 0;
+    grid.apply<openvdb::RealGridTypes>(
+        [&](const auto& typed) { background = static_cast<double>(typed.background()); });
+    return background;
 }
 
 }  // namespace uw

@@ -2,10 +2,10 @@
 
 #include <openvdb/openvdb.h>
 
-#include <string>
 #include <vector>
 
-#include "media/vdb/vdb_file.h"
+#include "media/vdb/grid_statistics.h"
+#include "media/vdb/nano_grid.h"
 
 /// From OpenVDB's grids to those that are rendered, for the files that read volumes.
 namespace uw {
@@ -17,15 +17,10 @@ GridIntake sanitize(openvdb::FloatTree& tree);
 /// index space. Throws std::range_error for voxels too far away.
 GridIntake take_slab(const openvdb::FloatGrid::Ptr& grid, std::vector<NanoGrid>& bricks);
 
-/// The same grid in floats.
-inline openvdb::FloatGrid::Ptr to_float(openvdb::FloatGrid::Ptr grid) {
-    return grid;
-}
-openvdb::FloatGrid::Ptr to_float(const openvdb::DoubleGrid::Ptr& grid);
+/// A grid of floats itself, or one of doubles in floats.
+openvdb::FloatGrid::Ptr to_float(const openvdb::GridBase::Ptr& grid);
 
-/// Throws InputError starting with `prefix` if what was loaded is a level set in disguise, or if
-/// its voxels have no volume.
-void check_loaded(const VdbHeader& header, const GridSummary& grid, const std::string& prefix,
-                  const LoadedGrid& loaded);
+/// The background of a grid of floats or doubles.
+double background_of(const openvdb::GridBase& grid);
 
 }  // namespace uw

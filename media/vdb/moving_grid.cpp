@@ -14,10 +14,9 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "media/vdb/grid_bricks.h"
+#include "media/vdb/grid_selection.h"
 #include "media/vdb/vdb_stream.h"
 #include "media/vdb/velocity_field.h"
-
-#include "media/vdb/vdb_header.h"
 
 namespace uw {
 namespace {
@@ -101,19 +100,18 @@ std::vector<openvdb::Coord> blocks_in_reach(const openvdb::FloatGrid& density,
 }
 
 /// Reads the density whole, sanitized, its uniform regions as voxels.
-template <class GridT>
 openvdb::FloatGrid::Ptr read_density(const VdbHeader& header, const GridSummary& grid,
                                      const SourceLocation& where, LoadedGrid& loaded) {
     openvdb::FloatGrid::Ptr density;
-    read_slabs<GridT>(header, grid, std::numeric_limits<std::size_t>::max(), where,
-                      [&](typename GridT::Ptr slab) {
-                          loaded.file_from_index = to_affine(slab->transform());
-                          loaded.statistics.background = static_cast<double>(slab->background());
-                          density = to_float(std::move(slab));
-                      });
+    read_slabs(header, grid, std::numeric_limits<std::size_t>::max(), where,
+               [&](const openvdb::GridBase::Ptr& slab) {
+                   loaded.file_from_index = to_affine(slab->transform());
+                   loaded.statistics.background = background_of(*slab);
+                   density = to_float(slab);
+               });
     loaded.statistics = sanitize(density->tree()).statistics(loaded.statistics.background);
     constexpr std::uint64_t k_bytes_per_voxel = 2 * sizeof(float);  // it and its average
-    if (density->activeVoxelCount() > available_memory_bytes() / k_bytes_per_voxel)
+    if (density->baseTree().activeVoxelCount() > available_memory_bytes() / k_bytes_per_voxel)
         throw std::bad_alloc();
     density->tree().voxelizeActiveTiles();
     return density;
@@ -140,7 +138,7 @@ openvdb::FloatGrid::Ptr average(const openvdb::FloatGrid& density, const Velocit
     const ShutterAverage shutter_average(density, velocity, shutter, centering);
     parallel_for(blocks.size(),
                  [&](std::size_t n) { leaves[n] = shutter_average.block(blocks[n]); });
-    auto result = openvdb::FloatGrid::create(0.0F);
+    auto result = make_empty_grid<openvdb::FloatGrid>(0.0F);
     for (std::unique_ptr<FloatLeaf>& leaf : leaves)
         if (leaf) result->tree().addLeaf(leaf.release());  // the tree owns it
     return result;
@@ -157,10 +155,7 @@ LoadedGrid load_moving_grid(const VdbHeader& header, const std::string& name,
     LoadedGrid loaded;
     loaded.name = grid.name;
     read_guarded(prefix, [&] {
-        const openvdb::FloatGrid::Ptr density =
-            grid.value_type == "double"
-                ? read_density<openvdb::DoubleGrid>(header, grid, where, loaded)
-                : read_density<openvdb::FloatGrid>(header, grid, where, loaded);
+        const openvdb::FloatGrid::Ptr density = read_density(header, grid, where, loaded);
         check_loaded(header, grid, prefix, loaded);
         const VelocityField velocity(motion, centering);
         const openvdb::Vec3d way = furthest_way(velocity, loaded, motion);

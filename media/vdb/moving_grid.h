@@ -2,7 +2,9 @@
 
 #include <string>
 
-#include "media/vdb/vdb_file.h"
+#include "core/scene/source_location.h"
+#include "core/scene/volume_desc.h"
+#include "media/vdb/loaded_grid.h"
 
 namespace uw {
 

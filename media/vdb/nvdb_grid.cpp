@@ -1,3 +1,5 @@
+#include "media/vdb/nvdb_grid.h"
+
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/GridChecksum.h>
 
@@ -8,7 +10,7 @@
 
 #include "media/vdb/byte_reader.h"
 #include "media/vdb/nvdb_bytes.h"
-#include "media/vdb/vdb_stream.h"
+#include "media/vdb/openvdb_grids.h"
 
 // A NanoVDB file is a copy of memory: nodes that point at each other by offsets. Nothing of it is
 // followed before it is known to lead to a node of the right kind that nothing else leads to.
@@ -101,7 +103,7 @@ class Conversion {
                 available_ - at >= sizeof(Root));
         const auto* root = reinterpret_cast<const Root*>(tree_ + at);
         require(root->mTableSize <= (available_ - at - sizeof(Root)) / sizeof(typename Root::Tile));
-        grid_ = GridT::create(convert(root->mBackground));
+        grid_ = make_empty_grid<GridT>(convert(root->mBackground));
         for (std::uint32_t n = 0; n < root->mTableSize; ++n) take_root_tile(*root, n);
         check_sum();
         grid_->setTransform(to_transform(data_));
@@ -205,10 +207,7 @@ class Conversion {
 };
 
 template <class BuildT, class GridT>
-typename GridT::Ptr convert_grid(const VdbHeader& header, const GridSummary& grid,
-                                 const SourceLocation& where) {
-    const NvdbBytes bytes = read_nvdb_bytes(header, grid, where);
-    ByteReader in(header.file, where);
+openvdb::GridBase::Ptr convert_grid(const NvdbBytes& bytes, ByteReader& in) {
     const auto* data = reinterpret_cast<const nanovdb::GridData*>(bytes.data.get());
     if (data->mGridType != nanovdb::mapToGridType<BuildT>()) in.fail_damaged();
     return Conversion<BuildT, GridT>(bytes, in).run();
@@ -216,52 +215,24 @@ typename GridT::Ptr convert_grid(const VdbHeader& header, const GridSummary& gri
 
 }  // namespace
 
-template <>
-openvdb::FloatGrid::Ptr read_nvdb_grid<openvdb::FloatGrid>(const VdbHeader& header,
-                                                           const GridSummary& grid,
-                                                           const SourceLocation& where) {
-    using Grid = openvdb::FloatGrid;
-    if (grid.quantised == "fp4") return convert_grid<nanovdb::Fp4, Grid>(header, grid, where);
-    if (grid.quantised == "fp8") return convert_grid<nanovdb::Fp8, Grid>(header, grid, where);
-    if (grid.quantised == "fp16") return convert_grid<nanovdb::Fp16, Grid>(header, grid, where);
-    if (grid.quantised == "fpN") return convert_grid<nanovdb::FpN, Grid>(header, grid, where);
-    return convert_grid<float, Grid>(header, grid, where);
-}
-template <>
-openvdb::DoubleGrid::Ptr read_nvdb_grid<openvdb::DoubleGrid>(const VdbHeader& header,
-                                                             const GridSummary& grid,
-                                                             const SourceLocation& where) {
-    return convert_grid<double, openvdb::DoubleGrid>(header, grid, where);
-}
-template <>
-openvdb::Int32Grid::Ptr read_nvdb_grid<openvdb::Int32Grid>(const VdbHeader& header,
-                                                           const GridSummary& grid,
-                                                           const SourceLocation& where) {
-    return convert_grid<std::int32_t, openvdb::Int32Grid>(header, grid, where);
-}
-template <>
-openvdb::Int64Grid::Ptr read_nvdb_grid<openvdb::Int64Grid>(const VdbHeader& header,
-                                                           const GridSummary& grid,
-                                                           const SourceLocation& where) {
-    return convert_grid<std::int64_t, openvdb::Int64Grid>(header, grid, where);
-}
-template <>
-openvdb::Vec3SGrid::Ptr read_nvdb_grid<openvdb::Vec3SGrid>(const VdbHeader& header,
-                                                           const GridSummary& grid,
-                                                           const SourceLocation& where) {
-    return convert_grid<nanovdb::Vec3f, openvdb::Vec3SGrid>(header, grid, where);
-}
-template <>
-openvdb::Vec3DGrid::Ptr read_nvdb_grid<openvdb::Vec3DGrid>(const VdbHeader& header,
-                                                           const GridSummary& grid,
-                                                           const SourceLocation& where) {
-    return convert_grid<nanovdb::Vec3d, openvdb::Vec3DGrid>(header, grid, where);
-}
-template <>
-openvdb::Vec3IGrid::Ptr read_nvdb_grid<openvdb::Vec3IGrid>(const VdbHeader& header,
-                                                           const GridSummary&,
-                                                           const SourceLocation& where) {
-    ByteReader(header.file, where).fail_damaged();  // NanoVDB has no such grids
+openvdb::GridBase::Ptr read_nvdb_grid(const VdbHeader& header, const GridSummary& grid,
+                                      const SourceLocation& where) {
+    using openvdb::FloatGrid;
+    const std::string& type = grid.quantised.empty() ? grid.value_type : grid.quantised;
+    ByteReader in(header.file, where);
+    if (type == "vec3i") in.fail_damaged();  // NanoVDB has no such grids
+    const NvdbBytes bytes = read_nvdb_bytes(header, grid, where);
+    if (type == "float") return convert_grid<float, FloatGrid>(bytes, in);
+    if (type == "fp4") return convert_grid<nanovdb::Fp4, FloatGrid>(bytes, in);
+    if (type == "fp8") return convert_grid<nanovdb::Fp8, FloatGrid>(bytes, in);
+    if (type == "fp16") return convert_grid<nanovdb::Fp16, FloatGrid>(bytes, in);
+    if (type == "fpN") return convert_grid<nanovdb::FpN, FloatGrid>(bytes, in);
+    if (type == "double") return convert_grid<double, openvdb::DoubleGrid>(bytes, in);
+    if (type == "int32") return convert_grid<std::int32_t, openvdb::Int32Grid>(bytes, in);
+    if (type == "int64") return convert_grid<std::int64_t, openvdb::Int64Grid>(bytes, in);
+    if (type == "vec3s") return convert_grid<nanovdb::Vec3f, openvdb::Vec3SGrid>(bytes, in);
+    if (type == "vec3d") return convert_grid<nanovdb::Vec3d, openvdb::Vec3DGrid>(bytes, in);
+    in.fail_damaged();
 }
 
 openvdb::math::Transform::Ptr read_nvdb_transform(const VdbHeader& header, const GridSummary& grid,

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "core/base/affine.h"
-#include "media/vdb/vdb_file.h"
+#include "core/scene/volume_desc.h"
+#include "media/vdb/loaded_grid.h"
 
 namespace uw {
 

@@ -2,24 +2,10 @@
 
 #include <cstddef>
 #include <string>
-#include <vector>
 
-#include "core/base/affine.h"
-#include "media/vdb/grid_statistics.h"
-#include "media/vdb/nano_grid.h"
-#include "media/vdb/vdb_header.h"
+#include "media/vdb/loaded_grid.h"
 
 namespace uw {
-
-/// A grid ready to be sampled. Large grids come in several bricks whose values add: each holds a
-/// slab of whole 8^3 blocks, and interpolation with zeros outside is linear.
-struct LoadedGrid {
-    std::string name;
-    Affine file_from_index;  // the file's transform: metres, index (i, j, k) where OpenVDB puts it
-    std::vector<NanoGrid> bricks;  // none if every value is zero
-    GridStatistics statistics;
-    std::vector<std::string> warnings;  // one line each, starting with `where`
-};
 
 inline constexpr std::size_t k_default_slab_bytes = std::size_t{256} << 20;
 

@@ -4,167 +4,24 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-
-#include "media/vdb/byte_reader.h"
-#include "media/vdb/nvdb_header.h"
+#include <string_view>
 
 namespace uw {
-namespace {
-
-constexpr std::int64_t k_magic = 0x56444220;
-
-/// Names come from the file and go into one-line messages.
-std::string printable(std::string text) {
-    std::ranges::replace_if(
-        text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-    return text;
-}
-
-/// A metadata map: strings, 64-bit integers and vectors of three by name; of others the name alone.
-struct Metadata {
-    std::map<std::string, std::string> strings;
-    std::map<std::string, std::int64_t> integers;
-    std::map<std::string, std::array<std::int32_t, 3>> vectors;
-    std::vector<std::string> others;
-};
-
-Metadata read_metadata(ByteReader& in) {
-    Metadata metadata;
-    const auto count = in.get<std::uint32_t>();
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const std::string name = in.text();
-        const std::string type = in.text();
-        const auto size = in.get<std::uint32_t>();
-        if (type == "string" && size <= ByteReader::k_longest_text) {
-            metadata.strings[name] = in.text(size);
-        } else if (type == "int64" && size == sizeof(std::int64_t)) {
-            metadata.integers[name] = in.get<std::int64_t>();
-        } else if (type == "vec3i" && size == 3 * sizeof(std::int32_t)) {
-            metadata.vectors[name] = in.get<std::array<std::int32_t, 3>>();
-        } else {
-            metadata.others.push_back(name);
-            in.skip(size);
-        }
-    }
-    return metadata;
-}
-
-bool take_suffix(std::string& text, const std::string& suffix) {
-    if (!text.ends_with(suffix)) return false;
-    text.resize(text.size() - suffix.size());
-    return true;
-}
-
-/// Namesakes are told apart in the file by a number after the character "record separator".
-void set_names(GridSummary& grid, const std::string& unique_name) {
-    grid.unique_name = unique_name;
-    const auto separator = unique_name.rfind('\x1e');
-    grid.base_name = printable(unique_name.substr(0, separator));
-    grid.name = grid.base_name;
-    if (separator != std::string::npos)
-        grid.name += "[" + printable(unique_name.substr(separator + 1)) + "]";
-}
-
-void set_type(GridSummary& grid, std::string type) {
-    grid.half = take_suffix(type, "_HalfFloat");
-    grid.tree_type = printable(type);
-    grid.value_type = grid.tree_type;
-    if (grid.value_type.starts_with("Tree_")) grid.value_type.erase(0, 5);
-    take_suffix(grid.value_type, "_5_4_3");
-}
-
-GridSummary read_grid(ByteReader& in, const VdbHeader& header) {
-    GridSummary grid;
-    set_names(grid, in.text());
-    set_type(grid, in.text());
-    grid.instance_of = in.text();
-    const auto grid_offset = in.get<std::int64_t>();
-    grid.blocks_offset = in.get<std::int64_t>();
-    const auto end = in.get<std::int64_t>();
-    const std::int64_t next_descriptor = end;
-    if (end < in.position() || end > in.size() || grid_offset < in.position() || grid_offset > end)
-        in.fail("is cut short or damaged; copy or export it again");
-
-    in.seek(grid_offset);
-    grid.compression = header.version >= 222 ? in.get<std::uint32_t>() : 0;
-    const Metadata metadata = read_metadata(in);
-    if (const auto it = metadata.strings.find("class"); it != metadata.strings.end())
-        grid.grid_class = printable(it->second);
-    if (const auto it = metadata.integers.find("file_voxel_count"); it != metadata.integers.end())
-        grid.active_voxels = it->second;
-    const auto low = metadata.vectors.find("file_bbox_min");
-    const auto high = metadata.vectors.find("file_bbox_max");
-    if (low != metadata.vectors.end() && high != metadata.vectors.end())
-        grid.active_box = IndexBox{low->second, high->second};
-    grid.has_base_resolution = std::find(metadata.others.begin(), metadata.others.end(),
-                                         "file_base_resolution") != metadata.others.end() ||
-                               metadata.vectors.contains("file_base_resolution");
-    grid.transform_offset = in.position();
-    grid.map_type = printable(in.text());
-    in.seek(next_descriptor);
-    return grid;
-}
-
-void check_version(const ByteReader& in, const VdbHeader& header) {
-    if (header.version > k_newest_vdb_version)
-        in.fail(fmt::format(
-            "is a VDB file of version {}, written by OpenVDB {}.{}; this build reads "
-            "up to version {}: save it with OpenVDB 12 or older, 32-bit floats",
-            header.version, header.library_major, header.library_minor, k_newest_vdb_version));
-    if (header.version < k_oldest_vdb_version)
-        in.fail(
-            fmt::format("is a VDB file of version {}, from before OpenVDB 1.0; this build reads "
-                        "versions {} to {}: save it with a newer program",
-                        header.version, k_oldest_vdb_version, k_newest_vdb_version));
-}
-
-}  // namespace
-
-VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocation& where) {
-    ByteReader in(file, where);
-    VdbHeader header;
-    header.file = file;
-    const std::int64_t magic = in.size() < 8 ? 0 : in.get<std::int64_t>();
-    if (is_nvdb_magic(magic)) return read_nvdb_header(in, file);
-    if (magic != k_magic) in.fail("is not a VDB file (it does not begin like one)");
-    header.version = in.get<std::uint32_t>();
-    header.library_major = in.get<std::uint32_t>();
-    header.library_minor = in.get<std::uint32_t>();
-    check_version(in, header);
-    const bool has_offsets = in.get<char>() != 0;
-    std::uint32_t compression = 0;
-    if (header.version < 222) compression = in.get<char>() != 0 ? 1 : 0;
-    in.skip(36);  // UUID in text
-    Metadata metadata = read_metadata(in);
-    header.creator = printable(metadata.strings["creator"]);
-    if (!has_offsets)
-        in.fail("was written as a stream, without offsets; save it with openvdb::io::File");
-    const auto count = in.get<std::int32_t>();
-    for (std::int32_t i = 0; i < count; ++i) {
-        GridSummary grid = read_grid(in, header);
-        if (header.version < 222) grid.compression = compression;
-        header.grids.push_back(std::move(grid));
-    }
-    return header;
-}
-
-std::vector<GridSummary> list_grids(const std::filesystem::path& file,
-                                    const SourceLocation& where) {
-    return read_vdb_header(file, where).grids;
-}
 
 bool VdbHeader::from_blender_fluid() const {
     if (!creator.empty() || grids.empty()) return false;
     const auto has_mark = [](const GridSummary& grid) { return grid.has_base_resolution; };
     if (std::any_of(grids.begin(), grids.end(), has_mark)) return true;
-    static constexpr std::array<const char*, 13> names{
+    constexpr std::string_view k_noise = "_noise";
+    static constexpr std::array<std::string_view, 13> names{
         "velocity", "density", "shadow", "temperature", "heat",  "flame",   "color_r",
         "color_g",  "color_b", "fuel",   "react",       "flags", "pressure"};
     bool telling = false;  // a name that no other program uses beside "density"
     for (const GridSummary& grid : grids) {
-        std::string name = grid.base_name;
-        telling |= take_suffix(name, "_noise") || name == "shadow";
+        std::string_view name = grid.base_name;
+        const bool noise = name.ends_with(k_noise);
+        if (noise) name.remove_suffix(k_noise.size());
+        telling |= noise || name == "shadow";
         const bool known = std::find(names.begin(), names.end(), name) != names.end();
         if (!known && !name.starts_with("phi_")) return false;
     }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene_desc.h"
+#include "core/scene/source_location.h"
 
 namespace uw {
 
@@ -58,27 +58,5 @@ struct VdbHeader {
 
 /// Voxels along an edge of a leaf of VDB trees, OpenVDB's and NanoVDB's alike.
 inline constexpr int k_leaf_edge = 8;
-
-inline constexpr std::uint32_t k_oldest_vdb_version = 220;
-inline constexpr std::uint32_t k_newest_vdb_version = 224;
-
-/// Reads the header and the metadata of all grids of a VDB or NanoVDB file, told apart by how they
-/// begin; sizes the file claims are checked against its length first. Throws IoError if the file
-/// cannot be opened; InputError, starting with `where`, if it is neither, is cut short, or has a
-/// version other than 220 to 224 (NanoVDB: 32).
-VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocation& where);
-
-/// The summaries alone.
-std::vector<GridSummary> list_grids(const std::filesystem::path& file, const SourceLocation& where);
-
-/// Why the grid's values are no concentrations, to follow "grid 'x' "; "" if nothing in its header
-/// speaks against them.
-std::string unusable_because(const GridSummary& grid);
-
-/// The grid a scene calls `name`, if its concentrations can be used. Throws InputError, starting
-/// with `where`, for a name that is missing or shared by several grids, and for level sets, points,
-/// vectors, other types, and transforms that are not affine; the message lists what the file has.
-const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
-                               const SourceLocation& where);
 
 }  // namespace uw

@@ -2,9 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string_view>
+#include <utility>
 
+#include "media/vdb/grid_selection.h"
+#include "media/vdb/vdb_header_reader.h"
 #include "media/vdb/vdb_stream.h"
 
 namespace uw {
@@ -35,14 +42,22 @@ std::string text_of(const openvdb::math::Vec3<T>& v) {
 }
 
 /// Calls `take(number, voxels)` for all active values.
-template <class GridT, class Take>
-void for_each_value(const GridT& grid, const Take& take) {
-    for (auto value = grid.tree().cbeginValueOn(); value; ++value)
-        take(number_of(*value), static_cast<std::int64_t>(value.getVoxelCount()));
+void for_each_value(const openvdb::GridBase& grid,
+                    const std::function<void(double number, std::int64_t voxels)>& take) {
+    grid.apply<ReadableGrids>([&](const auto& typed) {
+        for (auto value = typed.tree().cbeginValueOn(); value; ++value)
+            take(number_of(*value), static_cast<std::int64_t>(value.getVoxelCount()));
+    });
 }
 
-template <class GridT>
-void add_range(const GridT& grid, ValueSummary& summary, double& sum) {
+void set_background(const openvdb::GridBase& grid, ValueSummary& summary) {
+    grid.apply<ReadableGrids>([&](const auto& typed) {
+        summary.background = text_of(typed.background());
+        summary.background_value = number_of(typed.background());
+    });
+}
+
+void add_range(const openvdb::GridBase& grid, ValueSummary& summary, double& sum) {
     for_each_value(grid, [&](double value, std::int64_t voxels) {
         summary.active += voxels;
         if (!std::isfinite(value)) {
@@ -58,8 +73,7 @@ void add_range(const GridT& grid, ValueSummary& summary, double& sum) {
     });
 }
 
-template <class GridT>
-void add_histogram(const GridT& grid, ValueSummary& summary) {
+void add_histogram(const openvdb::GridBase& grid, ValueSummary& summary) {
     const double width = summary.max - summary.min;
     for_each_value(grid, [&](double value, std::int64_t voxels) {
         if (!std::isfinite(value)) return;
@@ -69,24 +83,32 @@ void add_histogram(const GridT& grid, ValueSummary& summary) {
     });
 }
 
-template <class GridT>
+bool is_readable(const std::string& value_type) {
+    static constexpr std::array<std::string_view, 7> readable{"float", "double", "int32", "int64",
+                                                              "vec3s", "vec3d",  "vec3i"};
+    return std::ranges::find(readable, value_type) != readable.end();
+}
+
 void read_values(const VdbHeader& header, const SourceLocation& where, GridInspection& grid) {
+    if (!is_readable(grid.summary.value_type)) {
+        grid.unread = fmt::format("values of type {} are not looked at", grid.summary.value_type);
+        return;
+    }
     ValueSummary summary;
     summary.min = k_infinity;
     summary.max = -k_infinity;
     summary.histogram.assign(k_histogram_bins, 0);
     double sum = 0;
     openvdb::CoordBBox box;
-    typename GridT::Ptr last;
+    openvdb::GridBase::Ptr last;
     int slabs = 0;
-    read_slabs<GridT>(header, grid.summary, k_slab_bytes, where, [&](typename GridT::Ptr slab) {
+    read_slabs(header, grid.summary, k_slab_bytes, where, [&](const openvdb::GridBase::Ptr& slab) {
         openvdb::CoordBBox part;
-        if (slab->tree().evalActiveVoxelBoundingBox(part)) box.expand(part);
-        summary.background = text_of(slab->background());
-        summary.background_value = number_of(slab->background());
+        if (slab->baseTree().evalActiveVoxelBoundingBox(part)) box.expand(part);
+        set_background(*slab, summary);
         add_range(*slab, summary, sum);
         ++slabs;
-        last = std::move(slab);
+        last = slab;
     });
     if (summary.finite == 0) summary.min = summary.max = 0;
     if (summary.finite > 0) summary.mean = sum / static_cast<double>(summary.finite);
@@ -94,8 +116,8 @@ void read_values(const VdbHeader& header, const SourceLocation& where, GridInspe
         add_histogram(*last, summary);
     } else {
         last.reset();
-        read_slabs<GridT>(header, grid.summary, k_slab_bytes, where,
-                          [&](typename GridT::Ptr slab) { add_histogram(*slab, summary); });
+        read_slabs(header, grid.summary, k_slab_bytes, where,
+                   [&](const openvdb::GridBase::Ptr& slab) { add_histogram(*slab, summary); });
     }
     grid.box.reset();
     if (summary.active > 0)
@@ -103,19 +125,6 @@ void read_values(const VdbHeader& header, const SourceLocation& where, GridInspe
                             {box.max().x(), box.max().y(), box.max().z()}};
     grid.active_voxels = summary.active;
     grid.values = std::move(summary);
-}
-
-void read_values_by_type(const VdbHeader& header, const SourceLocation& where,
-                         GridInspection& grid) {
-    const std::string& type = grid.summary.value_type;
-    if (type == "float") return read_values<openvdb::FloatGrid>(header, where, grid);
-    if (type == "double") return read_values<openvdb::DoubleGrid>(header, where, grid);
-    if (type == "int32") return read_values<openvdb::Int32Grid>(header, where, grid);
-    if (type == "int64") return read_values<openvdb::Int64Grid>(header, where, grid);
-    if (type == "vec3s") return read_values<openvdb::Vec3SGrid>(header, where, grid);
-    if (type == "vec3d") return read_values<openvdb::Vec3DGrid>(header, where, grid);
-    if (type == "vec3i") return read_values<openvdb::Vec3IGrid>(header, where, grid);
-    grid.unread = fmt::format("values of type {} are not looked at", type);
 }
 
 std::string kind_of(const Affine& map) {
@@ -216,8 +225,7 @@ VdbInspection inspect_vdb(const std::filesystem::path& file, const SourceLocatio
         grid.unusable = unusable_because(summary);
         grid.active_voxels = summary.active_voxels;
         grid.box = stated_box(summary);
-        const std::string why =
-            failure_of(place, [&] { read_values_by_type(header, where, grid); });
+        const std::string why = failure_of(place, [&] { read_values(header, where, grid); });
         const std::string transform = failure_of(
             place, [&] { inspect_transform(header, inspection.placement, where, grid); });
         for (const std::string& text : {why, transform})

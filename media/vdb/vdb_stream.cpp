@@ -2,16 +2,65 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
 #include <stdexcept>
+#include <type_traits>
+#include <vector>
 
+#include "media/vdb/nvdb_grid.h"
 #include "media/vdb/vdb_layout.h"
 
 namespace uw {
+namespace {
 
-void initialize_openvdb() {
-    static const bool done = (openvdb::initialize(), true);
-    static_cast<void>(done);
+/// Calls `take(origin)` for every leaf.
+void for_each_leaf(const openvdb::GridBase& grid,
+                   const std::function<void(const openvdb::Coord&)>& take) {
+    grid.apply<ReadableGrids>([&](const auto& typed) {
+        for (auto upper = typed.tree().root().cbeginChildOn(); upper; ++upper)
+            for (auto lower = upper->cbeginChildOn(); lower; ++lower)
+                for (auto leaf = lower->cbeginChildOn(); leaf; ++leaf) take(leaf->origin());
+    });
 }
+
+std::size_t bytes_of_leaf(const openvdb::GridBase& grid) {
+    std::size_t bytes = 0;
+    grid.apply<ReadableGrids>([&](const auto& typed) {
+        using Tree = typename std::decay_t<decltype(typed)>::TreeType;
+        bytes = sizeof(typename Tree::ValueType) * std::size_t{Tree::LeafNodeType::SIZE};
+    });
+    return bytes;
+}
+
+/// The boxes that a grid (topology only) is cut into for read_slabs; empty: no need to cut.
+std::vector<openvdb::CoordBBox> cut_into_slabs(const openvdb::GridBase& grid,
+                                               std::size_t slab_bytes) {
+    const std::size_t leaf_bytes = bytes_of_leaf(grid);
+    const std::size_t total = grid.constBaseTree().leafCount() * leaf_bytes;
+    if (total <= slab_bytes) return {};
+    slab_bytes = std::max(slab_bytes, total / 8);
+
+    openvdb::CoordBBox box;
+    for_each_leaf(grid, [&](const openvdb::Coord& origin) { box.expand(origin); });
+    const std::size_t axis = box.maxExtent();
+    std::map<int, std::size_t> leaves_at;
+    for_each_leaf(grid, [&](const openvdb::Coord& origin) { ++leaves_at[origin[axis]]; });
+    std::vector<openvdb::CoordBBox> slabs{openvdb::CoordBBox::inf()};
+    std::size_t bytes = 0;
+    for (const auto& [origin, leaves] : leaves_at) {
+        if (bytes > 0 && bytes + leaves * leaf_bytes > slab_bytes) {
+            slabs.back().max()[axis] = origin - 1;
+            slabs.push_back(openvdb::CoordBBox::inf());
+            slabs.back().min()[axis] = origin;
+            bytes = 0;
+        }
+        bytes += leaves * leaf_bytes;
+    }
+    return slabs;
+}
+
+}  // namespace
 
 GridStream::GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
                        const SourceLocation& where)
@@ -30,10 +79,35 @@ GridStream::GridStream(const VdbHeader& header, const GridSummary& grid, const G
 }
 
 openvdb::math::Transform::ConstPtr GridStream::read_transform() {
-    openvdb::FloatGrid grid;
+    const auto transform = openvdb::math::Transform::createLinearTransform();
     stream_.seekg(grid_.transform_offset);
-    grid.readTransform(stream_);
-    return grid.transformPtr();
+    transform->read(stream_);
+    return transform;
+}
+
+openvdb::GridBase::Ptr GridStream::read_topology() {
+    auto grid = openvdb::GridBase::createGrid("Tree_" + voxels_.value_type + "_5_4_3");
+    grid->setSaveFloatAsHalf(voxels_.half);
+    stream_.seekg(voxels_.transform_offset);
+    grid->readTransform(stream_);
+    check_layout_once();
+    metadata_->setLeaf(0);
+    grid->readTopology(stream_);
+    const auto blocks = stream_.tellg();
+    if (&grid_ != &voxels_) {
+        stream_.seekg(grid_.transform_offset);
+        grid->readTransform(stream_);
+        stream_.seekg(blocks);
+    }
+    return grid;
+}
+
+void GridStream::read_values(openvdb::GridBase& grid) {
+    grid.readBuffers(stream_);
+}
+
+void GridStream::read_values(openvdb::GridBase& grid, const openvdb::CoordBBox& box) {
+    grid.readBuffers(stream_, box);
 }
 
 void GridStream::check_layout_once() {
@@ -54,6 +128,29 @@ const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& 
             other.tree_type == grid.tree_type)
             return other;
     throw std::runtime_error("the grid it shares its voxels with is missing");
+}
+
+void read_slabs(const VdbHeader& header, const GridSummary& grid, std::size_t slab_bytes,
+                const SourceLocation& where,
+                const std::function<void(const openvdb::GridBase::Ptr&)>& take) {
+    if (header.is_nano) {
+        take(read_nvdb_grid(header, grid, where));
+        return;
+    }
+    GridStream stream(header, grid, holder_of_voxels(header, grid), where);
+    openvdb::GridBase::Ptr first = stream.read_topology();
+    const std::vector<openvdb::CoordBBox> slabs = cut_into_slabs(*first, slab_bytes);
+    if (slabs.empty()) {
+        stream.read_values(*first);
+        take(first);
+        return;
+    }
+    first.reset();
+    for (const openvdb::CoordBBox& slab : slabs) {
+        const openvdb::GridBase::Ptr part = stream.read_topology();
+        stream.read_values(*part, slab);
+        take(part);
+    }
 }
 
 Affine to_affine(const openvdb::math::Transform& transform) {

@@ -2,24 +2,19 @@
 
 #include <openvdb/openvdb.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <fstream>
-#include <map>
+#include <functional>
 #include <new>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "core/base/affine.h"
 #include "core/base/error.h"
+#include "media/vdb/openvdb_grids.h"
 #include "media/vdb/vdb_header.h"
 
 /// Grids of a VDB file as OpenVDB has them, for the files that look at voxels.
 namespace uw {
-
-/// To be called before anything is read.
-void initialize_openvdb();
 
 /// One grid's part of the file, as a stream set up the way openvdb::io::File does it. File itself
 /// would refuse the whole file for one grid of a type it does not know, and clips in world space.
@@ -31,32 +26,10 @@ class GridStream {
 
     openvdb::math::Transform::ConstPtr read_transform();
     /// A grid with its transform and tree, but no voxel values yet.
-    template <class GridT>
-    typename GridT::Ptr read_topology() {
-        auto grid = GridT::create();
-        grid->setSaveFloatAsHalf(voxels_.half);
-        stream_.seekg(voxels_.transform_offset);
-        grid->readTransform(stream_);
-        check_layout_once();
-        metadata_->setLeaf(0);
-        grid->readTopology(stream_);
-        const auto blocks = stream_.tellg();
-        if (&grid_ != &voxels_) {
-            stream_.seekg(grid_.transform_offset);
-            grid->readTransform(stream_);
-            stream_.seekg(blocks);
-        }
-        return grid;
-    }
-    template <class GridT>
-    void read_values(GridT& grid) {
-        grid.readBuffers(stream_);
-    }
+    openvdb::GridBase::Ptr read_topology();
+    void read_values(openvdb::GridBase& grid);
     /// Only the voxels within `box`; the others become inactive.
-    template <class GridT>
-    void read_values(GridT& grid, const openvdb::CoordBBox& box) {
-        grid.readBuffers(stream_, box);
-    }
+    void read_values(openvdb::GridBase& grid, const openvdb::CoordBBox& box);
 
   private:
     void check_layout_once();
@@ -75,74 +48,20 @@ class GridStream {
 openvdb::math::Transform::ConstPtr read_transform(const VdbHeader& header, const GridSummary& grid,
                                                   const SourceLocation& where);
 
-/// A grid of a NanoVDB file, checked and unpacked: its active values. GridT is the type that
-/// `grid.value_type` names. Throws InputError starting with `where` for damage.
-template <class GridT>
-typename GridT::Ptr read_nvdb_grid(const VdbHeader& header, const GridSummary& grid,
-                                   const SourceLocation& where);
-openvdb::math::Transform::Ptr read_nvdb_transform(const VdbHeader& header, const GridSummary& grid,
-                                                  const SourceLocation& where);
-
 /// The grid whose voxels `grid` shares, or itself. Throws std::runtime_error if it is missing.
 const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& grid);
 
 /// The affine map that a linear transform is.
 Affine to_affine(const openvdb::math::Transform& transform);
 
-/// Cuts a tree (topology only) across its longest axis at block boundaries, so that no slab holds
-/// more than `slab_bytes` of leaf values, or an eighth of all. Empty: no need to cut.
-template <class TreeT>
-std::vector<openvdb::CoordBBox> cut_into_slabs(const TreeT& tree, std::size_t slab_bytes) {
-    openvdb::CoordBBox box;
-    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) box.expand(leaf->origin());
-    const std::size_t leaf_bytes =
-        sizeof(typename TreeT::ValueType) * std::size_t{TreeT::LeafNodeType::SIZE};
-    const std::size_t total = tree.leafCount() * leaf_bytes;
-    if (total <= slab_bytes) return {};
-    slab_bytes = std::max(slab_bytes, total / 8);
-
-    const std::size_t axis = box.maxExtent();
-    std::map<int, std::size_t> leaves_at;
-    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) ++leaves_at[leaf->origin()[axis]];
-    std::vector<openvdb::CoordBBox> slabs{openvdb::CoordBBox::inf()};
-    std::size_t bytes = 0;
-    for (const auto& [origin, leaves] : leaves_at) {
-        if (bytes > 0 && bytes + leaves * leaf_bytes > slab_bytes) {
-            slabs.back().max()[axis] = origin - 1;
-            slabs.push_back(openvdb::CoordBBox::inf());
-            slabs.back().min()[axis] = origin;
-            bytes = 0;
-        }
-        bytes += leaves * leaf_bytes;
-    }
-    return slabs;
-}
-
-/// Reads a grid in slabs of about `slab_bytes` and hands each to `take(GridT::Ptr)`; their active
-/// voxels are disjoint. Of a NanoVDB file all comes at once. Throws InputError starting with
-/// `where`, and what OpenVDB throws.
-template <class GridT, class Take>
+/// Reads a grid in slabs of about `slab_bytes` and hands each to `take`; their active voxels are
+/// disjoint. The grid is cut, across its longest axis at block boundaries, so that no slab holds
+/// more than `slab_bytes` of leaf values, or an eighth of all. Of a NanoVDB file all comes at once.
+/// The value type is one of ReadableGrids. Throws InputError starting with `where`, and what
+/// OpenVDB throws.
 void read_slabs(const VdbHeader& header, const GridSummary& grid, std::size_t slab_bytes,
-                const SourceLocation& where, const Take& take) {
-    if (header.is_nano) {
-        take(read_nvdb_grid<GridT>(header, grid, where));
-        return;
-    }
-    GridStream stream(header, grid, holder_of_voxels(header, grid), where);
-    typename GridT::Ptr first = stream.template read_topology<GridT>();
-    const std::vector<openvdb::CoordBBox> slabs = cut_into_slabs(first->tree(), slab_bytes);
-    if (slabs.empty()) {
-        stream.read_values(*first);
-        take(std::move(first));
-        return;
-    }
-    first.reset();
-    for (const openvdb::CoordBBox& slab : slabs) {
-        typename GridT::Ptr part = stream.template read_topology<GridT>();
-        stream.read_values(*part, slab);
-        take(std::move(part));
-    }
-}
+                const SourceLocation& where,
+                const std::function<void(const openvdb::GridBase::Ptr&)>& take);
 
 /// What `read` returns; what OpenVDB throws becomes an InputError that starts with `prefix`.
 template <class Read>

@@ -8,7 +8,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "media/vdb/vdb_header.h"
+#include "media/vdb/openvdb_grids.h"
+#include "media/vdb/vdb_header_reader.h"
 
 namespace uw {
 namespace {
@@ -31,7 +32,7 @@ std::unique_ptr<openvdb::FloatTree::LeafNodeType> make_block(const VdbOutputGrid
 }
 
 openvdb::FloatGrid::Ptr make_grid(const VdbOutputGrid& source) {
-    auto grid = openvdb::FloatGrid::create(0.0F);
+    auto grid = make_empty_grid<openvdb::FloatGrid>(0.0F);
     grid->setName(source.name);
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     const auto transform = openvdb::math::Transform::createLinearTransform(source.voxel_size);
@@ -51,7 +52,7 @@ openvdb::FloatGrid::Ptr make_grid(const VdbOutputGrid& source) {
 
 void write_vdb(const std::filesystem::path& file, const std::vector<VdbOutputGrid>& grids,
                const std::vector<std::pair<std::string, std::string>>& metadata) {
-    openvdb::initialize();
+    initialize_openvdb();
     AtomicFile target(file);
     try {
         openvdb::GridPtrVec output;

@@ -8,7 +8,8 @@
 #include <limits>
 
 #include "media/vdb/grid_bricks.h"
-#include "media/vdb/placement.h"
+#include "media/vdb/vdb_header_reader.h"
+#include "media/vdb/vdb_stream.h"
 
 namespace uw {
 namespace {
@@ -24,13 +25,12 @@ const GridSummary& find_grid(const VdbHeader& header, const std::string& name,
                                  header.file.string(), header.describe_grids()));
 }
 
-template <class GridT>
-typename GridT::Ptr read_whole(const VdbHeader& header, const GridSummary& grid,
-                               const MotionDesc& motion) {
-    typename GridT::Ptr whole;
+openvdb::GridBase::Ptr read_whole(const VdbHeader& header, const GridSummary& grid,
+                                  const MotionDesc& motion) {
+    openvdb::GridBase::Ptr whole;
     read_guarded(describe_grid_place(header, grid, motion.where), [&] {
-        read_slabs<GridT>(header, grid, k_all_at_once, motion.where,
-                          [&](typename GridT::Ptr slab) { whole = std::move(slab); });
+        read_slabs(header, grid, k_all_at_once, motion.where,
+                   [&](const openvdb::GridBase::Ptr& slab) { whole = slab; });
         if (!whole->transform().isLinear())
             throw std::runtime_error("its transform is not affine; resample it to an affine one");
     });
@@ -39,7 +39,8 @@ typename GridT::Ptr read_whole(const VdbHeader& header, const GridSummary& grid,
 
 openvdb::Vec3SGrid::Ptr read_vectors(const VdbHeader& header, const GridSummary& grid,
                                      const MotionDesc& motion) {
-    if (grid.value_type == "vec3s") return read_whole<openvdb::Vec3SGrid>(header, grid, motion);
+    if (grid.value_type == "vec3s")
+        return openvdb::gridPtrCast<openvdb::Vec3SGrid>(read_whole(header, grid, motion));
     throw InputError(fmt::format(
         "{}: grid '{}' has values of type {}; velocity is one grid of vectors (vec3s), or three of "
         "floats: [vel.x, vel.y, vel.z] ('{}' has {})",
@@ -48,9 +49,8 @@ openvdb::Vec3SGrid::Ptr read_vectors(const VdbHeader& header, const GridSummary&
 
 openvdb::FloatGrid::Ptr read_numbers(const VdbHeader& header, const GridSummary& grid,
                                      const MotionDesc& motion) {
-    if (grid.value_type == "float") return read_whole<openvdb::FloatGrid>(header, grid, motion);
-    if (grid.value_type == "double")
-        return to_float(read_whole<openvdb::DoubleGrid>(header, grid, motion));
+    if (grid.value_type == "float" || grid.value_type == "double")
+        return to_float(read_whole(header, grid, motion));
     throw InputError(fmt::format("{}: grid '{}' has values of type {}; each of three is of floats",
                                  motion.where, grid.name, grid.value_type));
 }

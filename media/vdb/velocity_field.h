@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "media/vdb/vdb_stream.h"
+#include "core/base/affine.h"
+#include "core/scene/scene_desc.h"
 
 namespace uw {
 

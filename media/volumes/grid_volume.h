@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/optics/grid_load.h"
+#include "media/vdb/nano_grid.h"
 #include "media/vdb/placement.h"
-#include "media/vdb/vdb_file.h"
 
 namespace uw {
 

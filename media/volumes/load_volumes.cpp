@@ -1,8 +1,11 @@
+#include "media/volumes/load_volumes.h"
+
 #include <cmath>
 #include <utility>
 
 #include "core/base/error.h"
 #include "media/vdb/moving_grid.h"
+#include "media/vdb/vdb_header_reader.h"
 #include "media/volumes/grid_field.h"
 
 namespace uw {

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "media/vdb/vdb_file.h"
+#include "media/vdb/vdb_header_reader.h"
 
 namespace uw {
 

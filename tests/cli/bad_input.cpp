@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 
 #include "tests/support/cli_test.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_scene.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "tests/support/forward_scenes.h"
 #include "tests/support/temp_dir.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_scene.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw::test {
 namespace {
@@ -34,9 +34,7 @@ SceneDesc plume_scene(const std::filesystem::path& file) {
     desc.geometry = {plane_at_z(4), box({-0.35, -0.3, 1.0}, {-0.1, -0.05, 1.25})};
     desc.lamps = {isotropic_lamp({-0.9, -0.7, 0.1}, 50), isotropic_lamp({0.8, -0.4, 0.3}, 20)};
     desc.lamps[1].name = "spot";
-    desc.lamps[1].profile.type = LampProfileDesc::Type::spot;
-    desc.lamps[1].profile.beam = 50;
-    desc.lamps[1].profile.edge = 10;
+    desc.lamps[1].profile = SpotProfileDesc{50, 10};
     desc.lamps[1].direction = glm::normalize(Vector3(-0.8, 0.4, 1.9));
     desc.water.scattering.reset();
     desc.water.small_ppm = 0.02;

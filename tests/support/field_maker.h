@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "media/volumes/grid_field.h"
+#include "media/volumes/load_volumes.h"
 #include "tests/support/temp_dir.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw::test {
 

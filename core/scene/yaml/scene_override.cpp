@@ -118,7 +118,8 @@ class Walk {
             node_ = &node_->entries.back().value;
             node_->position = position_;
         }
-        path_ += path_.empty() ? printable(key) : "." + printable(key);
+        if (!path_.empty()) path_ += '.';
+        path_ += printable(key);
     }
 
     void to_named_item(const std::string& name) {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/cli_test.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw {
 namespace {

@@ -6,7 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/cli_test.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/mesh_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw {
 namespace {

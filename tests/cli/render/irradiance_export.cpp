@@ -6,8 +6,8 @@
 
 #include "core/base/vec.h"
 #include "tests/support/cli_test.h"
-#include "tests/support/vdb_fixtures.h"
-#include "tests/support/vdb_values.h"
+#include "tests/support/vdb/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_values.h"
 
 namespace uw {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "media/volumes/grid_field.h"
+#include "media/volumes/load_volumes.h"
 #include "tests/support/temp_dir.h"
-#include "tests/support/vdb_loading.h"
+#include "tests/support/vdb/vdb_loading.h"
 
 namespace uw {
 namespace {

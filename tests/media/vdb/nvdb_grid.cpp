@@ -10,7 +10,7 @@
 
 #include "media/vdb/vdb_inspect.h"
 #include "tests/support/temp_dir.h"
-#include "tests/support/vdb_loading.h"
+#include "tests/support/vdb/vdb_loading.h"
 
 namespace uw {
 namespace {

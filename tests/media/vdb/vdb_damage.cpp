@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/temp_dir.h"
-#include "tests/support/vdb_loading.h"
+#include "tests/support/vdb/vdb_loading.h"
 
 namespace uw {
 namespace {

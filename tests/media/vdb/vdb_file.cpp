@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "tests/support/temp_dir.h"
-#include "tests/support/vdb_loading.h"
+#include "tests/support/vdb/vdb_loading.h"
 
 namespace uw {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "media/volumes/grid_field.h"
+#include "media/volumes/load_volumes.h"
 
 namespace uw {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "media/vdb/vdb_file.h"
+#include "media/vdb/vdb_header_reader.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "media/vdb/vdb_header_reader.h"
 #include "tests/support/field_maker.h"
 
 namespace uw {
