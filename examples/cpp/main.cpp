@@ -1,8 +1,8 @@
 // Renders a scene file at a small size and prints what the pixel at its centre sees.
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
-#include <string>
 
 #include "core/image/film.h"
 #include "render/renderer.h"
@@ -10,16 +10,14 @@
 
 namespace {
 
-void print_centre(const std::string& file) {
+void print_center(const char* file) {
     uw::Renderer renderer;
     renderer.set_scene(uw::load_scene(file, {"camera.resolution=[32, 18]"}));
     const uw::Film& image = renderer.render({.layers = "depth"});
-    for (const std::string& warning : renderer.report().warnings)
-        std::fprintf(stderr, "warning: %s\n", warning.c_str());
 
     const auto pixel = image.pixel(image.width() / 2, image.height() / 2);
     const auto& names = image.channel_names();
-    const auto depth = std::find(names.begin(), names.end(), "depth.Z") - names.begin();
+    const auto depth = std::ranges::find(names, "depth.Z") - names.begin();
     std::printf("radiance %g %g %g W m^-2 sr^-1, depth %g m\n", pixel[uw::k_red],
                 pixel[uw::k_green], pixel[uw::k_blue], pixel[static_cast<std::size_t>(depth)]);
 }
@@ -32,7 +30,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     try {
-        print_centre(argv[1]);
+        print_center(argv[1]);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "depth_at_centre: %s\n", error.what());
         return 1;
