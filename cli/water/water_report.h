@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "cli/plot/svg_plot.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/volume_desc.h"
+#include "core/scene/water_desc.h"
 #include "media/water/water_table.h"
 
 namespace uw {

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "core/forward/mirrored_blur.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/forward_scatter_desc.h"
+#include "core/scene/source_location.h"
 
 namespace uw {
 

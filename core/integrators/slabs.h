@@ -4,7 +4,7 @@
 #include "core/base/ray.h"
 #include "core/base/ray_source.h"
 #include "core/integrators/lit_scene.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/render_desc.h"
 
 namespace uw {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "core/lamps/lamp.h"
+#include "core/lamps/direction_cone.h"
 #include "core/surfaces/surfaces.h"
 #include "media/light/cube_face.h"
 

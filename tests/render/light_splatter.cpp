@@ -89,7 +89,7 @@ TEST_F(LightReuse, WhatLeavesPositionsAsTheyAreNeedsNoSplat) {
     change([](SceneDesc& d) {
         d.lamps[0].intensity = PerBand{5, 20, 90};
         d.lamps[1].direction = {0, 1, 0};
-        d.lamps[1].profile = {LampProfileDesc::Type::spot, 120, 20, 0};
+        d.lamps[1].profile = SpotProfileDesc{120, 20};
     });
     expect_splat(0, 0);
     change([](SceneDesc& d) { d.water.absorption = PerBand{0.1, 0.2, 0.3}; });
@@ -97,14 +97,11 @@ TEST_F(LightReuse, WhatLeavesPositionsAsTheyAreNeedsNoSplat) {
 }
 
 TEST_F(LightReuse, ALampThatTurnsOutOfItsShadowsNeedsOthers) {
-    const auto spot = [](double beam, double edge) {
-        return LampProfileDesc{LampProfileDesc::Type::spot, beam, edge, 0};
-    };
-    change([&](SceneDesc& d) { d.lamps[1].profile = spot(50, 10); });
+    change([](SceneDesc& d) { d.lamps[1].profile = SpotProfileDesc{50, 10}; });
     expect_splat(2, 2);
     const std::uint64_t all = 6 * 66 * 66;
     EXPECT_LT(splatter_.counts().rays, all + all / 2);  // the spot's are those of its beam
-    change([&](SceneDesc& d) { d.lamps[1].profile = spot(30, 4); });
+    change([](SceneDesc& d) { d.lamps[1].profile = SpotProfileDesc{30, 4}; });
     expect_splat(0, 0);
     change([&](SceneDesc& d) { d.lamps[1].direction = glm::normalize(Vector3(0.05, 0, 1)); });
     expect_splat(0, 0);

@@ -24,8 +24,7 @@ WaterDesc hg_water(double g) {
     water.absorption = PerBand{0.35, 0.08, 0.05};
     ScatteringDesc scattering;
     scattering.b = {0.20, 0.22, 0.25};
-    scattering.phase.type = PhaseDesc::Type::henyey_greenstein;
-    scattering.phase.g = g;
+    scattering.phase.function = HenyeyGreensteinDesc{g};
     water.scattering = scattering;
     return water;
 }

@@ -210,7 +210,7 @@ TEST(Validation, PlanesConvergeAsTheSquareOfTheirThickness) {
     desc.camera.intrinsics = {10, 10, 6, 4.5};
     desc.water.absorption = PerBand{0.35, 0.08, 0.05};
     desc.water.scattering = ScatteringDesc{{0.20, 0.22, 0.25}, {}};
-    desc.water.scattering->phase.g = 0.9;
+    desc.water.scattering->phase.function = HenyeyGreensteinDesc{0.9};
     GeometryDesc wall;
     wall.type = GeometryDesc::Type::plane;
     wall.point = {0, 0, 4};

@@ -1,3 +1,5 @@
+#include "core/scene/yaml/water_reader.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,7 +7,7 @@
 
 #include "core/base/spectrum.h"
 #include "core/scene/yaml/config_map.h"
-#include "core/scene/yaml/scene_sections.h"
+#include "core/scene/yaml/phase_reader.h"
 
 namespace uw {
 namespace {

@@ -1,3 +1,5 @@
+#include "core/scene/yaml/camera_reader.h"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -7,7 +9,9 @@
 
 #include "core/scene/yaml/camera_values.h"
 #include "core/scene/yaml/config_map.h"
-#include "core/scene/yaml/scene_sections.h"
+#include "core/scene/yaml/name_reader.h"
+#include "core/scene/yaml/port_reader.h"
+#include "core/scene/yaml/pose_reader.h"
 
 namespace uw {
 namespace {

@@ -1,13 +1,17 @@
+#include "core/scene/yaml/volume_reader.h"
+
 #include <array>
 
 #include "core/base/text.h"
 #include "core/scene/yaml/config_map.h"
-#include "core/scene/yaml/scene_sections.h"
+#include "core/scene/yaml/name_reader.h"
+#include "core/scene/yaml/phase_reader.h"
+#include "core/scene/yaml/pose_reader.h"
 
 namespace uw {
 namespace {
 
-constexpr auto k_example = "write {density: {small: 2, large: 10}}";
+constexpr auto k_grids_example = "write {density: {small: 2, large: 10}}";
 
 bool all_zero(const PerBand& values) {
     for (const double value : values) {
@@ -60,7 +64,7 @@ std::vector<GridMappingDesc> read_grids(const ConfigValue& value, const SceneCon
     const ConfigNode& node = value.node();
     if (node.kind != ConfigNode::Kind::map || node.entries.empty()) {
         value.fail("expected the grids' names with their meaning, found " + node.description() +
-                   "; " + k_example);
+                   "; " + k_grids_example);
     }
     std::vector<GridMappingDesc> grids;
     grids.reserve(node.entries.size());
@@ -101,7 +105,7 @@ VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
     volume.where = value.location();
     volume.file = read_existing_file_or_sequence(map.require("file", "name a VDB file"), context,
                                                  volume.is_sequence);
-    volume.grids = read_grids(map.require("grids", k_example), context);
+    volume.grids = read_grids(map.require("grids", k_grids_example), context);
     if (const auto entry = map.find("centering")) {
         constexpr std::array<std::pair<std::string_view, Centering>, 2> k_choices{
             {{"cell", Centering::cell}, {"node", Centering::node}}};

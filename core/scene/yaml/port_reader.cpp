@@ -1,10 +1,11 @@
+#include "core/scene/yaml/port_reader.h"
+
 #include <fmt/format.h>
 
 #include <array>
 
 #include "core/scene/yaml/camera_values.h"
 #include "core/scene/yaml/config_map.h"
-#include "core/scene/yaml/scene_sections.h"
 
 namespace uw {
 namespace {

@@ -1,9 +1,10 @@
+#include "core/scene/yaml/pose_reader.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "core/scene/yaml/config_map.h"
-#include "core/scene/yaml/scene_sections.h"
 
 namespace uw {
 namespace {

@@ -1,9 +1,13 @@
+#include "core/scene/yaml/rig_reader.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "core/scene/yaml/camera_reader.h"
 #include "core/scene/yaml/config_map.h"
-#include "core/scene/yaml/scene_sections.h"
+#include "core/scene/yaml/name_reader.h"
+#include "core/scene/yaml/pose_reader.h"
 
 namespace uw {
 namespace {

@@ -1,20 +1,23 @@
+#include "core/scene/yaml/name_reader.h"
+
 #include <fmt/format.h>
 
 #include <system_error>
 
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
-#include "core/scene/yaml/scene_sections.h"
 
 namespace uw {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t k_longest_name = 64;
+
 fs::path read_file(const ConfigValue& value, const SceneContext& context, bool* is_sequence) {
-    constexpr std::size_t k_longest_name = 4096;
+    constexpr std::size_t k_longest_file_name = 4096;
     const std::string name = value.text("give the name of a file");
-    if (name.size() > k_longest_name) value.fail("is too long for a file name; shorten it");
+    if (name.size() > k_longest_file_name) value.fail("is too long for a file name; shorten it");
     fs::path file = context.folder / name;
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
@@ -53,6 +56,19 @@ fs::path read_existing_file_or_sequence(const ConfigValue& value, const SceneCon
                                         bool& is_sequence) {
     is_sequence = false;
     return read_file(value, context, &is_sequence);
+}
+
+std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend) {
+    constexpr std::string_view k_allowed =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    std::string name = value.text(mend);
+    if (name.find_first_not_of(k_allowed) != std::string::npos || name.size() > k_longest_name) {
+        value.fail(
+            fmt::format("'{}' cannot be part of {}; use only letters, digits, _ and -, at "
+                        "most {} of them",
+                        printable(name), of, k_longest_name));
+    }
+    return name;
 }
 
 }  // namespace uw

@@ -7,28 +7,7 @@
 
 #include "core/optics/phase_function.h"
 
-/// Phase functions with a closed form. All are normalised exactly: 2 pi int p sin(psi) dpsi = 1.
 namespace uw {
-
-/// p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos psi)^1.5) (Henyey and Greenstein 1941).
-class HenyeyGreenstein final : public PhaseFunction {
-  public:
-    /// `g`, the mean cosine, in (-1, 1); otherwise InputError.
-    explicit HenyeyGreenstein(double g);
-
-    using PhaseFunction::evaluate;
-    void evaluate(std::span<const double> psi, std::span<double> p) const override;
-
-    /// p is smooth, but its poles at psi = +-i ln(1/|g|) (from psi = 0, or pi for g < 0) come so
-    /// near the real axis that one polynomial cannot follow the peak: splits in steps of 3 away
-    /// from it, none for |g| < 0.5.
-    std::vector<double> breakpoints() const override;
-
-    std::string description() const override;
-
-  private:
-    double g_;
-};
 
 /// Fournier and Forand's phase function of particles with index `n` relative to water and a
 /// hyperbolic (Junge) size distribution of slope `mu`, in the form of Fournier and Jonasz (1999),
@@ -70,18 +49,6 @@ class FournierForand final : public PhaseFunction {
     double back_;  // factor of (3 cos^2 psi - 1)
     double core_;  // p inside k_smallest_angle
     std::array<double, k_series_terms> series_a_{}, series_b_{};
-};
-
-/// Scattering by the molecules of water and its salts, Einstein-Smoluchowski (Morel 1974):
-/// p = (1 + 0.835 cos^2 psi) / (4 pi (1 + 0.835/3)).
-class MolecularPhase final : public PhaseFunction {
-  public:
-    /// Depolarisation factor of the cos^2 term.
-    static constexpr double k_anisotropy = 0.835;
-
-    using PhaseFunction::evaluate;
-    void evaluate(std::span<const double> psi, std::span<double> p) const override;
-    std::string description() const override;
 };
 
 }  // namespace uw

@@ -1,9 +1,12 @@
+#include "core/scene/yaml/geometry_reader.h"
+
 #include <fmt/format.h>
 
 #include <array>
 
 #include "core/scene/yaml/config_map.h"
-#include "core/scene/yaml/scene_sections.h"
+#include "core/scene/yaml/name_reader.h"
+#include "core/scene/yaml/pose_reader.h"
 
 namespace uw {
 namespace {

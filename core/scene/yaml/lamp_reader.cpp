@@ -1,18 +1,26 @@
+#include "core/scene/yaml/lamp_reader.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <string_view>
+#include <utility>
+#include <variant>
 
-#include "core/base/text.h"
 #include "core/scene/yaml/config_map.h"
-#include "core/scene/yaml/scene_sections.h"
+#include "core/scene/yaml/name_reader.h"
+#include "core/scene/yaml/spectrum_reader.h"
 
 namespace uw {
 namespace {
 
-constexpr std::size_t k_longest_name = 64;
+LampProfileDesc read_isotropic(ConfigMap& /*map*/, const SceneContext& /*context*/) {
+    return IsotropicProfileDesc{};
+}
 
-void read_spot(ConfigMap& map, LampProfileDesc& profile) {
+LampProfileDesc read_spot(ConfigMap& map, const SceneContext& /*context*/) {
+    SpotProfileDesc profile;
     const ConfigValue beam = map.require("beam", "give the full angle at half intensity");
     profile.beam = beam.number("give the full angle at half intensity in degrees");
     if (profile.beam <= 0 || profile.beam > 180) {
@@ -31,14 +39,22 @@ void read_spot(ConfigMap& map, LampProfileDesc& profile) {
         }
     }
     if (const auto falloff = map.find("falloff")) {
-        using Falloff = LampProfileDesc::Falloff;
+        using Falloff = SpotProfileDesc::Falloff;
         constexpr std::array<std::pair<std::string_view, Falloff>, 2> k_falloffs{
             {{"smooth", Falloff::smooth}, {"gltf", Falloff::gltf}}};
         profile.falloff = falloff->choice(k_falloffs);
     }
+    return profile;
 }
 
-void read_ies_profile(ConfigMap& map, const SceneContext& context, LampProfileDesc& profile) {
+LampProfileDesc read_cosine(ConfigMap& map, const SceneContext& /*context*/) {
+    constexpr auto k_mend = "give the full angle at half intensity in degrees";
+    return CosineProfileDesc{map.require("fwhm", k_mend).between(0, 180, k_mend)};
+}
+
+LampProfileDesc read_ies_profile(ConfigMap& map, const SceneContext& context) {
+    IesProfileDesc profile;
+    profile.where = map.value().location();
     profile.file = read_existing_file(map.require("file", "name the IES file (LM-63)"), context);
     if (const auto rotate = map.find("rotate"))
         profile.rotate =
@@ -46,37 +62,29 @@ void read_ies_profile(ConfigMap& map, const SceneContext& context, LampProfileDe
     if (const auto tilt = map.find("tilt"))
         profile.tilt = tilt->within(
             -180, 180, "give the angle between the lamp's direction and its axis in degrees");
+    return profile;
 }
 
 LampProfileDesc read_profile(const ConfigValue& value, const SceneContext& context) {
-    using Type = LampProfileDesc::Type;
+    using Read = LampProfileDesc (*)(ConfigMap&, const SceneContext&);
+    constexpr auto k_types =
+        std::to_array<std::pair<std::string_view, Read>>({{"isotropic", read_isotropic},
+                                                          {"spot", read_spot},
+                                                          {"cosine", read_cosine},
+                                                          {"ies", read_ies_profile}});
+    static_assert(k_types.size() == std::variant_size_v<LampProfileDesc>);
     constexpr auto k_example = "write {type: spot, beam: 60, edge: 5}";
     ConfigMap map(value, {"type", "beam", "edge", "falloff", "fwhm", "file", "rotate", "tilt"},
                   k_example);
     const ConfigValue type = map.require("type", k_example);
-    constexpr std::array<std::string_view, 4> k_types{"isotropic", "spot", "cosine", "ies"};
-    LampProfileDesc profile;
-    profile.where = value.location();
-    switch (type.word_index(k_types)) {
-        case 0:
-            profile.type = Type::isotropic;
-            break;
-        case 1:
-            profile.type = Type::spot;
-            read_spot(map, profile);
-            break;
-        case 2: {
-            profile.type = Type::cosine;
-            constexpr auto k_mend = "give the full angle at half intensity in degrees";
-            profile.fwhm = map.require("fwhm", k_mend).between(0, 180, k_mend);
-            break;
-        }
-        default:
-            profile.type = Type::ies;
-            read_ies_profile(map, context, profile);
-    }
+    LampProfileDesc profile = type.choice(k_types)(map, context);
     map.finish("profile type '" + type.node().scalar + "'");
     return profile;
+}
+
+/// Whether the profile tells how bright the lamp is.
+bool is_absolute(const LampProfileDesc& profile) {
+    return std::visit([](const auto& desc) { return desc.k_is_absolute; }, profile);
 }
 
 void read_lumens(const ConfigValue& value, LampDesc& lamp) {
@@ -122,7 +130,7 @@ void read_output(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
         read_lumens(*lumens, lamp);
     } else if (intensity || power) {
         read_watts(intensity ? *intensity : *power, intensity.has_value(), context, lamp);
-    } else if (lamp.profile.type != LampProfileDesc::Type::ies) {
+    } else if (!is_absolute(lamp.profile)) {
         map.value().fail(
             "says not how bright it is; give intensity in W/sr or power in W, or its spectrum and "
             "lumens");
@@ -169,55 +177,12 @@ LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneCont
 
 }  // namespace
 
-LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& context) {
-    using Type = LampSpectrumDesc::Type;
-    constexpr auto k_example = "write {type: led, name: LED-B4} or {file: lamp.csv}";
-    ConfigMap map(value, {"type", "temperature", "name", "file", "column"}, k_example);
-    LampSpectrumDesc spectrum;
-    spectrum.where = value.location();
-    if (!map.has("type") && map.has("file")) {
-        spectrum.type = Type::file;
-        spectrum.file = read_existing_file(*map.find("file"), context);
-        if (const auto column = map.find("column"))
-            spectrum.column = column->text("name the column of the file");
-        map.finish("a spectrum with 'file'");
-        return spectrum;
-    }
-    const ConfigValue type = map.require("type", k_example);
-    constexpr std::array<std::pair<std::string_view, Type>, 4> k_types{
-        {{"flat", Type::flat},
-         {"d65", Type::d65},
-         {"blackbody", Type::blackbody},
-         {"led", Type::led}}};
-    spectrum.type = type.choice(k_types);
-    if (spectrum.type == Type::blackbody) {
-        constexpr auto k_mend = "give the colour temperature in kelvin, such as 5600";
-        spectrum.temperature = map.require("temperature", k_mend).within(500, 100000, k_mend);
-    }
-    if (spectrum.type == Type::led) {
-        constexpr auto k_mend = "name one of the CIE's LED illuminants, such as LED-B4";
-        spectrum.name = map.require("name", k_mend).text(k_mend);
-    }
-    map.finish("spectrum type '" + type.node().scalar + "'");
-    return spectrum;
-}
-
-std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend) {
-    constexpr std::string_view k_allowed =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    std::string name = value.text(mend);
-    if (name.find_first_not_of(k_allowed) != std::string::npos || name.size() > k_longest_name) {
-        value.fail(
-            fmt::format("'{}' cannot be part of {}; use only letters, digits, _ and -, at "
-                        "most {} of them",
-                        printable(name), of, k_longest_name));
-    }
-    return name;
-}
-
 std::vector<std::filesystem::path> files_of(const LampDesc& lamp) {
     std::vector<std::filesystem::path> files;
-    if (lamp.profile.type == LampProfileDesc::Type::ies) files.push_back(lamp.profile.file);
+    const auto add_file = [&](const auto& profile) {
+        if constexpr (requires { profile.file; }) files.push_back(profile.file);
+    };
+    std::visit(add_file, lamp.profile);
     if (lamp.spectrum && lamp.spectrum->type == LampSpectrumDesc::Type::file)
         files.push_back(lamp.spectrum->file);
     return files;
