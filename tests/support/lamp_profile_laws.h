@@ -51,7 +51,9 @@ void expect_lamp_profile_laws(const P& profile) {
         EXPECT_GE(relative, 0);
         EXPECT_LE(relative, 1 + 1e-12);
         EXPECT_NEAR(profile.relative_intensity(7.0 * v), relative, 1e-12);
-        if (!cone.widened(1e-9).has(v)) EXPECT_EQ(relative, 0);
+        if (!cone.widened(1e-9).has(v)) {
+            EXPECT_EQ(relative, 0);
+        }
 
         const Ray ray{{offset(rng), offset(rng), offset(rng)}, v};
         std::vector<double> s{0, 10};
