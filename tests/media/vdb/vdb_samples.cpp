@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "media/vdb/vdb_header_reader.h"
 #include "media/volumes/load_volumes.h"
 
 namespace uw {

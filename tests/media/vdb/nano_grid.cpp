@@ -1,6 +1,9 @@
 // ctest labels: unit
+#include "media/vdb/nano_grid.h"
+
 #include <gtest/gtest.h>
 
+#include "media/volumes/grid_field.h"
 #include "tests/support/field_maker.h"
 
 namespace uw {
@@ -13,7 +16,7 @@ double stored_sum(const ConcentrationField& field) {
     return sum;
 }
 
-TEST(NanoGridSum, IsThatOfEveryVoxel) {
+TEST(NanoGrid, StoredSumIsThatOfEveryVoxel) {
     double expected = 0, voxels = 0;
     for (int i = -9; i <= 10; ++i)
         for (int j = -3; j <= 14; ++j)
