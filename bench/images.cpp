@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "bench/support/measure.h"
 #include "bench/support/process.h"
 #include "bench/support/reference_error.h"
 #include "bench/support/scenes.h"
-#include "core/frame/render_film.h"
+#include "render/renderer.h"
 
 namespace uw::bench {
 namespace {
@@ -41,75 +40,58 @@ ReferenceEffort reference_effort(const SceneCase& scene) {
 class ImageRun {
   public:
     explicit ImageRun(const SceneCase& scene) : case_(scene) {
-        const SceneDesc desc = files_.read(scene);
+        renderer_.set_scene(files_.read(scene));
         reset_peak_memory();
-        scene_ = assemble_scene(desc, [](const std::string&) {});
+        renderer_.assemble();
     }
 
     void run(benchmark::State& state) {
-        DeepShadows deep_shadows;
         double splat_s = 0;
-        measure(state, Floor(scene_), case_.threads, [&] {
-            splat_s = render(deep_shadows);
+        const Film* film = nullptr;
+        measure(state, Floor(scene()), case_.threads, [&] {
+            renderer_.drop_light();
+            const double begin = process_cpu_seconds();
+            renderer_.splat();
+            splat_s = process_cpu_seconds() - begin;
+            film = &renderer_.render({.layers = k_layers});
+            benchmark::DoNotOptimize(film->values().data());
             if (peak_mb_ == 0)
                 peak_mb_ = peak_memory_mb();  // before the reference, which adds to it
         });
         if (error_.pixels == 0) {
             const ReferenceEffort effort = reference_effort(case_);
-            error_ = compare_with_reference(scene_, plan(), *film_, effort.pixels, effort.step);
+            error_ = compare_with_reference(scene(), layer_plan(scene().desc, k_layers), *film,
+                                            effort.pixels, effort.step);
         }
         state.counters["splat_s"] = splat_s;
+        state.counters["layers_MB"] = 1e-6 * static_cast<double>(film->values().size_bytes());
         count(state);
     }
 
   private:
-    LayerPlan plan() const {
-        return {"total", scene_.desc.water.bands_nm, lamp_names(scene_.desc)};
-    }
+    static constexpr const char* k_layers = "total";
 
-    // Returns the CPU time of the splat [s].
-    double render(DeepShadows& deep_shadows) {
-        deep_shadows.clear();
-        const double begin = process_cpu_seconds();
-        deep_shadows = splat_lamps(scene_, DeepShadowOptions{});
-        const double splat_s = process_cpu_seconds() - begin;
-        const CameraDesc& camera = scene_.desc.camera;
-        film_.emplace(camera.width, camera.height, PixelWindow{0, 0, camera.width, camera.height},
-                      plan().channel_names());
-        film_bytes_ = film_->values().size_bytes();
-        render_scene(scene_, deep_shadows, *make_integrator(scene_, deep_shadows), plan(),
-                     BandColour(scene_.desc.water.bands_nm), *film_,
-                     [](const std::string&, double) { return true; });
-        benchmark::DoNotOptimize(film_->values().data());
-        return splat_s;
-    }
+    const AssembledScene& scene() const { return renderer_.assembled(); }
 
     void count(benchmark::State& state) const {
-        double voxels = 0, grid_bytes = 0;
-        for (const VolumeReport& report : scene_.volume_reports) {
-            voxels += static_cast<double>(report.statistics.active_voxels);
-            grid_bytes += static_cast<double>(report.bytes);
-        }
+        const RenderReport& report = renderer_.report();
         state.counters["rmse"] = error_.rmse;
         state.counters["largest_error"] = error_.largest;
         state.counters["reference_rmse"] = error_.reference;
         state.counters["pixels_compared"] = error_.pixels;
         state.counters["peak_MB"] = peak_mb_;
-        state.counters["grids_MB"] = 1e-6 * grid_bytes;
-        state.counters["layers_MB"] = 1e-6 * static_cast<double>(film_bytes_);
+        state.counters["grids_MB"] = 1e-6 * static_cast<double>(report.grid_bytes);
         state.counters["pixels"] = 1.0 * case_.width * case_.height;
-        state.counters["lamps"] = static_cast<double>(scene_.lamps.size());
-        state.counters["bands"] = scene_.water.medium.band_count();
-        state.counters["voxels"] = voxels;
-        state.counters["triangles"] = static_cast<double>(scene_.surfaces->triangle_count());
+        state.counters["lamps"] = static_cast<double>(report.lamps);
+        state.counters["bands"] = static_cast<double>(report.bands);
+        state.counters["voxels"] = static_cast<double>(report.active_voxels);
+        state.counters["triangles"] = static_cast<double>(report.triangles);
     }
 
     SceneCase case_;
     SceneFiles files_;
-    AssembledScene scene_;
-    std::size_t film_bytes_ = 0;
+    Renderer renderer_;
     double peak_mb_ = 0;
-    std::optional<Film> film_;  // of the last render
     ReferenceError error_;
 };
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/support/measure.h"
@@ -14,7 +15,7 @@
 #include "core/frame/tile_renderer.h"
 #include "core/image/image_writer.h"
 #include "core/surfaces/geometry_scene.h"
-#include "render/scene_rendering.h"
+#include "render/renderer.h"
 
 namespace uw::bench {
 namespace {
@@ -27,25 +28,20 @@ class StageRun {
     StageRun(const SceneCase& scene, bool forward_scatter) : threads_(scene.threads) {
         SceneDesc desc = files_.read(scene);
         if (forward_scatter) desc.water.forward_scatter = {.K = 1, .G = 0.02, .B = 0.005};
+        renderer_.set_scene(std::move(desc));
         reset_peak_memory();
-        scene_ = assemble_scene(desc, [](const std::string&) {});
+        renderer_.assemble();
     }
 
-    const AssembledScene& scene() const { return scene_; }
-    const SceneDesc& desc() const { return scene_.desc; }
-    const DeepShadows& deep_shadows() {
-        if (deep_shadows_.empty()) deep_shadows_ = splat_lamps(scene_, DeepShadowOptions{});
-        return deep_shadows_;
+    const AssembledScene& scene() const { return renderer_.assembled(); }
+    const SceneDesc& desc() const { return scene().desc; }
+    Renderer& renderer() { return renderer_; }
+    const LightTransport& transport() {
+        if (!transport_.integrator) transport_ = renderer_.make_transport();
+        return transport_;
     }
-    const Integrator& integrator() {
-        if (!integrator_) integrator_ = make_integrator(scene_, deep_shadows());
-        return *integrator_;
-    }
-    PixelRenderer renderer() {
-        return {*scene_.camera, scene_.lit(),        integrator(), 1,
-                scene_.slabs,   SensorModel(desc()), {false, true}};
-    }
-    LayerPlan plan() const { return {"default", desc().water.bands_nm, lamp_names(desc())}; }
+    PixelRenderer pixels() { return pixel_renderer(scene(), transport(), {false, true}); }
+    LayerPlan plan() const { return layer_plan(desc(), "default"); }
     Film film() const {
         const CameraDesc& camera = desc().camera;
         return {camera.width,
@@ -57,7 +53,7 @@ class StageRun {
     /// Times `work` and takes the memory down that the scene and it need.
     void measure(benchmark::State& state, const std::function<void()>& work) const {
         double peak_mb = 0;
-        bench::measure(state, Floor(scene_), threads_, [&] {
+        bench::measure(state, Floor(scene()), threads_, [&] {
             work();
             peak_mb = peak_memory_mb();
         });
@@ -67,9 +63,8 @@ class StageRun {
   private:
     int threads_;
     SceneFiles files_;
-    AssembledScene scene_;
-    DeepShadows deep_shadows_;
-    std::unique_ptr<Integrator> integrator_;
+    Renderer renderer_;
+    LightTransport transport_;
 };
 
 void load_volumes(StageRun& run, benchmark::State& state) {
@@ -92,13 +87,15 @@ void load_geometry(StageRun& run, benchmark::State& state) {
 }
 
 void splat(StageRun& run, benchmark::State& state) {
-    run.measure(state,
-                [&] { benchmark::DoNotOptimize(splat_lamps(run.scene(), DeepShadowOptions{})); });
+    run.measure(state, [&] {
+        run.renderer().drop_light();
+        benchmark::DoNotOptimize(run.renderer().splat());
+    });
 }
 
 // Every pixel's values, none kept.
 void march(StageRun& run, benchmark::State& state) {
-    const PixelRenderer renderer = run.renderer();
+    const PixelRenderer renderer = run.pixels();
     const CameraDesc& camera = run.desc().camera;
     constexpr int k_tile = InScatterLattice::k_tile;
     const int columns = (camera.width + k_tile - 1) / k_tile;
@@ -120,14 +117,13 @@ void march(StageRun& run, benchmark::State& state) {
 
 // The second pass alone: what it adds to a render.
 void forward_scatter(StageRun& run, benchmark::State& state) {
-    const PixelRenderer renderer = run.renderer();
+    const PixelRenderer renderer = run.pixels();
     const AssembledScene& scene = run.scene();
     const LayerPlan plan = run.plan();
     Film film = run.film();
-    const auto setup = forward_scatter_setup(scene, run.deep_shadows());
+    const auto setup = forward_scatter_setup(scene, run.renderer().splat());
     const auto go_on = [](double) { return true; };
-    ForwardPass pass(renderer, scene.lit(), run.integrator(), scene.camera->world_from_camera(),
-                     setup, plan);
+    ForwardPass pass(renderer, scene.lit(), setup, plan);
     const BandColour colour(run.desc().water.bands_nm);
     render_film(renderer, in_scatter_tolerance(run.desc().render), plan, colour, film, go_on,
                 [&](int x, int y, const PixelView& view, const PixelResult& result) {
@@ -138,7 +134,7 @@ void forward_scatter(StageRun& run, benchmark::State& state) {
 
 // One pixel's values into every pixel of a film of all default layers.
 void store_film(StageRun& run, benchmark::State& state) {
-    const PixelRenderer renderer = run.renderer();
+    const PixelRenderer renderer = run.pixels();
     const LayerPlan plan = run.plan();
     const BandColour colour(run.desc().water.bands_nm);
     const CameraDesc& camera = run.desc().camera;
@@ -148,14 +144,14 @@ void store_film(StageRun& run, benchmark::State& state) {
         Film film = run.film();
         for (int y = 0; y < camera.height; ++y)
             for (int x = 0; x < camera.width; ++x)
-                store_pixel(result, plan, colour, renderer.band_count(), film.pixel(x, y));
+                store_pixel(result, plan, colour, film.pixel(x, y));
         benchmark::DoNotOptimize(film.values().data());
     });
 }
 
 void write_image(StageRun& run, benchmark::State& state) {
     Film film = run.film();
-    render_film(run.renderer(), in_scatter_tolerance(run.desc().render), run.plan(),
+    render_film(run.pixels(), in_scatter_tolerance(run.desc().render), run.plan(),
                 BandColour(run.desc().water.bands_nm), film, [](double) { return true; });
     const ScratchFolder folder;
     run.measure(state, [&] { write_exr(folder.path() / "image.exr", film, {}); });

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/scene/scene_desc.h"
+#include "core/scene/camera_desc.h"
 
 namespace uw {
 

@@ -65,7 +65,7 @@ void check_volumes(const FrameSequence& sequence, const SceneDesc& scene) {
         VolumeSequenceCheck check;
         for (const Frame& frame : sequence.frames)
             if (frame.camera == sequence.frames.front().camera)
-                check.take(scene_of_frame(scene, frame).volumes[v]);
+                check.take(scene_of_image(scene, frame.choice()).volumes[v]);
     }
 }
 
@@ -160,26 +160,6 @@ void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::str
     for (Frame& frame : sequence.frames) frame.files.stats.clear();
 }
 
-SceneDesc scene_of_frame(const SceneDesc& scene, const Frame& frame) {
-    SceneDesc result = scene;
-    if (!scene.cameras.empty()) {
-        result.camera = scene.cameras[frame.camera].camera;
-        result.camera_name = scene.cameras[frame.camera].name;
-    }
-    if (!frame.number) return result;
-    const auto choose = [&](auto& input) {
-        if (!input.is_sequence) return;
-        input.file = file_of_frame(input.file, *frame.number);
-        input.is_sequence = false;
-    };
-    for (VolumeDesc& volume : result.volumes) {
-        choose(volume);
-        if (volume.motion) choose(*volume.motion);
-    }
-    std::ranges::for_each(result.geometry, choose);
-    return result;
-}
-
 void check_frames(const FrameSequence& sequence, const SceneDesc& scene) {
     const bool numbered = !sequence.frames.empty() && sequence.frames.front().number;
     if (numbered) {
@@ -195,12 +175,14 @@ void check_frames(const FrameSequence& sequence, const SceneDesc& scene) {
         check_volumes(sequence, scene);
     }
     OutputCheck outputs;
-    for (const Frame& frame : sequence.frames) outputs.take_inputs(scene_of_frame(scene, frame));
+    GltfSideFiles known;
+    for (const Frame& frame : sequence.frames)
+        outputs.take_inputs(input_files(scene_of_image(scene, frame.choice()), known));
     for (const Frame& frame : sequence.frames) outputs.take_outputs(frame.files);
     if (!sequence.stats.empty()) outputs.take_outputs({{}, {}, sequence.stats, {}});
 }
 
-bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
+bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
                  const std::function<bool(const fs::path&)>& is_image_of) {
     const OutputFiles& files = frame.files;
     if (!is_file(files.image) || !is_file(files.preview)) return false;
@@ -208,17 +190,12 @@ bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
     std::error_code error;
     const auto rendered = fs::last_write_time(files.image, error);
     if (error) return false;
-    const auto is_newer = [&](const fs::path& input) {
-        const auto written = fs::last_write_time(input, error);
+    const auto is_newer = [&](const InputFile& input) {
+        if (input.is_hashed) return false;
+        const auto written = fs::last_write_time(input.file, error);
         return !error && written > rendered;
     };
-    for (const VolumeDesc& volume : scene_of_frame.volumes)
-        if (is_newer(volume.file) || (volume.motion && is_newer(volume.motion->file))) return false;
-    for (const GeometryDesc& mesh : scene_of_frame.geometry)
-        if (mesh.type == GeometryDesc::Type::file && is_newer(mesh.file)) return false;
-    for (const LampDesc& lamp : scene_of_frame.lamps)
-        if (std::ranges::any_of(files_of(lamp), is_newer)) return false;
-    if (is_newer(scene_of_frame.render.colour.file)) return false;
+    if (std::ranges::any_of(inputs, is_newer)) return false;
     return is_image_of(files.image);
 }
 

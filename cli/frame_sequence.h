@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/arguments.h"
 #include "cli/output_files.h"
+#include "cli/render_arguments.h"
 #include "core/scene/scene_desc.h"
+#include "render/input_files.h"
+#include "render/resolved_scene.h"
 
 namespace uw {
 
@@ -18,6 +20,8 @@ struct Frame {
     OutputFiles files;
     std::size_t camera = 0;   // of a rig's, by its index
     std::string camera_name;  // empty: the scene has one camera
+
+    ImageChoice choice() const { return {number, camera}; }
 };
 
 /// The images of a run, in the order they are rendered.
@@ -36,18 +40,15 @@ FrameSequence frames_of(const RenderArguments& arguments);
 /// that there is not, and for a place in names without a rig.
 void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::string& only);
 
-/// `scene` with the frame's files in place of its sequences, and seen by the frame's camera.
-SceneDesc scene_of_frame(const SceneDesc& scene, const Frame& frame);
-
 /// Looks at what all frames read and write before the first is rendered. Throws IoError that names
 /// all frames whose files are missing; InputError for a frame that does not go with the others (see
 /// VolumeSequenceCheck); what OutputCheck does.
 void check_frames(const FrameSequence& sequence, const SceneDesc& scene);
 
 /// Whether `frame`, one of a sequence, is there: all its files but the statistics are, the image is
-/// one that `is_image_of` accepts, and none of the files of the frame's volumes, meshes and lamps
-/// is newer than it.
-bool is_rendered(const Frame& frame, const SceneDesc& scene_of_frame,
+/// one that `is_image_of` accepts, and none of `inputs` is newer than it. Those that are part of
+/// the scene's hash are for `is_image_of` to look at.
+bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
                  const std::function<bool(const std::filesystem::path& image)>& is_image_of);
 
 /// A line of warning where names and frames do not go together though they can be rendered:

@@ -1,18 +1,16 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <exception>
-#include <iostream>
 #include <new>
-#include <variant>
+#include <vector>
 
-#include "cli/arguments.h"
 #include "cli/calibration/calibration_command.h"
+#include "cli/command_line.h"
 #include "cli/console.h"
-#include "cli/exit_code.h"
 #include "cli/info/info_command.h"
 #include "cli/render/render_command.h"
-#include "cli/stop_signal.h"
+#include "cli/shell/completion_command.h"
+#include "cli/shell/manual_command.h"
 #include "cli/validate/validate_command.h"
 #include "cli/water/water_command.h"
 #include "core/base/error.h"
@@ -27,36 +25,15 @@ int fail(uw::ExitCode code, const char* what) {
     return code;
 }
 
-uw::ExitCode run(const uw::MessageArguments& arguments) {
-    uw::print_output(arguments.text);
-    return uw::k_exit_done;
-}
-
-uw::ExitCode run(const uw::RenderArguments& arguments) {
-    uw::install_stop_signal();
-    uw::run_render(arguments);
-    return uw::k_exit_done;
-}
-
-uw::ExitCode run(const uw::InfoArguments& arguments) {
-    uw::print_output(uw::run_info(arguments));
-    return uw::k_exit_done;
-}
-
-uw::ExitCode run(const uw::WaterArguments& arguments) {
-    uw::run_water(arguments, std::cout);
-    return uw::k_exit_done;
-}
-
-uw::ExitCode run(const uw::CalibrationArguments& arguments) {
-    uw::run_calibration(arguments, std::cout);
-    return uw::k_exit_done;
-}
-
-uw::ExitCode run(const uw::ValidateArguments& arguments) {
-    uw::install_stop_signal();
-    const bool colour = isatty(STDOUT_FILENO) != 0;
-    return uw::run_validate(arguments, colour, std::cout) ? uw::k_exit_done : uw::k_exit_validation;
+// Adds the program's commands in the order in which --help lists them.
+void add_all(std::vector<uw::Command>& commands) {
+    commands.push_back(uw::render_command());
+    commands.push_back(uw::info_command());
+    commands.push_back(uw::water_command());
+    commands.push_back(uw::validate_command());
+    commands.push_back(uw::calibration_command());
+    commands.push_back(uw::completion_command(commands));
+    commands.push_back(uw::manual_command(commands));
 }
 
 }  // namespace
@@ -64,8 +41,9 @@ uw::ExitCode run(const uw::ValidateArguments& arguments) {
 int main(int argc, char** argv) {
     uw::prepare_streams();
     try {
-        const uw::Arguments parsed = uw::parse_arguments(argc, argv);
-        return std::visit([](const auto& arguments) { return run(arguments); }, parsed);
+        std::vector<uw::Command> commands;
+        add_all(commands);
+        return uw::read_command_line(argc, argv, commands)();
     } catch (const uw::UsageError& error) {
         return fail(uw::k_exit_usage, error.what());
     } catch (const uw::InputError& error) {

@@ -59,23 +59,8 @@ OutputFiles output_files(const RenderArguments& a) {
     return files;
 }
 
-void OutputCheck::take_inputs(const SceneDesc& scene) {
-    taken_.emplace(identity(scene.file), "the scene");
-    if (scene.camera.calibration)
-        taken_.emplace(identity(scene.camera.calibration->file), "the scene's calibration");
-    for (const VolumeDesc& volume : scene.volumes) {
-        taken_.emplace(identity(volume.file), "a volume of the scene");
-        if (volume.motion && !volume.motion->file.empty())
-            taken_.emplace(identity(volume.motion->file), "a volume's velocity of the scene");
-    }
-    for (const GeometryDesc& geometry : scene.geometry)
-        if (geometry.type == GeometryDesc::Type::file)
-            taken_.emplace(identity(geometry.file), "a mesh of the scene");
-    for (const LampDesc& lamp : scene.lamps)
-        for (const fs::path& file : files_of(lamp))
-            taken_.emplace(identity(file), "a lamp's file of the scene");
-    if (!scene.render.colour.file.empty())
-        taken_.emplace(identity(scene.render.colour.file), "the response of the scene");
+void OutputCheck::take_inputs(const std::vector<InputFile>& inputs) {
+    for (const auto& [file, what, is_hashed] : inputs) taken_.emplace(identity(file), what);
 }
 
 void OutputCheck::take_outputs(const OutputFiles& files) {

@@ -3,9 +3,10 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
-#include "cli/arguments.h"
-#include "core/scene/scene_desc.h"
+#include "cli/render_arguments.h"
+#include "render/input_files.h"
 
 namespace uw {
 
@@ -25,8 +26,8 @@ OutputFiles output_files(const RenderArguments& arguments);
 /// Finds out before the work rather than after it whether all can be written.
 class OutputCheck {
   public:
-    /// Takes note of the files that a scene is read from.
-    void take_inputs(const SceneDesc& scene);
+    /// Takes note of files that are read.
+    void take_inputs(const std::vector<InputFile>& inputs);
     /// Throws UsageError if two files are one, or one is a file that has been taken note of;
     /// IoError if one cannot be made.
     void take_outputs(const OutputFiles& files);

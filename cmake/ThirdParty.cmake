@@ -1,13 +1,12 @@
 # Every third-party library, found once. All come from the distribution's packages.
 find_package(Threads REQUIRED)
 find_package(TBB REQUIRED)
-find_package(glm QUIET)
-if(NOT TARGET glm::glm)
-    find_path(GLM_INCLUDE_DIR glm/glm.hpp REQUIRED)
-    add_library(glm::glm INTERFACE IMPORTED)
-    set_target_properties(glm::glm PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${GLM_INCLUDE_DIR})
+include(Glm)
+# The same preference as in core/surfaces/embree_api.h.
+find_package(embree 4 QUIET)
+if(NOT embree_FOUND)
+    find_package(embree 3 REQUIRED)
 endif()
-find_package(embree 3 REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(assimp REQUIRED)
 find_package(fmt REQUIRED)
@@ -27,6 +26,8 @@ target_include_directories(uwvdb_fftw SYSTEM INTERFACE ${FFTW3_INCLUDE_DIR})
 target_link_libraries(uwvdb_fftw INTERFACE ${FFTW3_LIBRARY})
 
 # OpenVDB ships find modules, not a package config; their folder names the architecture.
+# They ask for Boost, which CMake is to take from Boost's own package config.
+set(CMAKE_POLICY_DEFAULT_CMP0167 NEW)
 file(GLOB UWVDB_OPENVDB_MODULES /usr/lib/*/cmake/OpenVDB /usr/lib/cmake/OpenVDB
      /usr/local/lib/cmake/OpenVDB)
 list(APPEND CMAKE_MODULE_PATH ${UWVDB_OPENVDB_MODULES})

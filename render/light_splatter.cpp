@@ -35,14 +35,14 @@ void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Dire
     }
 }
 
-std::vector<std::shared_ptr<const DeepShadowMap>> LightSplatter::splat(
-    const AssembledScene& scene, const DeepShadowOptions& options, const ShareCallback& progress) {
+DeepShadows LightSplatter::splat(const AssembledScene& scene, const DeepShadowOptions& options,
+                                 const ShareCallback& progress) {
     counts_ = {};
     DeepShadowOptions share = options;
     share.column_budget /= std::max(std::size_t{1}, scene.lamps.size());
     drop_outdated(scene, share);
     std::vector<Maps> before = std::exchange(maps_, {});
-    std::vector<std::shared_ptr<const DeepShadowMap>> fields;
+    DeepShadows fields;
     for (const Lamp& lamp : scene.lamps) {
         const DirectionCone beam = lamp.cone();
         Maps maps{lamp.position(), nullptr, nullptr};

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "render/scene_assembly.h"
 
 namespace uw {
+
+/// Told the share of the lamps that are done.
+using ShareCallback = std::function<void(double share)>;
 
 /// What one splat made rather than took over.
 struct SplatCounts {
@@ -24,10 +28,10 @@ struct SplatCounts {
 /// or widened its beam new shadows only, of its beam.
 class LightSplatter {
   public:
-    /// The light of every lamp of `scene`, to the bit what splat_lamps makes. Surfaces and field
+    /// The light of every lamp of `scene`, to the bit what a new splatter makes. Surfaces and field
     /// are the same if they are the same objects. The surfaces are kept alive; a field is not, so
-    /// that its memory is free for the one that follows.
-    std::vector<std::shared_ptr<const DeepShadowMap>> splat(
+    /// that its memory is free for the one that follows. What `progress` throws ends the splat.
+    DeepShadows splat(
         const AssembledScene& scene, const DeepShadowOptions& options,
         const ShareCallback& progress = [](double) {});
 

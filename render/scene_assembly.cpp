@@ -3,41 +3,30 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/forward/forward_images.h"
 #include "core/integrators/focus_weighted_integrator.h"
-#include "core/integrators/planes_integrator.h"
-#include "core/integrators/reference_integrator.h"
-#include "core/integrators/volume_integrator.h"
+#include "core/integrators/integrator_table.h"
 #include "core/lamps/lamp_factory.h"
-#include "core/meshes/gltf/gltf_import.h"
 #include "core/surfaces/geometry_scene.h"
 #include "media/volumes/grid_field.h"
-#include "render/light_splatter.h"
 
 namespace uw {
 
 namespace {
-
-// Of what a path through a volume to a surface lets through: far below what an eye or a camera of
-// 12 bits tells apart.
-constexpr double k_column_tolerance = 1e-3;
-constexpr double k_draft_column_tolerance = 0.01;
-constexpr int k_draft_voxels_per_panel = 6;
 
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
 // A lamp where the camera's rays begin has in-scatter that grows without bound (1/r^2).
-void warn_of_lamps_at_the_camera(AssembledScene& scene) {
-    const CameraDesc& camera = scene.desc.camera;
+void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
+    const CameraDesc& camera = desc.camera;
     const std::optional<Ray> ray =
         scene.camera->refracted_ray(0.5 * camera.width, 0.5 * camera.height);
     if (!ray) {
         scene.warnings.push_back(fmt::format(
             "{}: camera: no ray of the image centre enters the water; check camera.port",
-            scene.desc.file.filename().string()));
+            desc.file.filename().string()));
         return;
     }
     for (std::size_t j = 0; j < scene.lamps.size(); ++j) {
@@ -45,7 +34,7 @@ void warn_of_lamps_at_the_camera(AssembledScene& scene) {
             scene.warnings.push_back(fmt::format(
                 "{}: the lamp stands where the camera's rays enter the water; its in-scatter "
                 "grows without bound there and is cut at {} m from it; move it aside",
-                scene.desc.lamps[j].where, k_lamp_radius));
+                desc.lamps[j].where, k_lamp_radius));
     }
 }
 
@@ -54,26 +43,10 @@ void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
     if (desc.K == 0) return;
     std::vector<double> attenuation;
     attenuation.reserve(medium.wavelengths_nm.size());
-    for (int band = 0; band < medium.band_count(); ++band)
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band)
         attenuation.push_back(medium.uniform.attenuation(band));
     check_forward_scatter(desc, attenuation, desc.where);
     check_blur_length(medium, desc.where);
-}
-
-void refuse_open_sequences(const SceneDesc& desc) {
-    const auto refuse = [](const SourceLocation& where, const std::filesystem::path& file) {
-        throw InputError(
-            fmt::format("{}.file: there is no '{}', and as the name of a sequence it wants frames; "
-                        "render it with --frames 1-10, or name one file",
-                        where, printable(file.string(), 300)));
-    };
-    for (const VolumeDesc& volume : desc.volumes) {
-        if (volume.is_sequence) refuse(volume.where, volume.file);
-        if (volume.motion && volume.motion->is_sequence)
-            refuse(volume.motion->where, volume.motion->file);
-    }
-    for (const GeometryDesc& geometry : desc.geometry)
-        if (geometry.is_sequence) refuse(geometry.where, geometry.file);
 }
 
 // Whether volumes mean the same for the water; their files are no matter.
@@ -82,8 +55,8 @@ bool same_water(const SceneDesc& a, const SceneDesc& b) {
            std::ranges::equal(a.volumes, b.volumes, {}, &VolumeDesc::grids, &VolumeDesc::grids);
 }
 
-void take_over_volumes(AssembledScene& scene, AssembledScene& before) {
-    const std::vector<VolumeDesc>& volumes = scene.desc.volumes;
+void take_over_volumes(const std::vector<VolumeDesc>& volumes, AssembledScene& scene,
+                       AssembledScene& before) {
     bool all = volumes.size() == before.volumes.size() && before.field != nullptr &&
                before.field->constituent_count() == scene.water.medium.constituent_count();
     scene.volumes.resize(volumes.size());
@@ -98,10 +71,10 @@ void take_over_volumes(AssembledScene& scene, AssembledScene& before) {
     before.field.reset();
 }
 
-void load_volumes(AssembledScene& scene) {
+void load_volumes(const std::vector<VolumeDesc>& volumes, AssembledScene& scene) {
     for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
         LoadedVolume& volume = scene.volumes[v];
-        if (volume.grids.empty()) volume = load_volume(scene.desc.volumes[v], scene.water.loads[v]);
+        if (volume.grids.empty()) volume = load_volume(volumes[v], scene.water.loads[v]);
         append(scene.warnings, volume.warnings);
         scene.volume_reports.insert(scene.volume_reports.end(), volume.reports.begin(),
                                     volume.reports.end());
@@ -114,9 +87,9 @@ void load_volumes(AssembledScene& scene) {
         std::make_shared<GridField>(std::move(grids), scene.water.medium.constituent_count());
 }
 
-void take_over_surfaces(AssembledScene& scene, AssembledScene& before) {
-    if (before.surfaces && before.desc.geometry == scene.desc.geometry &&
-        before.desc.water.bands_nm == scene.desc.water.bands_nm) {
+void take_over_surfaces(const SceneDesc& desc, AssembledScene& scene, AssembledScene& before) {
+    if (before.surfaces && before.desc.geometry == desc.geometry &&
+        before.desc.water.bands_nm == desc.water.bands_nm) {
         scene.surfaces = before.surfaces;
         scene.geometry_warnings = std::move(before.geometry_warnings);
     }
@@ -125,24 +98,10 @@ void take_over_surfaces(AssembledScene& scene, AssembledScene& before) {
 
 }  // namespace
 
-AssembledScene assemble_scene(const SceneDesc& given, const StageCallback& begin_stage,
+AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
                               AssembledScene before) {
-    refuse_open_sequences(given);
     AssembledScene scene;
-    scene.desc = given;
-    import_gltf(scene.desc);
-    const SceneDesc& desc = scene.desc;
-    if (desc.render.integrator == RenderDesc::Integrator::planes && !desc.volumes.empty())
-        throw InputError(
-            fmt::format("{}: the planes integrator is for uniform water: remove `volumes`, or use "
-                        "integrator volume",
-                        desc.volumes.front().where));
-    if (desc.render.integrator == RenderDesc::Integrator::planes &&
-        desc.camera.distortion.model == DistortionDesc::Model::fisheye)
-        throw InputError(fmt::format(
-            "{}: render.integrator: the planes integrator sums over slabs parallel to the image "
-            "plane, which a fisheye lens looks past; use integrator volume",
-            desc.file.filename().string()));
+    integrator_kind(desc.render.integrator).check(desc);
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
     scene.water = before.camera && same_water(before.desc, desc)
@@ -151,10 +110,10 @@ AssembledScene assemble_scene(const SceneDesc& given, const StageCallback& begin
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
     check_forward_scatter_of(desc, medium);
-    take_over_volumes(scene, before);
-    take_over_surfaces(scene, before);
+    take_over_volumes(desc.volumes, scene, before);
+    take_over_surfaces(desc, scene, before);
     begin_stage("volumes");
-    load_volumes(scene);
+    load_volumes(desc.volumes, scene);
     begin_stage("geometry");
     if (!scene.surfaces)
         scene.surfaces =
@@ -163,43 +122,23 @@ AssembledScene assemble_scene(const SceneDesc& given, const StageCallback& begin
     for (const LampDesc& lamp : desc.lamps)
         scene.lamps.push_back(
             make_lamp(lamp, desc.camera.world_from_camera, medium.wavelengths_nm, scene.warnings));
-    warn_of_lamps_at_the_camera(scene);
+    warn_of_lamps_at_the_camera(desc, scene);
     scene.slabs = place_slabs(desc.render.planes, *scene.camera, scene.lit());
     return scene;
 }
 
-std::vector<std::shared_ptr<const DeepShadowMap>> splat_lamps(const AssembledScene& scene,
-                                                              const DeepShadowOptions& options,
-                                                              const ShareCallback& progress) {
-    return LightSplatter().splat(scene, options, progress);
-}
-
-static std::unique_ptr<Integrator> make_unweighted_integrator(
-    const AssembledScene& scene,
-    const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
-    if (scene.desc.render.integrator == RenderDesc::Integrator::reference)
-        return std::make_unique<ReferenceIntegrator>(scene.lit());
-    if (scene.desc.render.integrator == RenderDesc::Integrator::planes)
-        return std::make_unique<PlanesIntegrator>(scene.lit(), scene.desc.camera.world_from_camera,
-                                                  scene.slabs);
-    VolumeQuadrature quadrature;
-    if (scene.desc.render.quality == RenderDesc::Quality::final)
-        quadrature.column_tolerance = k_column_tolerance;
-    if (scene.desc.render.quality == RenderDesc::Quality::draft)
-        quadrature = {k_draft_voxels_per_panel, k_draft_column_tolerance};
-    return std::make_unique<VolumeIntegrator>(
-        scene.lit(),
-        std::vector<std::shared_ptr<const DeepShadow>>(deep_shadows.begin(), deep_shadows.end()),
-        quadrature);
-}
-
-std::unique_ptr<Integrator> make_integrator(
-    const AssembledScene& scene,
-    const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
-    std::unique_ptr<Integrator> integrator = make_unweighted_integrator(scene, deep_shadows);
-    if (scene.desc.render.output != RenderDesc::Output::paper) return integrator;
-    return std::make_unique<FocusWeightedIntegrator>(std::move(integrator),
-                                                     scene.desc.camera.lens.value().focal_length);
+LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows) {
+    const RenderDesc& render = scene.desc.render;
+    LightTransport transport = integrator_kind(render.integrator)
+                                   .make({scene.lit(),
+                                          scene.desc.camera.world_from_camera,
+                                          scene.slabs,
+                                          render.quality,
+                                          {deep_shadows.begin(), deep_shadows.end()}});
+    if (render.output == RenderDesc::Output::paper)
+        transport.integrator = std::make_unique<FocusWeightedIntegrator>(
+            std::move(transport.integrator), scene.desc.camera.lens.value().focal_length);
+    return transport;
 }
 
 }  // namespace uw

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "core/integrators/integrator.h"
+#include "core/integrators/light_transport.h"
 #include "core/integrators/lit_scene.h"
 #include "core/integrators/slabs.h"
 #include "core/scene/scene_desc.h"
@@ -16,9 +16,12 @@
 
 namespace uw {
 
+/// The light of every lamp of a scene, in their order.
+using DeepShadows = std::vector<std::shared_ptr<const DeepShadowMap>>;
+
 /// A scene description turned into the concrete parts that integrators work on.
 struct AssembledScene {
-    SceneDesc desc;
+    SceneDesc desc;  // what it was made from, resolved
     std::unique_ptr<Camera> camera;
     WaterModel water;
     std::shared_ptr<const ConcentrationField> field;
@@ -38,28 +41,18 @@ struct AssembledScene {
 /// Called with the name of each stage as it begins.
 using StageCallback = std::function<void(const std::string& stage)>;
 
-/// Loads what `desc` names and builds it, with what glTF files bring (import_gltf), and places the
-/// slabs. `before`, a scene assembled
-/// earlier or none, is used up: water, volumes and surfaces whose description is the same are taken
-/// over from it as they are, even if their files have changed since; what is not is freed before
-/// anything is loaded. The result is to the bit what it is without `before`. Throws InputError,
-/// also for a file that is a sequence of which no frame was chosen, and IoError, of one line each.
+/// Loads what `desc`, a resolved scene's, names and builds it, and places the slabs. `desc` of the
+/// result is left empty, for the caller to move the description there: none is copied. `before`, a
+/// scene assembled earlier or none, is used up: water, volumes and surfaces whose description is
+/// the same are taken over from it as they are, even if their files have changed since; what is not
+/// is freed before anything is loaded. The result is to the bit what it is without `before`. Throws
+/// InputError and IoError of one line each.
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
                               AssembledScene before = {});
 
-/// Told the share of a stage's work that is done.
-using ShareCallback = std::function<void(double share)>;
-
-/// Splats the light of every lamp of `scene`, all of it anew (else cli/light_splatter.h).
-std::vector<std::shared_ptr<const DeepShadowMap>> splat_lamps(
-    const AssembledScene& scene, const DeepShadowOptions& options,
-    const ShareCallback& progress = [](double) {});
-
-/// The integrator that the scene asks for, on light splatted before; `deep_shadows` may be empty
-/// for all but the volume integrator. Throws InputError for one that cannot do the scene.
-/// Weighted by distance where the output is the paper's.
-std::unique_ptr<Integrator> make_integrator(
-    const AssembledScene& scene,
-    const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows);
+/// The light transport of the integrator that the scene asks for, from light splatted before;
+/// `deep_shadows` may be empty unless IntegratorKind::needs_deep_shadows. In-scatter is weighted by
+/// distance where the output is the paper's.
+LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows);
 
 }  // namespace uw

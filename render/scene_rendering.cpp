@@ -4,25 +4,27 @@
 #include <cmath>
 
 #include "core/frame/render_film.h"
+#include "core/integrators/integrator_table.h"
 #include "core/integrators/sensor.h"
 
 namespace uw {
 
 namespace {
 
-// Layers of water that begin at a distance s are k_growth (s + offset) thick, the offset the lesser
-// of two bounds. Water that a surface cuts in the middle of a layer lights the whole layer beside
-// it: a halo around depth edges, of first order in the thickness. It is up to 0.25 % of the
-// backscatter in what `uwvdb validate` looks at, no more than the ladder of blur widths leaves.
+// Slabs of water that begin at a distance s are k_growth (s + offset) thick, the offset the lesser
+// of two bounds. Where a surface cuts a slab, what is left of it lights all of the slab beside it:
+// a halo around depth edges, of first order in the thickness. It is up to 0.25 % of the backscatter
+// in what `uwvdb validate` renders, no more than the ladder of blur widths leaves.
 constexpr double k_growth = 0.06;
 constexpr double k_offset = 0.3;        // m
 constexpr double k_offset_depth = 0.6;  // optical depth
-// How far water mixed from pixels around may be from its own (InScatterLattice), relative, where
-// the lattice is confirmed; what is shown is mixed from nearer ones: a quarter of it.
-constexpr double k_water_tolerance = 2e-3;
+// How far in-scatter that is interpolated between pixels may be from their own (InScatterLattice),
+// relative, where the lattice is confirmed; what is shown is interpolated from nearer nodes and off
+// by a quarter of it.
+constexpr double k_in_scatter_tolerance = 2e-3;
 constexpr double k_draft_tolerance = 0.05;
 
-std::vector<double> growing_layers(double near, double far, double attenuation) {
+std::vector<double> growing_slabs(double near, double far, double attenuation) {
     double offset = k_offset;
     if (attenuation > 0) offset = std::min(offset, k_offset_depth / attenuation);
     const double count =
@@ -34,21 +36,19 @@ std::vector<double> growing_layers(double near, double far, double attenuation) 
     return faces;
 }
 
-std::vector<double> layer_faces(const AssembledScene& scene) {
+std::vector<double> slab_faces(const AssembledScene& scene) {
     const Slabs& slabs = scene.slabs;
     std::vector<double> faces;
-    if (scene.desc.render.integrator == RenderDesc::Integrator::planes) {
+    if (integrator_kind(scene.desc.render.integrator).sums_slabs) {
         for (int i = 0; i <= slabs.count; ++i) faces.push_back(slabs.boundary(i));
         return faces;
     }
     // All of the water, wherever the slabs of `backscatter_first` are.
     PlanesDesc all;
     const Slabs water = place_slabs(all, *scene.camera, scene.lit());
-    double attenuation = 0;
     const Medium& medium = scene.water.medium;
-    for (int band = 0; band < medium.band_count(); ++band)
-        attenuation = std::max(attenuation, medium.uniform.attenuation(band));
-    faces = growing_layers(water.near, water.far, attenuation);
+    const double attenuation = medium.uniform.attenuation().greatest(medium.wavelengths_nm.size());
+    faces = growing_slabs(water.near, water.far, attenuation);
     for (const double face : {slabs.boundary(0), slabs.boundary(1)})
         if (face > water.near && face < water.far) faces.push_back(face);
     std::sort(faces.begin(), faces.end());
@@ -93,7 +93,7 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     ForwardScatterSetup setup;
     setup.desc = scene.desc.water.forward_scatter;
     setup.plane = scatter_plane(*scene.camera);
-    setup.faces = layer_faces(scene);
+    setup.faces = slab_faces(scene);
     // Planes of camera z do not reach around a view that is wider than a hemisphere.
     setup.shells = scene.desc.camera.distortion.model == DistortionDesc::Model::fisheye;
     setup.sensor = SensorModel(scene.desc);
@@ -120,29 +120,38 @@ DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality) {
 
 double in_scatter_tolerance(const RenderDesc& render) {
     const bool exact = render.quality == RenderDesc::Quality::exact;
-    if (exact || render.integrator != RenderDesc::Integrator::volume) return 0;
-    return render.quality == RenderDesc::Quality::draft ? k_draft_tolerance : k_water_tolerance;
+    if (exact || !integrator_kind(render.integrator).interpolates_between_pixels) return 0;
+    return render.quality == RenderDesc::Quality::draft ? k_draft_tolerance
+                                                        : k_in_scatter_tolerance;
+}
+
+LayerPlan layer_plan(const SceneDesc& scene, std::string_view request) {
+    std::vector<std::string> names;
+    names.reserve(scene.lamps.size());
+    for (const LampDesc& lamp : scene.lamps) names.push_back(lamp.name);
+    return {request, scene.water.bands_nm, names};
+}
+
+PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
+                             const InScatterParts& parts) {
+    return {*scene.camera,           scene.lit(), transport, scene.desc.render.samples, scene.slabs,
+            SensorModel(scene.desc), parts};
 }
 
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
-                  const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
-                  Film& film, const PassProgress& progress) {
-    InScatterParts parts{false, plan.has(Layer::backscatter_first)};
-    for (std::size_t j = 0; j < scene.lamps.size(); ++j)
-        if (plan.first_channel_of_lamp(j) >= 0) parts.lamps = true;
-    const PixelRenderer renderer(*scene.camera, scene.lit(), integrator, scene.desc.render.samples,
-                                 scene.slabs, SensorModel(scene.desc), parts);
+                  const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
+                  Film& film, const RenderProgress& progress) {
+    const PixelRenderer renderer = pixel_renderer(scene, transport, in_scatter_parts(plan));
     const double tolerance = in_scatter_tolerance(scene.desc.render);
-    const auto told = [&progress](const std::string& pass) {
-        return [&progress, pass](double fraction) { return progress(pass, fraction); };
+    const auto told = [&progress](const std::string& stage) {
+        return [&progress, stage](double fraction) { return progress(stage, fraction); };
     };
     if (scene.desc.water.forward_scatter.K == 0) {
         render_film(renderer, tolerance, plan, colour, film, told("render"));
         return;
     }
     const ForwardScatterSetup setup = forward_scatter_setup(scene, deep_shadows);
-    ForwardPass forward(renderer, scene.lit(), integrator, scene.camera->world_from_camera(), setup,
-                        plan);
+    ForwardPass forward(renderer, scene.lit(), setup, plan);
     render_film(renderer, tolerance, plan, colour, film, told("render"),
                 [&](int x, int y, const PixelView& view, const PixelResult& result) {
                     forward.keep(x, y, view, result);

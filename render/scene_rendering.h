@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/colour/colour.h"
@@ -14,27 +15,33 @@
 
 namespace uw {
 
-using DeepShadows = std::vector<std::shared_ptr<const DeepShadowMap>>;
+/// Told how far a stage of the work is (0..1), from any thread; returns false to stop.
+using RenderProgress = std::function<bool(const std::string& stage, double fraction)>;
 
-/// Told how far a pass over the image is (0..1), from any thread; returns false to stop.
-using PassProgress = std::function<bool(const std::string& pass, double fraction)>;
+/// Which layers an image of `scene`, resolved, has: `request` is what LayerPlan takes.
+LayerPlan layer_plan(const SceneDesc& scene, std::string_view request);
 
 /// How finely lamps are splatted for an image of this quality.
 DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality);
 
-/// How closely pixels' water is to be mixed (InScatterLattice); 0 for integrators that are there
-/// for comparison: every pixel by itself.
+/// How closely in-scatter is interpolated between pixels (InScatterLattice); 0 for integrators that
+/// are there for comparison: every pixel by itself.
 double in_scatter_tolerance(const RenderDesc& render);
 
-/// Renders `scene` into `film` by `integrator`: the pass "render", and, with forward scatter on,
-/// the pass "forward scatter", for which the film's window must be the whole image.
+/// Renders the pixels of `scene` by `transport`, one by one. Both outlive the result.
+PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
+                             const InScatterParts& parts = {});
+
+/// Renders `scene` into `film` by `transport`: the stage "render", and, with forward scatter on,
+/// the stage "forward scatter", for which the film's window must be the whole image.
 /// Throws Interrupted if `progress` returned false; InputError if there is not enough memory.
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
-                  const Integrator& integrator, const LayerPlan& plan, const BandColour& colour,
-                  Film& film, const PassProgress& progress);
+                  const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
+                  Film& film, const RenderProgress& progress);
 
-/// How the light of `scene` is scattered forward. The planes integrator's layers of water are its
-/// slabs; the others' grow with the distance. `deep_shadows` and `scene` outlive the result.
+/// How the light of `scene` is scattered forward. Where the integrator sums slabs the water is
+/// split into them; else into slabs that grow with the distance. `deep_shadows` and `scene` outlive
+/// the result.
 ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
                                           const DeepShadows& deep_shadows);
 

@@ -23,11 +23,12 @@ std::vector<Pixel> lattice(int width, int height, int wanted) {
     return pixels;
 }
 
-// Total radiance, band by band, pixel after pixel.
-std::vector<double> radiance(const AssembledScene& scene, const Integrator& integrator,
+// Total radiance by the reference integrator, band by band, pixel after pixel.
+std::vector<double> radiance(const AssembledScene& scene, double step,
                              const std::vector<Pixel>& pixels) {
-    const PixelRenderer renderer(*scene.camera, scene.lit(), integrator, 1, scene.slabs,
-                                 SensorModel(scene.desc));
+    const LightTransport transport{std::make_unique<ReferenceIntegrator>(scene.lit(), step),
+                                   std::make_unique<DirectLighting>(scene.lit())};
+    const PixelRenderer renderer = pixel_renderer(scene, transport);
     const auto bands = static_cast<std::size_t>(renderer.band_count());
     std::vector<double> values(pixels.size() * bands);
     parallel_for(pixels.size(), [&](std::size_t i) {
@@ -77,8 +78,8 @@ ReferenceError compare_with_reference(const AssembledScene& scene, const LayerPl
     const auto chosen = lattice(scene.camera->width(), scene.camera->height(), pixels);
     const auto measured =
         radiance(plan, film, static_cast<std::size_t>(scene.water.medium.band_count()), chosen);
-    const auto truth = radiance(scene, ReferenceIntegrator(scene.lit(), step), chosen);
-    const auto coarse = radiance(scene, ReferenceIntegrator(scene.lit(), 2 * step), chosen);
+    const auto truth = radiance(scene, step, chosen);
+    const auto coarse = radiance(scene, 2 * step, chosen);
     const double scale = 1 / mean(truth);
     // With errors e and 2e that do not follow each other, the difference is sqrt(5) e.
     return {static_cast<int>(chosen.size()), scale * rmse(measured, truth),

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "bench/support/generated_files.h"
-#include "cli/scene_loading.h"
 #include "core/base/error.h"
+#include "render/scene_loading.h"
 
 namespace uw::bench {
 namespace {
@@ -150,13 +150,6 @@ SceneDesc SceneFiles::read(const SceneCase& scene) const {
     out.close();
     if (!out) throw IoError(file.string() + ": cannot write");
     return load_scene(file, {});
-}
-
-std::vector<std::string> lamp_names(const SceneDesc& scene) {
-    std::vector<std::string> names;
-    names.reserve(scene.lamps.size());
-    for (const LampDesc& lamp : scene.lamps) names.push_back(lamp.name);
-    return names;
 }
 
 }  // namespace uw::bench

@@ -46,7 +46,4 @@ class SceneFiles {
     std::filesystem::path folder_;
 };
 
-/// The lamps' names, for a LayerPlan.
-std::vector<std::string> lamp_names(const SceneDesc& scene);
-
 }  // namespace uw::bench

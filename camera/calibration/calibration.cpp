@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <fstream>
-#include <system_error>
 
 #include "camera/calibration/formats.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/text_file.h"
 #include "core/scene/yaml/yaml_document.h"
 
 namespace uw {
@@ -23,25 +22,6 @@ constexpr auto k_known =
     "camchain.yaml "
     "(cam0: {camera_model, intrinsics, ...}), Calibmar's calibration.yaml (model, parameters, "
     "non_svp_model) and COLMAP's cameras.txt (1 OPENCV 1920 1080 ...)";
-
-std::string read_text(const std::filesystem::path& file, const std::string& origin) {
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status))
-        throw IoError(origin + ": no such file; check the name of the calibration");
-    if (!std::filesystem::is_regular_file(status))
-        throw IoError(origin + ": is no file but a folder, pipe or device; name a calibration");
-    std::ifstream stream(file, std::ios::binary);
-    std::string text(YamlLimits{}.bytes + 1, '\0');
-    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream.is_open() || stream.bad())
-        throw IoError(origin + ": cannot be read; check its permissions");
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > YamlLimits{}.bytes)
-        throw InputError(fmt::format("{}: larger than {} bytes; this is no calibration; {}", origin,
-                                     YamlLimits{}.bytes, k_known));
-    return text;
-}
 
 /// OpenCV's dialect as YAML, every character in its place: "%YAML:1.0" has no space, and the types
 /// of values have tags.
@@ -91,7 +71,7 @@ std::string_view title_of(CalibrationFormat format) {
 
 Calibration read_calibration(const std::filesystem::path& file, const std::string& camera) {
     const std::string origin = printable(file.string(), 300);
-    const std::string text = read_text(file, origin);
+    const std::string text = read_text_file(file, origin, YamlLimits{}.bytes, "calibration");
     Calibration result = looks_like_colmap(text) ? read_colmap(text, origin, camera)
                                                  : read_yaml(text, origin, camera);
     if (result.cameras.empty()) {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "camera/calibration/calibration_data.h"
+#include "camera/calibration/camera_calibration.h"
 
 namespace uw {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "camera/calibration/calibration_data.h"
+#include "camera/calibration/camera_calibration.h"
 #include "core/scene/yaml/config_map.h"
 #include "core/scene/yaml/config_value.h"
 

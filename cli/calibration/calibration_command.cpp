@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <iostream>
+#include <memory>
 #include <ostream>
 
+#include "cli/calibration/calibration_json.h"
 #include "cli/calibration/calibration_report.h"
 #include "cli/console.h"
-#include "cli/scene_loading.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "render/scene_loading.h"
 
 namespace uw {
 namespace {
@@ -64,6 +67,9 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 }  // namespace
 
 void run_calibration(const CalibrationArguments& a, std::ostream& out) {
+    if (a.json && a.format && a.output.empty())
+        throw UsageError(
+            "--json: --to takes standard output; give -o for the file, or leave one of them out");
     const Calibration calibration = read_subject(a);
     for (const std::string& warning : calibration.warnings)
         print_message(fmt::format("warning: {}\n", warning));
@@ -96,6 +102,15 @@ void run_calibration(const CalibrationArguments& a, std::ostream& out) {
     const CalibrationReport report = report_on(a.file, calibration);
     out << (a.json ? calibration_json(report) : calibration_text(report)) << std::flush;
     if (!out) throw IoError("standard output: cannot write; is the disk full?");
+}
+
+Command calibration_command() {
+    const auto arguments = std::make_shared<CalibrationArguments>();
+    return {"calibration", "what a camera calibration says; converts it", k_calibration_examples,
+            calibration_options(*arguments), [arguments] {
+                run_calibration(*arguments, std::cout);
+                return k_exit_done;
+            }};
 }
 
 }  // namespace uw

@@ -2,7 +2,8 @@
 
 #include <iosfwd>
 
-#include "cli/arguments.h"
+#include "cli/calibration/calibration_options.h"
+#include "cli/command.h"
 
 namespace uw {
 
@@ -12,5 +13,8 @@ namespace uw {
 /// InputError and IoError; then no file has been touched, unless it is `out` that cannot be
 /// written.
 void run_calibration(const CalibrationArguments& arguments, std::ostream& out);
+
+/// `uwvdb calibration` as the command line knows it.
+Command calibration_command();
 
 }  // namespace uw

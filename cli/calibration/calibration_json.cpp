@@ -1,6 +1,7 @@
+#include "cli/calibration/calibration_json.h"
+
 #include <numbers>
 
-#include "cli/calibration/calibration_report.h"
 #include "cli/json.h"
 #include "cli/version.h"
 

@@ -1,17 +1,13 @@
+#include "cli/calibration/calibration_options.h"
+
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <memory>
-
-#include "cli/command_options.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 
 namespace uw {
-namespace {
 
-constexpr const char* k_calibration_examples = R"(Examples:
+const char* const k_calibration_examples = R"(Examples:
   uwvdb calibration calibration.yaml                       what was understood of it
   uwvdb calibration camchain.yaml --camera cam1 --to scene  a scene's camera, to paste
   uwvdb calibration plume.yaml --to colmap -o cameras.txt   a scene's camera for COLMAP
@@ -21,10 +17,7 @@ Reads OpenCV and ROS YAML, Kalibr's camchain, Calibmar's calibration.yaml, COLMA
 their models and conventions. Fields of view are through the image's principal point.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
 
-struct Parsed {
-    CalibrationArguments arguments;
-    std::string format;
-};
+namespace {
 
 CalibrationFormat format_called(const std::string& word) {
     std::vector<std::string_view> words;
@@ -38,30 +31,21 @@ CalibrationFormat format_called(const std::string& word) {
 
 }  // namespace
 
-Command add_calibration_command(CLI::App& app) {
-    CLI::App& calibration =
-        *app.add_subcommand("calibration", "what a camera calibration says; converts it");
-    const auto p = std::make_shared<Parsed>();
-    calibration.add_option("FILE", p->arguments.file, "a calibration, or a scene")->required();
-    calibration.add_option("--camera", p->arguments.camera,
-                           "which of several in the file: cam0, or COLMAP's number");
-    calibration
-        .add_option("--to", p->format,
-                    "write it as opencv, ros, kalibr, calibmar, colmap or scene; to standard "
-                    "output, or with -o to a file")
-        ->type_name("FORMAT");
-    calibration.add_option("-o,--output", p->arguments.output, "the file to write")->needs("--to");
-    calibration.add_flag("--json", p->arguments.json, "print what was understood as JSON");
-    calibration.footer(k_calibration_examples);
-    return {&calibration, [p, &calibration]() -> Arguments {
-                CalibrationArguments a = p->arguments;
-                if (calibration.count("--to") > 0) a.format = format_called(p->format);
-                if (a.json && a.format && a.output.empty())
-                    throw UsageError(
-                        "--json: --to takes standard output; give -o for the file, or leave one "
-                        "of them out");
-                return a;
-            }};
+Options calibration_options(CalibrationArguments& a) {
+    Options options;
+    options.path("FILE", "", a.file, "a calibration, or a scene").required = true;
+    options.text("--camera", "NAME", a.camera,
+                 "which of several in the file: cam0, or COLMAP's number");
+    Option& to = options.parsed(
+        "--to", "FORMAT", [&a](const std::string& word) { a.format = format_called(word); },
+        "write it as opencv, ros, kalibr, calibmar, colmap or scene; to standard output, or with "
+        "-o to a file");
+    to.value = Option::Value::word;
+    for (const CalibrationFormat format : calibration_formats())
+        to.words.emplace_back(word_of(format));
+    options.path("-o,--output", "FILE", a.output, "the file to write").needs = "--to";
+    options.flag("--json", a.json, "print what was understood as JSON");
+    return options;
 }
 
 }  // namespace uw

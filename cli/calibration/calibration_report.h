@@ -36,7 +36,4 @@ CalibrationReport report_on(const std::filesystem::path& file, const Calibration
 
 /// For people, ASCII.
 std::string calibration_text(const CalibrationReport& report);
-/// Everything as one JSON object.
-std::string calibration_json(const CalibrationReport& report);
-
 }  // namespace uw

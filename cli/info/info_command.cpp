@@ -5,16 +5,22 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <system_error>
 
-#include "cli/frame_sequence.h"
+#include "cli/console.h"
 #include "cli/info/scene_survey.h"
-#include "cli/info/vdb_report.h"
-#include "cli/scene_loading.h"
+#include "cli/info/survey_json.h"
+#include "cli/info/survey_text.h"
+#include "cli/info/vdb_advice.h"
+#include "cli/info/vdb_json.h"
+#include "cli/info/vdb_text.h"
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
+#include "render/renderer.h"
+#include "render/scene_loading.h"
 
 namespace uw {
 
@@ -91,12 +97,10 @@ std::string info_on_scene(const InfoArguments& a) {
     std::ranges::for_each(desc.volumes, look);
     std::ranges::for_each(desc.geometry, look);
     if (sequences.empty() && a.frame) refuse_frame(a.subject);
-    if (!sequences.empty()) {
-        Frame one;
-        one.number = frame;
-        desc = scene_of_frame(desc, one);
-    }
-    SceneSurvey survey = survey_scene(assemble_scene(desc, [](const std::string&) {}));
+    if (!sequences.empty()) desc = scene_of_image(desc, {frame});
+    Renderer renderer;
+    renderer.set_scene(std::move(desc));
+    SceneSurvey survey = survey_scene(renderer.assemble());
     survey.sequences = std::move(sequences);
     return a.json ? survey_json(survey) : survey_text(survey);
 }
@@ -118,6 +122,15 @@ bool is_volume_file(const fs::path& file) {
 
 std::string run_info(const InfoArguments& a) {
     return is_volume_file(a.subject) ? info_on_vdb(a) : info_on_scene(a);
+}
+
+Command info_command() {
+    const auto arguments = std::make_shared<InfoArguments>();
+    return {"info", "what a VDB file or a scene holds, and what to mend", k_info_examples,
+            info_options(*arguments), [arguments] {
+                print_output(run_info(*arguments));
+                return k_exit_done;
+            }};
 }
 
 }  // namespace uw

@@ -178,10 +178,8 @@ double degrees_between(const std::optional<Ray>& a, const std::optional<Ray>& b)
 
 }  // namespace
 
-SceneSurvey survey_scene(AssembledScene assembled) {
-    SceneSurvey survey;
-    survey.scene = std::move(assembled);
-    const AssembledScene& scene = survey.scene;
+SceneSurvey survey_scene(const AssembledScene& scene) {
+    SceneSurvey survey(scene);
     const Reach reach(scene);
     survey.grids = survey_grids(scene, reach);
     survey.central_ray = survey_central_ray(scene);

@@ -1,17 +1,10 @@
 #pragma once
 
-#include <string>
-
-#include "cli/info/scene_survey_data.h"
+#include "cli/info/survey.h"
 
 namespace uw {
 
-/// Looks at an assembled scene. Deterministic.
-SceneSurvey survey_scene(AssembledScene scene);
-
-/// For people.
-std::string survey_text(const SceneSurvey& survey);
-/// The same as one JSON object (docs/command-line.md).
-std::string survey_json(const SceneSurvey& survey);
+/// Looks at an assembled scene, which outlives the result. Deterministic.
+SceneSurvey survey_scene(const AssembledScene& scene);
 
 }  // namespace uw

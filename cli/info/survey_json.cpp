@@ -1,4 +1,5 @@
-#include "cli/info/scene_survey.h"
+#include "cli/info/survey_json.h"
+
 #include "cli/json.h"
 #include "cli/version.h"
 

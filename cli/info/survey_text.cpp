@@ -1,10 +1,11 @@
+#include "cli/info/survey_text.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "cli/frame_list.h"
 #include "cli/grid_summary.h"
-#include "cli/info/scene_survey.h"
 
 namespace uw {
 
@@ -48,23 +49,15 @@ std::string describe_camera(const SceneSurvey& survey) {
         camera.port ? "behind a port" : "without a port", at.x, at.y, at.z, to.x, to.y, to.z);
 }
 
-const char* name_of(LampProfileDesc::Type type) {
-    if (type == LampProfileDesc::Type::isotropic) return "isotropic";
-    if (type == LampProfileDesc::Type::ies) return "IES luminaire";
-    return type == LampProfileDesc::Type::spot ? "spot" : "cosine";
-}
-
 std::string describe_lamps(const AssembledScene& scene) {
     std::string text = scene.lamps.empty() ? "no lamps\n" : "lamps\n";
-    for (std::size_t j = 0; j < scene.lamps.size(); ++j) {
-        const Lamp& lamp = scene.lamps[j];
+    for (const Lamp& lamp : scene.lamps) {
         const Point3& at = lamp.position();
         std::vector<double> intensity(
             lamp.axis_intensity().begin(),
             lamp.axis_intensity().begin() + scene.water.medium.band_count());
         text += fmt::format("  {}: {} at ({:.4g}, {:.4g}, {:.4g}), {} W/sr\n", lamp.name(),
-                            name_of(scene.desc.lamps[j].profile.type), at.x, at.y, at.z,
-                            per_band(intensity));
+                            lamp.profile_name(), at.x, at.y, at.z, per_band(intensity));
     }
     return text;
 }

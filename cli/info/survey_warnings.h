@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/info/scene_survey_data.h"
+#include "cli/info/survey.h"
 
 namespace uw {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "cli/info/vdb_advice_data.h"
+#include "cli/info/advice.h"
 #include "media/vdb/vdb_inspect.h"
 
 namespace uw {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/info/vdb_advice_data.h"
+#include "cli/info/advice.h"
 #include "media/vdb/vdb_inspect.h"
 
 namespace uw {

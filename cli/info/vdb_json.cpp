@@ -1,4 +1,6 @@
-#include "cli/info/vdb_report.h"
+#include "cli/info/vdb_json.h"
+
+#include "cli/info/vdb_text.h"
 #include "cli/json.h"
 #include "cli/version.h"
 

@@ -1,10 +1,11 @@
+#include "cli/info/vdb_text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "cli/frame_list.h"
-#include "cli/info/vdb_report.h"
 
 namespace uw {
 

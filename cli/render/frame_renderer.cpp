@@ -2,51 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <memory>
-#include <mutex>
 #include <utility>
 
 #include "cli/console.h"
 #include "cli/grid_summary.h"
-#include "cli/progress.h"
 #include "cli/render/image_output.h"
 #include "cli/render/irradiance_export.h"
 #include "cli/stop_signal.h"
-#include "core/base/error.h"
 
 namespace uw {
 
 namespace {
-
-// Light from beyond a crop is scattered into it: forward scatter needs the whole image.
-PixelWindow rendered_window(const SceneDesc& desc, const PixelWindow& written) {
-    if (desc.water.forward_scatter.K == 0) return written;
-    return {0, 0, desc.camera.width, desc.camera.height};
-}
-
-void count_work(const AssembledScene& scene, const DeepShadows& deep_shadows,
-                const SplatCounts& splat, const Film& film, RunStats& stats) {
-    const auto pixels = static_cast<std::uint64_t>(film.window().width()) *
-                        static_cast<std::uint64_t>(film.window().height());
-    std::uint64_t splat_bytes = 0, voxels = 0, grid_bytes = 0;
-    for (const auto& field : deep_shadows) splat_bytes += field->bytes();
-    for (const VolumeReport& report : scene.volume_reports) {
-        voxels += static_cast<std::uint64_t>(report.statistics.active_voxels);
-        grid_bytes += report.bytes;
-    }
-    stats.count("pixels", pixels);
-    // One ray a sample, and one more for the pixel's centre unless that is the sample: its water
-    // and ground truth.
-    const auto samples = static_cast<std::uint64_t>(scene.desc.render.samples);
-    stats.count("camera_rays", pixels * (samples == 1 ? 1 : samples + 1));
-    stats.count("splat_rays", splat.rays);
-    stats.count("light_field_bytes", splat_bytes);
-    stats.count("active_voxels", voxels);
-    stats.count("grid_bytes", grid_bytes);
-    stats.count("triangles", scene.surfaces->triangle_count());
-    stats.count("lamps", scene.lamps.size());
-    stats.count("bands", static_cast<std::uint64_t>(scene.water.medium.band_count()));
-}
 
 // What `warning` says of any frame: with the sequences' names in place of their files'.
 std::string without_frame(std::string warning, const SceneDesc& frame, const SceneDesc& all) {
@@ -63,38 +29,23 @@ std::string without_frame(std::string warning, const SceneDesc& frame, const Sce
     return warning;
 }
 
-void stop_if_requested() {
-    if (stop_requested()) throw Interrupted();
-}
-
 }  // namespace
 
-FrameRenderer::FrameRenderer(const RenderArguments& arguments, const SceneDesc& desc,
-                             ImagePlan plan, std::size_t count)
+FrameRenderer::FrameRenderer(const RenderArguments& arguments, const SceneDesc& scene,
+                             const std::vector<PixelWindow>& windows, std::size_t count)
     : arguments_(arguments),
-      all_frames_(desc),
-      plan_(std::move(plan)),
-      film_(1, 1, {0, 0, 1, 1}, plan_.layers.channel_names()),
-      clock_(count, desc.cameras.empty() ? "frame" : "image") {}
-
-// The cameras of a rig may differ in size; before the first image the film has none.
-void FrameRenderer::fit_film(const Frame& frame, const CameraDesc& camera) {
-    SceneDesc desc = all_frames_;
-    desc.camera = camera;
-    const PixelWindow rendered = rendered_window(desc, window(frame));
-    if (film_.width() == camera.width && film_.height() == camera.height &&
-        film_.window() == rendered)
-        return;
-    film_ = Film(1, 1, {0, 0, 1, 1}, plan_.layers.channel_names());  // frees the memory
-    film_ = Film(camera.width, camera.height, rendered, plan_.layers.channel_names());
-}
+      all_frames_(scene),
+      windows_(windows),
+      clock_(count, scene.cameras.empty() ? "frame" : "image"),
+      renderer_(
+          [this](const std::string& stage, double fraction) { return proceed(stage, fraction); }) {}
 
 void FrameRenderer::say(const std::string& line) const {
     if (!arguments_.quiet) print_message(line + "\n");
 }
 
 void FrameRenderer::warn(const Frame& frame, const std::string& line) {
-    if (!warned_.insert(without_frame(line, scene_.desc, all_frames_)).second) return;
+    if (!warned_.insert(without_frame(line, renderer_.scene(), all_frames_)).second) return;
     std::string which;
     if (clock_.images_done() > 0 && frame.number) which = fmt::format("frame {}: ", *frame.number);
     if (clock_.images_done() > 0 && !frame.camera_name.empty())
@@ -102,93 +53,84 @@ void FrameRenderer::warn(const Frame& frame, const std::string& line) {
     print_message(fmt::format("warning: {}{}\n", which, line));
 }
 
-void FrameRenderer::assemble(const Frame& frame, const SceneDesc& desc, RunStats& stats) {
-    const auto begin_stage = [&](const std::string& stage) {
-        stop_if_requested();
-        stats.begin_stage(stage);
+bool FrameRenderer::proceed(const std::string& stage, double fraction) {
+    const std::lock_guard lock(mutex_);
+    if (stage != stage_) begin_stage(stage);
+    if (progress_) progress_->update(fraction);
+    return !stop_requested();
+}
+
+void FrameRenderer::begin_stage(const std::string& stage) {
+    stage_ = stage;
+    progress_.reset();  // ends the line of the stage before
+    const auto show = [&](const char* unit, double scale) {
+        progress_ = std::make_unique<Progress>(clock_.label(stage), unit, scale, arguments_.quiet,
+                                               clock_.seconds_left());
     };
-    scene_ = assemble_scene(desc, begin_stage, std::move(scene_));
+    if (stage == "splat") show("lamps", static_cast<double>(renderer_.scene().lamps.size()));
+    if (stage == "render" || stage == "forward scatter")
+        show("Mpx", 1e-6 * static_cast<double>(renderer_.report().pixels));
+    if (stage == "render") begin_orderly_stop();
+    if (stage != "forward scatter") stats_->begin_stage(stage);  // that is part of "render"
+}
+
+void FrameRenderer::prepare(const Frame& frame, const RenderOptions& options) {
+    renderer_.prepare(options);
+    const AssembledScene& scene = renderer_.assembled();
     if (clock_.images_done() == 0 && !arguments_.quiet)
-        for (const VolumeReport& report : scene_.volume_reports)
-            print_message(describe_grid(report, scene_.water.medium));
-    for (const std::string& warning : scene_.warnings) warn(frame, warning);
-    if (!frame.files.irradiance_vdb.empty()) check_irradiance_vdb(scene_);
+        for (const VolumeReport& report : scene.volume_reports)
+            print_message(describe_grid(report, scene.water.medium));
+    for (const std::string& warning : renderer_.report().warnings) warn(frame, warning);
 }
 
-DeepShadows FrameRenderer::splat(bool with_irradiance) {
-    const bool volume = scene_.desc.render.integrator == RenderDesc::Integrator::volume;
-    if (!volume && !with_irradiance) return {};
-    Progress progress(clock_.label("splat"), "lamps", static_cast<double>(scene_.lamps.size()),
+void FrameRenderer::count_work(RunStats& stats) const {
+    const RenderReport& report = renderer_.report();
+    stats.count("pixels", report.pixels);
+    stats.count("camera_rays", report.camera_rays);
+    stats.count("splat_rays", report.splat_rays);
+    stats.count("light_field_bytes", report.light_bytes);
+    stats.count("active_voxels", report.active_voxels);
+    stats.count("grid_bytes", report.grid_bytes);
+    stats.count("triangles", report.triangles);
+    stats.count("lamps", report.lamps);
+    stats.count("bands", report.bands);
+}
+
+void FrameRenderer::write_irradiance(const std::filesystem::path& file) {
+    const AssembledScene& scene = renderer_.assembled();
+    Progress progress(clock_.label("irradiance"), "lamps", static_cast<double>(scene.lamps.size()),
                       arguments_.quiet, clock_.seconds_left());
-    return splatter_.splat(scene_, deep_shadow_options(scene_.desc.render.quality),
-                           [&](double share) {
-                               stop_if_requested();
-                               progress.update(share);
-                           });
-}
-
-void FrameRenderer::render_image(const DeepShadows& deep_shadows) {
-    const auto integrator = make_integrator(scene_, deep_shadows);
-    const double megapixels = 1e-6 * film_.window().width() * film_.window().height();
-    std::unique_ptr<Progress> progress;
-    std::string pass;
-    std::mutex mutex;
-    film_.clear();
-    render_scene(scene_, deep_shadows, *integrator, plan_.layers, plan_.colour, film_,
-                 [&](const std::string& name, double fraction) {
-                     const std::lock_guard lock(mutex);
-                     if (name != pass) {
-                         progress.reset();  // ends the line of the pass before
-                         progress =
-                             std::make_unique<Progress>(clock_.label(name), "Mpx", megapixels,
-                                                        arguments_.quiet, clock_.seconds_left());
-                         pass = name;
-                     }
-                     progress->update(fraction);
-                     return !stop_requested();
-                 });
-}
-
-void FrameRenderer::write_irradiance(const std::filesystem::path& file,
-                                     const DeepShadows& deep_shadows) {
-    Progress progress(clock_.label("irradiance"), "lamps", static_cast<double>(scene_.lamps.size()),
-                      arguments_.quiet, clock_.seconds_left());
-    write_irradiance_vdb(file, scene_, deep_shadows, [&](double share) {
+    write_irradiance_vdb(file, scene, renderer_.light(), [&](double share) {
         progress.update(share);
         return !stop_requested();
     });
 }
 
-void FrameRenderer::write_image(const Frame& frame) {
-    const auto write = [&](const Film& film) {
-        write_images(
-            frame.files, film, metadata_of(scene_, frame.number),
-            [&](const std::string& line) { say(line); },
-            [&](const std::string& line) { warn(frame, line); });
-    };
-    if (film_.window() == window(frame))
-        write(film_);
-    else
-        write(cropped(film_, window(frame)));
-}
-
-void FrameRenderer::render(const Frame& frame, const SceneDesc& desc, RunStats& stats) {
+void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& stats) {
     const OutputFiles& files = frame.files;
-    fit_film(frame, desc.camera);
-    assemble(frame, desc, stats);
-    stats.begin_stage("splat");
-    const DeepShadows deep_shadows = splat(!files.irradiance_vdb.empty());
-    stats.begin_stage("render");
-    begin_orderly_stop();
-    render_image(deep_shadows);
-    count_work(scene_, deep_shadows, splatter_.counts(), film_, stats);
-    if (!files.irradiance_vdb.empty()) {
+    const bool with_irradiance = !files.irradiance_vdb.empty();
+    const RenderOptions options{.layers = arguments_.layers, .window = windows_[frame.camera]};
+    stats_ = &stats;
+    stage_.clear();
+    renderer_.set_scene(std::move(scene));
+    prepare(frame, options);
+    if (with_irradiance) {
+        check_irradiance_vdb(renderer_.assembled());
+        renderer_.splat();
+    }
+    const Film& film = renderer_.render(options);
+    progress_.reset();
+    count_work(stats);
+    if (with_irradiance) {
         stats.begin_stage("irradiance");
-        write_irradiance(files.irradiance_vdb, deep_shadows);
+        write_irradiance(files.irradiance_vdb);
         say(fmt::format("wrote {}", files.irradiance_vdb.string()));
     }
     stats.begin_stage("write");
-    write_image(frame);
+    write_images(
+        files, film, metadata_of(renderer_.assembled(), frame.number),
+        [&](const std::string& line) { say(line); },
+        [&](const std::string& line) { warn(frame, line); });
     stats.end_stage();
     stats.set_output(files.image.filename().string(), frame.number);
     if (!clock_.is_sequence()) return;

@@ -1,64 +1,55 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "cli/arguments.h"
 #include "cli/frame_sequence.h"
+#include "cli/progress.h"
 #include "cli/render/sequence_clock.h"
 #include "cli/render/stats.h"
-#include "core/colour/colour.h"
-#include "core/image/film.h"
-#include "core/image/layers.h"
-#include "render/light_splatter.h"
-#include "render/scene_assembly.h"
-#include "render/scene_rendering.h"
+#include "cli/render_arguments.h"
+#include "render/renderer.h"
 
 namespace uw {
 
-/// What the images of one run have in common, beside the scene.
-struct ImagePlan {
-    std::vector<PixelWindow> windows;  // of the pixels written, by camera
-    LayerPlan layers;
-    BandColour colour;
-};
-
-/// Renders and writes the images of a run one after the other. Each takes from the one before what
-/// is the same: water, surfaces, shadows, volumes, columns.
+/// Renders and writes the images of a run one after the other, and tells the user how it goes.
 class FrameRenderer {
   public:
-    /// `desc`: the scene of all frames; `count`: how many there will be. `arguments` outlives the
-    /// renderer.
-    FrameRenderer(const RenderArguments& arguments, const SceneDesc& desc, ImagePlan plan,
-                  std::size_t count);
+    /// `scene`: of all frames; `windows`: of the pixels written, by camera; `count`: how many
+    /// images there will be. All references outlive the renderer.
+    FrameRenderer(const RenderArguments& arguments, const SceneDesc& scene,
+                  const std::vector<PixelWindow>& windows, std::size_t count);
 
-    /// Renders one frame, `desc` its scene, and writes all its files but the statistics, whose
+    /// Renders one frame, `scene` its own, and writes all its files but the statistics, whose
     /// figures go to `stats`. Says on stderr what it does; a warning that is the same for several
     /// frames but for the file's name is given once. Throws InputError, also if the image does not
     /// fit into memory; IoError; Interrupted, and then no image of this frame has been written.
-    void render(const Frame& frame, const SceneDesc& desc, RunStats& stats);
+    void render(const Frame& frame, ResolvedScene scene, RunStats& stats);
 
   private:
-    const PixelWindow& window(const Frame& frame) const { return plan_.windows[frame.camera]; }
-    void fit_film(const Frame& frame, const CameraDesc& camera);
-    void assemble(const Frame& frame, const SceneDesc& desc, RunStats& stats);
-    DeepShadows splat(bool with_irradiance);
-    void render_image(const DeepShadows& deep_shadows);
-    void write_irradiance(const std::filesystem::path& file, const DeepShadows& deep_shadows);
-    void write_image(const Frame& frame);
+    bool proceed(const std::string& stage, double fraction);
+    void begin_stage(const std::string& stage);
+    void prepare(const Frame& frame, const RenderOptions& options);
+    void count_work(RunStats& stats) const;
+    void write_irradiance(const std::filesystem::path& file);
     void say(const std::string& line) const;
     void warn(const Frame& frame, const std::string& line);
 
     const RenderArguments& arguments_;
-    SceneDesc all_frames_;
-    ImagePlan plan_;
-    Film film_;
+    const SceneDesc& all_frames_;
+    const std::vector<PixelWindow>& windows_;
     SequenceClock clock_;
-    AssembledScene scene_;
-    LightSplatter splatter_;
+    Renderer renderer_;
     std::set<std::string> warned_;
+    // The stage under way: told from any thread.
+    std::mutex mutex_;
+    std::string stage_;
+    std::unique_ptr<Progress> progress_;
+    RunStats* stats_ = nullptr;
 };
 
 }  // namespace uw

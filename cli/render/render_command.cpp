@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,13 +16,12 @@
 #include "cli/render/frame_renderer.h"
 #include "cli/render/image_output.h"
 #include "cli/render/stats.h"
-#include "cli/scene_loading.h"
+#include "cli/stop_signal.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
-#include "core/colour/colour_response.h"
 #include "core/image/image_reader.h"
-#include "core/meshes/gltf/gltf_import.h"
+#include "render/scene_loading.h"
 
 namespace uw {
 
@@ -29,8 +30,8 @@ namespace {
 RenderDesc::Integrator integrator_named(const std::string& name) {
     for (const auto& [known, integrator] : k_integrator_names)
         if (name == known) return integrator;
-    throw UsageError(
-        fmt::format("--integrator: unknown '{}'; use volume, planes or reference", name));
+    throw UsageError(fmt::format("--integrator: unknown '{}'; use {}", printable(name),
+                                 alternatives(words_of(k_integrator_names))));
 }
 
 RenderDesc::Quality quality_named(const std::string& name) {
@@ -60,26 +61,6 @@ std::vector<std::string> names_of(const std::vector<LampDesc>& lamps) {
     return names;
 }
 
-// The scene of a frame with the camera and lamps of its glTF files.
-SceneDesc scene_with_gltf(const SceneDesc& desc, const Frame& frame) {
-    SceneDesc scene = scene_of_frame(desc, frame);
-    import_gltf(scene);
-    return scene;
-}
-
-// Likewise, of a frame whose lamps must be `lamp_names`: layers are the same in all frames.
-SceneDesc scene_with_lamps(const SceneDesc& desc, const Frame& frame,
-                           const std::vector<std::string>& lamp_names) {
-    SceneDesc scene = scene_with_gltf(desc, frame);
-    const std::vector<std::string> names = names_of(scene.lamps);
-    if (names != lamp_names)
-        throw InputError(fmt::format(
-            "frame {}: its lamps are {}, those of the first frame {}; export the same lights in "
-            "all frames",
-            frame.number.value_or(0), fmt::join(names, ", "), fmt::join(lamp_names, ", ")));
-    return scene;
-}
-
 PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
     if (!a.crop) return {0, 0, camera.width, camera.height};
     const auto [x0, y0, x1, y1] = *a.crop;
@@ -104,18 +85,34 @@ bool is_whole(const PixelWindow& window, const CameraDesc& camera) {
     return window == PixelWindow{0, 0, camera.width, camera.height};
 }
 
+// What can be said about the run before anything of the scene is loaded.
+void append_warnings(const RenderArguments& a, const Frame& first,
+                     const std::vector<PixelWindow>& windows, SceneDesc& desc) {
+    if (const auto warning = frame_warning(a, desc)) desc.warnings.push_back(*warning);
+    const CameraDesc& camera =
+        desc.cameras.empty() ? desc.camera : desc.cameras[first.camera].camera;
+    if (desc.water.forward_scatter.K > 0 && !is_whole(windows[first.camera], camera))
+        desc.warnings.push_back(
+            "--crop: forward scatter takes light from the whole image: all of it is rendered, then "
+            "cropped; set water.forward_scatter.K=0 to save that time");
+}
+
 // Leaves out the images that are there already.
-void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const ImagePlan& plan,
-                        bool quiet) {
+void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const LayerPlan& layers,
+                        const std::vector<PixelWindow>& windows, bool quiet) {
     std::vector<int> there;
     std::vector<Frame> left;
+    GltfSideFiles known;
     for (Frame& frame : sequence.frames) {
-        const SceneDesc scene = scene_of_frame(desc, frame);
-        const ImageLayout layout{scene.camera.width, scene.camera.height,
-                                 plan.windows[frame.camera], plan.layers.channel_names()};
-        const bool rendered = is_rendered(frame, scene, [&](const std::filesystem::path& file) {
-            return has_header_of(file, layout, metadata_of(scene, frame.number));
-        });
+        const SceneDesc scene = scene_of_image(desc, frame.choice());
+        const ImageLayout layout{scene.camera.width, scene.camera.height, windows[frame.camera],
+                                 layers.channel_names()};
+        // Headers tell of the camera that was rendered, be it a glTF file's.
+        const auto is_image_of = [&](const std::filesystem::path& file) {
+            const ResolvedScene resolved{SceneDesc(scene)};
+            return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number));
+        };
+        const bool rendered = is_rendered(frame, input_files(scene, known), is_image_of);
         if (rendered && (there.empty() || there.back() != *frame.number))
             there.push_back(*frame.number);
         if (!rendered) left.push_back(std::move(frame));
@@ -128,15 +125,45 @@ void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const Im
                                   desc.cameras.empty() ? "" : "images "));
 }
 
+// The scenes of frames one after the other, each resolved once. The first is there before any is
+// rendered: its lamps name layers, and all frames must have the same.
+class FrameScenes {
+  public:
+    FrameScenes(const SceneDesc& desc, const Frame& first)
+        : desc_(desc),
+          first_choice_(first.choice()),
+          first_(scene_of_image(desc, first_choice_)),
+          lamp_names_(names_of(first_->desc().lamps)) {}
+
+    const SceneDesc& first() const { return first_->desc(); }
+
+    ResolvedScene take(const Frame& frame) {
+        std::optional<ResolvedScene> first = std::exchange(first_, std::nullopt);
+        if (first && frame.choice() == first_choice_) return std::move(*first);
+        ResolvedScene scene(scene_of_image(desc_, frame.choice()));
+        const std::vector<std::string> names = names_of(scene.desc().lamps);
+        if (names != lamp_names_)
+            throw InputError(fmt::format(
+                "frame {}: its lamps are {}, those of the first frame {}; export the same lights "
+                "in all frames",
+                frame.number.value_or(0), fmt::join(names, ", "), fmt::join(lamp_names_, ", ")));
+        return scene;
+    }
+
+  private:
+    const SceneDesc& desc_;
+    ImageChoice first_choice_;
+    std::optional<ResolvedScene> first_;  // until a frame is taken
+    std::vector<std::string> lamp_names_;
+};
+
 // Renders all frames; `done` gets the figures of each, whatever ends the run.
-void render_frames(const FrameSequence& sequence, const SceneDesc& desc,
-                   const std::vector<std::string>& lamp_names, FrameRenderer& renderer,
-                   RunStats stats, std::vector<RunStats>& done) {
+void render_frames(const FrameSequence& sequence, FrameScenes& scenes, const std::string& name,
+                   FrameRenderer& renderer, RunStats stats, std::vector<RunStats>& done) {
     try {
         for (const Frame& frame : sequence.frames) {
-            renderer.render(frame, scene_with_lamps(desc, frame, lamp_names), stats);
-            if (!frame.files.stats.empty())
-                stats.write_json(frame.files.stats, desc.file.filename().string());
+            renderer.render(frame, scenes.take(frame), stats);
+            if (!frame.files.stats.empty()) stats.write_json(frame.files.stats, name);
             done.push_back(std::exchange(stats, RunStats()));
         }
     } catch (const Interrupted&) {
@@ -149,6 +176,8 @@ void render_frames(const FrameSequence& sequence, const SceneDesc& desc,
 }  // namespace
 
 void run_render(const RenderArguments& a) {
+    if (a.resume && a.frames.empty())
+        throw UsageError("--resume: goes on with a sequence; give its --frames");
     RunStats stats;
     const ThreadLimit limit(a.threads);
     FrameSequence sequence = frames_of(a);
@@ -158,23 +187,13 @@ void run_render(const RenderArguments& a) {
     apply_arguments(a, desc);
     add_cameras(sequence, desc, a.camera);
     const std::vector<PixelWindow> windows = windows_of(a, desc);
-    const std::vector<std::string> lamp_names =
-        names_of(scene_with_gltf(desc, sequence.frames.front()).lamps);
-    const LayerPlan plan(a.layers, desc.water.bands_nm, lamp_names);
-    const BandColour colour = make_band_colour(desc.render.colour, desc.water.bands_nm);
-    if (!colour.warning().empty()) desc.warnings.push_back(colour.warning());
-    if (const auto warning = frame_warning(a, desc)) desc.warnings.push_back(*warning);
-    const Frame first = sequence.frames.front();
-    const CameraDesc first_camera = scene_of_frame(desc, first).camera;
-    if (desc.water.forward_scatter.K > 0 && !is_whole(windows[first.camera], first_camera))
-        desc.warnings.push_back(
-            "--crop: forward scatter takes light from the whole image: all of it is rendered, then "
-            "cropped; set water.forward_scatter.K=0 to save that time");
-    const ImagePlan images{windows, plan, colour};
-    if (a.resume) leave_out_rendered(sequence, desc, images, a.quiet);
+    append_warnings(a, sequence.frames.front(), windows, desc);
+    FrameScenes scenes(desc, sequence.frames.front());
+    const LayerPlan layers = layer_plan(scenes.first(), a.layers);
+    if (a.resume) leave_out_rendered(sequence, desc, layers, windows, a.quiet);
     if (sequence.frames.empty()) return;
     check_frames(sequence, desc);
-    FrameRenderer renderer(a, desc, images, sequence.frames.size());
+    FrameRenderer renderer(a, desc, windows, sequence.frames.size());
 
     std::vector<RunStats> done;
     const auto write_stats = [&] {
@@ -182,7 +201,8 @@ void run_render(const RenderArguments& a) {
             RunStats::write_json(sequence.stats, a.scene.filename().string(), done);
     };
     try {
-        render_frames(sequence, desc, lamp_names, renderer, std::move(stats), done);
+        render_frames(sequence, scenes, desc.file.filename().string(), renderer, std::move(stats),
+                      done);
     } catch (...) {
         write_stats();  // of what is done
         throw;
@@ -193,6 +213,16 @@ void run_render(const RenderArguments& a) {
     for (const RunStats& frame : done) seconds += frame.total_seconds();
     print_message(fmt::format("done in {}, peak memory {:.0f} MB\n", format_duration(seconds),
                               static_cast<double>(RunStats::peak_memory_bytes()) / 1e6));
+}
+
+Command render_command() {
+    const auto arguments = std::make_shared<RenderArguments>();
+    return {"render", "render a scene to a multi-layer EXR", k_render_examples,
+            render_options(*arguments), [arguments] {
+                install_stop_signal();
+                run_render(*arguments);
+                return k_exit_done;
+            }};
 }
 
 }  // namespace uw

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/render/render_options.h"
 
 namespace uw {
 
@@ -8,5 +9,8 @@ namespace uw {
 /// arguments ask for, each file whole or not at all. Says what it does on stderr. Throws
 /// UsageError, InputError and Interrupted, and then no file has been touched; IoError.
 void run_render(const RenderArguments& arguments);
+
+/// `uwvdb render` as the command line knows it.
+Command render_command();
 
 }  // namespace uw

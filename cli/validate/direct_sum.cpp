@@ -7,7 +7,6 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/surfaces/surface_reflection.h"
-#include "render/scene_rendering.h"
 
 namespace uw {
 
@@ -82,13 +81,13 @@ class DirectSum {
     DirectSum(const TrialScene& trial, const std::function<bool()>& proceed)
         : trial_(trial),
           proceed_(proceed),
-          desc_(trial.scene.desc.water.forward_scatter),
-          plane_(forward_scatter_setup(trial.scene, trial.deep_shadows).plane),
-          bands_(static_cast<std::size_t>(trial.scene.water.medium.band_count())),
+          desc_(trial.scene().desc.water.forward_scatter),
+          plane_(forward_scatter_setup(trial.scene(), trial.light()).plane),
+          bands_(static_cast<std::size_t>(trial.scene().water.medium.band_count())),
           pixels_(static_cast<std::size_t>(trial.width() * trial.height())) {}
 
-    Image forward(const Integrator& light) const {
-        const SurfaceImage seen = look(light);
+    Image forward(const SurfaceLighting& lighting) const {
+        const SurfaceImage seen = trace(lighting);
         Image forward = scattered(seen.irradiance, seen.to_lamps);  // (14)
         Image radiance(pixels_);
         for_each([&](std::size_t i, std::size_t b) {
@@ -108,32 +107,32 @@ class DirectSum {
             for (std::size_t b = 0; b < bands_; ++b) body(i, b);
     }
 
-    SurfaceImage look(const Integrator& integrator) const {
+    SurfaceImage trace(const SurfaceLighting& lighting) const {
         SurfaceImage seen{Image(pixels_),
                           Image(pixels_),
                           Image(pixels_),
                           std::vector<double>(pixels_),
                           std::vector<double>(pixels_),
                           std::vector<char>(pixels_)};
-        const std::vector<Lamp>& lamps = trial_.scene.lamps;
+        const std::vector<Lamp>& lamps = trial_.scene().lamps;
         parallel_for(pixels_, [&](std::size_t i) {
             const int x = static_cast<int>(i) % trial_.width();
             const int y = static_cast<int>(i) / trial_.width();
-            const std::optional<Ray> ray = trial_.scene.camera->refracted_ray(x + 0.5, y + 0.5);
+            const std::optional<Ray> ray = trial_.scene().camera->refracted_ray(x + 0.5, y + 0.5);
             if (!ray) return;
             seen.in_water[i] = 1;
             SurfaceSample sample{*ray, {}, x + 0.5, y + 0.5};
             const SurfaceHit& hit = sample.hit;
-            if (!trial_.scene.surfaces->closest_hit(*ray, k_far, sample.hit)) return;
+            if (!trial_.scene().surfaces->closest_hit(*ray, k_far, sample.hit)) return;
             SurfaceLight light;
-            integrator.surface_light(sample, light);
+            lighting.evaluate_one(sample, light);
             seen.to_camera[i] = hit.distance;
             for (std::size_t j = 0; j < lamps.size(); ++j)
                 seen.to_lamps[i] +=
                     distance(lamps[j].position(), hit.position) / static_cast<double>(lamps.size());
-            const SurfaceReflection reflection(*trial_.scene.surfaces, sample,
+            const SurfaceReflection reflection(*trial_.scene().surfaces, sample,
                                                static_cast<int>(bands_));
-            Spectrum brdf{};
+            Spectrum brdf;
             for (std::size_t j = 0; j < lamps.size(); ++j) {
                 if (!light.visible(0, j)) continue;
                 reflection.brdf(lamps[j].position(), brdf);
@@ -173,7 +172,7 @@ class DirectSum {
     void spread(int x, int y, const Spectrum& light, double range, Image& image) const {
         Spectrum scattered{};
         for (std::size_t b = 0; b < bands_; ++b) {
-            const double c = trial_.scene.water.medium.uniform.attenuation(static_cast<int>(b));
+            const double c = trial_.scene().water.medium.uniform.attenuation(static_cast<int>(b));
             scattered[b] = light[b] * desc_.K * (std::exp(-desc_.G * range) - std::exp(-c * range));
         }
         if (*std::max_element(scattered.begin(), scattered.end()) == 0) return;
@@ -204,9 +203,10 @@ class DirectSum {
 
 }  // namespace
 
-std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial, const Integrator& light,
+std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial,
+                                            const SurfaceLighting& lighting,
                                             const std::function<bool()>& proceed) {
-    return DirectSum(trial, proceed).forward(light);
+    return DirectSum(trial, proceed).forward(lighting);
 }
 
 }  // namespace uw

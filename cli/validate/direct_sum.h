@@ -10,9 +10,10 @@ namespace uw {
 /// in uniform water, written down as a sum over all pairs of pixels: every pixel's light times the
 /// closed form of its own kernel over every other pixel and its mirror images at the borders. No
 /// transforms, no ladder of widths, no float: shares nothing with ForwardPass but the focal lengths
-/// in the water. `light` says how surfaces are lit. Cost: pixels^2. Throws Interrupted when
+/// in the water. Surfaces are lit by `lighting`. Cost: pixels^2. Throws Interrupted when
 /// `proceed` says no.
-std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial, const Integrator& light,
+std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial,
+                                            const SurfaceLighting& lighting,
                                             const std::function<bool()>& proceed);
 
 }  // namespace uw

@@ -1,33 +1,34 @@
 #include "cli/validate/validate_command.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <iostream>
+#include <memory>
 #include <ostream>
+#include <utility>
 
 #include "cli/console.h"
-#include "cli/scene_loading.h"
 #include "cli/stop_signal.h"
 #include "cli/validate/validation_report.h"
 #include "cli/validate/validation_suite.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/meshes/gltf/gltf_import.h"
+#include "render/scene_loading.h"
 
 namespace uw {
 
 bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
-                  const IntegratorFactory& volume) {
+                  const TransportWrapper& volume) {
     const ThreadLimit limit(a.threads);
     if (a.scene.empty() && !a.overrides.empty())
         throw UsageError("--set: the built-in suite has no scene file to change; name a scene");
     if (!a.report.empty()) const AtomicFile probe(a.report);
     const ValidationSuite suite;
     std::vector<std::pair<std::string, SceneDesc>> scenes = suite.scenes();
-    if (!a.scene.empty()) {
+    if (!a.scene.empty())
         scenes = {{a.scene.filename().string(), load_scene(a.scene, a.overrides)}};
-        import_gltf(scenes.front().second);
-    }
 
     ValidationOptions options;
     options.tolerance = a.tolerance;
@@ -36,8 +37,8 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     if (!a.quiet) options.say = [](const std::string& what) { print_message(what + "\n"); };
     std::vector<SceneValidation> results;
     bool passed = true;
-    for (const auto& [name, desc] : scenes) {
-        results.push_back(validate_scene(desc, name, options));
+    for (auto& [name, desc] : scenes) {
+        results.push_back(validate_scene(std::move(desc), name, options));
         passed = passed && results.back().passed();
         if (!a.quiet || !results.back().passed()) out << validation_table(results.back(), colour);
         out.flush();
@@ -49,6 +50,17 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     if (!a.quiet || !passed) out << (passed ? "validation passed\n" : "validation FAILED\n");
     if (!out.flush()) throw IoError("standard output: cannot write; is the disk full?");
     return passed;
+}
+
+Command validate_command() {
+    const auto arguments = std::make_shared<ValidateArguments>();
+    return {"validate", "compare every way of computing a scene with the others",
+            k_validate_examples, validate_options(*arguments), [arguments] {
+                install_stop_signal();
+                const bool colour = isatty(STDOUT_FILENO) != 0;
+                return run_validate(*arguments, colour, std::cout) ? k_exit_done
+                                                                   : k_exit_validation;
+            }};
 }
 
 }  // namespace uw

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "camera/image_size.h"
 #include "cli/validate/direct_sum.h"
@@ -30,12 +31,13 @@ constexpr double k_rough_water = 3;
 // mean are compared with it.
 constexpr double k_mixed_kernels = 10;
 constexpr double k_dark_in_mixtures = 1;
-// Water that a surface cuts in the middle of a layer lights the whole layer of its neighbours: at
-// depth edges this leaves an error of first order in the layers' thickness, 0.23 % in the suite
-// and 0.4 % in assets/scenes/plume with K = 1. Slabs are thin and make nearly all of it visible;
-// water that is half in a VDB has layers of the same kind in other places.
-constexpr double k_cut_layers = 5;
-constexpr double k_other_layers = 3;
+// Where a surface cuts a slab of water, what is left of it lights all of the slab in the pixels
+// beside it: at depth edges this leaves an error of first order in the slabs' thickness, 0.23 % in
+// the suite and 0.4 % in assets/scenes/plume with K = 1. The slabs of the planes integrator are
+// thin and make nearly all of it visible; water that is half in a VDB has slabs like those of
+// uniform water, but in other places.
+constexpr double k_cut_slabs = 5;
+constexpr double k_other_slabs = 3;
 // Pixels darker than this share of the mean are compared with it, otherwise.
 constexpr double k_dark = 0.01;
 
@@ -52,8 +54,8 @@ std::string planes_name(int count) {
     return "planes, " + std::to_string(count);
 }
 
-SceneDesc small_image(const SceneDesc& desc, int longest_side) {
-    SceneDesc small = desc;
+ResolvedScene small_image(ResolvedScene scene, int longest_side) {
+    SceneDesc& small = scene.edit();
     CameraDesc& camera = small.camera;
     if (camera.distortion.model == DistortionDesc::Model::fisheye)
         throw InputError(
@@ -69,18 +71,16 @@ SceneDesc small_image(const SceneDesc& desc, int longest_side) {
     small.render.samples = 1;
     // What is compared is the radiance in the water.
     small.render.output = RenderDesc::Output::radiance;
+    small.render.colour = {};
     if (camera.port)
         std::visit([](auto& port) { port.fresnel = port.radiance_in_air = false; }, *camera.port);
-    return small;
+    return scene;
 }
 
 bool scatters_in_all_bands(const Medium& medium) {
-    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
-        double b = 0;
-        for (const Spectrum& part : medium.uniform.scattering) b += part[band];
-        if (b == 0) return false;
-    }
-    return true;
+    const Spectrum b = medium.uniform.total_scattering();
+    return std::ranges::all_of(b.first(medium.wavelengths_nm.size()),
+                               [](double of_band) { return of_band != 0; });
 }
 
 // Over the pixels that `counted` marks; those darker than the share `dark` of the mean count as
@@ -109,110 +109,116 @@ double rms_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum
 /// Collects images and compares them.
 class SceneTrial {
   public:
-    SceneTrial(const SceneDesc& desc, const std::string& name, const ValidationOptions& options)
-        : desc_(small_image(desc, options.longest_side)), options_(options) {
+    SceneTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options)
+        : scene_(small_image(std::move(scene), options.longest_side)), options_(options) {
         result_.name = name;
-        result_.width = desc_.camera.width;
-        result_.height = desc_.camera.height;
-        result_.bands_nm = desc_.water.bands_nm;
+        result_.width = scene_.desc().camera.width;
+        result_.height = scene_.desc().camera.height;
+        result_.bands_nm = scene_.desc().water.bands_nm;
     }
 
     SceneValidation run() {
         const auto start = std::chrono::steady_clock::now();
-        TrialScene trial = make_trial(desc_);
-        TrialScene uniform = desc_.volumes.empty() ? make_trial(desc_) : homogenised(trial, desc_);
+        TrialScene trial = make_trial(scene_, options_.proceed);
+        TrialScene uniform = scene_.desc().volumes.empty()
+                                 ? make_trial(scene_, options_.proceed)
+                                 : homogenised(trial, scene_, options_.proceed);
         result_.smooth = smooth_pixels(uniform);
         compare_before_forward_scatter(trial, uniform);
-        if (desc_.water.forward_scatter.K > 0)
-            compare_forward_scatter(std::move(trial), std::move(uniform));
+        if (scene_.desc().water.forward_scatter.K > 0) compare_forward_scatter(trial, uniform);
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         result_.seconds = elapsed.count();
         return std::move(result_);
     }
 
   private:
-    void compare_before_forward_scatter(const TrialScene& trial, const TrialScene& uniform) {
+    void compare_before_forward_scatter(TrialScene& trial, TrialScene& uniform) {
         const std::vector<Component> both{k_direct, k_backscatter};
-        render(k_volume, uniform, *on_trial(uniform));
-        render(k_quadrature, uniform,
-               QuadratureIntegrator(uniform.scene.lit(), k_quadrature_tolerance));
+        render(k_volume, uniform, on_trial(uniform));
+        render(
+            k_quadrature, uniform,
+            {std::make_unique<QuadratureIntegrator>(uniform.scene().lit(), k_quadrature_tolerance),
+             std::make_unique<UniformWaterLighting>(uniform.scene().lit())});
         compare(k_volume, k_quadrature, both, {});
         sum_planes(uniform);
         compare(k_volume, k_planes_limit, both, {.where = k_smooth});
-        const TrialScene grid = with_constant_grid(uniform, desc_, 1);
-        render(k_constant_grid, grid, *on_trial(grid));
+        TrialScene grid = with_constant_grid(uniform, scene_, 1, options_.proceed);
+        render(k_constant_grid, grid, on_trial(grid));
         compare(k_constant_grid, k_volume, both, {});
-        render(k_reference, uniform, ReferenceIntegrator(uniform.scene.lit()));
+        render(k_reference, uniform, by_reference(uniform));
         compare(k_volume, k_reference, both, {.where = k_smooth});
-        if (desc_.volumes.empty()) return;
-        render(k_volume_on_grids, trial, *on_trial(trial));
-        render(k_reference_on_grids, trial, ReferenceIntegrator(trial.scene.lit()));
+        if (scene_.desc().volumes.empty()) return;
+        render(k_volume_on_grids, trial, on_trial(trial));
+        render(k_reference_on_grids, trial, by_reference(trial));
         compare(k_volume_on_grids, k_reference_on_grids, both,
                 {.where = k_smooth, .tolerances = k_rough_water});
     }
 
-    void compare_forward_scatter(TrialScene trial, TrialScene uniform) {
+    void compare_forward_scatter(TrialScene& trial, TrialScene& uniform) {
         const std::vector<Component> both{k_forward, k_blurred_backscatter};
-        scatter(k_volume, uniform, uniform.deep_shadows, *on_trial(uniform));
+        scatter(k_volume, uniform, on_trial(uniform));
         options_.say(result_.name + ": " + k_direct_sum);
         result_.images[k_direct_sum].forward = forward_by_direct_sum(
-            uniform, QuadratureIntegrator(uniform.scene.lit(), k_quadrature_tolerance),
-            options_.proceed);
+            uniform, UniformWaterLighting(uniform.scene().lit()), options_.proceed);
         compare(k_volume, k_direct_sum, {k_forward},
                 {.tolerances = k_mixed_kernels, .dark = k_dark_in_mixtures});
         compare_half_constant_grid(uniform);
         scatter_without_splats(k_reference, uniform, RenderDesc::Integrator::reference);
         compare(k_volume, k_reference, both, {.where = k_smooth});
-        if (!desc_.volumes.empty()) {
-            scatter(k_volume_on_grids, trial, trial.deep_shadows, *on_trial(trial));
+        if (!scene_.desc().volumes.empty()) {
+            scatter(k_volume_on_grids, trial, on_trial(trial));
             scatter_without_splats(k_reference_on_grids, trial, RenderDesc::Integrator::reference);
             compare(k_volume_on_grids, k_reference_on_grids, both,
                     {.where = k_smooth, .tolerances = k_rough_water});
         }
         const int finest = result_.planes.back().count;
-        uniform.scene.slabs = planes_of(uniform, desc_, finest);
+        const Slabs planes = planes_of(uniform, finest);
+        uniform.renderer.edit([&](AssembledScene& parts) { parts.slabs = planes; });
         const std::string sum = planes_name(finest);
         scatter_without_splats(sum, uniform, RenderDesc::Integrator::planes);
-        compare(k_volume, sum, both, {.where = k_smooth, .tolerances = k_cut_layers});
+        compare(k_volume, sum, both, {.where = k_smooth, .tolerances = k_cut_slabs});
     }
 
     // Half of the water stays uniform: the blur is measured by what it scatters, which is nothing
     // where all water is in the grid.
     void compare_half_constant_grid(const TrialScene& uniform) {
-        if (!scatters_in_all_bands(uniform.scene.water.medium)) {
+        if (!scatters_in_all_bands(uniform.scene().water.medium)) {
             options_.say(result_.name + ": " + k_constant_grid +
                          ", forward scatter: left out; the water does not scatter in every band");
             return;
         }
-        const TrialScene grid = with_constant_grid(uniform, desc_, 0.5);
-        scatter(k_constant_grid, grid, grid.deep_shadows, *on_trial(grid));
+        TrialScene grid = with_constant_grid(uniform, scene_, 0.5, options_.proceed);
+        scatter(k_constant_grid, grid, on_trial(grid));
         compare(k_constant_grid, k_volume, {k_forward, k_blurred_backscatter},
-                {.tolerances = k_other_layers});
+                {.tolerances = k_other_slabs});
     }
 
-    std::unique_ptr<Integrator> on_trial(const TrialScene& trial) const {
-        if (options_.volume) return options_.volume(trial.scene, trial.deep_shadows);
-        return make_integrator(trial.scene, trial.deep_shadows);
+    LightTransport on_trial(TrialScene& trial) const {
+        LightTransport honest = trial.renderer.make_transport();
+        return options_.volume ? options_.volume(std::move(honest)) : std::move(honest);
     }
 
-    void render(const std::string& method, const TrialScene& trial, const Integrator& integrator) {
+    static LightTransport by_reference(const TrialScene& trial) {
+        return {std::make_unique<ReferenceIntegrator>(trial.scene().lit()),
+                std::make_unique<DirectLighting>(trial.scene().lit())};
+    }
+
+    void render(const std::string& method, const TrialScene& trial,
+                const LightTransport& transport) {
         options_.say(result_.name + ": " + method);
-        result_.images[method] = render_method(trial, integrator, options_.proceed);
+        result_.images[method] = render_method(trial, transport, options_.proceed);
     }
 
-    void scatter(const std::string& method, const TrialScene& trial,
-                 const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows,
-                 const Integrator& integrator) {
+    void scatter(const std::string& method, TrialScene& trial, const LightTransport& transport) {
         options_.say(result_.name + ": " + method + ", forward scatter");
-        render_forward_scatter(trial, deep_shadows, integrator, options_.proceed,
-                               result_.images[method]);
+        render_forward_scatter(trial, transport, result_.images[method]);
     }
 
     // Likewise by an integrator that takes light and columns from no splats.
     void scatter_without_splats(const std::string& method, TrialScene& trial,
                                 RenderDesc::Integrator which) {
-        trial.scene.desc.render.integrator = which;
-        scatter(method, trial, {}, *make_integrator(trial.scene, {}));
+        trial.renderer.edit([&](AssembledScene& parts) { parts.desc.render.integrator = which; });
+        scatter(method, trial, trial.renderer.make_transport());
     }
 
     // Methods that step over a shadow's edge are held to the largest difference where there is
@@ -249,17 +255,18 @@ class SceneTrial {
     void sum_planes(const TrialScene& uniform) {
         std::vector<MethodImage> sums;
         for (int count = k_fewest_planes; count <= options_.most_planes; count *= 2) {
-            const Slabs slabs = planes_of(uniform, desc_, count);
-            const PlanesIntegrator integrator(uniform.scene.lit(),
-                                              uniform.scene.camera->world_from_camera(), slabs);
+            const Slabs slabs = planes_of(uniform, count);
+            const LightTransport transport{
+                std::make_unique<PlanesIntegrator>(
+                    uniform.scene().lit(), uniform.scene().camera->world_from_camera(), slabs),
+                std::make_unique<DirectLighting>(uniform.scene().lit())};
             options_.say(result_.name + ": " + planes_name(count));
-            sums.push_back(render_method(uniform, integrator, options_.proceed));
+            sums.push_back(render_method(uniform, transport, options_.proceed));
         }
         MethodImage limit = sums.back();
         const MethodImage& coarse = sums[sums.size() - 2];
         for (std::size_t i = 0; i < limit.backscatter.size(); ++i)
-            for (std::size_t b = 0; b < k_max_bands; ++b)
-                limit.backscatter[i][b] += (limit.backscatter[i][b] - coarse.backscatter[i][b]) / 3;
+            limit.backscatter[i] += (limit.backscatter[i] - coarse.backscatter[i]) / 3;
         for (std::size_t n = 0; n < sums.size(); ++n) {
             PlanesStep step{k_fewest_planes << n, 0, 0};
             for (std::size_t band = 0; band < result_.bands_nm.size(); ++band)
@@ -274,7 +281,7 @@ class SceneTrial {
         result_.images[planes_name(result_.planes.back().count)] = std::move(sums.back());
     }
 
-    SceneDesc desc_;
+    ResolvedScene scene_;
     const ValidationOptions& options_;
     SceneValidation result_;
 };
@@ -291,9 +298,9 @@ bool SceneValidation::passed() const {
     return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed(); });
 }
 
-SceneValidation validate_scene(const SceneDesc& desc, const std::string& name,
+SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
                                const ValidationOptions& options) {
-    return SceneTrial(desc, name, options).run();
+    return SceneTrial(std::move(scene), name, options).run();
 }
 
 }  // namespace uw

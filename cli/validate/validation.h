@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,11 +10,14 @@
 
 namespace uw {
 
+/// Wraps the light transport that is on trial; tests make it wrong here.
+using TransportWrapper = std::function<LightTransport(LightTransport honest)>;
+
 struct ValidationOptions {
-    double tolerance = 1e-3;   // largest relative difference allowed at a smooth pixel
-    int longest_side = 48;     // of the image that is compared [pixels]
-    int most_planes = 512;     // slabs of the finest sum
-    IntegratorFactory volume;  // the integrator on trial; empty: the scene's volume integrator
+    double tolerance = 1e-3;  // largest relative difference allowed at a smooth pixel
+    int longest_side = 48;    // of the image that is compared [pixels]
+    int most_planes = 512;    // slabs of the finest sum
+    TransportWrapper volume;  // of the volume integrator's; empty: it is on trial as it is
     std::function<bool()> proceed = [] { return true; };  // false stops with Interrupted
     std::function<void(const std::string&)> say = [](const std::string&) {};
 };
@@ -68,14 +72,14 @@ struct SceneValidation {
 /// The mean of one band.
 double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band);
 
-/// Compares every way of computing `desc`: sums over McGlamery's planes and their limit, adaptive
+/// Compares every way of computing `scene`: sums over McGlamery's planes and their limit, adaptive
 /// quadrature, the reference integrator and a VDB of constant value against the volume integrator,
 /// all in uniform water (a scene with volumes is homogenised: its grids replaced by their mean),
 /// and on the scene's own grids the volume against the reference integrator. With forward scatter
 /// also what it makes of each method's light: the finest sum over planes, the reference integrator,
 /// a VDB that holds half of the water, and a sum over all pairs of pixels against the volume
 /// integrator.
-SceneValidation validate_scene(const SceneDesc& desc, const std::string& name,
+SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
                                const ValidationOptions& options);
 
 }  // namespace uw

@@ -10,7 +10,6 @@
 #include "core/frame/pixel_renderer.h"
 #include "core/optics/optical_depth.h"
 #include "media/vdb/vdb_writer.h"
-#include "render/scene_rendering.h"
 
 namespace uw {
 
@@ -20,14 +19,18 @@ constexpr int k_mean_samples = 64;     // along each edge of the field's bounds
 constexpr int k_grid_side = 48;        // voxels of the constant grid along each edge
 constexpr double k_reach_depths = 15;  // optical depths that the constant grid reaches
 
-// A new assembled scene of `desc` without its volumes, in the water of `medium`.
-TrialScene in_water(const SceneDesc& desc, Medium medium) {
-    SceneDesc without = desc;
-    without.volumes.clear();
-    TrialScene trial;
-    trial.scene = assemble_scene(without, [](const std::string&) {});
-    trial.scene.water.medium = std::move(medium);
-    return trial;
+Renderer make_renderer(const ResolvedScene& scene, const std::function<bool()>& proceed) {
+    Renderer renderer([proceed](const std::string&, double) { return proceed(); });
+    renderer.set_scene(scene);
+    return renderer;
+}
+
+// `scene` without its volumes, in the water of `medium`; not splatted.
+Renderer in_water(ResolvedScene scene, Medium medium, const std::function<bool()>& proceed) {
+    scene.edit().volumes.clear();
+    Renderer renderer = make_renderer(scene, proceed);
+    renderer.edit([&](AssembledScene& parts) { parts.water.medium = std::move(medium); });
+    return renderer;
 }
 
 // Mean concentration of each constituent over the field's bounds.
@@ -51,19 +54,18 @@ std::vector<double> mean_concentrations(const ConcentrationField& field) {
 }
 
 void add_scaled(OpticalCoefficients& to, const OpticalCoefficients& from, double scale) {
-    for (std::size_t b = 0; b < k_max_bands; ++b) to.absorption[b] += scale * from.absorption[b];
+    to.absorption += scale * from.absorption;
     for (std::size_t m = 0; m < to.scattering.size(); ++m)
-        for (std::size_t b = 0; b < k_max_bands; ++b)
-            to.scattering[m][b] += scale * from.scattering[m][b];
+        to.scattering[m] += scale * from.scattering[m];
 }
 
 // Everything that light between lamps and camera can pass before it is used up.
 Bounds reach_of(const TrialScene& trial) {
-    Bounds bounds = trial.scene.surfaces->bounds();
-    for (const Lamp& lamp : trial.scene.lamps) bounds.extend(lamp.position());
-    bounds.extend(at_origin_plus(trial.scene.camera->world_from_camera().offset()));
-    const AttenuationTable c(trial.scene.water.medium);
-    const double least = *std::min_element(c.uniform.begin(), c.uniform.begin() + c.band_count);
+    Bounds bounds = trial.scene().surfaces->bounds();
+    for (const Lamp& lamp : trial.scene().lamps) bounds.extend(lamp.position());
+    bounds.extend(at_origin_plus(trial.scene().camera->world_from_camera().offset()));
+    const AttenuationTable c(trial.scene().water.medium);
+    const double least = c.uniform.least(static_cast<std::size_t>(c.band_count));
     const double margin = least > 0 ? std::min(k_reach_depths / least, 1e3) : 1e3;
     return {bounds.min - Vector3(margin), bounds.max + Vector3(margin)};
 }
@@ -81,32 +83,30 @@ void append_hard_beam_edges(const Ray& ray, const Lamp& lamp, std::vector<double
     }
 }
 
-void splat(TrialScene& trial) {
-    trial.deep_shadows = splat_lamps(trial.scene, DeepShadowOptions{});
+TrialScene splatted(Renderer renderer) {
+    renderer.splat();
+    return {std::move(renderer)};
 }
 
 }  // namespace
 
-TrialScene make_trial(const SceneDesc& desc) {
-    TrialScene trial;
-    trial.scene = assemble_scene(desc, [](const std::string&) {});
-    splat(trial);
-    return trial;
+TrialScene make_trial(const ResolvedScene& scene, const std::function<bool()>& proceed) {
+    return splatted(make_renderer(scene, proceed));
 }
 
-TrialScene homogenised(const TrialScene& trial, const SceneDesc& desc) {
-    Medium medium = trial.scene.water.medium;
-    const std::vector<double> mean = mean_concentrations(*trial.scene.field);
+TrialScene homogenised(const TrialScene& trial, const ResolvedScene& scene,
+                       const std::function<bool()>& proceed) {
+    Medium medium = trial.scene().water.medium;
+    const std::vector<double> mean = mean_concentrations(*trial.scene().field);
     for (std::size_t k = 0; k < mean.size(); ++k)
         add_scaled(medium.uniform, medium.constituents[k].per_unit, mean[k]);
     medium.constituents.clear();
-    TrialScene result = in_water(desc, std::move(medium));
-    splat(result);
-    return result;
+    return splatted(in_water(scene, std::move(medium), proceed));
 }
 
-TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc, double share) {
-    Medium medium = trial.scene.water.medium;
+TrialScene with_constant_grid(const TrialScene& trial, const ResolvedScene& scene, double share,
+                              const std::function<bool()>& proceed) {
+    Medium medium = trial.scene().water.medium;
     const OpticalCoefficients whole = medium.uniform;
     const OpticalCoefficients none{{}, std::vector<Spectrum>(whole.scattering.size())};
     Constituent water{.name = "water", .unit = "1", .per_unit = none};
@@ -137,31 +137,32 @@ TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc, do
     volume.up = UpAxis::y;
     write_vdb(volume.file, {ones}, {{"creator", "uwvdb validate"}});
 
-    TrialScene result = in_water(desc, std::move(medium));
-    result.scene.field = load_volumes({volume}, {{{GridLoad{0, 1.0}}}}, 1,
-                                      result.scene.volume_reports, result.scene.warnings);
-    ForwardScatterDesc& forward = result.scene.desc.water.forward_scatter;
-    forward.G *= 1 - share;
-    forward.B *= 1 - share;
-    splat(result);
-    return result;
+    Renderer renderer = in_water(scene, std::move(medium), proceed);
+    renderer.edit([&](AssembledScene& parts) {
+        parts.field =
+            load_volumes({volume}, {{{GridLoad{0, 1.0}}}}, 1, parts.volume_reports, parts.warnings);
+        ForwardScatterDesc& forward = parts.desc.water.forward_scatter;
+        forward.G *= 1 - share;
+        forward.B *= 1 - share;
+    });
+    return splatted(std::move(renderer));
 }
 
-Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count) {
-    PlanesDesc planes = desc.render.planes;
+Slabs planes_of(const TrialScene& trial, int count) {
+    PlanesDesc planes = trial.scene().desc.render.planes;
     planes.count = count;
-    return place_slabs(planes, *trial.scene.camera, trial.scene.lit());
+    return place_slabs(planes, *trial.scene().camera, trial.scene().lit());
 }
 
-MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
+MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
                           const std::function<bool()>& proceed) {
     const auto pixels =
         static_cast<std::size_t>(trial.width()) * static_cast<std::size_t>(trial.height());
     MethodImage image;
     image.direct.resize(pixels);
     image.backscatter.resize(pixels);
-    const PixelRenderer renderer(*trial.scene.camera, trial.scene.lit(), integrator, 1,
-                                 trial.scene.slabs);
+    const PixelRenderer renderer(*trial.scene().camera, trial.scene().lit(), transport, 1,
+                                 trial.scene().slabs);
     parallel_for(static_cast<std::size_t>(trial.height()), [&](std::size_t row) {
         if (!proceed()) throw Interrupted();
         PixelResult result;
@@ -176,24 +177,19 @@ MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
     return image;
 }
 
-void render_forward_scatter(const TrialScene& trial,
-                            const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows,
-                            const Integrator& integrator, const std::function<bool()>& proceed,
+void render_forward_scatter(TrialScene& trial, const LightTransport& transport,
                             MethodImage& image) {
-    const SceneDesc& desc = trial.scene.desc;
-    std::vector<std::string> lamps;  // not asked for by name
-    for (std::size_t j = 0; j < desc.lamps.size(); ++j) lamps.push_back(std::to_string(j));
-    const LayerPlan plan("forward,backscatter", desc.water.bands_nm, lamps);
-    Film film(trial.width(), trial.height(), {0, 0, trial.width(), trial.height()},
-              plan.channel_names());
-    render_scene(trial.scene, deep_shadows, integrator, plan, BandColour(desc.water.bands_nm), film,
-                 [&](const std::string&, double) { return proceed(); });
+    const std::string layers = "forward,backscatter";
+    const Film& film =
+        trial.renderer.render({.layers = layers, .window = {}, .transport = &transport});
+    const LayerPlan plan = layer_plan(trial.scene().desc, layers);
+    const std::size_t bands = trial.scene().desc.water.bands_nm.size();
     const auto read = [&](Layer layer, std::vector<Spectrum>& component) {
         const auto first = static_cast<std::size_t>(plan.first_channel(layer));
         for (int y = 0; y < film.height(); ++y) {
             for (int x = 0; x < film.width(); ++x) {
                 Spectrum& pixel = component.emplace_back();
-                for (std::size_t band = 0; band < desc.water.bands_nm.size(); ++band)
+                for (std::size_t band = 0; band < bands; ++band)
                     pixel[band] = static_cast<double>(film.pixel(x, y)[first + band]);
             }
         }
@@ -207,22 +203,22 @@ std::vector<char> smooth_pixels(const TrialScene& trial) {
     std::vector<char> smooth(static_cast<std::size_t>(trial.width() * trial.height()), 1);
     parallel_for(smooth.size(), [&](std::size_t i) {
         const int x = static_cast<int>(i) % trial.width(), y = static_cast<int>(i) / trial.width();
-        const auto ray = trial.scene.camera->refracted_ray(x + 0.5, y + 0.5);
+        const auto ray = trial.scene().camera->refracted_ray(x + 0.5, y + 0.5);
         if (!ray) return;
         SurfaceHit hit;
         const double end =
-            trial.scene.surfaces->closest_hit(*ray, k_far, hit) ? hit.distance : k_far;
+            trial.scene().surfaces->closest_hit(*ray, k_far, hit) ? hit.distance : k_far;
         std::vector<Interval> lit;
         std::vector<double> edges;
-        for (std::size_t j = 0; j < trial.scene.lamps.size(); ++j) {
-            const Interval in_beam = trial.scene.lamps[j].beam(*ray, {0, end});
-            trial.deep_shadows[j]->lit_intervals(*ray, in_beam, lit);
+        for (std::size_t j = 0; j < trial.scene().lamps.size(); ++j) {
+            const Interval in_beam = trial.scene().lamps[j].beam(*ray, {0, end});
+            trial.light()[j]->lit_intervals(*ray, in_beam, lit);
             edges.clear();
             for (const Interval& interval : lit) {
                 edges.push_back(interval.begin);
                 edges.push_back(interval.end);
             }
-            append_hard_beam_edges(*ray, trial.scene.lamps[j], edges);
+            append_hard_beam_edges(*ray, trial.scene().lamps[j], edges);
             for (const double s : edges)
                 if (s > k_edge * end && s < (1 - k_edge) * end) smooth[i] = 0;
         }

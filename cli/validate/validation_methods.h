@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/scene_assembly.h"
+#include "render/renderer.h"
 
 namespace uw {
 
@@ -17,27 +17,24 @@ struct MethodImage {
     std::vector<Spectrum> blurred_backscatter;  // with forward scatter
 };
 
-/// Makes the integrator that is on trial; tests slip in wrong ones here.
-using IntegratorFactory = std::function<std::unique_ptr<Integrator>(
-    const AssembledScene& scene,
-    const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows)>;
-
 /// A scene on trial, assembled, with its lamps splatted.
 struct TrialScene {
-    AssembledScene scene;
-    std::vector<std::shared_ptr<const DeepShadowMap>> deep_shadows;
+    Renderer renderer;
 
-    int width() const { return scene.camera->width(); }
-    int height() const { return scene.camera->height(); }
+    const AssembledScene& scene() const { return renderer.assembled(); }
+    const DeepShadows& light() const { return renderer.light(); }
+    int width() const { return scene().camera->width(); }
+    int height() const { return scene().camera->height(); }
 };
 
-/// Assembles `desc` and splats its lamps.
-TrialScene make_trial(const SceneDesc& desc);
+/// Assembles `scene` and splats its lamps. This, and whatever is rendered of it, ends with
+/// Interrupted when `proceed` says no; so in the two that follow.
+TrialScene make_trial(const ResolvedScene& scene, const std::function<bool()>& proceed);
 
 /// `trial` with its grids replaced by their mean over the field's bounds: uniform water, which
-/// scatters forward with the scene's K, G and B.
-/// `desc` is the description that `trial` was made from.
-TrialScene homogenised(const TrialScene& trial, const SceneDesc& desc);
+/// scatters forward with the scene's K, G and B. `scene` is what `trial` was made from.
+TrialScene homogenised(const TrialScene& trial, const ResolvedScene& scene,
+                       const std::function<bool()>& proceed);
 
 /// `trial`, whose water is uniform, with a `share` of that water (above 0, at most 1) moved into a
 /// VDB grid of constant value: the grid is written to a file and read back, and outside it is only
@@ -45,22 +42,20 @@ TrialScene homogenised(const TrialScene& trial, const SceneDesc& desc);
 /// passed. G and B of forward scatter are measured by the uniform water that they stand for
 /// (physics section 6): where some of it stays, they are made less with it, so that the blur is the
 /// same.
-TrialScene with_constant_grid(const TrialScene& trial, const SceneDesc& desc, double share);
+TrialScene with_constant_grid(const TrialScene& trial, const ResolvedScene& scene, double share,
+                              const std::function<bool()>& proceed);
 
-/// `count` of McGlamery's planes in the water of `trial`, placed as `desc` says.
-Slabs planes_of(const TrialScene& trial, const SceneDesc& desc, int count);
+/// `count` of McGlamery's planes in the water of `trial`, placed as its scene says.
+Slabs planes_of(const TrialScene& trial, int count);
 
-/// Renders every pixel with `integrator` before forward scatter. Stops with Interrupted when
+/// Renders every pixel by `transport` before forward scatter. Stops with Interrupted when
 /// `proceed` says no.
-MethodImage render_method(const TrialScene& trial, const Integrator& integrator,
+MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
                           const std::function<bool()>& proceed);
 
 /// Likewise with forward scatter, as `uwvdb render` does it: fills the other two components of
-/// `image`. `deep_shadows` are those that `integrator` gathers from, if any.
-void render_forward_scatter(const TrialScene& trial,
-                            const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows,
-                            const Integrator& integrator, const std::function<bool()>& proceed,
-                            MethodImage& image);
+/// `image`.
+void render_forward_scatter(TrialScene& trial, const LightTransport& transport, MethodImage& image);
 
 /// Pixels whose water ray meets no shadow edge and no hard edge of a lamp's beam, row by row: where
 /// a sum over slabs converges as their thickness squared.

@@ -57,8 +57,8 @@ class Pictures {
         return fmt::format(
             "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
             "<figcaption>{}</figcaption></figure>\n",
-            k_picture_width, k_picture_width * picture.height / std::max(1, picture.width), caption,
-            base64(bytes), caption);
+            k_picture_width, k_picture_width * picture.height() / std::max(1, picture.width()),
+            caption, base64(bytes), caption);
     }
 
   private:
@@ -72,19 +72,20 @@ const Components k_scattered{k_direct, k_forward, k_blurred_backscatter};
 // The sum of `components` in one pixel.
 Spectrum sum_of(const MethodImage& image, const Components& components, std::size_t pixel) {
     Spectrum sum{};
-    for (const Component& component : components)
-        for (std::size_t b = 0; b < k_max_bands; ++b) sum[b] += (image.*component.image)[pixel][b];
+    for (const Component& component : components) sum += (image.*component.image)[pixel];
     return sum;
 }
 
 Preview picture_of(const SceneValidation& scene, const MethodImage& image,
                    const Components& components, double exposure) {
     const BandColour colour(scene.bands_nm);
-    Preview picture{scene.width, scene.height, {}};
-    for (std::size_t i = 0; i < scene.smooth.size(); ++i)
-        for (const double value : colour(sum_of(image, components, i)))
-            picture.rgb.push_back(
-                static_cast<std::uint8_t>(std::lround(255 * srgb_encode(exposure * value))));
+    Preview picture(scene.width, scene.height);
+    for (std::size_t i = 0; i < scene.smooth.size(); ++i) {
+        const LinearRgb rgb = colour(sum_of(image, components, i));
+        for (std::size_t c = 0; c < 3; ++c)
+            picture[i][c] =
+                static_cast<std::uint8_t>(std::lround(255 * srgb_encode(exposure * rgb[c])));
+    }
     return picture;
 }
 
@@ -113,7 +114,7 @@ DifferenceMap difference_map(const SceneValidation& scene, const Check& check) {
     const std::vector<Spectrum>& b = scene.images.at(check.right).*check.component.image;
     const auto counts = [&](std::size_t i) { return check.everywhere || scene.smooth[i] != 0; };
     std::vector<double> worst(a.size());
-    DifferenceMap map{{scene.width, scene.height, {}}, 0};
+    DifferenceMap map{Preview(scene.width, scene.height), 0};
     for (std::size_t band = 0; band < scene.bands_nm.size(); ++band) {
         const double dark = check.dark * mean_over_pixels(b, band);
         for (std::size_t i = 0; i < a.size(); ++i) {
@@ -127,11 +128,11 @@ DifferenceMap difference_map(const SceneValidation& scene, const Check& check) {
         const double strength = worst[i] == 0 ? 0 : std::abs(worst[i]) / map.full_colour;
         const auto fade = static_cast<std::uint8_t>(255 * (1 - std::min(1.0, strength)));
         if (!counts(i))
-            map.picture.rgb.insert(map.picture.rgb.end(), {190, 190, 190});
+            map.picture[i] = {190, 190, 190};
         else if (worst[i] > 0)
-            map.picture.rgb.insert(map.picture.rgb.end(), {255, fade, fade});
+            map.picture[i] = {255, fade, fade};
         else
-            map.picture.rgb.insert(map.picture.rgb.end(), {fade, fade, 255});
+            map.picture[i] = {fade, fade, 255};
     }
     return map;
 }

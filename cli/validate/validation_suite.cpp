@@ -30,7 +30,7 @@ WaterDesc henyey_greenstein() {
     WaterDesc water;
     water.absorption = PerBand{0.35, 0.08, 0.05};
     water.scattering = ScatteringDesc{{0.20, 0.22, 0.25}, {}};
-    water.scattering->phase.g = 0.9;
+    water.scattering->phase.function = HenyeyGreensteinDesc{0.9};
     return water;
 }
 
@@ -93,9 +93,7 @@ SceneDesc shadow_and_spot() {
     desc.water = henyey_greenstein();
     desc.geometry.push_back(box({0.1, -0.2, 1.0}, {0.4, 0.1, 1.3}));
     LampDesc spot = lamp("spot", {-1, -0.4, 0}, 80);
-    spot.profile.type = LampProfileDesc::Type::spot;
-    spot.profile.beam = 70;
-    spot.profile.edge = 20;
+    spot.profile = SpotProfileDesc{70, 20};
     spot.direction = glm::normalize(Vector3(0.4, 0.1, 1));
     desc.lamps = {lamp("bare", {1, -0.5, 0}, 50), spot};
     desc.water.forward_scatter = forward_scatter(ForwardScatterDesc::Shape::gaussian);

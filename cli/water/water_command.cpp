@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iostream>
 #include <memory>
 #include <ostream>
 
 #include "cli/console.h"
-#include "cli/water/water_report.h"
+#include "cli/water/water_csv.h"
+#include "cli/water/water_json.h"
+#include "cli/water/water_plot.h"
+#include "cli/water/water_text.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/scene/yaml/scene_reader.h"
@@ -149,6 +153,15 @@ void run_water(const WaterArguments& a, std::ostream& out) {
     files.commit();
     out << (a.json ? water_json(report) : water_text(report)) << std::flush;
     if (!out) throw IoError("standard output: cannot write; is the disk full?");
+}
+
+Command water_command() {
+    const auto arguments = std::make_shared<WaterArguments>();
+    return {"water", "tables and plots of a water's optical properties", k_water_examples,
+            water_options(*arguments), [arguments] {
+                run_water(*arguments, std::cout);
+                return k_exit_done;
+            }};
 }
 
 }  // namespace uw

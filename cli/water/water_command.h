@@ -2,7 +2,8 @@
 
 #include <iosfwd>
 
-#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/water/water_options.h"
 
 namespace uw {
 
@@ -11,5 +12,8 @@ namespace uw {
 /// stderr. Throws UsageError, InputError and IoError; then no file has been touched, unless it is
 /// `out` that cannot be written.
 void run_water(const WaterArguments& arguments, std::ostream& out);
+
+/// `uwvdb water` as the command line knows it.
+Command water_command();
 
 }  // namespace uw

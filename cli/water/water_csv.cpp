@@ -1,10 +1,11 @@
+#include "cli/water/water_csv.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "cli/version.h"
-#include "cli/water/water_report.h"
 
 namespace uw {
 
@@ -97,7 +98,7 @@ std::string water_vsf_csv(const WaterReport& report) {
                               "its components, then of what grids add") +
                       header + "\n";
     for (const std::size_t band : report.vsf_bands)
-        for (const double angle : filed_angles()) {
+        for (const double angle : file_angles()) {
             const double psi = angle * std::numbers::pi / 180;
             std::string row;
             add(row, water.wavelengths_nm[band]);

@@ -1,9 +1,10 @@
+#include "cli/water/water_json.h"
+
 #include <cmath>
 #include <numbers>
 
 #include "cli/json.h"
 #include "cli/version.h"
-#include "cli/water/water_report.h"
 
 namespace uw {
 
@@ -41,7 +42,7 @@ Json coefficients(const CoefficientTable& table) {
 }
 
 Json vsf_json(const WaterReport& report, std::size_t band) {
-    const std::vector<double>& angles = filed_angles();
+    const std::vector<double>& angles = file_angles();
     const auto over_angle = [&](auto value) {
         return list(angles.size(),
                     [&](std::size_t i) { return value(angles[i] * std::numbers::pi / 180); });
@@ -85,7 +86,7 @@ std::string water_json(const WaterReport& report) {
     json["constituents"] = Json::array();
     for (const CoefficientTable& constituent : water.constituents)
         json["constituents"].push_back(coefficients(constituent));
-    json["vsf"]["angles_deg"] = filed_angles();
+    json["vsf"]["angles_deg"] = file_angles();
     json["vsf"]["bands"] = Json::array();
     for (const std::size_t band : report.vsf_bands)
         json["vsf"]["bands"].push_back(vsf_json(report, band));

@@ -1,3 +1,5 @@
+#include "cli/water/water_plot.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <numbers>
 #include <utility>
 
-#include "cli/water/water_report.h"
 #include "media/water/pure_water.h"
 
 namespace uw {

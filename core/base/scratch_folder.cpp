@@ -3,14 +3,17 @@
 #include <stdlib.h>
 
 #include <string>
+#include <system_error>
 
 #include "core/base/error.h"
 
 namespace uw {
 
 ScratchFolder::ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "uwvdb-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
+    std::error_code error;
+    const std::filesystem::path parent = std::filesystem::temp_directory_path(error);
+    std::string name = (parent / "uwvdb-XXXXXX").string();
+    if (error || mkdtemp(name.data()) == nullptr)
         throw IoError(name + ": cannot make a temporary folder; set TMPDIR to a writable one");
     path_ = name;
 }

@@ -76,6 +76,15 @@ std::string suggestion(std::string_view text, std::span<const std::string_view> 
     return list;
 }
 
+std::string alternatives(std::span<const std::string_view> words) {
+    std::string list;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i > 0) list += i + 1 < words.size() ? ", " : " or ";
+        list += words[i];
+    }
+    return list;
+}
+
 NumberText parse_number(std::string_view text, double& value) {
     const bool plus = text.starts_with('+');
     if (plus) text.remove_prefix(1);

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace uw {
 
@@ -18,6 +20,18 @@ std::string_view nearest_word(std::string_view text, std::span<const std::string
 
 /// "did you mean 'x'?" where a candidate is near, else "use one of: a, b, c".
 std::string suggestion(std::string_view text, std::span<const std::string_view> candidates);
+
+/// The words as "a, b or c".
+std::string alternatives(std::span<const std::string_view> words);
+
+/// The words of a table of words and what they mean.
+template <class T, std::size_t N>
+constexpr std::array<std::string_view, N> words_of(
+    const std::array<std::pair<std::string_view, T>, N>& table) {
+    std::array<std::string_view, N> words;
+    for (std::size_t i = 0; i < N; ++i) words[i] = table[i].first;
+    return words;
+}
 
 /// Outcome of parse_number.
 enum class NumberText : std::uint8_t { number, not_finite, out_of_range, no_number };

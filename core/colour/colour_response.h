@@ -3,7 +3,7 @@
 #include <span>
 
 #include "core/colour/colour.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/render_desc.h"
 
 namespace uw {
 

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "core/colour/band_intervals.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/lamp_spectrum_desc.h"
+#include "core/scene/per_band.h"
 #include "core/tables/sampled_curve.h"
 
 namespace uw {

@@ -15,7 +15,7 @@ const double k_largest_exponent = -std::log(k_negligible);
 
 // Beyond this sigma a Gaussian's spectrum at half a cycle per pixel is below 3e-9: no aliases.
 constexpr double k_alias_free_sigma = 2;
-// Of an exponential's mixture of Gaussians (below), a share of 2e-9 is narrower than s / 6.
+// Of an exponential's mixture of Gaussians (below), a part of 2e-9 is narrower than s / 6.
 constexpr double k_largest_deviate = 6;
 
 // The table of aliases: nodes over 0 to half a cycle per pixel, and one beyond either end.
@@ -33,7 +33,7 @@ double smooth_gaussian(double sigma, double f) {
     return std::exp(-2 * x * x) * sinc(f);
 }
 
-// A Gaussian's shares in a line of pixels, and their spectrum.
+// How much of a Gaussian falls on each pixel of a line, and the spectrum of these weights.
 class PixelGaussian {
   public:
     explicit PixelGaussian(double sigma) : sigma_(sigma) {
@@ -41,18 +41,18 @@ class PixelGaussian {
         const double unit = 1 / (sigma * std::numbers::sqrt2);
         double below = -1;
         for (double cumulated = 0; cumulated < 1; below = cumulated) {
-            cumulated = std::erf((static_cast<double>(shares_.size()) + 0.5) * unit);
-            shares_.push_back(shares_.empty() ? cumulated : cumulated - below);
+            cumulated = std::erf((static_cast<double>(weights_.size()) + 0.5) * unit);
+            weights_.push_back(weights_.empty() ? cumulated : cumulated - below);
         }
     }
 
     double spectrum(double f) const {
         if (sigma_ > k_alias_free_sigma) return smooth_gaussian(sigma_, f);
-        if (shares_.empty()) return 1;
+        if (weights_.empty()) return 1;
         const double twice = 2 * std::cos(2 * k_pi * f);
         double before = 0.5 * twice, cosine = 1, sum = 0;
-        for (const double share : shares_) {
-            sum += share * cosine;
+        for (const double weight : weights_) {
+            sum += weight * cosine;
             const double next = twice * cosine - before;  // cos(n + 1)x from cos nx, cos(n - 1)x
             before = cosine;
             cosine = next;
@@ -62,7 +62,7 @@ class PixelGaussian {
 
   private:
     double sigma_;
-    std::vector<double> shares_;  // of the pixel itself, and of both neighbours i pixels away
+    std::vector<double> weights_;  // of the pixel itself, and of both neighbours i pixels away
 };
 
 // Weights of cubic interpolation at `t` in [0, 1] between the middle two of four nodes.

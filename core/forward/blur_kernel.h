@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/scene/scene_desc.h"
+#include "core/scene/forward_scatter_desc.h"
 
 namespace uw {
 
@@ -14,14 +14,15 @@ struct BlurWidth {
     double x = 0, y = 0;
 };
 
-/// The blur of light scattered by small angles (physics section 6), as the share of a pixel's light
-/// that lands in every other pixel: the kernel, centred on the pixel, integrated over each pixel.
+/// The blur of light scattered by small angles (physics section 6), as the fraction of a pixel's
+/// light that lands in every other pixel: the kernel, centred on the pixel, integrated over each.
 ///
 ///   exponential   F^-1{e^{-2 pi s f}} = s / (2 pi (s^2 + r^2)^{3/2})      (Jaffe, McGlamery)
 ///   gaussian      of sigma = sqrt(2) s, with the same f where the spectrum is 1/e   (the paper)
 ///
-/// The shares are positive and sum to 1 for every width; a width of 0 leaves the light where it is.
-/// Known by its spectrum (period 1 cycle per pixel), the tails have no end that could be cut off.
+/// The fractions are positive and sum to 1 for every width; a width of 0 leaves the light where it
+/// is. The kernel is given by its spectrum (of period 1 cycle per pixel), so that no tails are cut
+/// off.
 class BlurKernel {
   public:
     /// The kernel for images of `width` times `height` pixels that go on as their own mirrors.

@@ -6,8 +6,8 @@ namespace uw {
 
 /// The cosine transform of one line of an image: the Fourier transform of the line continued by
 /// mirrors without end, ... c b a | a b c ... z | z y x ... (DCT-II). Frequency k of n is k/(2n)
-/// cycles per pixel. The one door to FFTW. Always plans alike, so that the same line gives the
-/// same bits. Thread safe.
+/// cycles per pixel. The one door to FFTW. Its plans are always the same, so that the same line
+/// gives the same bits. Thread safe.
 class CosineTransform {
   public:
     /// Plans lines of `length` >= 1 values.

@@ -7,35 +7,22 @@
 
 namespace uw {
 
-namespace {
-
-Spectrum scattering_of(const OpticalCoefficients& coefficients) {
-    Spectrum b{};
-    for (const Spectrum& part : coefficients.scattering)
-        for (std::size_t band = 0; band < k_max_bands; ++band) b[band] += part[band];
-    return b;
-}
-
-}  // namespace
-
 PathScatter::PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane,
                          const Medium& medium)
-    : scatter_(desc, plane), attenuation_(medium), uniform_b_(scattering_of(medium.uniform)) {
+    : scatter_(desc, plane), attenuation_(medium), uniform_b_(medium.uniform.total_scattering()) {
     for (const Constituent& constituent : medium.constituents)
-        constituent_b_.push_back(scattering_of(constituent.per_unit));
+        constituent_b_.push_back(constituent.per_unit.total_scattering());
     if (constituent_b_.empty()) return;
-    const std::size_t pixels =
-        static_cast<std::size_t>(plane.width) * static_cast<std::size_t>(plane.height);
-    blur_length_.resize(pixels);
-    optical_depth_.resize(pixels);
+    blur_length_.assign(plane.width, plane.height);
+    optical_depth_.assign(plane.width, plane.height);
 }
 
 void PathScatter::operator()(std::size_t band, const ImagePlane& light, const PathImage& paths,
                              ImagePlane& added) {
     const double c = attenuation_.uniform[band];
     if (constituent_b_.empty()) {
-        scatter_.add({light, paths.length(), {}, c});
-        scatter_.finish(added);
+        scatter_.add({light.values(), paths.length().values(), {}, c});
+        scatter_.finish(added.values());
         return;
     }
     constexpr std::size_t k_block = 1 << 14;
@@ -53,19 +40,20 @@ void PathScatter::operator()(std::size_t band, const ImagePlane& light, const Pa
             optical_depth_[i] = static_cast<float>(tau);
         }
     });
-    scatter_.add({light, blur_length_, optical_depth_, c});
-    scatter_.finish(added);
+    scatter_.add({light.values(), blur_length_.values(), optical_depth_.values(), c});
+    scatter_.finish(added.values());
 }
 
 void check_blur_length(const Medium& medium, const SourceLocation& where) {
-    const Spectrum b = scattering_of(medium.uniform);
-    for (int band = 0; band < medium.band_count() && medium.constituent_count() > 0; ++band)
-        if (!(b[static_cast<std::size_t>(band)] > 0))
+    if (medium.constituents.empty()) return;
+    const Spectrum b = medium.uniform.total_scattering();
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band)
+        if (!(b[band] > 0))
             throw InputError(
                 fmt::format("{}: beside volumes the blur is measured by how much the water itself "
                             "scatters, and it does not at {:g} nm; give water.particles or "
                             "water.scattering, or K: 0",
-                            where, medium.wavelengths_nm[static_cast<std::size_t>(band)]));
+                            where, medium.wavelengths_nm[band]));
 }
 
 }  // namespace uw

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/base/grid2d.h"
 #include "core/forward/forward_scatter.h"
 #include "core/forward/in_scatter_slabs.h"
 #include "core/optics/medium.h"
@@ -9,14 +10,15 @@
 
 namespace uw {
 
-/// One value per pixel, row by row.
-using ImagePlane = std::vector<float>;
+/// One value per pixel.
+using ImagePlane = Grid2D<float>;
 
-/// A way through the water for every pixel.
+/// A path through the water for every pixel.
 class PathImage {
   public:
-    PathImage(std::size_t pixels, std::size_t constituents)
-        : length_(pixels), columns_(constituents, ImagePlane(pixels)) {}
+    PathImage() = default;
+    PathImage(int width, int height, std::size_t constituents)
+        : length_(width, height), columns_(constituents, ImagePlane(width, height)) {}
 
     void set(std::size_t pixel, const WaterPath& path) {
         length_[pixel] = static_cast<float>(path.length);
@@ -31,15 +33,15 @@ class PathImage {
     std::vector<ImagePlane> columns_;
 };
 
-/// Blurs images of one band after the other over paths of their pixels (ForwardScatter). In water
-/// that varies, path lengths become int b/b_0 ds and optical depths, which are linear in the
-/// columns as attenuation is.
+/// Blurs images over the paths of their pixels, one band after the other (ForwardScatter). In water
+/// that varies, a path counts by its blur length, int b/b_0 ds, and its optical depth: both are
+/// linear in its columns.
 class PathScatter {
   public:
     PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Medium& medium);
 
-    /// Writes into `added` what the light of band `band` adds when each pixel spreads its own over
-    /// its own path. Paths of dark pixels are not looked at.
+    /// Writes into `added` what the light of band `band` adds to the image when each pixel spreads
+    /// its light over its path. Paths of dark pixels are not read.
     void operator()(std::size_t band, const ImagePlane& light, const PathImage& paths,
                     ImagePlane& added);
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "core/base/available_memory.h"
 #include "core/base/error.h"
@@ -17,21 +18,18 @@ namespace uw {
 
 namespace {
 
-// Layers of water are taken together as long as they need less than this [bytes].
-constexpr double k_layer_bytes = 256e6;
+// As many slabs are done at once as need less than this [bytes].
+constexpr double k_slab_bytes = 256e6;
 
-// What can be spread: a number, not below zero.
+// Light that can be blurred: a number, not below zero.
 float as_light(double value) {
     constexpr double k_most = 1e30;
     return value > 0 ? static_cast<float>(std::min(value, k_most)) : 0.0F;
 }
 
-std::vector<ImagePlane> planes(std::size_t count, std::size_t pixels) {
-    return std::vector<ImagePlane>(count, ImagePlane(pixels));
-}
-
-void for_each_row(const ScatterPlane& plane, const std::function<void(std::size_t y)>& row) {
-    parallel_for(static_cast<std::size_t>(plane.height), row);
+void for_each_row(const ScatterPlane& plane, const std::function<void(int y)>& row) {
+    parallel_for(static_cast<std::size_t>(plane.height),
+                 [&](std::size_t y) { row(static_cast<int>(y)); });
 }
 
 void check_memory(const ScatterPlane& plane, std::size_t values_per_pixel) {
@@ -45,28 +43,22 @@ void check_memory(const ScatterPlane& plane, std::size_t values_per_pixel) {
 
 }  // namespace
 
-/// One layer of water as images.
-struct ForwardPass::Layer {
+/// One slab of water as images.
+struct ForwardPass::Slab {
     std::vector<std::vector<ImagePlane>> light;  // [component][band]: E_s
     std::vector<ImagePlane> weight;              // per band [m]: light at the camera per E_s
     PathImage from_lamps, to_camera;
 };
 
 ForwardPass::ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
-                         const Integrator& integrator, const Affine& world_from_camera,
                          const ForwardScatterSetup& setup, const LayerPlan& plan)
     : renderer_(renderer),
       scene_(scene),
-      integrator_(integrator),
       setup_(setup),
       lamp_paths_(scene, setup.lamp_column),
-      water_(scene, integrator, lamp_paths_, world_from_camera, setup.faces, setup.shells,
-             setup.cells, setup.sensor),
+      in_scatter_(scene, *renderer.transport().integrator, lamp_paths_,
+                  renderer.rays().world_from_camera(), setup.faces, setup.shells, setup.sensor),
       bands_(static_cast<std::size_t>(renderer.band_count())),
-      pixels_(static_cast<std::size_t>(setup.plane.width) *
-              static_cast<std::size_t>(setup.plane.height)),
-      from_lamps_(0, 0),
-      to_camera_(0, 0),
       scatter_(setup.desc, setup.plane, *scene.medium) {
     std::vector<std::size_t> lamps(scene.lamps->size());
     std::iota(lamps.begin(), lamps.end(), std::size_t{0});
@@ -76,24 +68,28 @@ ForwardPass::ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
     const std::size_t constituents = scene.medium->constituents.size();
     check_memory(setup.plane, 7 + groups.size() * 4 * bands_ + 3 * bands_ + 4 * constituents);
     for (const auto& group : groups)
-        components_.push_back(
-            {group, planes(bands_, pixels_), planes(bands_, pixels_), planes(bands_, pixels_)});
-    first_ = planes(bands_, pixels_);
-    response_ = planes(bands_, pixels_);
-    alpha_.resize(pixels_);
-    pixel_factor_.resize(pixels_, 1.0);
-    from_lamps_ = PathImage(pixels_, constituents);
-    to_camera_ = PathImage(pixels_, constituents);
-    added_.resize(pixels_);
-    light_.resize(pixels_);
+        components_.push_back({group, planes(bands_), planes(bands_), planes(bands_)});
+    first_ = planes(bands_);
+    response_ = planes(bands_);
+    alpha_.assign(setup.plane.width, setup.plane.height);
+    pixel_factor_.assign(setup.plane.width, setup.plane.height, 1.0);
+    from_lamps_ = paths();
+    to_camera_ = paths();
+    added_.assign(setup.plane.width, setup.plane.height);
+    light_.assign(setup.plane.width, setup.plane.height);
+}
+
+PathImage ForwardPass::paths() const {
+    return {setup_.plane.width, setup_.plane.height, scene_.medium->constituents.size()};
 }
 
 void ForwardPass::keep(int x, int y, const PixelView& view, const PixelResult& result) {
-    const std::size_t i = pixel(x, y);
+    const std::size_t i = alpha_.index(x, y);
     alpha_[i] = static_cast<float>(result.alpha);
     pixel_factor_[i] = result.pixel_factor;
     for (std::size_t b = 0; b < bands_; ++b)
-        components_[0].water[b][i] = static_cast<float>(result.backscatter[b] * factor_before(i));
+        components_[0].backscatter[b][i] =
+            static_cast<float>(result.backscatter[b] * factor_before(i));
     if (!view.samples.empty()) keep_surfaces(i, view, result);
 }
 
@@ -134,55 +130,56 @@ void ForwardPass::add_surface(const SurfaceSample& sample, SurfaceSums& sums) co
     const auto& [ray, hit, x, y] = sample;
     thread_local SurfaceLight light;
     thread_local std::vector<double> column;
-    integrator_.surface_light(sample, light);
+    renderer_.transport().surfaces->evaluate_one(sample, light);
     column.assign(scene_.medium->constituents.size(), 0.0);
     if (!column.empty()) scene_.field->column(ray.origin, hit.position, column);
     sums.to_camera.add(1, hit.distance, column);
     lamp_paths_.add_mean(1, hit.position, sums.from_lamps);
-    const double share = 1.0 / renderer_.samples();
+    const double weight = 1.0 / renderer_.samples();
     const double seen = setup_.sensor.surface_factor(hit.distance);
+    const std::span<const double> to_camera = std::as_const(light).to_camera(0);
     // Light scattered on its way comes from no single direction: the diffuse part reflects it.
-    for (std::size_t b = 0; b < bands_; ++b)
-        sums.response[b] +=
-            share * hit.reflectance[b] * std::numbers::inv_pi * seen * light.to_camera(0)[b];
+    sums.response += per_band(bands_, [&](std::size_t b) {
+        return weight * hit.reflectance[b] * std::numbers::inv_pi * seen * to_camera[b];
+    });
     const SurfaceReflection reflection(*scene_.surfaces, sample, static_cast<int>(bands_));
-    Spectrum brdf{};
+    Spectrum brdf;
     for (std::size_t c = 0; c < components_.size(); ++c) {
         for (const std::size_t j : components_[c].lamps) {
             if (!light.visible(0, j)) continue;
             reflection.brdf((*scene_.lamps)[j].position(), brdf);
-            for (std::size_t b = 0; b < bands_; ++b) {
-                const double irradiance = share * light.irradiance(0, j, b);
-                sums.irradiance[c][b] += irradiance;
-                sums.direct[c][b] += irradiance * brdf[b] * seen * light.to_camera(0)[b];
-            }
+            const Spectrum irradiance =
+                per_band(bands_, [&](std::size_t b) { return weight * light.irradiance(0, j, b); });
+            sums.irradiance[c] += irradiance;
+            sums.direct[c] += per_band(bands_, [&](std::size_t b) {
+                return irradiance[b] * brdf[b] * seen * to_camera[b];
+            });
         }
     }
 }
 
 void ForwardPass::run(const ProgressCallback& progress) {
     const std::size_t constituents = scene_.medium->constituents.size();
-    const double layer_bytes =
-        4.0 * static_cast<double>(pixels_) * static_cast<double>(2 * bands_ + 2 + 2 * constituents);
+    const double slab_bytes = 4.0 * static_cast<double>(alpha_.size()) *
+                              static_cast<double>(2 * bands_ + 2 + 2 * constituents);
     const auto together = static_cast<std::size_t>(
-        std::clamp(k_layer_bytes / layer_bytes, 1.0, static_cast<double>(water_.count())));
-    const auto steps = static_cast<double>(water_.count()) + 1;
+        std::clamp(k_slab_bytes / slab_bytes, 1.0, static_cast<double>(in_scatter_.count())));
+    const auto steps = static_cast<double>(in_scatter_.count()) + 1;
     const auto report = [&](std::size_t done) {
         if (!progress(static_cast<double>(done) / steps)) throw Interrupted();
     };
     scatter_surfaces();
     report(1);
-    std::vector<Layer> layers;
-    for (std::size_t first = 0; first < water_.count(); first += together) {
-        const std::size_t count = std::min(together, water_.count() - first);
-        while (layers.size() > count) layers.pop_back();
-        while (layers.size() < count)
-            layers.push_back({std::vector(components_.size(), planes(bands_, pixels_)),
-                              planes(bands_, pixels_), PathImage(pixels_, constituents),
-                              PathImage(pixels_, constituents)});
-        gather(first, layers);
+    std::vector<Slab> slabs;
+    for (std::size_t first = 0; first < in_scatter_.count(); first += together) {
+        const std::size_t count = std::min(together, in_scatter_.count() - first);
+        while (slabs.size() > count) slabs.pop_back();
+        while (slabs.size() < count)
+            slabs.push_back({std::vector(components_.size(), planes(bands_)), planes(bands_),
+                             paths(), paths()});
+        integrate(first, slabs);
         for (std::size_t i = 0; i < count; ++i) {
-            scatter_layer(first + i, layers[i]);
+            scatter_slab(first + i, slabs[i]);
             report(first + i + 2);
         }
     }
@@ -193,106 +190,91 @@ void ForwardPass::scatter_surfaces() {
         for (std::size_t b = 0; b < bands_; ++b) {
             ImagePlane& forward = component.forward[b];
             scatter_(b, forward, from_lamps_, added_);
-            for (std::size_t i = 0; i < pixels_; ++i) {
+            for (std::size_t i = 0; i < light_.size(); ++i) {
                 forward[i] = response_[b][i] * added_[i];
                 light_[i] = component.direct[b][i] + forward[i];
             }
             scatter_(b, light_, to_camera_, added_);
-            for (std::size_t i = 0; i < pixels_; ++i) forward[i] += alpha_[i] * added_[i];
+            for (std::size_t i = 0; i < light_.size(); ++i) forward[i] += alpha_[i] * added_[i];
         }
     }
 }
 
-void ForwardPass::gather(std::size_t first, std::vector<Layer>& layers) const {
-    for_each_row(setup_.plane, [&](std::size_t y) {
+void ForwardPass::integrate(std::size_t first, std::vector<Slab>& slabs) const {
+    for_each_row(setup_.plane, [&](int y) {
         thread_local PixelView view;
         thread_local std::vector<SlabLight> lights;
         for (int x = 0; x < setup_.plane.width; ++x) {
-            renderer_.look(x, static_cast<int>(y), view);
+            renderer_.trace(x, y, view);
             if (view.ray)
-                water_.gather(*view.ray, view.ends, view.shares, first, first + layers.size(),
-                              lights);
-            const std::size_t i = pixel(x, static_cast<int>(y));
-            for (std::size_t n = 0; n < layers.size(); ++n)
-                store(view.ray ? &lights[n] : nullptr, i, layers[n]);
+                in_scatter_.integrate(*view.ray, view.distances, view.weights, first,
+                                      first + slabs.size(), lights);
+            for (std::size_t n = 0; n < slabs.size(); ++n)
+                store(view.ray ? &lights[n] : nullptr, alpha_.index(x, y), slabs[n]);
         }
     });
 }
 
-void ForwardPass::store(const SlabLight* from, std::size_t i, Layer& layer) const {
+void ForwardPass::store(const SlabLight* light, std::size_t i, Slab& slab) const {
     constexpr double k_least = std::numeric_limits<float>::min();
     const double factor = factor_before(i);
     for (std::size_t b = 0; b < bands_; ++b) {
-        layer.weight[b][i] = from != nullptr ? static_cast<float>(from->weight[b] * factor) : 0.0F;
-        const bool seen = from != nullptr && from->weight[b] > k_least;
+        slab.weight[b][i] = light != nullptr ? static_cast<float>(light->weight[b] * factor) : 0.0F;
+        const bool seen = light != nullptr && light->weight[b] > k_least;
         for (std::size_t c = 0; c < components_.size(); ++c) {
             double sum = 0;
             for (const std::size_t j : components_[c].lamps)
-                if (seen) sum += from->lamps[j][b];
-            layer.light[c][b][i] = seen ? as_light(sum / from->weight[b]) : 0.0F;
+                if (seen) sum += light->lamps[j][b];
+            slab.light[c][b][i] = seen ? as_light(sum / light->weight[b]) : 0.0F;
         }
     }
-    if (from == nullptr) return;
-    layer.from_lamps.set(i, from->to_lamps);
-    layer.to_camera.set(i, from->to_camera);
+    if (light == nullptr) return;
+    slab.from_lamps.set(i, light->to_lamps);
+    slab.to_camera.set(i, light->to_camera);
 }
 
-void ForwardPass::scatter_layer(std::size_t index, Layer& layer) {
-    const double middle = water_.middle(index);
+void ForwardPass::scatter_slab(std::size_t index, Slab& slab) {
+    const double middle = in_scatter_.middle(index);
     const bool is_first = setup_.first.begin < middle && middle < setup_.first.end;
     for (std::size_t c = 0; c < components_.size(); ++c) {
         for (std::size_t b = 0; b < bands_; ++b) {
             const auto add = [&](std::size_t i, float light) {
-                components_[c].water[b][i] += light;
+                components_[c].backscatter[b][i] += light;
                 if (is_first && c == 0) first_[b][i] += light;
             };
-            const ImagePlane& light = layer.light[c][b];
-            scatter_(b, light, layer.from_lamps, added_);
-            for (std::size_t i = 0; i < pixels_; ++i) {
-                add(i, layer.weight[b][i] * added_[i]);
-                light_[i] = layer.weight[b][i] * (light[i] + added_[i]);
+            const ImagePlane& light = slab.light[c][b];
+            scatter_(b, light, slab.from_lamps, added_);
+            for (std::size_t i = 0; i < light_.size(); ++i) {
+                add(i, slab.weight[b][i] * added_[i]);
+                light_[i] = slab.weight[b][i] * (light[i] + added_[i]);
             }
-            scatter_(b, light_, layer.to_camera, added_);
-            for (std::size_t i = 0; i < pixels_; ++i) add(i, alpha_[i] * added_[i]);
+            scatter_(b, light_, slab.to_camera, added_);
+            for (std::size_t i = 0; i < light_.size(); ++i) add(i, alpha_[i] * added_[i]);
         }
     }
 }
 
 void ForwardPass::write(const LayerPlan& plan, const BandColour& colour, Film& film) const {
-    for_each_row(setup_.plane, [&](std::size_t y) {
+    const Component& all = components_[0];
+    const auto at = [&](const std::vector<ImagePlane>& image, std::size_t i) {
+        return per_band(bands_, [&](std::size_t b) { return static_cast<double>(image[b][i]); });
+    };
+    for_each_row(setup_.plane, [&](int y) {
+        PixelResult pixel;
         for (int x = 0; x < setup_.plane.width; ++x) {
-            const std::size_t i = pixel(x, static_cast<int>(y));
-            const double factor = factor_after(i);
-            const auto seen = [factor](float light) {
-                return static_cast<float>(static_cast<double>(light) * factor);
-            };
-            const std::span<float> channels = film.pixel(x, static_cast<int>(y));
-            const auto set = [&](uw::Layer which, std::size_t b, float value, bool add) {
-                if (!plan.has(which)) return;
-                float& channel = channels[static_cast<std::size_t>(plan.first_channel(which)) + b];
-                channel = add ? channel + value : value;
-            };
-            Spectrum total{};
-            for (std::size_t b = 0; b < bands_; ++b) {
-                const Component& all = components_[0];
-                // Rounded before they are added: their sum is the total to the bit.
-                const float direct = seen(all.direct[b][i]), forward = seen(all.forward[b][i]);
-                const float water = seen(all.water[b][i]);
-                const float sum = direct + forward + water;
-                total[b] = static_cast<double>(sum);
-                set(uw::Layer::total, b, sum, false);
-                set(uw::Layer::direct, b, direct, false);
-                set(uw::Layer::forward, b, forward, false);
-                set(uw::Layer::backscatter, b, water, false);
-                set(uw::Layer::backscatter_first, b, seen(first_[b][i]), true);
-                for (std::size_t c = 1; c < components_.size(); ++c) {
-                    const int first = plan.first_channel_of_lamp(components_[c].lamps[0]);
-                    channels[static_cast<std::size_t>(first) + b] +=
-                        seen(components_[c].forward[b][i]) + seen(components_[c].water[b][i]);
-                }
+            const std::size_t i = alpha_.index(x, y);
+            pixel.pixel_factor = factor_after(i);
+            pixel.direct = at(all.direct, i);
+            pixel.forward = at(all.forward, i);
+            pixel.backscatter = at(all.backscatter, i);
+            pixel.backscatter_first = at(first_, i);
+            const std::span<float> channels = film.pixel(x, y);
+            store_forward_scatter(pixel, plan, colour, channels);
+            for (std::size_t c = 1; c < components_.size(); ++c) {
+                pixel.forward = at(components_[c].forward, i);
+                pixel.backscatter = at(components_[c].backscatter, i);
+                add_forward_scatter_of_lamp(pixel, plan, components_[c].lamps[0], channels);
             }
-            const LinearRgb rgb = colour(total);
-            for (std::size_t k = 0; k < 3; ++k) channels[k] = static_cast<float>(rgb[k]);
         }
     });
 }

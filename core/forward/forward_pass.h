@@ -18,10 +18,9 @@ namespace uw {
 struct ForwardScatterSetup {
     ForwardScatterDesc desc;  // K > 0
     ScatterPlane plane;       // the whole image
-    /// Camera z of the faces of the layers that the water is split into [m], ascending.
+    /// Camera z of the faces of the slabs that the water is split into [m], ascending.
     std::vector<double> faces;
     bool shells = false;  // `faces` and `first` are distances along water rays instead
-    int cells = 1;        // InScatterSlabs
     Interval first;       // camera z of the water of `backscatter_first`; its ends are faces
     LampPaths::PointColumn lamp_column;
     SensorModel sensor;  // the renderer's
@@ -32,21 +31,21 @@ struct ForwardScatterSetup {
 ///
 ///     (14)  E     = E' + E' * g(R_lamps)      light falling on surfaces
 ///     (16)  L_s   = L_d + L_d * g(R_c)        the signal, with (14) in it
-///     (17)  E_s   = E_s' + E_s' * g(R_lamps)  light scattered to the camera by a layer of water
-///     (18)  L_b   = sum_i L_i + L_i * g(R_i)  each layer's way to the camera, with (17) in it
+///     (17)  E_s   = E_s' + E_s' * g(R_lamps)  light scattered to the camera by a slab of water
+///     (18)  L_b   = sum_i L_i + L_i * g(R_i)  each slab's light on its way to the camera, with
+///     (17)
+///                                             in it
 ///
 /// What (14) and (16) add is the layer `forward`; what (17) and (18) add belongs to `backscatter`.
-/// It is radiance in water that is blurred, and the pixel where it lands has its factor
-/// (PixelResult::pixel_factor); in the paper's output (16) and (18) blur what has the factors of
-/// the pixel it comes from.
-/// Layers of water are taken a few at a time: memory does not grow with their number. The result
-/// does not depend on the number of threads.
+/// What is blurred is radiance in water, and the factor (PixelResult::pixel_factor) of the pixel
+/// where it lands is applied afterwards; in the paper's output (16) and (18) blur light that has
+/// the factor of the pixel it comes from. Slabs are done a few at a time: memory does not grow
+/// with their number. The result does not depend on the number of threads.
 class ForwardPass {
   public:
     /// All references outlive the pass. Throws InputError if there is not enough memory.
-    ForwardPass(const PixelRenderer& renderer, const LitScene& scene, const Integrator& integrator,
-                const Affine& world_from_camera, const ForwardScatterSetup& setup,
-                const LayerPlan& plan);
+    ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
+                const ForwardScatterSetup& setup, const LayerPlan& plan);
 
     /// Keeps what pixel (x, y) of the first pass needs in the second. From any thread.
     void keep(int x, int y, const PixelView& view, const PixelResult& result);
@@ -61,17 +60,18 @@ class ForwardPass {
     /// The light of all lamps, or of the one whose layer is asked for.
     struct Component {
         std::vector<std::size_t> lamps;
-        std::vector<ImagePlane> direct;   // per band
-        std::vector<ImagePlane> forward;  // per band; irradiance until (14) has been done
-        std::vector<ImagePlane> water;    // per band: backscatter, or what is added to it
+        std::vector<ImagePlane> direct;       // per band
+        std::vector<ImagePlane> forward;      // per band; irradiance until (14) has been done
+        std::vector<ImagePlane> backscatter;  // per band; of single lamps, what is added to it
     };
-    struct Layer;
+    struct Slab;
     struct SurfaceSums;
 
     void keep_surfaces(std::size_t i, const PixelView& view, const PixelResult& result);
     void add_surface(const SurfaceSample& sample, SurfaceSums& sums) const;
     void scatter_surfaces();
-    void gather(std::size_t first, std::vector<Layer>& layers) const;
+    // Integrates the slabs from `first` on, as many as `slabs` has, for every pixel.
+    void integrate(std::size_t first, std::vector<Slab>& slabs) const;
     // What light of pixel `i` is multiplied by before and after its blur on the way to the camera.
     double factor_before(std::size_t i) const {
         return setup_.sensor.factors_before_blur() ? pixel_factor_[i] : 1.0;
@@ -79,26 +79,25 @@ class ForwardPass {
     double factor_after(std::size_t i) const {
         return setup_.sensor.factors_before_blur() ? 1.0 : pixel_factor_[i];
     }
-    // Puts one pixel's light into the layer; none where no ray enters the water.
-    void store(const SlabLight* from, std::size_t i, Layer& layer) const;
-    void scatter_layer(std::size_t index, Layer& layer);
-    std::size_t pixel(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(setup_.plane.width) +
-               static_cast<std::size_t>(x);
+    // Puts one pixel's light into the slab; `light` is null where no ray enters the water.
+    void store(const SlabLight* light, std::size_t i, Slab& slab) const;
+    void scatter_slab(std::size_t index, Slab& slab);
+    std::vector<ImagePlane> planes(std::size_t count) const {
+        return std::vector<ImagePlane>(count, ImagePlane(setup_.plane.width, setup_.plane.height));
     }
+    PathImage paths() const;
 
     const PixelRenderer& renderer_;
     LitScene scene_;
-    const Integrator& integrator_;
     const ForwardScatterSetup& setup_;
     LampPaths lamp_paths_;
-    InScatterSlabs water_;
-    std::size_t bands_, pixels_;
+    InScatterSlabs in_scatter_;
+    std::size_t bands_;
     std::vector<Component> components_;  // the first: all lamps
     std::vector<ImagePlane> first_;      // per band: added to backscatter_first
     std::vector<ImagePlane> response_;   // per band: direct light per irradiance [1/sr]
     ImagePlane alpha_;
-    std::vector<double> pixel_factor_;
+    Grid2D<double> pixel_factor_;
     PathImage from_lamps_, to_camera_;  // of the surfaces
     PathScatter scatter_;
     ImagePlane added_, light_;

@@ -16,8 +16,8 @@ namespace uw {
 namespace {
 
 /// The widths s [pixels] that kernels are made for: offset + s grows by `ratio` from one to the
-/// next. A mixture of two neighbours differs from the kernel between them in where less than
-/// 0.25 % of its light lands. From `widest` image sides on, all kernels spread light evenly.
+/// next. A mixture of two neighbours and the kernel between them disagree about where less than
+/// 0.25 % of the light lands. From `widest` image sides on, all kernels spread light evenly.
 struct LadderRule {
     double ratio, offset, widest;
 };
@@ -32,7 +32,7 @@ double width_per_metre(double blur, double focal) {
     return focal * blur / (2 * std::numbers::pi);
 }
 
-double share_between(double from, double to, double length) {
+double weight_between(double from, double to, double length) {
     return (length - from) / (to - from);
 }
 
@@ -62,7 +62,7 @@ class ForwardScatter::Paths {
           depths_(source.optical_depth.empty() ? nullptr : source.optical_depth.data()),
           attenuation_(source.attenuation),
           strength_(desc.K),
-          share_of_depth_(source.attenuation > 0 ? desc.G / source.attenuation : 0.0) {}
+          fraction_of_depth_(source.attenuation > 0 ? desc.G / source.attenuation : 0.0) {}
     Paths(const ForwardScatterDesc& desc, double range, double attenuation)
         : Paths(desc, ScatterSource{{}, {}, {}, attenuation}) {
         range_ = range;
@@ -79,14 +79,14 @@ class ForwardScatter::Paths {
     /// K [e^{-(G/c) tau} - e^{-tau}], without cancellation where tau is small.
     double factor(std::size_t pixel) const {
         const double tau = depth(pixel);
-        return strength_ * std::exp(-share_of_depth_ * tau) *
-               -std::expm1(-(1 - share_of_depth_) * tau);
+        return strength_ * std::exp(-fraction_of_depth_ * tau) *
+               -std::expm1(-(1 - fraction_of_depth_) * tau);
     }
 
   private:
     const float* lengths_;
     const float* depths_;
-    double attenuation_, strength_, share_of_depth_;
+    double attenuation_, strength_, fraction_of_depth_;
     double range_ = 0;
 };
 
@@ -150,28 +150,28 @@ void ForwardScatter::spread(std::span<const float> light, const Paths& paths) {
         const double below = k > 0 ? lengths[k - 1] : -1;
         const double above =
             k + 1 < lengths.size() ? lengths[k + 1] : std::numeric_limits<double>::infinity();
-        const auto has_layer = [&](const Extent& row) {
+        const auto has_part = [&](const Extent& row) {
             return row.greatest > below && row.least < above;
         };
-        if (std::none_of(rows.begin(), rows.end(), has_layer)) continue;
-        const auto layer = [&](int row, std::span<double> values) {
+        if (std::none_of(rows.begin(), rows.end(), has_part)) continue;
+        const auto part = [&](int row, std::span<double> values) {
             const auto y = static_cast<std::size_t>(row);
             bool any = false;
-            if (!has_layer(rows[y])) return any;
+            if (!has_part(rows[y])) return any;
             for (std::size_t x = 0; x < width; ++x) {
                 const std::size_t i = y * width + x;
                 const double length = paths.length(i);
                 if (light[i] == 0 || length <= below || length >= above) continue;
-                double share = 1;
-                if (length < here && k > 0) share = share_between(below, here, length);
+                double weight = 1;
+                if (length < here && k > 0) weight = weight_between(below, here, length);
                 if (length > here && k + 1 < lengths.size())
-                    share = share_between(above, here, length);
-                values[x] = share * paths.factor(i) * static_cast<double>(light[i]);
+                    weight = weight_between(above, here, length);
+                values[x] = weight * paths.factor(i) * static_cast<double>(light[i]);
                 any = true;
             }
             return any;
         };
-        sum_->add(layer, kernel(here));
+        sum_->add(part, kernel(here));
     }
 }
 

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "core/forward/mirrored_blur.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/forward_scatter_desc.h"
+#include "core/scene/source_location.h"
 
 namespace uw {
 
@@ -18,13 +19,13 @@ void check_forward_scatter(const ForwardScatterDesc& desc, std::span<const doubl
 /// The image plane the blur is seen on.
 struct ScatterPlane {
     int width = 0, height = 0;  // pixels
-    /// Pixels per radian between rays in the water, about the optical axis: the focal length, times
-    /// n_water / n_air behind a flat port.
+    /// Pixels per radian between rays in the water, about the optical axis: the focal length in
+    /// pixels, times n_water / n_air behind a flat port.
     double focal_x = 0, focal_y = 0;
 };
 
 /// Light of one band, and the water between it and the image plane, pixel by pixel and row by row.
-/// Where `light` is 0 (no ray, no surface) the water is not looked at and may hold anything.
+/// Where `light` is 0 (no ray, no surface) the water is not read and may hold anything.
 struct ScatterSource {
     std::span<const float> light;        // radiance or irradiance, any unit; what is blurred
     std::span<const float> blur_length;  // range R [m], or int b(s)/b_0 ds where the water varies
@@ -57,8 +58,8 @@ class ForwardScatter {
     /// Likewise where all of `light` is seen over the same `range` [m] in uniform water.
     void add(std::span<const float> light, double range, double attenuation);
 
-    /// Writes the light that was added, one value per pixel, and starts anew: exact zeros where K
-    /// is 0 or there was no light.
+    /// Writes the light that was added, one value per pixel, and starts again at zero: exact zeros
+    /// where K is 0 or there was no light.
     void finish(std::span<float> added);
 
   private:

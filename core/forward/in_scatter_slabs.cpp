@@ -6,152 +6,148 @@
 
 namespace uw {
 
-void LampPaths::add_mean(double share, const Point3& x, WaterPath& path) const {
+void LampPaths::add_mean(double weight, const Point3& x, WaterPath& path) const {
     thread_local std::vector<double> column;
     column.assign(path.columns.size(), 0.0);
-    const double each = share / static_cast<double>(scene_.lamps->size());
+    const double each = weight / static_cast<double>(scene_.lamps->size());
     for (std::size_t j = 0; j < scene_.lamps->size(); ++j) {
         if (!column.empty()) column_(j, x, column);
         path.add(each, distance((*scene_.lamps)[j].position(), x), column);
     }
 }
 
-/// Stretches of one ray between neighbouring faces, parts of layers and ends.
-struct InScatterSlabs::Cells {
-    double begin = 0;                // of the first [m]
-    std::vector<double> ends;        // of each
-    std::vector<double> visible;     // share of the pixel that sees it
-    std::vector<std::size_t> layer;  // counted from the first asked for
-    InScatter light;                 // from `begin` to each end
+/// Stretches of one ray, one after another, split at the slabs' faces and at the pixel's distances.
+struct InScatterSlabs::Stretches {
+    double begin = 0;               // of the first [m]
+    std::vector<double> ends;       // of each [m]
+    std::vector<double> visible;    // fraction of the pixel that sees it
+    std::vector<std::size_t> slab;  // counted from the first asked for
+    InScatter light;                // from `begin` to each end
 };
 
 InScatterSlabs::InScatterSlabs(const LitScene& scene, const Integrator& integrator,
                                const LampPaths& paths, const Affine& world_from_camera,
-                               std::vector<double> faces, bool shells, int cells,
-                               const SensorModel& sensor)
+                               std::vector<double> faces, bool shells, const SensorModel& sensor)
     : scene_(scene),
       integrator_(integrator),
       paths_(paths),
       camera_from_world_(world_from_camera.inverse()),
       faces_(std::move(faces)),
       shells_(shells),
-      cells_(cells),
       attenuation_(*scene.medium),
       sensor_(sensor) {}
 
-void InScatterSlabs::gather(const Ray& ray, std::span<const double> ends,
-                            std::span<const double> shares, std::size_t first, std::size_t last,
-                            std::vector<SlabLight>& layers) const {
-    thread_local Cells cells;
-    layers.resize(last - first);
-    for (SlabLight& layer : layers) {
-        layer.lamps.assign(scene_.lamps->size(), Spectrum{});
-        layer.weight = Spectrum{};
-        layer.to_lamps.reset(attenuation_.constituents.size());
-        layer.to_camera.reset(attenuation_.constituents.size());
+void InScatterSlabs::integrate(const Ray& ray, std::span<const double> distances,
+                               std::span<const double> weights, std::size_t first, std::size_t last,
+                               std::vector<SlabLight>& slabs) const {
+    thread_local Stretches stretches;
+    slabs.resize(last - first);
+    for (SlabLight& slab : slabs) {
+        slab.lamps.assign(scene_.lamps->size(), Spectrum{});
+        slab.weight = Spectrum{};
+        slab.to_lamps.reset(attenuation_.constituents.size());
+        slab.to_camera.reset(attenuation_.constituents.size());
     }
-    place_cells(ray, ends, shares, first, last, cells);
-    if (cells.ends.empty()) return;
-    integrator_.in_scatter_from(ray, cells.begin, cells.ends, cells.light);
-    fill_layers(ray, cells, layers);
+    split(ray, distances, weights, first, last, stretches);
+    if (stretches.ends.empty()) return;
+    integrator_.in_scatter_from(ray, stretches.begin, stretches.ends, stretches.light);
+    fill_slabs(ray, stretches, slabs);
 }
 
-void InScatterSlabs::place_cells(const Ray& ray, std::span<const double> ends,
-                                 std::span<const double> shares, std::size_t first,
-                                 std::size_t last, Cells& cells) const {
-    cells.ends.clear();
-    cells.visible.clear();
-    cells.layer.clear();
+void InScatterSlabs::split(const Ray& ray, std::span<const double> distances,
+                           std::span<const double> weights, std::size_t first, std::size_t last,
+                           Stretches& stretches) const {
+    stretches.ends.clear();
+    stretches.visible.clear();
+    stretches.slab.clear();
     const RayDepth depth = shells_ ? RayDepth::from_origin() : RayDepth(camera_from_world_, ray);
     if (depth.cosine() <= 0) return;
     const auto face = [&](std::size_t i) { return std::max(0.0, depth.distance(faces_[i])); };
-    cells.begin = face(first);
-    double begin = cells.begin;
-    // Samples whose ray misses the water leave the shares short of 1.
-    double visible = std::accumulate(shares.begin(), shares.end(), 0.0);
-    std::size_t end = 0;
-    const auto pass_ends = [&](double s) {
-        for (; end < ends.size() && ends[end] <= s; ++end) visible -= shares[end];
+    stretches.begin = face(first);
+    double begin = stretches.begin;
+    // Samples whose ray misses the water leave the sum of the weights short of 1.
+    double visible = std::accumulate(weights.begin(), weights.end(), 0.0);
+    std::size_t next = 0;  // of the distances
+    const auto pass_distances = [&](double s) {
+        for (; next < distances.size() && distances[next] <= s; ++next) visible -= weights[next];
     };
-    pass_ends(begin);
-    for (std::size_t i = first; i < last && end < ends.size(); ++i) {
-        const double near = face(i), far = face(i + 1);
-        for (int part = 1; part <= cells_ && end < ends.size(); ++part) {
-            const double behind = part == cells_ ? far : near + (far - near) * part / cells_;
-            while (end < ends.size() && begin < behind) {
-                const double until = std::min(behind, ends[end]);
-                cells.ends.push_back(until);
-                cells.visible.push_back(visible);
-                cells.layer.push_back(i - first);
-                begin = until;
-                pass_ends(until);
-            }
+    pass_distances(begin);
+    for (std::size_t i = first; i < last && next < distances.size(); ++i) {
+        const double behind = face(i + 1);
+        while (next < distances.size() && begin < behind) {
+            const double end = std::min(behind, distances[next]);
+            stretches.ends.push_back(end);
+            stretches.visible.push_back(visible);
+            stretches.slab.push_back(i - first);
+            begin = end;
+            pass_distances(end);
         }
     }
 }
 
-void InScatterSlabs::fill_layers(const Ray& ray, const Cells& cells,
-                                 std::vector<SlabLight>& layers) const {
+void InScatterSlabs::fill_slabs(const Ray& ray, const Stretches& stretches,
+                                std::vector<SlabLight>& slabs) const {
     const std::size_t constituents = attenuation_.constituents.size();
     thread_local WaterPath path, part, lit, seen;
     path.reset(constituents);
     part.reset(constituents);
-    path.length = cells.begin;
-    if (constituents > 0) scene_.field->column(ray.origin, ray.at(cells.begin), path.columns);
-    for (std::size_t i = 0; i < cells.ends.size();) {
-        SlabLight& layer = layers[cells.layer[i]];
+    path.length = stretches.begin;
+    if (constituents > 0) scene_.field->column(ray.origin, ray.at(stretches.begin), path.columns);
+    for (std::size_t i = 0; i < stretches.ends.size();) {
+        SlabLight& slab = slabs[stretches.slab[i]];
         lit.reset(constituents);
         seen.reset(constituents);
         double light = 0, length = 0;
-        for (const std::size_t of = cells.layer[i]; i < cells.ends.size() && cells.layer[i] == of;
-             ++i) {
+        for (const std::size_t of = stretches.slab[i];
+             i < stretches.ends.size() && stretches.slab[i] == of; ++i) {
             const double begin = path.length;
-            part.length = cells.ends[i] - begin;
+            part.length = stretches.ends[i] - begin;
             if (constituents > 0)
-                scene_.field->column(ray.at(begin), ray.at(cells.ends[i]), part.columns);
-            add_weight(path, part, cells.visible[i], layer.weight);
-            const double gained = add_light(cells, i, layer.lamps);
-            const double stretch = cells.visible[i] * part.length;
+                scene_.field->column(ray.at(begin), ray.at(stretches.ends[i]), part.columns);
+            add_weight(path, part, stretches.visible[i], slab.weight);
+            const double gained = add_light(stretches, i, slab.lamps);
+            const double visible_length = stretches.visible[i] * part.length;
             light += gained;
-            length += stretch;
-            path.add(0.5, part.length, part.columns);  // to the middle of the cell
+            length += visible_length;
+            path.add(0.5, part.length, part.columns);  // to the middle of the stretch
             lit.add(gained, path.length, path.columns);
-            seen.add(stretch, path.length, path.columns);
+            seen.add(visible_length, path.length, path.columns);
             path.add(0.5, part.length, part.columns);
-            path.length = cells.ends[i];
+            path.length = stretches.ends[i];
         }
-        // Where the layer is dark its middle is as good a place as any for what others spread.
+        // A dark slab has no middle of its light; that of its water does for the light of others.
         if (light > 0)
-            layer.to_camera.add(1 / light, lit.length, lit.columns);
+            slab.to_camera.add(1 / light, lit.length, lit.columns);
         else if (length > 0)
-            layer.to_camera.add(1 / length, seen.length, seen.columns);
-        if (light > 0) paths_.add_mean(1, ray.at(layer.to_camera.length), layer.to_lamps);
+            slab.to_camera.add(1 / length, seen.length, seen.columns);
+        if (light > 0) paths_.add_mean(1, ray.at(slab.to_camera.length), slab.to_lamps);
     }
 }
 
-void InScatterSlabs::add_weight(const WaterPath& path, const WaterPath& part, double share,
+void InScatterSlabs::add_weight(const WaterPath& path, const WaterPath& part, double visible,
                                 Spectrum& weight) const {
     const double end = path.length + part.length;
-    const double stretch = share * part.length * sensor_.mean_surface_factor(path.length, end);
-    for (int band = 0; band < attenuation_.band_count; ++band) {
+    const double length = visible * part.length * sensor_.mean_surface_factor(path.length, end);
+    weight += per_band(static_cast<std::size_t>(attenuation_.band_count), [&](std::size_t band) {
         const double tau = attenuation_.optical_depth(band, path.length, path.columns);
         const double more = attenuation_.optical_depth(band, part.length, part.columns);
-        // As if e^-tau fell exponentially across the cell: exact where the water is uniform.
+        // As if e^-tau fell exponentially along the stretch: exact where the water is uniform.
         const double mean = more > 0 ? -std::expm1(-more) / more : 1.0;
-        weight[static_cast<std::size_t>(band)] += stretch * std::exp(-tau) * mean;
-    }
+        return length * std::exp(-tau) * mean;
+    });
 }
 
-double InScatterSlabs::add_light(const Cells& cells, std::size_t i, std::vector<Spectrum>& lamps) {
+double InScatterSlabs::add_light(const Stretches& stretches, std::size_t i,
+                                 std::vector<Spectrum>& lamps) {
     double sum = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
-        for (std::size_t b = 0; b < k_max_bands; ++b) {
-            const double before = i == 0 ? 0.0 : cells.light.at(i - 1, j)[b];
-            // A difference may be rounded to below zero; light does not fall there.
-            const double more = cells.visible[i] * std::max(0.0, cells.light.at(i, j)[b] - before);
-            lamps[j][b] += more;
-            sum += more;
-        }
+        Spectrum gained = stretches.light.at(i, j);
+        if (i > 0) gained -= stretches.light.at(i - 1, j);
+        // Rounding may leave a difference below zero; light does not fall there.
+        for (double& value : gained) value = std::max(0.0, value);
+        gained *= stretches.visible[i];
+        lamps[j] += gained;
+        for (const double value : gained) sum += value;
     }
     return sum;
 }

@@ -12,7 +12,7 @@
 
 namespace uw {
 
-/// A way through the water: its length [m] and the columns along it [unit m].
+/// A path through the water: its length [m] and the columns along it [unit m].
 struct WaterPath {
     double length = 0;
     std::vector<double> columns;  // one per constituent
@@ -21,10 +21,10 @@ struct WaterPath {
         length = 0;
         columns.assign(constituents, 0.0);
     }
-    /// Adds `share` times another path.
-    void add(double share, double other_length, std::span<const double> other_columns) {
-        length += share * other_length;
-        for (std::size_t k = 0; k < columns.size(); ++k) columns[k] += share * other_columns[k];
+    /// Adds `weight` times another path.
+    void add(double weight, double other_length, std::span<const double> other_columns) {
+        length += weight * other_length;
+        for (std::size_t k = 0; k < columns.size(); ++k) columns[k] += weight * other_columns[k];
     }
 };
 
@@ -37,57 +37,59 @@ class LampPaths {
     LampPaths(const LitScene& scene, PointColumn column)
         : scene_(scene), column_(std::move(column)) {}
 
-    /// Adds `share` times the mean over all lamps of the paths from the lamp to `x`, whether it
-    /// is lit by them or not: the paper's mean distance.
-    void add_mean(double share, const Point3& x, WaterPath& path) const;
+    /// Adds `weight` times the mean of the paths from each lamp to `x`, whether or not the lamp
+    /// lights it: the paper's mean distance.
+    void add_mean(double weight, const Point3& x, WaterPath& path) const;
 
   private:
     LitScene scene_;
     PointColumn column_;
 };
 
-/// In-scatter of one layer of water in one pixel.
+/// In-scatter of one slab of water in one pixel.
 struct SlabLight {
     std::vector<Spectrum> lamps;  // radiance at the camera by each lamp [W m^-2 sr^-1]
-    /// int e^-tau ds over what the pixel sees of the layer [m], in the paper's output weighted by
+    /// int e^-tau ds over what the pixel sees of the slab [m], in the paper's output weighted by
     /// distance as the radiance is (SensorModel::surface_factor): the radiance over this is the
-    /// light that the layer scatters to the camera, E_s of the paper's equation 17.
-    Spectrum weight{};
-    /// From the lamps to the middle of the light in the layer, and from there to the glass.
+    /// light that the slab scatters to the camera, E_s of the paper's equation 17.
+    Spectrum weight;
+    /// From the lamps to the middle of the light in the slab, and from there to the glass.
     WaterPath to_lamps, to_camera;
 };
 
-/// Splits the in-scatter of camera rays into layers of water.
+/// Splits the in-scatter of camera rays by slabs of water.
 class InScatterSlabs {
   public:
-    /// `faces`: camera z of the layers' faces [m], ascending; or, where the layers are `shells`,
-    /// their distances along the water rays, for views that planes do not reach around. Inside a
-    /// layer, the middle of its light is found from `cells` parts of it. `sensor` says how
-    /// `integrator` weights light by distance. All references outlive this.
+    /// `faces`: camera z of the slabs' faces [m], ascending; or, where the slabs are `shells`,
+    /// their distances along the water rays, for views that planes do not reach around. `sensor`
+    /// says how `integrator` weights light by distance. All references outlive this.
     InScatterSlabs(const LitScene& scene, const Integrator& integrator, const LampPaths& paths,
                    const Affine& world_from_camera, std::vector<double> faces, bool shells,
-                   int cells, const SensorModel& sensor);
+                   const SensorModel& sensor);
 
     std::size_t count() const { return faces_.size() - 1; }
-    /// Camera z, or distance, in the middle of layer `i` [m].
+    /// Camera z, or distance, in the middle of slab `i` [m].
     double middle(std::size_t i) const { return 0.5 * (faces_[i] + faces_[i + 1]); }
     const AttenuationTable& attenuation() const { return attenuation_; }
 
-    /// Layers `first` to `last` - 1 of the water along `ray`, of which `shares[i]` ends at
-    /// `ends[i]` (PixelView). Thread safe.
-    void gather(const Ray& ray, std::span<const double> ends, std::span<const double> shares,
-                std::size_t first, std::size_t last, std::vector<SlabLight>& layers) const;
+    /// Integrates slabs `first` to `last` - 1 along `ray`, of which the fraction `weights[i]`
+    /// reaches as far as `distances[i]` (PixelView). Thread safe.
+    void integrate(const Ray& ray, std::span<const double> distances,
+                   std::span<const double> weights, std::size_t first, std::size_t last,
+                   std::vector<SlabLight>& slabs) const;
 
   private:
-    struct Cells;
-    void place_cells(const Ray& ray, std::span<const double> ends, std::span<const double> shares,
-                     std::size_t first, std::size_t last, Cells& cells) const;
-    void fill_layers(const Ray& ray, const Cells& cells, std::vector<SlabLight>& layers) const;
-    // Adds `share` of the weight of `part`, which goes on where `path` ends.
-    void add_weight(const WaterPath& path, const WaterPath& part, double share,
+    struct Stretches;
+    void split(const Ray& ray, std::span<const double> distances, std::span<const double> weights,
+               std::size_t first, std::size_t last, Stretches& stretches) const;
+    void fill_slabs(const Ray& ray, const Stretches& stretches,
+                    std::vector<SlabLight>& slabs) const;
+    // Adds `part`, which goes on where `path` ends, to the weight, as far as it is `visible`.
+    void add_weight(const WaterPath& path, const WaterPath& part, double visible,
                     Spectrum& weight) const;
-    // Adds the light of cell `i` and returns its sum over lamps and bands.
-    static double add_light(const Cells& cells, std::size_t i, std::vector<Spectrum>& lamps);
+    // Adds the light of stretch `i` and returns its sum over lamps and bands.
+    static double add_light(const Stretches& stretches, std::size_t i,
+                            std::vector<Spectrum>& lamps);
 
     LitScene scene_;
     const Integrator& integrator_;
@@ -95,7 +97,6 @@ class InScatterSlabs {
     Affine camera_from_world_;
     std::vector<double> faces_;
     bool shells_;
-    int cells_;
     AttenuationTable attenuation_;
     SensorModel sensor_;
 };

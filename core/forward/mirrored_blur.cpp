@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -27,10 +29,9 @@ void parallel_blocks(int count, int block, const std::function<void(int, int)>& 
 
 MirroredBlur::MirroredBlur(int width, int height)
     : width_(width), height_(height), along_rows_(width), along_columns_(height) {
-    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     try {
-        layer_.resize(pixels);
-        spectrum_.resize(pixels);
+        image_.assign(width, height);
+        spectrum_.assign(height, width);
     } catch (const std::bad_alloc&) {
         throw InputError(
             "forward scatter: not enough memory for an image of this size; render a "
@@ -38,14 +39,13 @@ MirroredBlur::MirroredBlur(int width, int height)
     }
 }
 
-void MirroredBlur::add(const RowSource& layer, const BlurKernel& kernel) {
-    const auto width = static_cast<std::size_t>(width_);
+void MirroredBlur::add(const RowSource& image, const BlurKernel& kernel) {
     std::atomic<bool> any = false;
     parallel_blocks(height_, k_rows, [&](int begin, int end) {
         for (int y = begin; y < end; ++y) {
-            const std::span row(layer_.data() + static_cast<std::size_t>(y) * width, width);
+            const std::span<double> row = image_.row(y);
             std::fill(row.begin(), row.end(), 0.0);
-            if (!layer(y, row)) continue;
+            if (!image(y, row)) continue;
             along_rows_.forward(row.data());
             any = true;
         }
@@ -54,21 +54,18 @@ void MirroredBlur::add(const RowSource& layer, const BlurKernel& kernel) {
 }
 
 void MirroredBlur::add_columns(const BlurKernel& kernel) {
-    const auto width = static_cast<std::size_t>(width_);
-    const auto height = static_cast<std::size_t>(height_);
     parallel_blocks(kernel.column_count(), k_columns, [&](int begin, int end) {
-        const auto first = static_cast<std::size_t>(begin);
-        const auto count = static_cast<std::size_t>(end - begin);
-        std::vector<double> columns(count * height);
-        for (std::size_t y = 0; y < height; ++y)
-            for (std::size_t i = 0; i < count; ++i)
-                columns[i * height + y] = layer_[y * width + first + i];
-        std::vector<double> factors(height);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::span column(columns.data() + i * height, height);
+        Grid2D<double> columns(height_, end - begin);
+        for (int y = 0; y < height_; ++y) {
+            const std::span<const double> row = std::as_const(image_).row(y);
+            for (int x = begin; x < end; ++x)
+                columns(y, x - begin) = row[static_cast<std::size_t>(x)];
+        }
+        std::vector<double> factors(static_cast<std::size_t>(height_));
+        for (int x = begin; x < end; ++x) {
+            const std::span<double> column = columns.row(x - begin), sum = spectrum_.row(x);
             along_columns_.forward(column.data());
-            const int rows = kernel.fill_column(begin + static_cast<int>(i), factors);
-            double* sum = spectrum_.data() + (first + i) * height;
+            const int rows = kernel.fill_column(x, factors);
             for (std::size_t y = 0; y < static_cast<std::size_t>(rows); ++y)
                 sum[y] += factors[y] * column[y];
         }
@@ -77,28 +74,22 @@ void MirroredBlur::add_columns(const BlurKernel& kernel) {
 }
 
 void MirroredBlur::finish(const RowSink& sink) {
-    const auto width = static_cast<std::size_t>(width_);
-    const auto height = static_cast<std::size_t>(height_);
     if (any_) {
         const double unit = 1 / (along_rows_.scale() * along_columns_.scale());
         parallel_blocks(width_, k_columns, [&](int begin, int end) {
-            const auto first = static_cast<std::size_t>(begin);
-            const auto count = static_cast<std::size_t>(end - begin);
-            double* columns = spectrum_.data() + first * height;
-            for (std::size_t i = 0; i < count; ++i) along_columns_.inverse(columns + i * height);
-            for (std::size_t y = 0; y < height; ++y)
-                for (std::size_t i = 0; i < count; ++i)
-                    layer_[y * width + first + i] = unit * columns[i * height + y];
-            std::fill(columns, columns + count * height, 0.0);
+            for (int x = begin; x < end; ++x) along_columns_.inverse(spectrum_.row(x).data());
+            for (int y = 0; y < height_; ++y)
+                for (int x = begin; x < end; ++x) image_(x, y) = unit * spectrum_(y, x);
+            for (int x = begin; x < end; ++x) std::ranges::fill(spectrum_.row(x), 0.0);
         });
     } else {
-        std::fill(layer_.begin(), layer_.end(), 0.0);
+        std::ranges::fill(image_, 0.0);
     }
     parallel_blocks(height_, k_rows, [&](int begin, int end) {
         for (int y = begin; y < end; ++y) {
-            double* row = layer_.data() + static_cast<std::size_t>(y) * width;
-            if (any_) along_rows_.inverse(row);
-            sink(y, std::span<const double>(row, width));
+            const std::span<double> row = image_.row(y);
+            if (any_) along_rows_.inverse(row.data());
+            sink(y, row);
         }
     });
     any_ = false;

@@ -2,8 +2,8 @@
 
 #include <functional>
 #include <span>
-#include <vector>
 
+#include "core/base/grid2d.h"
 #include "core/forward/blur_kernel.h"
 #include "core/forward/cosine_transform.h"
 
@@ -12,21 +12,21 @@ namespace uw {
 /// Sums images, each blurred by its own kernel. Beyond its border the scene goes on as its own
 /// mirror image, without end and without padding: no dark frame, and exactly as much light enters
 /// across the border as leaves. Only the sum is kept: two images of doubles, whatever the number
-/// of layers. The result does not depend on the number of threads.
+/// of images summed. The result does not depend on the number of threads.
 class MirroredBlur {
   public:
     /// Images of `width` times `height` pixels. Throws InputError if there is not enough memory.
     MirroredBlur(int width, int height);
 
-    /// Writes row `y` of a layer into a row of zeros; returns false if it stays zeros. Called from
+    /// Writes row `y` of an image into a row of zeros; returns false if it stays zeros. Called from
     /// any thread, once per row.
     using RowSource = std::function<bool(int y, std::span<double> row)>;
-    /// Adds a layer blurred by `kernel`, which was made for images of this size.
-    void add(const RowSource& layer, const BlurKernel& kernel);
+    /// Adds an image blurred by `kernel`, which was made for images of this size.
+    void add(const RowSource& image, const BlurKernel& kernel);
 
     /// Takes row `y` of the sum. Called from any thread, once per row.
     using RowSink = std::function<void(int y, std::span<const double> row)>;
-    /// Hands over the sum and starts anew.
+    /// Hands over the sum and starts again at zero.
     void finish(const RowSink& sink);
 
   private:
@@ -36,8 +36,8 @@ class MirroredBlur {
     int height_;
     CosineTransform along_rows_;
     CosineTransform along_columns_;
-    std::vector<double> layer_;     // row by row
-    std::vector<double> spectrum_;  // of the sum, column by column
+    Grid2D<double> image_;     // added last, or the sum
+    Grid2D<double> spectrum_;  // of the sum; its rows are the image's columns
     bool any_ = false;
 };
 

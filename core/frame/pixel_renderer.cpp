@@ -1,7 +1,6 @@
 #include "core/frame/pixel_renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/surfaces/surface_reflection.h"
@@ -13,8 +12,9 @@ namespace {
 // Surface samples whose distances agree this well share one integral through the water: the
 // radiance between them differs by less than 1 % of that of the last centimetres.
 constexpr double k_same_distance = 0.01;
-// Samples on the surface that the pixel's centre sees count as this near: to first order a slanted
-// surface's mean is its centre, and the water ray does not reach behind what it meets itself.
+// Samples of the object that the pixel's centre sees count as being at the centre's distance if
+// theirs is this close to it: to first order the mean of a slanted surface is its centre, and the
+// water ray does not go on behind what it meets itself.
 constexpr double k_same_surface = 0.25;
 
 // Base-2 radical inverse: 0, 1/2, 1/4, 3/4, ...
@@ -36,13 +36,8 @@ ImageOffset sample_offset(int i, int count) {
     return {static_cast<double>(i) / count + half_step, count == 1 ? 0.5 : y};
 }
 
-constexpr std::array k_parts{&PixelResult::direct,       &PixelResult::backscatter,
-                             &PixelResult::irradiance,   &PixelResult::backscatter_first,
-                             &PixelResult::exitance,     &PixelResult::clean,
-                             &PixelResult::transmittance};
-
-// Makes ends and shares of the samples' distances; those that agree become one.
-void group_ends(std::vector<double>& distances, int samples, PixelView& view) {
+// Makes the view's distances and weights of those of its samples; what agrees becomes one.
+void group_distances(std::vector<double>& distances, int samples, PixelView& view) {
     std::sort(distances.begin(), distances.end());
     for (std::size_t first = 0; first < distances.size();) {
         std::size_t last = first;
@@ -53,8 +48,8 @@ void group_ends(std::vector<double>& distances, int samples, PixelView& view) {
         const auto count = static_cast<double>(last - first);
         const bool at_center =
             view.has_hit && distances[first] <= view.path && view.path <= distances[last - 1];
-        view.ends.push_back(at_center ? view.path : sum / count);
-        view.shares.push_back(count / samples);
+        view.distances.push_back(at_center ? view.path : sum / count);
+        view.weights.push_back(count / samples);
         first = last;
     }
 }
@@ -62,32 +57,33 @@ void group_ends(std::vector<double>& distances, int samples, PixelView& view) {
 }  // namespace
 
 PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
-                             const Integrator& integrator, int samples, const Slabs& slabs,
+                             const LightTransport& transport, int samples, const Slabs& slabs,
                              const SensorModel& sensor, const InScatterParts& parts)
     : rays_(rays),
       scene_(scene),
-      integrator_(integrator),
+      transport_(transport),
       samples_(samples),
       sensor_(sensor),
-      water_(integrator, rays.world_from_camera(), slabs, lamp_count(), band_count(), parts),
+      in_scatter_(*transport.integrator, rays.world_from_camera(), slabs, lamp_count(),
+                  band_count(), parts),
       camera_from_world_(rays.world_from_camera().inverse()) {}
 
-void PixelRenderer::look(int x, int y, PixelView& view) const {
+void PixelRenderer::trace(int x, int y, PixelView& view) const {
     begin_view(x, y, view);
     view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
     finish_ground_truth(view);
     add_samples(x, y, view);
 }
 
-void PixelRenderer::look(const PixelWindow& window, std::span<PixelView> views) const {
+void PixelRenderer::trace(const PixelWindow& window, Grid2D<PixelView>& views) const {
     thread_local std::vector<Ray> rays;
     thread_local std::vector<SurfaceHit> hits;
     thread_local std::vector<char> found;
-    const auto width = static_cast<std::size_t>(window.width());
+    views.resize(window.width(), window.height());
     for (int y = window.y0; y < window.y1; ++y) {
-        const std::span row = views.subspan(static_cast<std::size_t>(y - window.y0) * width, width);
+        const std::span<PixelView> row = views.row(y - window.y0);
         rays.clear();
-        for (std::size_t i = 0; i < width; ++i) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
             begin_view(window.x0 + static_cast<int>(i), y, row[i]);
             if (row[i].ray) rays.push_back(*row[i].ray);
         }
@@ -95,7 +91,7 @@ void PixelRenderer::look(const PixelWindow& window, std::span<PixelView> views) 
         found.resize(rays.size());
         scene_.surfaces->closest_hits(rays, k_far, hits, found);
         std::size_t next = 0;
-        for (std::size_t i = 0; i < width; ++i) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
             PixelView& view = row[i];
             if (view.ray) {
                 view.has_hit = found[next] != 0;
@@ -110,8 +106,8 @@ void PixelRenderer::look(const PixelWindow& window, std::span<PixelView> views) 
 
 void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
     view.alpha = 0;
-    view.ends.clear();
-    view.shares.clear();
+    view.distances.clear();
+    view.weights.clear();
     view.samples.clear();
     view.x = x + 0.5;
     view.y = y + 0.5;
@@ -119,12 +115,12 @@ void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
     view.ray = rays_.refracted_ray(view.x, view.y);
 }
 
-// A single sample's ray is that of the ground truth.
+// The ray of a single sample is the one that the ground truth has.
 void PixelRenderer::add_center(PixelView& view) {
     if (!view.ray) return;
     view.alpha = 1;
-    view.ends.push_back(view.has_hit ? view.path : k_far);
-    view.shares.push_back(1);
+    view.distances.push_back(view.has_hit ? view.path : k_far);
+    view.weights.push_back(1);
     if (view.has_hit) view.samples.push_back({*view.ray, view.hit, view.x, view.y});
 }
 
@@ -158,7 +154,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
                                std::abs(sample.hit.distance / view.path - 1) < k_same_surface;
         distances.push_back(at_center ? view.path : sample.hit.distance);
     }
-    group_ends(distances, samples_, view);
+    group_distances(distances, samples_, view);
 }
 
 void PixelRenderer::light_surfaces(std::span<const PixelView> views, SurfaceLight& light) const {
@@ -166,33 +162,29 @@ void PixelRenderer::light_surfaces(std::span<const PixelView> views, SurfaceLigh
     samples.clear();
     for (const PixelView& view : views)
         for (const SurfaceSample& sample : view.samples) samples.push_back(&sample);
-    integrator_.surface_lights(samples, light);
+    transport_.surfaces->evaluate(samples, light);
 }
 
 void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
-                          std::size_t first_sample, std::span<const double> water,
+                          std::size_t first_sample, std::span<const double> in_scatter,
                           PixelResult& result) const {
     const auto bands = static_cast<std::size_t>(band_count());
-    for (Spectrum PixelResult::*part : k_parts) std::fill_n((result.*part).begin(), bands, 0.0);
-    result.lamps.assign(water_.parts().lamps ? scene_.lamps->size() : 0, Spectrum{});
-    result.lit = 0;
-    result.pixel_factor = 1;
+    result.reset(in_scatter_.parts().lamps ? scene_.lamps->size() : 0);
     result.alpha = view.alpha;
     result.has_hit = view.has_hit;
-    if (view.has_hit)
+    if (view.has_hit) {
         result.hit = view.hit;
-    else
-        result.hit = {};
-    result.depth_z = view.has_hit ? view.depth_z : 0;
-    result.range = view.has_hit ? view.range : 0;
-    result.path = view.has_hit ? view.path : 0;
+        result.depth_z = view.depth_z;
+        result.range = view.range;
+        result.path = view.path;
+    }
     for (std::size_t i = 0; i < view.samples.size(); ++i)
         add_surface(view.samples[i], light, first_sample + i, result);
     if (!view.samples.empty())
-        for (std::size_t b = 0; b < bands; ++b)
-            result.transmittance[b] /= static_cast<double>(view.samples.size());
+        for (double& transmittance : result.transmittance.first(bands))
+            transmittance /= static_cast<double>(view.samples.size());
     if (!view.ray) return;
-    add_water(water, result);
+    add_water(in_scatter, result);
     if (sensor_.uses_lens() || rays_.port_dims())
         result.pixel_factor = sensor_.pixel_factor(rays_.lens_ray(view.x, view.y),
                                                    view.has_hit ? view.range : k_infinitely_far);
@@ -200,60 +192,58 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {
     thread_local PixelView view;
-    thread_local std::vector<double> row;
+    thread_local std::vector<double> in_scatter;
     thread_local SurfaceLight surfaces;
-    look(x, y, view);
-    row.resize(water_.row_size());
-    water_.gather(view, row);
+    trace(x, y, view);
+    in_scatter.resize(in_scatter_.value_count());
+    in_scatter_.integrate(view, in_scatter);
     light_surfaces(std::span(&view, 1), surfaces);
-    shade(view, surfaces, 0, row, result);
+    shade(view, surfaces, 0, in_scatter, result);
 }
 
 void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight& light,
                                 std::size_t sample, PixelResult& result) const {
     const SurfaceHit& hit = surface.hit;
-    const double share = 1.0 / samples_;
+    const double weight = 1.0 / samples_;
     const double seen = sensor_.surface_factor(hit.distance);
     const auto bands = static_cast<std::size_t>(band_count());
     const std::span<const double> to_camera = light.to_camera(sample);
     const SurfaceReflection reflection(*scene_.surfaces, surface, band_count());
-    for (std::size_t b = 0; b < bands; ++b) result.transmittance[b] += to_camera[b];
+    add(result.transmittance.first(bands), to_camera);
     if (reflection.emits()) {
         for (std::size_t b = 0; b < bands; ++b) {
-            const double emission = share * reflection.emission()[b] * seen;
+            const double emission = weight * reflection.emission()[b] * seen;
             result.clean[b] += emission;
             result.direct[b] += emission * to_camera[b];
         }
     }
-    Spectrum brdf{};
+    Spectrum brdf;
     for (std::size_t j = 0; j < light.lamp_count(); ++j) {
         if (!light.visible(sample, j)) continue;
-        result.lit += share / static_cast<double>(light.lamp_count());
+        result.lit += weight / static_cast<double>(light.lamp_count());
         reflection.brdf((*scene_.lamps)[j].position(), brdf);
+        // One loop, not a spectrum for each product: this is every sample under every lamp.
         for (std::size_t b = 0; b < bands; ++b) {
-            const double irradiance = share * light.irradiance(sample, j, b);
+            const double irradiance = weight * light.irradiance(sample, j, b);
             const double response = brdf[b] * seen;
             const double direct = irradiance * response * to_camera[b];
             result.irradiance[b] += irradiance;
             result.exitance[b] += irradiance * hit.reflectance[b];
-            result.clean[b] += share * light.clean(sample, j, b) * response;
+            result.clean[b] += weight * light.clean(sample, j, b) * response;
             result.direct[b] += direct;
             if (!result.lamps.empty()) result.lamps[j][b] += direct;
         }
     }
 }
 
-void PixelRenderer::add_water(std::span<const double> row, PixelResult& result) const {
-    for (std::size_t group = 0; group < water_.group_count(); ++group) {
-        const std::span<const double> in = water_.group(row, group);
-        for (std::size_t b = 0; b < in.size(); ++b) {
-            result.backscatter[b] += in[b];
-            if (!result.lamps.empty()) result.lamps[group][b] += in[b];
-        }
+void PixelRenderer::add_water(std::span<const double> in_scatter, PixelResult& result) const {
+    for (std::size_t group = 0; group < in_scatter_.group_count(); ++group) {
+        const std::span<const double> values = in_scatter_.group(in_scatter, group);
+        add(result.backscatter.first(values.size()), values);
+        if (!result.lamps.empty()) add(result.lamps[group].first(values.size()), values);
     }
-    if (!water_.parts().first_slab) return;
-    const std::span<const double> first = water_.first_slab(row);
-    std::copy(first.begin(), first.end(), result.backscatter_first.begin());
+    if (!in_scatter_.parts().first_slab) return;
+    std::ranges::copy(in_scatter_.first_slab(in_scatter), result.backscatter_first.begin());
 }
 
 void PixelRenderer::finish_ground_truth(PixelView& view) const {

@@ -7,14 +7,14 @@
 
 namespace uw {
 
-/// What one pixel looks at, before any light is gathered. Reused storage.
+/// What the rays of one pixel meet, before any light is asked for. Reused storage.
 struct PixelView {
-    double alpha = 0;        // share of samples whose ray enters the water
+    double alpha = 0;        // fraction of the samples whose ray enters the water
     std::optional<Ray> ray;  // along which the pixel's water is integrated, if one enters it
     double x = 0, y = 0;     // image position of that ray
-    /// Where the pixel's water ends [m along `ray`, ascending; k_far without a surface], and the
-    /// shares of the samples that end there. Empty without a ray.
-    std::vector<double> ends, shares;
+    /// How far the pixel's water reaches [m along `ray`, ascending; k_far without a surface], and
+    /// the fraction of the samples whose water reaches that far. Empty without a ray.
+    std::vector<double> distances, weights;
 
     std::vector<SurfaceSample> samples;  // those that meet a surface
 

@@ -1,6 +1,7 @@
 #include "core/frame/ray_in_scatter.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace uw {
@@ -22,8 +23,8 @@ Interval RayInScatter::first_slab_along(const Ray& ray) const {
             std::max(0.0, depth.distance(slabs_.boundary(1)))};
 }
 
-void RayInScatter::gather(const Ray& ray, std::span<const double> distances,
-                          std::span<double> rows) const {
+void RayInScatter::integrate(const Ray& ray, std::span<const double> distances,
+                             std::span<double> values) const {
     thread_local std::vector<double> stops;
     thread_local InScatter light;
     const Interval slab = parts_.first_slab ? first_slab_along(ray) : Interval{};
@@ -35,41 +36,35 @@ void RayInScatter::gather(const Ray& ray, std::span<const double> distances,
     stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
     integrator_.in_scatter(ray, stops, light);
 
-    const auto stop_at = [&](double distance) {
-        return static_cast<std::size_t>(std::lower_bound(stops.begin(), stops.end(), distance) -
-                                        stops.begin());
+    const auto light_up_to = [&](double distance, std::size_t lamp) {
+        const auto stop = static_cast<std::size_t>(
+            std::lower_bound(stops.begin(), stops.end(), distance) - stops.begin());
+        return std::as_const(light).at(stop, lamp).first(bands_);
     };
-    std::fill(rows.begin(), rows.end(), 0.0);
+    std::fill(values.begin(), values.end(), 0.0);
     for (std::size_t i = 0; i < distances.size(); ++i) {
-        double* row = &rows[i * row_size()];
-        const std::size_t stop = stop_at(distances[i]);
-        for (std::size_t j = 0; j < lamps_; ++j) {
-            double* group = row + (parts_.lamps ? j : 0) * bands_;
-            const Spectrum& in = light.at(stop, j);
-            for (std::size_t b = 0; b < bands_; ++b) group[b] += in[b];
-        }
+        const std::span own = values.subspan(i * value_count(), value_count());
+        for (std::size_t j = 0; j < lamps_; ++j)
+            add(own.subspan((parts_.lamps ? j : 0) * bands_, bands_), light_up_to(distances[i], j));
         const double end = std::min(slab.end, distances[i]);
         if (!(slab.begin < end)) continue;
-        double* first = row + groups_ * bands_;
+        const std::span first = own.subspan(groups_ * bands_, bands_);
         for (std::size_t j = 0; j < lamps_; ++j) {
-            const Spectrum& behind = light.at(stop_at(end), j);
-            for (std::size_t b = 0; b < bands_; ++b) first[b] += behind[b];
-            if (slab.begin <= 0) continue;
-            const Spectrum& before = light.at(stop_at(slab.begin), j);
-            for (std::size_t b = 0; b < bands_; ++b) first[b] -= before[b];
+            add(first, light_up_to(end, j));
+            if (slab.begin > 0) subtract(first, light_up_to(slab.begin, j));
         }
     }
 }
 
-void RayInScatter::gather(const PixelView& view, std::span<double> row) const {
-    std::fill(row.begin(), row.end(), 0.0);
-    if (view.ends.empty()) return;
-    thread_local std::vector<double> rows;
-    rows.resize(view.ends.size() * row_size());
-    gather(*view.ray, view.ends, rows);
-    for (std::size_t end = 0; end < view.ends.size(); ++end)
-        for (std::size_t k = 0; k < row.size(); ++k)
-            row[k] += view.shares[end] * rows[end * row.size() + k];
+void RayInScatter::integrate(const PixelView& view, std::span<double> values) const {
+    std::fill(values.begin(), values.end(), 0.0);
+    if (view.distances.empty()) return;
+    thread_local std::vector<double> lists;
+    lists.resize(view.distances.size() * value_count());
+    integrate(*view.ray, view.distances, lists);
+    for (std::size_t i = 0; i < view.distances.size(); ++i)
+        add_scaled(values, view.weights[i],
+                   std::span(lists).subspan(i * value_count(), value_count()));
 }
 
 }  // namespace uw

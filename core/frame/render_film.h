@@ -9,12 +9,7 @@
 
 namespace uw {
 
-/// Writes one pixel's result into the channels of `plan`, radiance times its factor. `channels`
-/// are those of a film made with the plan's names.
-void store_pixel(const PixelResult& result, const LayerPlan& plan, const BandColour& colour,
-                 int band_count, std::span<float> channels);
-
-/// Told the share of the pixels that are done, from any thread; returns false to stop.
+/// Told the fraction of the pixels that are done, from any thread; returns false to stop.
 using ProgressCallback = std::function<bool(double fraction)>;
 
 /// Shown each pixel that is done, from any thread.
@@ -22,8 +17,8 @@ using PixelCallback =
     std::function<void(int x, int y, const PixelView& view, const PixelResult& result)>;
 
 /// Renders every pixel of the film's window on all threads allowed. The result depends neither on
-/// their number nor on the window. `in_scatter_tolerance`: of InScatterLattice; 0 gathers the water
-/// of every pixel by itself. Throws Interrupted if `progress` returned false.
+/// their number nor on the window. `in_scatter_tolerance`: of InScatterLattice; 0 integrates every
+/// pixel's own ray. Throws Interrupted if `progress` returned false.
 void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, const LayerPlan& plan,
                  const BandColour& colour, Film& film, const ProgressCallback& progress,
                  const PixelCallback& done = {});

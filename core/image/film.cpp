@@ -30,11 +30,10 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
             window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9,
             static_cast<double>(available_memory_bytes()) * 1e-9));
     };
-    // Asked first, for Linux promises more than it has and ends the program that makes use of it.
+    // Checked first: Linux grants more memory than it has, and kills the program that uses it.
     if (bytes > static_cast<double>(available_memory_bytes())) throw no_memory();
     try {
-        values_.resize(static_cast<std::size_t>(window.width()) *
-                       static_cast<std::size_t>(window.height()) * channel_names_.size());
+        values_.assign(window.width() * static_cast<int>(channel_names_.size()), window.height());
     } catch (const std::bad_alloc&) {
         throw no_memory();
     } catch (const std::length_error&) {

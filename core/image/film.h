@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/grid2d.h"
+
 namespace uw {
 
 /// A rectangle of pixels, columns x0 to x1 - 1 and rows y0 to y1 - 1, in the full image.
@@ -35,28 +37,27 @@ class Film {
 
     /// The channels of one pixel. x, y count in the full image and lie within the window.
     std::span<float> pixel(int x, int y) {
-        return std::span(values_).subspan(offset(x, y), channel_names_.size());
+        return values_.row(y - window_.y0).subspan(first_channel(x), channel_names_.size());
     }
     std::span<const float> pixel(int x, int y) const {
-        return std::span(values_).subspan(offset(x, y), channel_names_.size());
+        return values_.row(y - window_.y0).subspan(first_channel(x), channel_names_.size());
     }
     /// All values of the window: row by row, pixel by pixel, channel by channel.
-    std::span<const float> values() const { return values_; }
+    std::span<const float> values() const { return values_.values(); }
     /// Sets all values to 0, as they were at first.
-    void clear() { values_.assign(values_.size(), 0.0F); }
+    void clear() { values_.assign(values_.width(), values_.height()); }
 
   private:
-    std::size_t offset(int x, int y) const {
-        const auto row = static_cast<std::size_t>(y - window_.y0);
-        const auto column = static_cast<std::size_t>(x - window_.x0);
-        return (row * static_cast<std::size_t>(window_.width()) + column) * channel_names_.size();
+    // Of column x, within a row.
+    std::size_t first_channel(int x) const {
+        return static_cast<std::size_t>(x - window_.x0) * channel_names_.size();
     }
 
     int width_;
     int height_;
     PixelWindow window_;
     std::vector<std::string> channel_names_;
-    std::vector<float> values_;
+    Grid2D<float> values_;  // the channels of a pixel beside each other
 };
 
 /// The part of `film` within `window`. Throws as Film's constructor.

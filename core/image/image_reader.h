@@ -25,15 +25,15 @@ PixelImage read_image(const std::filesystem::path& file);
 /// The same for a PNG or JPEG in memory; `name` stands in messages. Throws InputError.
 PixelImage read_image(std::span<const std::byte> encoded, const std::string& name);
 
-/// How an image's file is laid out, beside its pixels.
+/// How an image's file is laid out, apart from its pixels.
 struct ImageLayout {
     int width = 0, height = 0;  // of the whole image
     PixelWindow window;         // of the pixels stored
     std::vector<std::string> channel_names;
 };
 
-/// Whether `file` is an image as write_exr writes it, as far as its header tells: of that layout,
-/// and with all of `metadata`. False for what cannot be read.
+/// Whether the header of `file` is that of an image written by write_exr, of that layout and with
+/// all of `metadata`. False for what cannot be read.
 bool has_header_of(const std::filesystem::path& file, const ImageLayout& layout,
                    const ImageMetadata& metadata);
 

@@ -20,8 +20,8 @@ namespace {
     throw IoError(fmt::format("{}: cannot write: {}; is the disk full?", file.string(), why));
 }
 
-/// A file that remembers whether all of it was taken. The library's own file reports success when
-/// the disk is full: always for PNG, for what is written last in EXR.
+/// A file that remembers whether all of it could be written. The library's own reports success when
+/// the disk is full: always for PNG, and for what is written last in EXR.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
   public:
     explicit CheckedFile(const std::filesystem::path& path)
@@ -88,13 +88,13 @@ void write_exr(const std::filesystem::path& file, const Film& film, const ImageM
 
 void write_png(const std::filesystem::path& file, const Preview& image,
                const ImageMetadata& metadata) {
-    OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
+    OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeUInt8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     for (const auto& [name, value] : metadata) {
         const auto* text = std::get_if<std::string>(&value);
         spec.attribute(name, text ? *text : fmt::format("{:.6g}", std::get<double>(value)));
     }
-    write_whole(file, "png", spec, image.rgb.data());
+    write_whole(file, "png", spec, image.values().data());
 }
 
 }  // namespace uw

@@ -12,31 +12,6 @@
 namespace uw {
 namespace {
 
-struct LayerKind {
-    std::string_view name;
-    std::string_view suffixes;  // one channel per letter; one per band if empty
-};
-
-constexpr std::array<LayerKind, k_layer_count> k_layers{{
-    {"total", ""},
-    {"direct", ""},
-    {"forward", ""},
-    {"backscatter", ""},
-    {"backscatter_first", ""},
-    {"irradiance", ""},
-    {"exitance", ""},
-    {"lit", "V"},
-    {"clean", ""},
-    {"transmittance", ""},
-    {"albedo", ""},
-    {"depth", "Z"},
-    {"range", "V"},
-    {"path", "V"},
-    {"normal", "XYZ"},
-    {"position", "XYZ"},
-    {"id", "V"},
-}};
-
 constexpr std::array<std::string_view, 3> k_not_supported{"flow", "flow_back", "flow_occluded"};
 
 constexpr std::string_view k_lamp_prefix = "lamp.";
@@ -132,7 +107,7 @@ void LayerPlan::Selection::add_lamp(std::string_view name,
 
 LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
                      std::span<const std::string> lamp_names)
-    : first_of_lamp_(lamp_names.size(), -1) {
+    : band_count_(bands_nm.size()), first_of_lamp_(lamp_names.size(), -1) {
     first_.fill(-1);
     Selection selection;
     selection.lamps.resize(lamp_names.size());
@@ -164,6 +139,10 @@ LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
         first_of_lamp_[lamp] = static_cast<int>(channel_names_.size());
         add_channels(std::string(k_lamp_prefix) + lamp_names[lamp], bands);
     }
+}
+
+bool LayerPlan::has_lamps() const {
+    return std::ranges::any_of(first_of_lamp_, [](int channel) { return channel >= 0; });
 }
 
 void LayerPlan::add_channels(const std::string& layer, std::span<const std::string> suffixes) {

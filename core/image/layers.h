@@ -10,7 +10,8 @@
 namespace uw {
 
 /// The layers of an image (docs: image layers) besides the colour R G B A, in the order in which
-/// their channels are stored.
+/// their channels are stored. Each has a line in k_layers, and one in k_pixel_layers
+/// (core/frame/pixel_layers.h), which says what of a pixel it holds.
 enum class Layer {
     total,
     direct,
@@ -29,16 +30,54 @@ enum class Layer {
     normal,
     position,
     id,
+    count,  // none: how many there are
 };
-inline constexpr std::size_t k_layer_count = 17;
+inline constexpr auto k_layer_count = static_cast<std::size_t>(Layer::count);
+
+/// A layer as files and --layers know it.
+struct LayerKind {
+    Layer layer;
+    std::string_view name;
+    std::string_view suffixes;  // one channel for each letter; one for each band if empty
+};
+
+/// Every layer, in the order of Layer.
+inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
+    {Layer::total, "total", ""},
+    {Layer::direct, "direct", ""},
+    {Layer::forward, "forward", ""},
+    {Layer::backscatter, "backscatter", ""},
+    {Layer::backscatter_first, "backscatter_first", ""},
+    {Layer::irradiance, "irradiance", ""},
+    {Layer::exitance, "exitance", ""},
+    {Layer::lit, "lit", "V"},
+    {Layer::clean, "clean", ""},
+    {Layer::transmittance, "transmittance", ""},
+    {Layer::albedo, "albedo", ""},
+    {Layer::depth, "depth", "Z"},
+    {Layer::range, "range", "V"},
+    {Layer::path, "path", "V"},
+    {Layer::normal, "normal", "XYZ"},
+    {Layer::position, "position", "XYZ"},
+    {Layer::id, "id", "V"},
+}};
+
+/// Whether a table with a line for each layer has them all, in their order.
+template <class Line>
+constexpr bool has_every_layer(const std::array<Line, k_layer_count>& table) {
+    for (std::size_t i = 0; i < table.size(); ++i)
+        if (table[i].layer != static_cast<Layer>(i)) return false;
+    return true;
+}
+static_assert(has_every_layer(k_layers));
 
 /// Which channels an image has, what they are called, and where each layer begins.
 ///
 /// The first four channels are always R, G, B, A. Layers of one value per band are named
 /// `direct.R`, `direct.G`, `direct.B` with three bands and `direct.540nm` with any other number;
-/// a fraction's point is written as an underscore (`direct.540_5nm`), for readers take what stands
-/// before the last point as the layer. Then the total per band is a layer of its own, `total`;
-/// with three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`,
+/// the point of a fraction is written as an underscore (`direct.540_5nm`), since readers take what
+/// stands before the last point for the layer. Then the total per band is a layer of its own,
+/// `total`; with three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`,
 /// `normal.X .Y .Z`, `position.X .Y .Z`, `id.V`. A lamp's own light is `lamp.<name>.R` and so on.
 class LayerPlan {
   public:
@@ -58,12 +97,29 @@ class LayerPlan {
     bool has(Layer layer) const { return first_channel(layer) >= 0; }
     /// Likewise for the light of one lamp, by its index in the scene.
     int first_channel_of_lamp(std::size_t lamp) const { return first_of_lamp_[lamp]; }
+    /// Whether the light of any lamp was asked for by itself.
+    bool has_lamps() const;
+
+    /// The layer's channels among all those of a pixel. Precondition: has(layer).
+    std::span<float> channels(Layer layer, std::span<float> pixel) const {
+        const auto suffixes = k_layers[static_cast<std::size_t>(layer)].suffixes.size();
+        return pixel.subspan(static_cast<std::size_t>(first_channel(layer)),
+                             suffixes == 0 ? band_count_ : suffixes);
+    }
+    /// Likewise those of one lamp's light; none if it was not asked for.
+    std::span<float> lamp_channels(std::size_t lamp, std::span<float> pixel) const {
+        const int begin = first_channel_of_lamp(lamp);
+        if (begin < 0) return {};
+        return pixel.subspan(static_cast<std::size_t>(begin), band_count_);
+    }
+    std::size_t band_count() const { return band_count_; }
 
   private:
     struct Selection;
     void add_channels(const std::string& layer, std::span<const std::string> suffixes);
 
     std::vector<std::string> channel_names_{"R", "G", "B", "A"};
+    std::size_t band_count_;
     std::array<int, k_layer_count> first_{};
     std::vector<int> first_of_lamp_;
 };

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "core/colour/colour.h"
 
@@ -13,22 +13,18 @@ namespace {
 constexpr double k_percentile = 0.99;
 constexpr double k_luminance_of_percentile = 0.8;
 
-template <typename Visit>
-void for_each_pixel(const Film& film, const Visit& visit) {
-    const PixelWindow& window = film.window();
-    for (int y = window.y0; y < window.y1; ++y) {
-        for (int x = window.x0; x < window.x1; ++x) visit(film.pixel(x, y));
-    }
-}
-
 }  // namespace
 
 std::optional<double> automatic_exposure(const Film& film) {
+    const PixelWindow& window = film.window();
     std::vector<double> luminances;
-    for_each_pixel(film, [&](std::span<const float> pixel) {
-        const double y = luminance({pixel[k_red], pixel[k_green], pixel[k_blue]});
-        if (pixel[k_alpha] > 0 && std::isfinite(y)) luminances.push_back(y);
-    });
+    for (int y = window.y0; y < window.y1; ++y) {
+        for (int x = window.x0; x < window.x1; ++x) {
+            const std::span<const float> pixel = film.pixel(x, y);
+            const double brightness = luminance({pixel[k_red], pixel[k_green], pixel[k_blue]});
+            if (pixel[k_alpha] > 0 && std::isfinite(brightness)) luminances.push_back(brightness);
+        }
+    }
     if (luminances.empty()) return std::nullopt;
     const auto last = static_cast<double>(luminances.size() - 1);
     const auto middle =
@@ -42,16 +38,18 @@ std::optional<double> automatic_exposure(const Film& film) {
 }
 
 Preview make_preview(const Film& film, double exposure) {
-    Preview preview{film.window().width(), film.window().height(), {}};
-    preview.rgb.reserve(3 * static_cast<std::size_t>(preview.width) *
-                        static_cast<std::size_t>(preview.height));
-    for_each_pixel(film, [&](std::span<const float> pixel) {
-        for (const FilmChannel channel : {k_red, k_green, k_blue}) {
-            const double linear = pixel[k_alpha] > 0 ? exposure * pixel[channel] : 0.0;
-            preview.rgb.push_back(
-                static_cast<std::uint8_t>(std::lround(255 * srgb_encode(linear))));
+    const PixelWindow& window = film.window();
+    Preview preview(window.width(), window.height());
+    for (int y = 0; y < preview.height(); ++y) {
+        for (int x = 0; x < preview.width(); ++x) {
+            const std::span<const float> pixel = film.pixel(window.x0 + x, window.y0 + y);
+            for (const FilmChannel channel : {k_red, k_green, k_blue}) {
+                const double linear = pixel[k_alpha] > 0 ? exposure * pixel[channel] : 0.0;
+                preview(x, y)[channel] =
+                    static_cast<std::uint8_t>(std::lround(255 * srgb_encode(linear)));
+            }
         }
-    });
+    }
     return preview;
 }
 

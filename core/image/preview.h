@@ -1,24 +1,24 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
+#include "core/base/grid2d.h"
 #include "core/image/film.h"
 
 namespace uw {
 
-/// An image to look at: 8-bit sRGB, three bytes per pixel, row by row. Only the film's window.
-struct Preview {
-    int width = 0;
-    int height = 0;
-    std::vector<std::uint8_t> rgb;
-};
+/// An 8-bit sRGB colour: red, green, blue.
+using Srgb8 = std::array<std::uint8_t, 3>;
 
-/// The factor that brings the brighter parts of the film to a luminance of 0.8: the 99th
-/// percentile over pixels with a ray (alpha > 0) and finite values; the brightest pixel where less
-/// than 1 % shine at all. Empty if no pixel shines: the image is black, and the caller should say
-/// so.
+/// An image for viewing. Of a film it shows the window only.
+using Preview = Grid2D<Srgb8>;
+
+/// The factor that brings the brighter parts of the film to a luminance of 0.8: their 99th
+/// percentile over the pixels with a ray (alpha > 0) and finite values, or the brightest pixel
+/// where fewer than 1 % are not black. Empty if all are: the caller should say that the image is
+/// black.
 std::optional<double> automatic_exposure(const Film& film);
 
 /// R, G and B times `exposure` as sRGB. Negative values, NaN and pixels without a ray are black.

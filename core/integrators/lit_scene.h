@@ -9,7 +9,7 @@
 
 namespace uw {
 
-/// Everything the integrators look at; all of it outlives them.
+/// Everything that integrators work on; all of it outlives them.
 struct LitScene {
     const Medium* medium = nullptr;
     const ConcentrationField* field = nullptr;

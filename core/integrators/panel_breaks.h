@@ -6,14 +6,14 @@
 
 namespace uw {
 
-/// Gathers the distances along a ray at which quadrature panels begin and end, and leaves out those
-/// that follow too closely on another. Reused between rays.
+/// Collects the distances along a ray at which quadrature panels begin and end, and drops those
+/// that follow another too closely. Reused between rays.
 class PanelBreaks {
   public:
-    /// Begins anew; what is added outside `stretch` is passed over.
+    /// Starts again for `stretch`; what is added outside it is ignored.
     void reset(const Interval& stretch);
 
-    /// The integrand jumps or bends here, or is asked for up to here: always kept.
+    /// The integrand jumps or bends here, or its integral up to here is wanted: always kept.
     void add_edge(double s) { add_mark(s, 0); }
     /// The integrand only changes its scale here: left out if another break lies within `spacing`
     /// [m, > 0] before it, or an edge behind it.
@@ -21,7 +21,8 @@ class PanelBreaks {
         if (s > stretch_.begin && s < stretch_.end) candidates_.push_back({s, spacing});
     }
 
-    /// The ends of the stretch and what is kept between them, ascending. Valid until the next call.
+    /// Both ends of the stretch and what is kept between them, ascending. Valid until the next
+    /// call.
     const std::vector<double>& kept();
 
   private:

@@ -1,12 +1,39 @@
 #include "core/integrators/planes_integrator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/integrators/surface_lighting.h"
 
 namespace uw {
+
+namespace {
+
+constexpr const char* k_uniform_water_only =
+    "the planes integrator is for uniform water: remove `volumes`, or use integrator volume";
+
+void check_for_planes(const SceneDesc& scene) {
+    if (!scene.volumes.empty())
+        throw InputError(fmt::format("{}: {}", scene.volumes.front().where, k_uniform_water_only));
+    if (scene.camera.distortion.model == DistortionDesc::Model::fisheye)
+        throw InputError(fmt::format(
+            "{}: render.integrator: the planes integrator sums over slabs parallel to the image "
+            "plane, which a fisheye lens looks past; use integrator volume",
+            scene.file.filename().string()));
+}
+
+LightTransport make_planes(const IntegratorInputs& inputs) {
+    return {
+        std::make_unique<PlanesIntegrator>(inputs.scene, inputs.world_from_camera, inputs.slabs),
+        std::make_unique<DirectLighting>(inputs.scene)};
+}
+
+}  // namespace
+
+constinit const IntegratorKind PlanesIntegrator::k_kind{
+    .sums_slabs = true, .check = check_for_planes, .make = make_planes};
 
 struct PlanesIntegrator::Workspace {
     std::vector<Sample> samples;
@@ -26,57 +53,54 @@ PlanesIntegrator::PlanesIntegrator(const LitScene& scene, const Affine& world_fr
       camera_from_world_(world_from_camera.inverse()),
       slabs_(slabs),
       attenuation_(*scene.medium) {
-    if (scene.medium->constituent_count() > 0)
-        throw InputError(
-            "the planes integrator is for uniform water: remove `volumes`, or use integrator "
-            "volume");
+    if (scene.medium->constituent_count() > 0) throw InputError(k_uniform_water_only);
 }
 
-void PlanesIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
+void PlanesIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
                                   InScatter& result) const {
-    in_scatter_from(ray, 0, ends, result);
+    in_scatter_from(ray, 0, distances, result);
 }
 
-void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
-                                       InScatter& result) const {
+void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
+                                       std::span<const double> distances, InScatter& result) const {
     thread_local Workspace w;
     const std::vector<Lamp>& lamps = *scene_.lamps;
-    result.reset(ends.size(), lamps.size());
-    place_samples(ray, begin, ends, w.samples);
+    result.reset(distances.size(), lamps.size());
+    place_samples(ray, begin, distances, w.samples);
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         light_samples(ray, lamps[j], w);
-        Spectrum whole{};
-        std::size_t end = 0;
+        Spectrum whole;
+        std::size_t next = 0;
         const auto finish = [&](std::size_t until) {  // all whole slabs before these are summed
-            for (; end < until; ++end)
-                for (std::size_t b = 0; b < k_max_bands; ++b) result.at(end, j)[b] += whole[b];
+            for (; next < until; ++next) result.at(next, j) += whole;
         };
         for (std::size_t i = 0; i < w.samples.size(); ++i) {
             const Sample& sample = w.samples[i];
-            if (!sample.cut) finish(sample.end);
-            Spectrum& sum = sample.cut ? result.at(sample.end, j) : whole;
-            for (std::size_t b = 0; b < k_max_bands; ++b) sum[b] += w.radiance[i][b];
+            if (!sample.cut) finish(sample.distance);
+            Spectrum& sum = sample.cut ? result.at(sample.distance, j) : whole;
+            sum += w.radiance[i];
         }
-        finish(ends.size());
+        finish(distances.size());
     }
 }
 
-void PlanesIntegrator::place_samples(const Ray& ray, double begin, std::span<const double> ends,
+void PlanesIntegrator::place_samples(const Ray& ray, double begin,
+                                     std::span<const double> distances,
                                      std::vector<Sample>& samples) const {
     samples.clear();
     const RayDepth depth(camera_from_world_, ray);
     if (depth.cosine() <= 0) return;
-    std::size_t end = 0;  // the first that is not before the slab
+    std::size_t next = 0;  // the first distance that is not before the slab
     for (int i = 0; i < slabs_.count; ++i) {
         const Interval slab{std::max(begin, depth.distance(slabs_.boundary(i))),
                             depth.distance(slabs_.boundary(i + 1))};
         if (slab.length() <= 0) continue;
-        for (; end < ends.size() && ends[end] < slab.end; ++end)
-            if (ends[end] > slab.begin)
-                samples.push_back(
-                    {0.5 * (slab.begin + ends[end]), ends[end] - slab.begin, end, true});
-        if (end == ends.size()) return;
-        samples.push_back({0.5 * (slab.begin + slab.end), slab.length(), end, false});
+        for (; next < distances.size() && distances[next] < slab.end; ++next)
+            if (distances[next] > slab.begin)
+                samples.push_back({0.5 * (slab.begin + distances[next]),
+                                   distances[next] - slab.begin, next, true});
+        if (next == distances.size()) return;
+        samples.push_back({0.5 * (slab.begin + slab.end), slab.length(), next, false});
     }
 }
 
@@ -106,20 +130,15 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
     w.beta.assign(w.psi.size(), Spectrum{});
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
         medium.phase_functions[m]->evaluate(w.psi, w.phase);
+        const Spectrum& scattering = medium.uniform.scattering[m];
         for (std::size_t i = 0; i < w.psi.size(); ++i)
-            for (std::size_t b = 0; b < bands; ++b)
-                w.beta[i][b] += medium.uniform.scattering[m][b] * w.phase[i];
+            add_scaled(w.beta[i].first(bands), w.phase[i], scattering.first(bands));
     }
     for (std::size_t i = 0; i < w.lit.size(); ++i)
-        for (std::size_t b = 0; b < bands; ++b)
-            w.radiance[w.lit[i]][b] = lamp.axis_intensity()[b] * w.weight[i] * w.beta[i][b] *
-                                      std::exp(-attenuation_.uniform[b] * w.path[i]);
-}
-
-void PlanesIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
-                                      SurfaceLight& light) const {
-    // Uniform water: there are no columns to fill.
-    light_surfaces(scene_, attenuation_, samples, light);
+        w.radiance[w.lit[i]] = per_band(bands, [&](std::size_t b) {
+            return lamp.axis_intensity()[b] * w.weight[i] * w.beta[i][b] *
+                   std::exp(-attenuation_.uniform[b] * w.path[i]);
+        });
 }
 
 }  // namespace uw

@@ -1,9 +1,7 @@
 #pragma once
 
 #include "core/base/affine.h"
-#include "core/integrators/integrator.h"
-#include "core/integrators/lit_scene.h"
-#include "core/integrators/slabs.h"
+#include "core/integrators/integrator_kind.h"
 #include "core/optics/optical_depth.h"
 
 namespace uw {
@@ -16,35 +14,37 @@ namespace uw {
 ///
 /// X_i is where the water ray crosses the middle of slab i, s_i its distance from the outer glass
 /// surface, theta the ray's angle to the optical axis, R_j the distance of lamp j. A slab that the
-/// glass or a surface cuts counts with its part in between, at the middle of that part. The error
-/// falls with the square of the slabs' thickness where the lamps light the ray smoothly, and with
-/// the thickness itself at shadow and beam edges. Shares no integration code with the other
+/// glass or a surface cuts counts with the part that is left, taken at the middle of that part. The
+/// error falls with the square of the slabs' thickness where the lamps light the ray smoothly, and
+/// with the thickness itself at shadow and beam edges. Shares no integration code with the other
 /// integrators.
-class PlanesIntegrator : public Integrator {
+class PlanesIntegrator final : public Integrator {
   public:
-    /// `slabs` lie in the camera that `world_from_camera` places; water outside them is not
-    /// gathered. Throws InputError if `scene` has constituents that vary in space.
+    /// For uniform water, in cameras that see less than a hemisphere.
+    static const IntegratorKind k_kind;
+
+    /// `slabs` lie in the camera that `world_from_camera` places; water outside them counts for
+    /// nothing. Throws InputError if `scene` has constituents that vary in space.
     PlanesIntegrator(const LitScene& scene, const Affine& world_from_camera, const Slabs& slabs);
 
-    void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
-    void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+    void in_scatter(const Ray& ray, std::span<const double> distances,
+                    InScatter& result) const override;
+    void in_scatter_from(const Ray& ray, double begin, std::span<const double> distances,
                          InScatter& result) const override;
-    void surface_lights(std::span<const SurfaceSample* const> samples,
-                        SurfaceLight& light) const override;
 
   private:
-    /// A slab's stretch of a ray, or the part of it before an end that cuts it.
+    /// A slab's stretch of a ray, or what a distance within it cuts off.
     struct Sample {
-        double s;         // middle, along the ray [m]
-        double length;    // dz / cos(theta) [m]
-        std::size_t end;  // whole: counts for this end and those behind it
-        bool cut;         // counts for this end only
+        double s;              // middle, along the ray [m]
+        double length;         // dz / cos(theta) [m]
+        std::size_t distance;  // index of the first distance that it counts for
+        bool cut;              // counts for this one only, else for all from it on
     };
     struct Workspace;
 
-    void place_samples(const Ray& ray, double begin, std::span<const double> ends,
+    void place_samples(const Ray& ray, double begin, std::span<const double> distances,
                        std::vector<Sample>& samples) const;
-    /// Radiance that each of w.samples sends to the ray's origin by the light of lamp `lamp`.
+    /// Radiance that each of w.samples sends to the ray's origin by the light of `lamp`.
     void light_samples(const Ray& ray, const Lamp& lamp, Workspace& w) const;
 
     LitScene scene_;

@@ -13,10 +13,14 @@ namespace {
 constexpr int k_first_panels = 48;
 constexpr int k_deepest_halving = 18;  // 2^-18 of a first panel at a shadow's edge
 
-Spectrum combine(const Spectrum& a, const Spectrum& b, const Spectrum& c, double scale) {
-    Spectrum sum{};
-    for (std::size_t i = 0; i < k_max_bands; ++i) sum[i] = scale * (a[i] + 4 * b[i] + c[i]);
-    return sum;
+// Simpson's rule; `sixth` of the panel's width.
+Spectrum simpson(const Spectrum& begin, const Spectrum& middle, const Spectrum& end, double sixth) {
+    return sixth * (begin + 4 * middle + end);
+}
+
+void check_uniform(const LitScene& scene) {
+    if (scene.medium->constituent_count() > 0)
+        throw std::invalid_argument("the quadrature integrator is for uniform water");
 }
 
 }  // namespace
@@ -28,7 +32,8 @@ class QuadratureIntegrator::RayIntegral {
         : owner_(owner), ray_(ray), lamp_(lamp) {
         const Vector3 to_lamp = lamp.position() - ray.origin;
         foot_ = glm::dot(to_lamp, ray.direction);
-        // A ray straight through the lamp has no angle to integrate over; a hair beside it has.
+        // A ray straight through the lamp has no angle to integrate over; one that just misses it
+        // has.
         distance_ = std::max(1e-9, glm::length(to_lamp - foot_ * ray.direction));
     }
 
@@ -42,23 +47,19 @@ class QuadratureIntegrator::RayIntegral {
         std::array<Spectrum, k_first_panels> coarse;
         scale_ = Spectrum{};
         for (std::size_t p = 0; p < k_first_panels; ++p) {
-            coarse[p] = combine(f[2 * p], f[2 * p + 1], f[2 * p + 2], h / 6);
-            for (std::size_t b = 0; b < k_max_bands; ++b) scale_[b] += coarse[p][b];
+            coarse[p] = simpson(f[2 * p], f[2 * p + 1], f[2 * p + 2], h / 6);
+            scale_ += coarse[p];
         }
-        Spectrum sum{};
+        Spectrum sum;
         for (std::size_t p = 0; p < k_first_panels; ++p) {
             const double a = from + h * static_cast<double>(p);
-            add(sum, refine(a, a + h, f[2 * p], f[2 * p + 1], f[2 * p + 2], coarse[p], 0));
+            sum += refine(a, a + h, f[2 * p], f[2 * p + 1], f[2 * p + 2], coarse[p], 0);
         }
         return sum;
     }
 
   private:
     double angle(double s) const { return std::atan2(distance_, foot_ - s); }
-
-    static void add(Spectrum& sum, const Spectrum& more) {
-        for (std::size_t b = 0; b < k_max_bands; ++b) sum[b] += more[b];
-    }
 
     Spectrum integrand(double psi) const {
         const double tangent = std::tan(0.5 * psi);
@@ -70,12 +71,12 @@ class QuadratureIntegrator::RayIntegral {
         const Medium& medium = *owner_.scene_.medium;
         for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
             const double p = medium.phase_functions[m]->evaluate(psi);
-            for (std::size_t b = 0; b < static_cast<std::size_t>(medium.band_count()); ++b)
-                value[b] += medium.uniform.scattering[m][b] * p;
+            value += medium.uniform.scattering[m] * p;
         }
-        for (std::size_t b = 0; b < static_cast<std::size_t>(medium.band_count()); ++b)
-            value[b] *= lamp_.axis_intensity()[b] * relative / distance_ *
-                        std::exp(-owner_.attenuation_.uniform[b] * (foot_ + distance_ * tangent));
+        value *= per_band(static_cast<std::size_t>(medium.band_count()), [&](std::size_t b) {
+            return lamp_.axis_intensity()[b] * relative / distance_ *
+                   std::exp(-owner_.attenuation_.uniform[b] * (foot_ + distance_ * tangent));
+        });
         return value;
     }
 
@@ -83,21 +84,23 @@ class QuadratureIntegrator::RayIntegral {
                     const Spectrum& whole, int depth) {
         const double middle = 0.5 * (a + b);
         const Spectrum fl = integrand(0.5 * (a + middle)), fr = integrand(0.5 * (middle + b));
-        const Spectrum left = combine(fa, fl, fm, (middle - a) / 6);
-        const Spectrum right = combine(fm, fr, fb, (b - middle) / 6);
-        bool done = true;
-        Spectrum sum{};
+        const Spectrum left = simpson(fa, fl, fm, (middle - a) / 6);
+        const Spectrum right = simpson(fm, fr, fb, (b - middle) / 6);
+        const Spectrum change = left + right - whole;
+        if (depth >= k_deepest_halving || is_small(change, depth))
+            return left + right + change / 15;
+        return refine(a, middle, fa, fl, fm, left, depth + 1) +
+               refine(middle, b, fm, fr, fb, right, depth + 1);
+    }
+
+    bool is_small(const Spectrum& change, int depth) const {
         for (std::size_t i = 0; i < k_max_bands; ++i) {
-            const double change = left[i] + right[i] - whole[i];
             // The tolerance is shared out evenly over the panels there would be at this depth.
-            done = done && std::abs(change) <= 15 * owner_.tolerance_ * scale_[i] /
-                                                   (k_first_panels * std::exp2(0.5 * depth));
-            sum[i] = left[i] + right[i] + change / 15;
+            if (!(std::abs(change[i]) <=
+                  15 * owner_.tolerance_ * scale_[i] / (k_first_panels * std::exp2(0.5 * depth))))
+                return false;
         }
-        if (done || depth >= k_deepest_halving) return sum;
-        sum = refine(a, middle, fa, fl, fm, left, depth + 1);
-        add(sum, refine(middle, b, fm, fr, fb, right, depth + 1));
-        return sum;
+        return true;
     }
 
     const QuadratureIntegrator& owner_;
@@ -110,36 +113,41 @@ class QuadratureIntegrator::RayIntegral {
 
 QuadratureIntegrator::QuadratureIntegrator(const LitScene& scene, double tolerance)
     : scene_(scene), attenuation_(*scene.medium), tolerance_(tolerance) {
-    if (scene.medium->constituent_count() > 0)
-        throw std::invalid_argument("the quadrature integrator is for uniform water");
+    check_uniform(scene);
 }
 
-void QuadratureIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
+void QuadratureIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
                                       InScatter& result) const {
     const std::vector<Lamp>& lamps = *scene_.lamps;
-    result.reset(ends.size(), lamps.size());
+    result.reset(distances.size(), lamps.size());
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         RayIntegral integral(*this, ray, lamps[j]);
-        Spectrum sum{};
+        Spectrum sum;
         double begin = 0;
-        for (std::size_t end = 0; end < ends.size(); ++end) {
-            const Spectrum part = integral(begin, ends[end]);
-            for (std::size_t b = 0; b < k_max_bands; ++b) sum[b] += part[b];
-            result.at(end, j) = sum;
-            begin = ends[end];
+        for (std::size_t i = 0; i < distances.size(); ++i) {
+            sum += integral(begin, distances[i]);
+            result.at(i, j) = sum;
+            begin = distances[i];
         }
     }
 }
 
-void QuadratureIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
-                                          SurfaceLight& light) const {
+UniformWaterLighting::UniformWaterLighting(const LitScene& scene)
+    : scene_(scene), attenuation_(*scene.medium) {
+    check_uniform(scene);
+}
+
+void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> samples,
+                                    SurfaceLight& light) const {
     const auto bands = static_cast<std::size_t>(attenuation_.band_count);
-    const Spectrum& c = attenuation_.uniform;
     light.reset(samples.size(), *scene_.lamps, bands);
+    const auto set_transmittance = [&](std::span<double> transmittance, double length) {
+        for (std::size_t b = 0; b < bands; ++b)
+            transmittance[b] = std::exp(-attenuation_.uniform[b] * length);
+    };
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const auto& [ray, hit, x, y] = *samples[i];
-        for (std::size_t b = 0; b < bands; ++b)
-            light.to_camera(i)[b] = std::exp(-c[b] * distance(ray.origin, hit.position));
+        set_transmittance(light.to_camera(i), distance(ray.origin, hit.position));
         for (std::size_t j = 0; j < scene_.lamps->size(); ++j) {
             const Lamp& lamp = (*scene_.lamps)[j];
             const Vector3 v = lamp.position() - hit.position;
@@ -150,8 +158,7 @@ void QuadratureIntegrator::surface_lights(std::span<const SurfaceSample* const> 
                 scene_.surfaces->occluded(lamp.position(), hit.position))
                 continue;
             light.geometry_term(i, j) = geometry_term;
-            for (std::size_t b = 0; b < bands; ++b)
-                light.from_lamp(i, j)[b] = std::exp(-c[b] * std::sqrt(r2));
+            set_transmittance(light.from_lamp(i, j), std::sqrt(r2));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 #include "core/integrators/integrator.h"
 #include "core/integrators/lit_scene.h"
+#include "core/integrators/surface_lighting.h"
 #include "core/optics/optical_depth.h"
 
 namespace uw {
@@ -12,17 +13,16 @@ namespace uw {
 ///
 ///     L_b = I/D e^(-c s_0) int V(psi) beta(psi) e^(-c D tan(psi/2)) dpsi,
 ///
-/// without a peak at the lamp. An exact shadow ray at every node. Slow; validation's third opinion,
-/// it shares no integration code with the other integrators. Throws std::invalid_argument for
-/// water that varies.
-class QuadratureIntegrator : public Integrator {
+/// without a peak at the lamp. An exact shadow ray at every node. Slow; a third opinion for
+/// validation, which shares no integration code with the other integrators.
+class QuadratureIntegrator final : public Integrator {
   public:
-    /// `tolerance`: relative error of each ray's integral where it has no shadow edge.
+    /// `tolerance`: relative error of each ray's integral where it has no shadow edge. Throws
+    /// std::invalid_argument for water that varies.
     QuadratureIntegrator(const LitScene& scene, double tolerance);
 
-    void in_scatter(const Ray& ray, std::span<const double> ends, InScatter& result) const override;
-    void surface_lights(std::span<const SurfaceSample* const> samples,
-                        SurfaceLight& light) const override;
+    void in_scatter(const Ray& ray, std::span<const double> distances,
+                    InScatter& result) const override;
 
   private:
     class RayIntegral;
@@ -30,6 +30,21 @@ class QuadratureIntegrator : public Integrator {
     LitScene scene_;
     AttenuationTable attenuation_;
     double tolerance_;
+};
+
+/// Light on surfaces in uniform water, one sample and one lamp after the other by the closed form:
+/// likewise a second opinion, on DirectLighting.
+class UniformWaterLighting final : public SurfaceLighting {
+  public:
+    /// Throws std::invalid_argument for water that varies.
+    explicit UniformWaterLighting(const LitScene& scene);
+
+    void evaluate(std::span<const SurfaceSample* const> samples,
+                  SurfaceLight& light) const override;
+
+  private:
+    LitScene scene_;
+    AttenuationTable attenuation_;
 };
 
 }  // namespace uw

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/integrators/ray_panels.h"
-#include "core/integrators/surface_lighting.h"
 
 namespace uw {
 
@@ -29,37 +28,43 @@ Interval inside(const Ray& ray, const Bounds& bounds) {
     return stretch;
 }
 
+LightTransport make_reference(const IntegratorInputs& inputs) {
+    return {std::make_unique<ReferenceIntegrator>(inputs.scene),
+            std::make_unique<DirectLighting>(inputs.scene)};
+}
+
 }  // namespace
+
+constinit const IntegratorKind ReferenceIntegrator::k_kind{.make = make_reference};
 
 ReferenceIntegrator::ReferenceIntegrator(const LitScene& scene, double step)
     : scene_(scene), attenuation_(*scene.medium), step_(step) {}
 
-void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
+void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
                                      InScatter& result) const {
     const std::vector<Lamp>& lamps = *scene_.lamps;
-    result.reset(ends.size(), lamps.size());
+    result.reset(distances.size(), lamps.size());
     const Interval grid = inside(ray, scene_.field->bounds());
     const double voxel = scene_.field->finest_voxel();
-    const double least_c = *std::min_element(
-        attenuation_.uniform.begin(), attenuation_.uniform.begin() + attenuation_.band_count);
+    const double least_c =
+        attenuation_.uniform.least(static_cast<std::size_t>(attenuation_.band_count));
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         const LampPassage passage(ray, lamps[j].position());
         const double reach =
             least_c > 0 ? passage.radius(0) + k_negligible_optical_depth / least_c : k_far;
-        Spectrum sum{};
+        Spectrum sum;
         double s = 0;
-        for (std::size_t end = 0; end < ends.size(); ++end) {
-            while (s < std::min(ends[end], reach)) {
+        for (std::size_t i = 0; i < distances.size(); ++i) {
+            const double end = distances[i];
+            while (s < std::min(end, reach)) {
                 double length = step_ * std::max(passage.radius(s), k_lamp_radius);
                 const bool in_grid = s < grid.end && s + length > grid.begin;
                 if (in_grid) length = std::min(length, 0.25 * voxel);
-                length = std::min(length, ends[end] - s);
-                const Spectrum sample = in_scatter_per_metre(ray, s + 0.5 * length, j);
-                for (std::size_t band = 0; band < k_max_bands; ++band)
-                    sum[band] += length * sample[band];
-                s = ends[end] - s > length ? s + length : ends[end];
+                length = std::min(length, end - s);
+                sum += length * in_scatter_per_metre(ray, s + 0.5 * length, j);
+                s = end - s > length ? s + length : end;
             }
-            result.at(end, j) = sum;
+            result.at(i, j) = sum;
         }
     }
 }
@@ -85,23 +90,15 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
     scene_.field->sample(x, concentration);
     for (std::size_t k = 0; k < constituents; ++k) from_lamp_column[k] += to_camera_column[k];
     const Spectrum transmittance = attenuation_.transmittance(radius + s, from_lamp_column);
-    Spectrum result{};
+    Spectrum result;
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
         const double p = medium.phase_functions[m]->evaluate(psi);
-        for (std::size_t band = 0; band < static_cast<std::size_t>(medium.band_count()); ++band) {
-            double b = medium.uniform.scattering[m][band];
-            for (std::size_t k = 0; k < constituents; ++k)
-                b += concentration[k] * medium.constituents[k].per_unit.scattering[m][band];
-            result[band] += lamp.axis_intensity()[band] * relative * transmittance[band] * b * p /
-                            (radius * radius);
-        }
+        Spectrum b = medium.uniform.scattering[m];
+        for (std::size_t k = 0; k < constituents; ++k)
+            b += concentration[k] * medium.constituents[k].per_unit.scattering[m];
+        result += lamp.axis_intensity() * relative * transmittance * b * p / (radius * radius);
     }
     return result;
-}
-
-void ReferenceIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
-                                         SurfaceLight& light) const {
-    light_surfaces(scene_, attenuation_, samples, light);
 }
 
 }  // namespace uw

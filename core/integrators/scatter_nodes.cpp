@@ -12,7 +12,7 @@ void ScatterNodes::clear() {
     weight.clear();
     radius.clear();
     half_tangent.clear();
-    end.clear();
+    distance.clear();
     position.clear();
 }
 
@@ -63,7 +63,7 @@ UWVDB_VECTOR_CLONES void ScatterSum::add(const ScatterNodes& nodes, const Spectr
         for (std::size_t i = 0; i < nodes.size(); ++i)
             beta[i] *= nodes.weight[i] * exp_of_minus(tau[i]);
         for (std::size_t i = 0; i < nodes.size(); ++i)
-            radiance[nodes.end[i]][b] += intensity[b] * beta[i];
+            radiance[nodes.distance[i]][b] += intensity[b] * beta[i];
     }
 }
 

@@ -12,13 +12,13 @@ namespace uw {
 
 /// Quadrature nodes of one lamp along one ray, as structure of arrays; reused between rays.
 struct ScatterNodes {
-    std::vector<double> s;             // along the ray [m], ascending
-    std::vector<double> weight;        // ds * relative intensity / R^2 [1/m]
-    std::vector<double> radius;        // distance from the lamp R [m]
-    std::vector<double> half_tangent;  // tan(psi / 2) of the scattering angle
-    std::vector<std::size_t> end;      // index of the first of the ray's ends beyond the node
-    std::vector<Point3> position;      // world
-    std::vector<double> lamp_column;   // lamp to node, [node * constituents + k]
+    std::vector<double> s;              // along the ray [m], ascending
+    std::vector<double> weight;         // ds * relative intensity / R^2 [1/m]
+    std::vector<double> radius;         // distance from the lamp R [m]
+    std::vector<double> half_tangent;   // tan(psi / 2) of the scattering angle
+    std::vector<std::size_t> distance;  // index of the first distance asked for beyond the node
+    std::vector<Point3> position;       // world
+    std::vector<double> lamp_column;    // lamp to node, [node * constituents + k]
     // Filled by look_up and evaluate_phases:
     std::vector<double> column;         // lamp to node to ray origin, [k * nodes + node]
     std::vector<double> concentration;  // at the node, same layout
@@ -39,8 +39,8 @@ class ScatterSum {
 
     const AttenuationTable& attenuation() const { return attenuation_; }
 
-    /// Adds intensity * weight * e^-tau * beta(psi) of every node to radiance[node.end]:
-    /// the in-scatter between the ends before and after it [W m^-2 sr^-1].
+    /// Adds intensity * weight * e^-tau * beta(psi) of every node to radiance[node.distance]: the
+    /// in-scatter between the distances before and after it [W m^-2 sr^-1].
     void add(const ScatterNodes& nodes, const Spectrum& intensity,
              std::span<Spectrum> radiance) const;
 

@@ -37,15 +37,15 @@ class SensorModel {
     /// What all light of a pixel is multiplied by. `range` of the surface at its centre [m],
     /// k_infinitely_far if there is none.
     double pixel_factor(const LensRay& lens_ray, double range) const;
-    /// What light of a surface after `path` metres in water is multiplied by besides. In-scatter
-    /// has the same factor by its own distance from FocusWeightedIntegrator.
+    /// What light of a surface after `path` metres in water is multiplied by in addition.
+    /// In-scatter has the same factor by its own distance from FocusWeightedIntegrator.
     double surface_factor(double path) const;
     /// Mean of surface_factor over the paths from `begin` to `end` [m], begin < end.
     double mean_surface_factor(double begin, double end) const;
 
     /// Whether light that the water scatters forward on its way to the camera has the factors of
     /// the pixel it comes from, as in equations (16) and (18) of the paper, which blur the
-    /// irradiance of pixels. Else the pixel where it lands gives them.
+    /// irradiance of pixels. Otherwise it has those of the pixel where it lands.
     bool factors_before_blur() const { return output_ == RenderDesc::Output::paper; }
 
     /// The quantity and its unit, for image headers: "radiance W m^-2 sr^-1".

@@ -16,21 +16,22 @@ namespace {
 // Beyond the farthest lamp by so many optical depths, on the way to the camera and as many on the
 // way from the lamp: e^-10 = 5e-5 of the light is left.
 constexpr double k_reach_optical_depth = 5;
-// The coarse look at the image takes at most so many rays along each side, edges included.
-constexpr int k_looks = 256;
+// The view is surveyed by at most so many rays along each side of the image, edges included.
+constexpr int k_survey_rays = 256;
 // Slabs behind `far` are not more than this in all, whatever their thickness.
 constexpr double k_most_slabs = 1 << 20;
 
-// What a coarse look at the image sees of the water, in camera z [m].
+// What a coarse lattice of rays sees of the water, in camera z [m].
 struct View {
     double near = k_far;  // where it begins
     double deepest = 0;   // of the surfaces
     bool open = false;    // some ray meets no surface
 };
 
-View look(const RaySource& rays, const Surfaces& surfaces) {
+View survey(const RaySource& rays, const Surfaces& surfaces) {
     const Affine camera_from_world = rays.world_from_camera().inverse();
-    const int columns = std::min(k_looks, rays.width()), rows = std::min(k_looks, rays.height());
+    const int columns = std::min(k_survey_rays, rays.width()),
+              rows = std::min(k_survey_rays, rays.height());
     View view;
     bool all_enter = true, any_enters = false;
     for (int j = 0; j <= rows; ++j) {
@@ -49,7 +50,7 @@ View look(const RaySource& rays, const Surfaces& surfaces) {
             if (surface <= k_far) view.deepest = std::max(view.deepest, depth.z(surface));
         }
     }
-    // The border of the image holds the least z of a flat port, if it is seen whole.
+    // The least z of a flat port is at the image's border, if all of that looks through it.
     if (!all_enter) view.near = 0;
     if (!any_enters) view.open = true;  // a black image all the same
     return view;
@@ -58,8 +59,8 @@ View look(const RaySource& rays, const Surfaces& surfaces) {
 // Camera z beyond which no lamp's light comes back.
 double reach(const RaySource& rays, const LitScene& scene, double near) {
     const AttenuationTable attenuation(*scene.medium);
-    const double least_c = *std::min_element(attenuation.uniform.begin(),
-                                             attenuation.uniform.begin() + attenuation.band_count);
+    const double least_c =
+        attenuation.uniform.least(static_cast<std::size_t>(attenuation.band_count));
     if (least_c <= 0) return k_far;
     const Point3 camera = rays.world_from_camera() * Point3{};
     double farthest_lamp = 0;
@@ -71,7 +72,7 @@ double reach(const RaySource& rays, const LitScene& scene, double near) {
 }  // namespace
 
 Slabs place_slabs(const PlanesDesc& desc, const RaySource& rays, const LitScene& scene) {
-    const View view = look(rays, *scene.surfaces);
+    const View view = survey(rays, *scene.surfaces);
     const double last = reach(rays, scene, view.near);
     const double seen = view.open ? last : std::min(last, view.deepest);
     Slabs slabs;

@@ -4,7 +4,7 @@
 #include "core/base/ray.h"
 #include "core/base/ray_source.h"
 #include "core/integrators/lit_scene.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/render_desc.h"
 
 namespace uw {
 
@@ -46,10 +46,10 @@ class RayDepth {
 
 /// The slabs that `desc` asks for. Where it leaves them out, `near` is where the water begins (the
 /// least camera z of the image's water rays, never below 0) and `far` the greatest camera z of the
-/// surfaces in a coarse look at the image, or, where no surface ends the view, where less than 1e-4
-/// of a lamp's in-scatter lies beyond. With `far` left out, slabs of the same thickness go on
-/// behind it that far too, so that no water is lost; `count` of the result includes them. Throws
-/// InputError where no water lies between near and far.
+/// surfaces that a coarse lattice of rays meets, or, where no surface ends the view, where less
+/// than 1e-4 of a lamp's in-scatter lies beyond. With `far` left out, slabs of the same thickness
+/// go on behind it that far too, so that no water is lost; `count` of the result includes them.
+/// Throws InputError where no water lies between near and far.
 Slabs place_slabs(const PlanesDesc& desc, const RaySource& rays, const LitScene& scene);
 
 }  // namespace uw

@@ -11,9 +11,9 @@ namespace uw {
 
 namespace {
 
-// Nodes farther than this many voxels from a sample say nothing of it.
+// Nodes farther than this many voxels from a sample are of no use for it.
 constexpr double k_near_voxels = 4;
-// A surface may lie this many voxels before or behind where its nodes let it be expected.
+// A surface may lie this many voxels before or behind what is interpolated between its nodes.
 constexpr double k_step_voxels = 0.5;
 
 int pixel(double position) {
@@ -47,26 +47,20 @@ void SurfaceColumns::place_nodes() {
         positions_.push_back(sample->hit.position);
     }
     // The last pixels have nodes too, however near the ones before are.
-    columns_ = (x1_ - x0_ + k_spacing - 1) / k_spacing + 1;
-    rows_ = (y1_ - y0_ + k_spacing - 1) / k_spacing + 1;
-    const auto count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-    nodes_.assign(count, Node{});
-    cells_.assign(count, Cell{});
-    node_columns_.resize(count * constituents_);
-    const auto place = [&](int column, int row) {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-               static_cast<std::size_t>(column);
-    };
+    const int columns = (x1_ - x0_ + k_spacing - 1) / k_spacing + 1;
+    const int rows = (y1_ - y0_ + k_spacing - 1) / k_spacing + 1;
+    nodes_.assign(columns, rows);
+    cells_.assign(columns, rows);
+    node_columns_.resize(nodes_.size() * constituents_);
     for (std::size_t i = 0; i < samples_.size(); ++i) {
         const int x = pixel(samples_[i]->x) - x0_, y = pixel(samples_[i]->y) - y0_;
         const bool at_column = x % k_spacing == 0 || x == x1_ - x0_;
         const bool at_row = y % k_spacing == 0 || y == y1_ - y0_;
         if (at_column && at_row) {
-            Node& node =
-                nodes_[place((x + k_spacing - 1) / k_spacing, (y + k_spacing - 1) / k_spacing)];
+            Node& node = nodes_((x + k_spacing - 1) / k_spacing, (y + k_spacing - 1) / k_spacing);
             if (node.sample == k_none) node.sample = i;
         } else if (x % k_spacing == k_spacing / 2 && y % k_spacing == k_spacing / 2) {
-            Cell& cell = cells_[place(x / k_spacing, y / k_spacing)];
+            Cell& cell = cells_(x / k_spacing, y / k_spacing);
             if (cell.middle == k_none) cell.middle = i;
         }
     }
@@ -103,15 +97,14 @@ const double* SurfaceColumns::node_column(std::size_t node) {
 }
 
 std::size_t SurfaceColumns::cell_of(const SurfaceSample& sample) const {
-    const int column = std::min((pixel(sample.x) - x0_) / k_spacing, std::max(0, columns_ - 2));
-    const int row = std::min((pixel(sample.y) - y0_) / k_spacing, std::max(0, rows_ - 2));
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-           static_cast<std::size_t>(column);
+    const int x = std::min((pixel(sample.x) - x0_) / k_spacing, std::max(0, cells_.width() - 2));
+    const int y = std::min((pixel(sample.y) - y0_) / k_spacing, std::max(0, cells_.height() - 2));
+    return cells_.index(x, y);
 }
 
 bool SurfaceColumns::mix(std::size_t sample, std::size_t cell, std::span<double> column) {
-    const auto across = static_cast<std::size_t>(columns_);
-    if (columns_ < 2 || rows_ < 2) return false;
+    const auto across = static_cast<std::size_t>(nodes_.width());
+    if (nodes_.width() < 2 || nodes_.height() < 2) return false;
     const std::array corners{cell, cell + 1, cell + across, cell + across + 1};
     const SurfaceSample& here = *samples_[sample];
     for (const std::size_t corner : corners) {
@@ -158,7 +151,7 @@ bool SurfaceColumns::confirmed(std::size_t cell) {
         path_ == k_camera ? samples_[asked.middle]->hit.distance
                           : distance((*scene_->lamps)[static_cast<std::size_t>(path_)].position(),
                                      samples_[asked.middle]->hit.position);
-    for (int band = 0; band < attenuation_->band_count; ++band) {
+    for (std::size_t band = 0; band < static_cast<std::size_t>(attenuation_->band_count); ++band) {
         const double depth = attenuation_->optical_depth(band, length, exact_);
         const double difference = attenuation_->optical_depth(band, length, mixture_) - depth;
         if (std::abs(difference) * exp_of_minus(depth) > mixing_.tolerance) return false;

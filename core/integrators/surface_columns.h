@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/grid2d.h"
 #include "core/integrators/deep_shadow.h"
 #include "core/integrators/lit_scene.h"
 #include "core/integrators/surface_light.h"
@@ -12,20 +13,20 @@
 
 namespace uw {
 
-/// How the columns of surfaces side by side are mixed instead of integrated one by one.
+/// How the columns of surfaces side by side are interpolated instead of integrated one by one.
 struct ColumnMixing {
     const std::vector<std::shared_ptr<const DeepShadow>>* deep_shadows = nullptr;  // by lamp
-    /// Largest error allowed of what a path lets through (0..1), of a mixture against the exact
-    /// column halfway between the samples it is mixed from; 0 integrates every column.
+    /// Largest error of a path's transmittance (0..1) allowed, of an interpolated column against
+    /// the exact one halfway between the samples around; 0 integrates every column.
     double tolerance = 0;
 };
 
 /// Column concentrations between the surfaces of a tile and the camera or a lamp. Every fourth
-/// sample across and down has exact ones (a node). Between four nodes the mixture of theirs is
-/// taken, where the one in the middle confirms that: from a lamp, of how far the lamp's deep shadow
-/// map is off, since that has the shape already; to the camera, of the columns, with a correction
-/// by the concentration at the surface for how much nearer or farther it is. Elsewhere all are
-/// exact. Reused between tiles.
+/// sample across and down has exact ones (a node). Between four nodes columns are interpolated
+/// where the sample in the middle confirms that; elsewhere all are exact. Towards a lamp it is the
+/// error of its deep shadow map that is interpolated, since that has the shape already; towards the
+/// camera the columns themselves, corrected by the concentration at the surface for how much nearer
+/// or farther it is. Reused between tiles.
 class SurfaceColumns {
   public:
     /// All of it outlives the columns until the next call. The samples' image positions lie in one
@@ -47,7 +48,7 @@ class SurfaceColumns {
 
     struct Node {
         std::size_t sample = k_none;
-        bool known = false;  // of the path taken
+        bool known = false;  // for the path in question
     };
     struct Cell {
         std::size_t middle = k_none;  // sample
@@ -60,7 +61,7 @@ class SurfaceColumns {
     const double* node_column(std::size_t node);
     std::size_t cell_of(const SurfaceSample& sample) const;
     bool confirmed(std::size_t cell);
-    // False where the nodes around look at something else.
+    // False where the nodes around see something else.
     bool mix(std::size_t sample, std::size_t cell, std::span<double> column);
 
     const LitScene* scene_ = nullptr;
@@ -73,9 +74,8 @@ class SurfaceColumns {
 
     bool mixed_ = false;
     int x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;  // first and last pixels of the tile
-    int columns_ = 0, rows_ = 0;             // of nodes
-    std::vector<Node> nodes_;
-    std::vector<Cell> cells_;            // each at the place of its first node
+    Grid2D<Node> nodes_;
+    Grid2D<Cell> cells_;                 // each at the place of its first node
     std::vector<double> node_columns_;   // exact, from a lamp less the deep shadow map's
     std::vector<double> field_columns_;  // the deep shadow map's, of all samples
     std::vector<Point3> positions_;

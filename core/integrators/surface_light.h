@@ -9,10 +9,11 @@
 
 namespace uw {
 
-/// Light of every lamp on surface points, and what the water leaves of it on its ways.
+/// Light of every lamp on surface points, and the transmittance of the water on its way there and
+/// from there to the camera.
 class SurfaceLight {
   public:
-    /// Dark behind black water. `lamps` outlive the light.
+    /// Makes all of it dark. `lamps` outlive the light.
     void reset(std::size_t samples, const std::vector<Lamp>& lamps, std::size_t bands) {
         lamps_ = &lamps;
         bands_ = bands;
@@ -36,7 +37,7 @@ class SurfaceLight {
     /// e^-tau per band from the sample to its ray's origin.
     std::span<const double> to_camera(std::size_t sample) const { return row(sample, 0); }
 
-    // For integrators, which fill it in:
+    // For SurfaceLighting, which fills it in:
 
     /// Irradiance without water for 1 W/sr on the lamp's axis [1/m^2]: relative intensity times
     /// cosine over squared distance, 0 where the lamp is hidden or behind the surface.
@@ -47,7 +48,7 @@ class SurfaceLight {
         return geometry_terms_[sample * lamp_count() + lamp];
     }
     std::span<double> to_camera(std::size_t sample) { return row(sample, 0); }
-    /// e^-tau per band from the lamp to the sample; of no meaning where it is not visible.
+    /// e^-tau per band from the lamp to the sample; meaningless where it is not visible.
     std::span<double> from_lamp(std::size_t sample, std::size_t lamp) {
         return row(sample, 1 + lamp);
     }

@@ -1,8 +1,9 @@
 #include "core/integrators/surface_lighting.h"
 
-#include <vector>
+#include <utility>
 
 #include "core/base/fast_exp.h"
+#include "core/integrators/surface_columns.h"
 
 namespace uw {
 
@@ -40,29 +41,36 @@ struct Facing {
 
 }  // namespace
 
-void light_surfaces(const LitScene& scene, const AttenuationTable& attenuation,
-                    std::span<const SurfaceSample* const> samples, SurfaceLight& light,
-                    const ColumnMixing& mixing) {
-    const auto bands = static_cast<std::size_t>(attenuation.band_count);
+DirectLighting::DirectLighting(const LitScene& scene,
+                               std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
+                               double column_tolerance)
+    : scene_(scene),
+      attenuation_(*scene.medium),
+      deep_shadows_(std::move(deep_shadows)),
+      column_tolerance_(column_tolerance) {}
+
+void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
+                              SurfaceLight& light) const {
+    const auto bands = static_cast<std::size_t>(attenuation_.band_count);
     thread_local std::vector<double> column;
     thread_local Facing facing;
     thread_local SurfaceColumns columns;
-    column.resize(attenuation.constituents.size());
-    light.reset(samples.size(), *scene.lamps, bands);
+    column.resize(attenuation_.constituents.size());
+    light.reset(samples.size(), *scene_.lamps, bands);
     // Optical depths first; all become transmittances at once.
     const auto set_depths = [&](std::size_t sample, double length, std::span<double> depths) {
         columns.column(sample, column);
         for (std::size_t b = 0; b < bands; ++b)
-            depths[b] = attenuation.optical_depth(static_cast<int>(b), length, column);
+            depths[b] = attenuation_.optical_depth(b, length, column);
     };
-    columns.begin(scene, attenuation, mixing, samples);
+    columns.begin(scene_, attenuation_, {&deep_shadows_, column_tolerance_}, samples);
     columns.take_camera();
     for (std::size_t i = 0; i < samples.size(); ++i)
         set_depths(i, samples[i]->hit.distance, light.to_camera(i));
-    for (std::size_t j = 0; j < scene.lamps->size(); ++j) {
-        const Lamp& lamp = (*scene.lamps)[j];
+    for (std::size_t j = 0; j < scene_.lamps->size(); ++j) {
+        const Lamp& lamp = (*scene_.lamps)[j];
         facing.find(lamp, samples);
-        scene.surfaces->occluded_many(lamp.position(), facing.positions, facing.hidden);
+        scene_.surfaces->occluded_many(lamp.position(), facing.positions, facing.hidden);
         columns.take_lamp(j);
         for (std::size_t n = 0; n < facing.samples.size(); ++n) {
             if (facing.hidden[n] != 0) continue;

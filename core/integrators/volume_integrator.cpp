@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/base/quadrature.h"
-#include "core/integrators/surface_lighting.h"
 
 namespace uw {
 
@@ -19,6 +18,12 @@ constexpr double k_negligible_optical_depth = 15;
 // A break that only marks a change of scale is left out where the one before it is nearer than
 // this, relative to the distance from the lamp.
 constexpr double k_least_relative_panel = 0.35;
+
+// By quality: drafts have more voxels to a panel than the usual two, and the error of a surface's
+// transmittance by interpolated columns is far below what an eye or a camera of 12 bits can see.
+constexpr int k_draft_voxels_per_panel = 6;
+constexpr double k_column_tolerance = 1e-3;
+constexpr double k_draft_column_tolerance = 0.01;
 
 std::vector<double> cotangents_of_breakpoints(const Medium& medium) {
     std::vector<double> all;
@@ -41,9 +46,9 @@ int node_count(double length, double nearest_radius) {
 // One stretch between two breaks, and what holds all over it.
 struct Panel {
     Interval stretch;
-    int pieces = 1;       // equal parts, each with its own nodes
-    bool evenly = false;  // the lamp shines as on its axis
-    std::size_t end = 0;  // index of the first of the ray's ends beyond it
+    int pieces = 1;            // equal parts, each with its own nodes
+    bool evenly = false;       // the lamp shines as on its axis
+    std::size_t distance = 0;  // index of the first distance asked for that lies beyond it
 };
 
 void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, const Panel& panel,
@@ -62,7 +67,7 @@ void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, con
             nodes.radius.push_back(radius);
             nodes.weight.push_back(node.weight * length * relative / (radius * radius));
             nodes.half_tangent.push_back(passage.half_tangent(s, radius));
-            nodes.end.push_back(panel.end);
+            nodes.distance.push_back(panel.distance);
             nodes.position.push_back(x);
         }
     }
@@ -84,11 +89,22 @@ void add_knots(const ConcentrationProfile& profile, int voxels, PanelBreaks& bre
     }
 }
 
-double largest_value(const Spectrum& spectrum, int band_count) {
-    return *std::max_element(spectrum.begin(), spectrum.begin() + band_count);
+LightTransport make_volume(const IntegratorInputs& inputs) {
+    using Quality = RenderDesc::Quality;
+    if (inputs.quality == Quality::draft)
+        return {std::make_unique<VolumeIntegrator>(inputs.scene, inputs.deep_shadows,
+                                                   k_draft_voxels_per_panel),
+                std::make_unique<DirectLighting>(inputs.scene, inputs.deep_shadows,
+                                                 k_draft_column_tolerance)};
+    const double column_tolerance = inputs.quality == Quality::exact ? 0 : k_column_tolerance;
+    return {std::make_unique<VolumeIntegrator>(inputs.scene, inputs.deep_shadows),
+            std::make_unique<DirectLighting>(inputs.scene, inputs.deep_shadows, column_tolerance)};
 }
 
 }  // namespace
+
+constinit const IntegratorKind VolumeIntegrator::k_kind{
+    .needs_deep_shadows = true, .interpolates_between_pixels = true, .make = make_volume};
 
 struct VolumeIntegrator::Workspace {
     ConcentrationProfile profile;
@@ -101,55 +117,56 @@ struct VolumeIntegrator::Workspace {
 
 VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
                                    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
-                                   const VolumeQuadrature& quadrature)
+                                   int voxels_per_panel)
     : scene_(scene),
-      quadrature_(quadrature),
+      voxels_per_panel_(voxels_per_panel),
       deep_shadows_(std::move(deep_shadows)),
       phase_cotangents_(cotangents_of_breakpoints(*scene.medium)),
       phases_(*scene.medium),
       sum_(*scene.medium) {
     const AttenuationTable& c = sum_.attenuation();
-    largest_attenuation_ = largest_value(c.uniform, c.band_count);
-    smallest_attenuation_ = *std::min_element(c.uniform.begin(), c.uniform.begin() + c.band_count);
+    const auto bands = static_cast<std::size_t>(c.band_count);
+    largest_attenuation_ = c.uniform.greatest(bands);
+    smallest_attenuation_ = c.uniform.least(bands);
     for (const Spectrum& constituent : c.constituents)
-        largest_per_unit_.push_back(largest_value(constituent, c.band_count));
+        largest_per_unit_.push_back(constituent.greatest(bands));
 }
 
-void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> ends,
+void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
                                   InScatter& result) const {
-    in_scatter_from(ray, 0, ends, result);
+    in_scatter_from(ray, 0, distances, result);
 }
 
-void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
-                                       InScatter& result) const {
+void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
+                                       std::span<const double> distances, InScatter& result) const {
     thread_local Workspace w;
     const std::vector<Lamp>& lamps = *scene_.lamps;
-    result.reset(ends.size(), lamps.size());
-    scene_.field->profile(ray, ends.back(), w.profile);
+    result.reset(distances.size(), lamps.size());
+    scene_.field->profile(ray, distances.back(), w.profile);
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         const LampPassage passage(ray, lamps[j].position());
-        double reach = ends.back();
+        double reach = distances.back();
         if (smallest_attenuation_ > 0)
             reach = std::min(
                 reach, passage.radius(0) + k_negligible_optical_depth / smallest_attenuation_);
         deep_shadows_[j]->lit_intervals(ray, lamps[j].beam(ray, {begin, reach}), w.lit);
         w.nodes.clear();
         for (const Interval& interval : w.lit) {
-            const std::vector<double>& breaks = find_breaks(ray, j, passage, interval, ends, w);
-            add_panels(ray, j, passage, ends, breaks, w.profile, w.nodes);
+            const std::vector<double>& breaks =
+                find_breaks(ray, j, passage, interval, distances, w);
+            add_panels(ray, j, passage, distances, breaks, w.profile, w.nodes);
         }
         w.nodes.lamp_column.resize(w.nodes.size() *
                                    static_cast<std::size_t>(w.profile.constituent_count));
         deep_shadows_[j]->columns(w.nodes.position, w.nodes.lamp_column);
         w.nodes.look_up(w.profile);
         w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
-        w.radiance.assign(ends.size(), Spectrum{});
+        w.radiance.assign(distances.size(), Spectrum{});
         sum_.add(w.nodes, lamps[j].axis_intensity(), w.radiance);
-        Spectrum so_far{};
-        for (std::size_t end = 0; end < ends.size(); ++end) {
-            for (std::size_t band = 0; band < k_max_bands; ++band)
-                so_far[band] += w.radiance[end][band];
-            result.at(end, j) = so_far;
+        Spectrum so_far;
+        for (std::size_t i = 0; i < distances.size(); ++i) {
+            so_far += w.radiance[i];
+            result.at(i, j) = so_far;
         }
     }
 }
@@ -157,10 +174,10 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin, std::span<c
 const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::size_t lamp,
                                                          const LampPassage& passage,
                                                          const Interval& interval,
-                                                         std::span<const double> ends,
+                                                         std::span<const double> distances,
                                                          Workspace& w) const {
     w.breaks.reset(interval);
-    for (const double end : ends) w.breaks.add_edge(end);
+    for (const double distance : distances) w.breaks.add_edge(distance);
     w.marks.clear();
     (*scene_.lamps)[lamp].append_profile_breaks(ray, w.marks);
     for (const double s : w.marks) w.breaks.add_edge(s);
@@ -176,20 +193,20 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     for (const double cotangent : phase_cotangents_)
         w.breaks.add_edge(passage.foot - passage.distance * cotangent);
     if (w.profile.constituent_count > 0) {
-        add_knots(w.profile, quadrature_.voxels_per_panel, w.breaks);
+        add_knots(w.profile, voxels_per_panel_, w.breaks);
         w.marks.clear();
         deep_shadows_[lamp]->append_column_breaks(ray, interval, w.marks);
-        const double spacing = quadrature_.voxels_per_panel * scene_.field->finest_voxel();
+        const double spacing = voxels_per_panel_ * scene_.field->finest_voxel();
         for (const double s : w.marks) w.breaks.add_mark(s, spacing);
     }
     return w.breaks.kept();
 }
 
 void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPassage& passage,
-                                  std::span<const double> ends, std::span<const double> breaks,
+                                  std::span<const double> distances, std::span<const double> breaks,
                                   const ConcentrationProfile& profile, ScatterNodes& nodes) const {
     const Lamp& source = (*scene_.lamps)[lamp];
-    std::size_t end_index = 0;
+    std::size_t next = 0;
     std::size_t knot = 0;
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
         const Interval panel{breaks[i], breaks[i + 1]};
@@ -199,7 +216,7 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         // A panel lies between the edges of the lamp's cone: dark in the middle is dark all over.
         const double relative = source.relative_intensity(ray.at(middle) - source.position());
         if (relative == 0) continue;
-        while (end_index + 1 < ends.size() && ends[end_index] < middle) ++end_index;
+        while (next + 1 < distances.size() && distances[next] < middle) ++next;
         while (knot + 2 < profile.s.size() && profile.s[knot + 1] < middle) ++knot;
         double attenuation = largest_attenuation_;
         for (std::size_t k = 0; k < largest_per_unit_.size(); ++k)
@@ -210,15 +227,9 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         const int pieces =
             static_cast<int>(std::min(64.0, std::ceil(depth / k_panel_optical_depth)));
         add_nodes(ray, source, passage,
-                  {panel, std::max(1, pieces), relative == 1 && source.has_even_core(), end_index},
+                  {panel, std::max(1, pieces), relative == 1 && source.has_even_core(), next},
                   nodes);
     }
-}
-
-void VolumeIntegrator::surface_lights(std::span<const SurfaceSample* const> samples,
-                                      SurfaceLight& light) const {
-    light_surfaces(scene_, sum_.attenuation(), samples, light,
-                   {&deep_shadows_, quadrature_.column_tolerance});
 }
 
 }  // namespace uw

@@ -5,18 +5,18 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/text_file.h"
 
 namespace uw {
 
 namespace {
 
-constexpr std::uintmax_t k_largest_file = 4 << 20;
+constexpr std::size_t k_largest_file = std::size_t{4} << 20;
 constexpr std::size_t k_most_candelas = 1'100'000;  // a quarter of a degree both ways
 
 std::string_view trimmed(std::string_view text) {
@@ -228,15 +228,8 @@ IesFile parse_ies(std::string_view content, const std::string& name) {
 }
 
 IesFile read_ies(const std::filesystem::path& file) {
-    const std::string name = printable(file.string(), 300);
-    std::ifstream stream(file, std::ios::binary);
-    std::string text(k_largest_file + 1, '\0');
-    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file))
-        throw IoError(name + ": cannot be read; check its name and permissions");
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > k_largest_file)
-        throw InputError(name + ": is larger than 4 MiB: this is no IES file (LM-63)");
+    const std::string text =
+        read_text_file(file, printable(file.string(), 300), k_largest_file, "IES file (LM-63)");
     return parse_ies(text, file.filename().string());
 }
 

@@ -3,42 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
+#include <optional>
+#include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include "core/base/error.h"
 #include "core/colour/lamp_spectrum.h"
-#include "core/lamps/ies_file.h"
+#include "core/lamps/lamp_profile.h"
 
 namespace uw {
 
 namespace {
-
-// Lumens in a file are of the bare lamps: the luminaire may keep much for itself, but gives no
-// more.
-constexpr double k_flux_tolerance = 0.01;
-constexpr double k_least_efficiency = 0.1;
-
-std::shared_ptr<const PhotometricWeb> read_web(const LampProfileDesc& profile,
-                                               std::vector<std::string>& warnings) {
-    const IesFile file = read_ies(profile.file);
-    for (const std::string& warning : file.warnings)
-        warnings.push_back(profile.where + ": " + warning);
-    auto web = std::make_shared<const PhotometricWeb>(file);
-    const double flux = web->flux();
-    if (file.lumens > 0 && flux > (1 + k_flux_tolerance) * file.lumens)
-        warnings.push_back(fmt::format(
-            "{}: the candelas of {} add up to {:.4g} lm, more than the {:.4g} lm of its "
-            "lamps; check its multiplier and its lumens",
-            profile.where, profile.file.filename().string(), flux, file.lumens));
-    if (file.lumens > 0 && flux < k_least_efficiency * file.lumens)
-        warnings.push_back(
-            fmt::format("{}: the candelas of {} add up to {:.4g} lm, {:.2g} % of the {:.4g} lm of "
-                        "its lamps; check its multiplier (candelas may be per 1000 lm)",
-                        profile.where, profile.file.filename().string(), flux,
-                        100 * flux / file.lumens, file.lumens));
-    return web;
-}
 
 LampSpectrum spectrum_of(const LampDesc& desc, std::vector<std::string>& warnings) {
     if (desc.spectrum) return make_lamp_spectrum(*desc.spectrum);
@@ -50,8 +26,16 @@ LampSpectrum spectrum_of(const LampDesc& desc, std::vector<std::string>& warning
     return flat;
 }
 
-// Sets watts per band where the lamp is given by its spectrum, by lumens or by candelas.
-void resolve_output(LampDesc& desc, const PhotometricWeb* web, std::span<const double> bands_nm,
+double peak_candelas(const LampProfile& profile) {
+    const std::optional<double> candelas =
+        std::visit([](const auto& p) { return p.peak_candelas(); }, profile);
+    if (!candelas) throw std::logic_error("a lamp without intensity, power, lumens or candelas");
+    return *candelas;
+}
+
+// Sets watts per band where the lamp is given by its spectrum, by lumens or by the candelas of its
+// profile.
+void resolve_output(LampDesc& desc, const LampProfile& profile, std::span<const double> bands_nm,
                     std::vector<std::string>& warnings) {
     const bool candelas = !desc.intensity && !desc.power && !desc.lumens;
     if (!desc.spectrum && !candelas) return;
@@ -80,7 +64,7 @@ void resolve_output(LampDesc& desc, const PhotometricWeb* web, std::span<const d
     else if (desc.lumens)
         desc.power = per_band(watts(*desc.lumens));
     else
-        desc.intensity = per_band(watts(web->peak()));
+        desc.intensity = per_band(watts(peak_candelas(profile)));
     const PerBand& values = desc.power ? *desc.power : *desc.intensity;
     if (*std::ranges::max_element(values) <= 0)
         throw InputError(fmt::format(
@@ -88,15 +72,28 @@ void resolve_output(LampDesc& desc, const PhotometricWeb* web, std::span<const d
             where));
 }
 
+// Radiant intensity per band where the profile is 1; exactly one of intensity and power is set.
+Spectrum axis_intensity(const LampDesc& desc, const LampProfile& profile, std::size_t band_count) {
+    const auto solid_angle = [](const auto& p) { return p.solid_angle(); };
+    const double per_watt = desc.power ? 1.0 / std::visit(solid_angle, profile) : 1.0;
+    const PerBand& values = desc.power ? *desc.power : *desc.intensity;
+    Spectrum intensity{};
+    for (std::size_t i = 0; i < band_count; ++i) intensity[i] = per_watt * values[i];
+    return intensity;
+}
+
 }  // namespace
 
 Lamp make_lamp(const LampDesc& given, const Affine& world_from_camera,
                std::span<const double> bands_nm, std::vector<std::string>& warnings) {
     LampDesc desc = given;
-    std::shared_ptr<const PhotometricWeb> web;
-    if (desc.profile.type == LampProfileDesc::Type::ies) web = read_web(desc.profile, warnings);
-    resolve_output(desc, web.get(), bands_nm, warnings);
-    return {desc, world_from_camera, static_cast<int>(bands_nm.size()), std::move(web)};
+    const Affine& world_from_frame =
+        desc.fixed_to_camera ? world_from_camera : desc.world_from_mount;
+    LampProfile profile =
+        make_lamp_profile(desc.profile, {world_from_frame, desc.direction}, warnings);
+    resolve_output(desc, profile, bands_nm, warnings);
+    const Spectrum intensity = axis_intensity(desc, profile, bands_nm.size());
+    return {desc.name, world_from_frame * desc.position, std::move(profile), intensity};
 }
 
 }  // namespace uw

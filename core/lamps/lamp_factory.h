@@ -6,7 +6,7 @@
 
 #include "core/base/affine.h"
 #include "core/lamps/lamp.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/lamp_desc.h"
 
 namespace uw {
 

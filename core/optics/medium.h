@@ -17,10 +17,22 @@ struct OpticalCoefficients {
     std::vector<Spectrum> scattering;  // one per Medium::phase_functions
 
     /// c = a + sum_m b_m of band `band`.
-    double attenuation(int band) const {
-        double c = absorption[static_cast<std::size_t>(band)];
-        for (const Spectrum& b : scattering) c += b[static_cast<std::size_t>(band)];
+    double attenuation(std::size_t band) const {
+        double c = absorption[band];
+        for (const Spectrum& b : scattering) c += b[band];
         return c;
+    }
+    /// Likewise of every band.
+    Spectrum attenuation() const {
+        Spectrum c = absorption;
+        for (const Spectrum& b : scattering) c += b;
+        return c;
+    }
+    /// sum_m b_m of every band.
+    Spectrum total_scattering() const {
+        Spectrum sum;
+        for (const Spectrum& b : scattering) sum += b;
+        return sum;
     }
 };
 

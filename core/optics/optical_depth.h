@@ -16,11 +16,10 @@ struct AttenuationTable {
     explicit AttenuationTable(const Medium& medium);
 
     /// tau = c_0 length + sum_k N_k c*_k (physics section 1) for band `band`.
-    double optical_depth(int band, double length, std::span<const double> columns) const {
-        const auto b = static_cast<std::size_t>(band);
-        double tau = uniform[b] * length;
+    double optical_depth(std::size_t band, double length, std::span<const double> columns) const {
+        double tau = uniform[band] * length;
         for (std::size_t k = 0; k < constituents.size(); ++k)
-            tau += constituents[k][b] * columns[k];
+            tau += constituents[k][band] * columns[k];
         return tau;
     }
     /// e^-tau of every band.

@@ -8,15 +8,15 @@
 
 #include "core/base/affine.h"
 #include "core/base/vec.h"
+#include "core/scene/source_location.h"
 
 /// The camera of a scene as inert data (docs/scene-file.md). Lengths in metres, angles in degrees.
 namespace uw {
 
-/// Where an entry stands in the scene file, for messages: "plume.yaml:14:7: volumes[0].file".
-using SourceLocation = std::string;
-
-struct IntrinsicsDesc {  // pixels; the image's corner is (0, 0)
-    double fx = 0, fy = 0, cx = 0, cy = 0;
+/// A camera matrix [pixels]; the image's corner is (0, 0).
+struct IntrinsicsDesc {
+    double fx = 0, fy = 0;  ///< focal lengths, > 0
+    double cx = 0, cy = 0;  ///< principal point
 
     friend bool operator==(const IntrinsicsDesc&, const IntrinsicsDesc&) = default;
 };
@@ -24,60 +24,68 @@ struct IntrinsicsDesc {  // pixels; the image's corner is (0, 0)
 /// How a lens departs from a pinhole, with OpenCV's coefficients.
 struct DistortionDesc {
     enum class Model { brown_conrady, fisheye };
-    std::array<double, 6> k{};  // brown_conrady: k1..k6, rational when k4..k6 are not 0;
-                                // fisheye (equidistant): k1..k4
-    std::array<double, 2> p{};  // brown_conrady: p1, p2
+    /// brown_conrady: k1..k6, rational when k4..k6 are not 0; fisheye (equidistant): k1..k4.
+    std::array<double, 6> k{};
+    std::array<double, 2> p{};  ///< brown_conrady: p1, p2
     Model model = Model::brown_conrady;
 
     friend bool operator==(const DistortionDesc&, const DistortionDesc&) = default;
 };
 
-struct FlatPortDesc {         // camera frame
-    Vector3 normal{0, 0, 1};  // unit, z > 0
-    double distance = 0;      // camera centre to inner glass surface, along the normal
-    double thickness = 0;
-    double n_air = 1.0, n_glass = 1.49, n_water = 1.334;
-    bool fresnel = false;          // reflection losses at both surfaces
-    bool radiance_in_air = false;  // the camera's radiance is that in air, not in water
+/// A flat window, camera frame.
+struct FlatPortDesc {
+    Vector3 normal{0, 0, 1};  ///< unit, z > 0
+    double distance = 0;      ///< camera centre to inner glass surface, along the normal [m]
+    double thickness = 0;     ///< of the glass [m]
+    double n_air = 1.0, n_glass = 1.49, n_water = 1.334;  ///< refractive indices, 1..3
+    bool fresnel = false;                                 ///< reflection losses at both surfaces
+    bool radiance_in_air = false;  ///< the camera's radiance is that in air, not in water
 
     friend bool operator==(const FlatPortDesc&, const FlatPortDesc&) = default;
 };
 
-struct DomePortDesc {   // camera frame
-    Point3 center;      // of both spheres, nearer to the camera centre than `radius`
-    double radius = 0;  // of the inner glass surface, > 0
-    double thickness = 0;
-    double n_air = 1.0, n_glass = 1.49, n_water = 1.334;
-    bool fresnel = false;          // reflection losses at both surfaces
-    bool radiance_in_air = false;  // the camera's radiance is that in air, not in water
+/// A window between two concentric spheres, camera frame.
+struct DomePortDesc {
+    Point3 center;         ///< of both spheres, nearer to the camera centre than `radius` [m]
+    double radius = 0;     ///< of the inner glass surface, > 0 [m]
+    double thickness = 0;  ///< of the glass [m]
+    double n_air = 1.0, n_glass = 1.49, n_water = 1.334;  ///< refractive indices, 1..3
+    bool fresnel = false;                                 ///< reflection losses at both surfaces
+    bool radiance_in_air = false;  ///< the camera's radiance is that in air, not in water
 
     friend bool operator==(const DomePortDesc&, const DomePortDesc&) = default;
 };
 
+/// What parts the camera from the water.
 using PortDesc = std::variant<FlatPortDesc, DomePortDesc>;
 
+/// A lens as far as it matters to the light on the sensor.
 struct LensDesc {
-    double f_number = 0, focal_length = 0, transmission = 1;
+    double f_number = 0;      ///< > 0
+    double focal_length = 0;  ///< > 0 [m]
+    double transmission = 1;  ///< share of the light that it lets through, 0..1
 };
 
 /// A file that holds a camera's resolution, intrinsics, distortion and, perhaps, port.
 struct CalibrationDesc {
     std::filesystem::path file;
-    std::string camera;  // which of several in it; "": the only one
+    std::string camera;  ///< which of several in it; empty: the only one
     SourceLocation where;
 };
 
+/// A camera: image, lens, port and pose.
 struct CameraDesc {
-    int width = 0, height = 0;  // 0 while `calibration` is to be read
+    int width = 0, height = 0;  ///< [pixels]; 0 while `calibration` is to be read
     IntrinsicsDesc intrinsics;
     DistortionDesc distortion;
     std::optional<PortDesc> port;
     std::optional<LensDesc> lens;
-    Affine world_from_camera;  // rigid; x right, y down, z forward
-    /// Where what is above the lens comes from, if it is not in the scene (camera/calibration.h).
+    Affine world_from_camera;  ///< rigid; x right, y down, z forward
+    /// Where what is above the lens comes from, if it is not in the scene
+    /// (camera/calibration/calibration.h).
     std::optional<CalibrationDesc> calibration;
-    // Whether the scene file itself or a calibration says so; else they are those of a glTF camera,
-    // once import_gltf has been there.
+    /// Whether the scene file itself or a calibration says so; else they are those of a glTF
+    /// camera, once import_gltf has been there.
     bool has_intrinsics = true, has_pose = true;
     SourceLocation where;
 };

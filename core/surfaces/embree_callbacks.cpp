@@ -14,11 +14,11 @@ float search_end(float nearest) {
     return nearest * (1 + k_tie_margin);
 }
 
-const QueryContext& context_of(const RTCIntersectContext* context) {
+const QueryContext& context_of(const embree::Context* context) {
     return *reinterpret_cast<const QueryContext*>(context);
 }
 
-Query& query_of(const RTCIntersectContext* context, RTCRayN* rays, unsigned count, unsigned i) {
+Query& query_of(const embree::Context* context, RTCRayN* rays, unsigned count, unsigned i) {
     return context_of(context).queries[RTCRayN_id(rays, count, i)];
 }
 

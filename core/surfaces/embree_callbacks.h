@@ -1,12 +1,11 @@
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <cstddef>
 #include <limits>
 #include <tuple>
 #include <type_traits>
 
+#include "core/surfaces/embree_api.h"
 #include "core/surfaces/scene_objects.h"
 
 /// What Embree calls back while it follows rays, one or several at a time; with Embree's header in
@@ -46,16 +45,13 @@ struct Query {
 /// What the callbacks get back as their context: the queries under way. The id of each of Embree's
 /// rays is the place of its query.
 struct QueryContext {
-    RTCIntersectContext context{};  // first, so that a pointer to one is a pointer to the other
+    embree::Context context;  // first, so that a pointer to one is a pointer to the other
     Query* queries = nullptr;
     /// Whether occluders met near the edge of a triangle count (embree_rays.h); without this they
     /// are passed over.
     bool edges_count = false;
 
-    QueryContext(Query* first, bool packet) : queries(first) {
-        rtcInitIntersectContext(&context);
-        if (packet) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    }
+    explicit QueryContext(Query* first) : context(embree::make_context()), queries(first) {}
 };
 static_assert(std::is_standard_layout_v<QueryContext>);
 

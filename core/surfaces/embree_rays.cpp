@@ -48,24 +48,24 @@ void put(RTCRay8& rays, Places& places, std::size_t i, const Query& query, float
 void trace_packet(RTCScene scene, std::span<Query> queries, float begin,
                   std::span<const double> ends) {
     assert(queries.size() <= k_packet_size && queries.size() == ends.size());
-    QueryContext context(queries.data(), true);
+    QueryContext context(queries.data());
     RTCRayHit8 rayhits{};
     Places places;
     for (std::size_t i = 0; i < queries.size(); ++i) {
         put(rayhits.ray, places, i, queries[i], begin, ends[i]);
         rayhits.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect8(places.taken, scene, &context.context, &rayhits);
+    embree::intersect8(places.taken, scene, context.context, rayhits);
 }
 
 unsigned occluded_packet(RTCScene scene, std::span<Query> queries, bool edges_count) {
     assert(queries.size() <= k_packet_size);
-    QueryContext context(queries.data(), true);
+    QueryContext context(queries.data());
     context.edges_count = edges_count;
     RTCRay8 rays{};
     Places places;
     for (std::size_t i = 0; i < queries.size(); ++i) put(rays, places, i, queries[i], 0, 1);
-    rtcOccluded8(places.taken, scene, &context.context, &rays);
+    embree::occluded8(places.taken, scene, context.context, rays);
     unsigned occluded = 0;
     for (std::size_t i = 0; i < queries.size(); ++i) {
         if (rays.tfar[i] < 0) occluded |= 1U << i;
@@ -76,11 +76,11 @@ unsigned occluded_packet(RTCScene scene, std::span<Query> queries, bool edges_co
 }  // namespace
 
 void trace(RTCScene scene, Query& query, float begin, double end) {
-    QueryContext context(&query, false);
+    QueryContext context(&query);
     RTCRayHit rayhit{};
     rayhit.ray = embree_ray(query, begin, end);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene, &context.context, &rayhit);
+    embree::intersect1(scene, context.context, rayhit);
 }
 
 void trace_edges(RTCScene scene, Query& query, float begin, double end) {
@@ -93,9 +93,9 @@ void trace_packet(RTCScene scene, std::span<Query> queries, std::span<const doub
 
 bool is_occluded(RTCScene scene, Query& query) {
     query.has_doubt = false;
-    QueryContext context(&query, false);
+    QueryContext context(&query);
     RTCRay ray = embree_ray(query, 0, 1);
-    rtcOccluded1(scene, &context.context, &ray);
+    embree::occluded1(scene, context.context, ray);
     if (ray.tfar < 0 || !query.has_doubt) return ray.tfar < 0;
     return occluded_packet(scene, std::span(&query, 1), true) != 0;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene_desc.h"
+#include "core/scene/geometry_desc.h"
 #include "core/surfaces/surfaces.h"
 
 namespace uw {

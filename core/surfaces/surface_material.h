@@ -4,12 +4,12 @@
 
 namespace uw {
 
-/// What a surface does beside reflecting diffusely (SurfaceHit::reflectance).
+/// What a surface does besides reflecting diffusely (SurfaceHit::reflectance).
 struct SurfaceMaterial {
-    Spectrum emission{};     // radiance of its own, the same in all directions [W m^-2 sr^-1]
-    bool is_glossy = false;  // reflects as core/microfacet.h says, too
+    Spectrum emission{};     // emitted radiance, the same in all directions [W m^-2 sr^-1]
+    bool is_glossy = false;  // has a specular lobe as well (core/surfaces/microfacet.h)
     double roughness = 1;    // perceptual, 0..1
-    Spectrum f0{};           // reflectance on the normal, in water
+    Spectrum f0{};           // reflectance at normal incidence, in water
 };
 
 }  // namespace uw

@@ -12,8 +12,7 @@ SurfaceReflection::SurfaceReflection(const Surfaces& surfaces, const SurfaceSamp
     : sample_(&sample), bands_(static_cast<std::size_t>(band_count)) {
     if (!sample.hit.has_material) return;
     material_ = surfaces.material(sample.hit);
-    emits_ = std::any_of(material_->emission.begin(), material_->emission.end(),
-                         [](double radiance) { return radiance > 0; });
+    emits_ = std::ranges::any_of(material_->emission, [](double radiance) { return radiance > 0; });
 }
 
 void SurfaceReflection::brdf(const Point3& position, Spectrum& values) const {

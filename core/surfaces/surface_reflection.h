@@ -7,7 +7,7 @@
 
 namespace uw {
 
-/// What the camera sees of a surface under light: its BRDF towards the camera, and its own light.
+/// How a surface looks to the camera: its BRDF towards it, and the light that it emits.
 class SurfaceReflection {
   public:
     /// Refers to `sample`.
@@ -17,7 +17,7 @@ class SurfaceReflection {
     /// (1 - F) rho/pi + F D V of a glossy one (glTF 2.0, appendix B).
     void brdf(const Point3& position, Spectrum& values) const;
 
-    /// Whether the surface shines by itself.
+    /// Whether the surface emits light of its own.
     bool emits() const { return emits_; }
     /// Precondition: emits().
     const Spectrum& emission() const { return material_->emission; }

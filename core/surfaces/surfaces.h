@@ -17,7 +17,7 @@ struct SurfaceHit {
     Vector3 geometric_normal{0, 0, 1};  // of the true surface, unit, same side
     Spectrum reflectance{};             // diffuse reflectance rho per band, 0..1
     std::uint32_t object_id = 0;        // index of the entry of `geometry`, from 1
-    bool has_material = false;          // does more than reflect diffusely: ask Surfaces::material
+    bool has_material = false;          // does more than reflect diffusely: see Surfaces::material
     // For Surfaces::material: the triangle and where on it.
     std::uint32_t geometry = 0, triangle = 0;
     double u = 0, v = 0;
@@ -31,7 +31,7 @@ class Surfaces {
     /// The nearest surface along `ray` within (0, s_end]; false if there is none.
     virtual bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const = 0;
 
-    /// What a surface that was hit does beside reflecting diffusely; nothing unless
+    /// What a surface that was hit does besides reflecting diffusely; nothing unless
     /// SurfaceHit::has_material, and by default.
     virtual SurfaceMaterial material(const SurfaceHit& /*hit*/) const { return {}; }
 
@@ -39,7 +39,7 @@ class Surfaces {
     /// than closest_hit: no shading.
     virtual double hit_distance(const Ray& ray) const = 0;
 
-    /// Whether something stands between `from` and `to`. Surfaces that hold either end (within
+    /// Whether a surface lies between `from` and `to`. Surfaces that either point lies on (within
     /// 1e-5 of the distance) do not count.
     virtual bool occluded(const Point3& from, const Point3& to) const = 0;
 

@@ -48,7 +48,7 @@ ColumnMap::ColumnMap(const ConcentrationField& field, const Point3& lamp, double
     const Bounds bounds = field.bounds();
     if (bounds.empty() || constituents_ == 0) return;
     const double voxel = field.finest_voxel();
-    // From inside a volume its centre may be at hand; its far parts still want voxel-wide texels.
+    // A lamp inside a volume may be near its centre; the far parts still want voxel-wide texels.
     const double typical = std::max(distance(bounds.center(), lamp), 0.25 * bounds.diagonal());
     const double texels = per_voxel_ * 2 * typical / voxel;  // along a face, which is 2 wide
     const double steps = per_voxel_ / voxel;                 // per metre
@@ -87,8 +87,7 @@ void ColumnMap::crop(const FaceRectangle& rectangle, Face& out) const {
     };
     out.u0 = first(rectangle.u_min);
     out.v0 = first(rectangle.v_min);
-    out.width = last(rectangle.u_max) - out.u0 + 1;
-    out.height = last(rectangle.v_max) - out.v0 + 1;
+    out.rays.assign(last(rectangle.u_max) - out.u0 + 1, last(rectangle.v_max) - out.v0 + 1);
 }
 
 void ColumnMap::trace_face(const ConcentrationField& field, int face_index,
@@ -96,17 +95,15 @@ void ColumnMap::trace_face(const ConcentrationField& field, int face_index,
     Face& out = faces_[static_cast<std::size_t>(face_index)];
     crop(rectangle, out);
     const CubeFace face(face_index);
-    const auto width = static_cast<std::size_t>(out.width);
-    const auto height = static_cast<std::size_t>(out.height);
-    out.rays.resize(width * height);
-    out.rows.resize(height);
-    parallel_for(height, [&](std::size_t row) {
+    out.rows.resize(static_cast<std::size_t>(out.rays.height()));
+    parallel_for(out.rows.size(), [&](std::size_t row) {
         thread_local ConcentrationProfile profile;
-        for (std::size_t column = 0; column < width; ++column) {
-            const double u = (2.0 * (out.u0 + static_cast<int>(column)) + 1.0) / resolution_ - 1.0;
-            const double v = (2.0 * (out.v0 + static_cast<int>(row)) + 1.0) / resolution_ - 1.0;
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < out.rays.width(); ++x) {
+            const double u = (2.0 * (out.u0 + x) + 1.0) / resolution_ - 1.0;
+            const double v = (2.0 * (out.v0 + y) + 1.0) / resolution_ - 1.0;
             field.profile({lamp_, glm::normalize(face.direction(u, v))}, reach, profile);
-            append_samples(profile, step_, out.rows[row], out.rays[row * width + column]);
+            append_samples(profile, step_, out.rows[row], out.rays(x, y));
         }
         out.rows[row].shrink_to_fit();
     });
@@ -144,10 +141,8 @@ void ColumnMap::append_samples(const ConcentrationProfile& profile, double step,
 
 void ColumnMap::add_texel(const Face& face, int u, int v, double distance, double weight,
                           std::span<double> column) const {
-    if (u < 0 || v < 0 || u >= face.width || v >= face.height) return;
-    const TexelRay& ray =
-        face.rays[static_cast<std::size_t>(v) * static_cast<std::size_t>(face.width) +
-                  static_cast<std::size_t>(u)];
+    if (u < 0 || v < 0 || u >= face.rays.width() || v >= face.rays.height()) return;
+    const TexelRay& ray = face.rays(u, v);
     const double at = (distance - static_cast<double>(ray.begin)) / step_;
     if (ray.count == 0 || at <= 0) return;
     const auto last = static_cast<double>(ray.count - 1);
@@ -173,7 +168,7 @@ void ColumnMap::columns(std::span<const Point3> x, std::span<double> column) con
         const CubeFace projection(index);
         const double u = texel_u(projection.u(v)) - face.u0;
         const double w = texel_u(projection.v(v)) - face.v0;
-        if (!(u > -1 && w > -1 && u < face.width && w < face.height)) continue;
+        if (!(u > -1 && w > -1 && u < face.rays.width() && w < face.rays.height())) continue;
         const double distance = glm::length(v);
         const int iu = static_cast<int>(std::floor(u)), iw = static_cast<int>(std::floor(w));
         const double fu = u - iu, fw = w - iw;
@@ -189,10 +184,8 @@ bool ColumnMap::any_particles(const Face& face, double u, double v) const {
     const int u0 = static_cast<int>(std::floor(u)), v0 = static_cast<int>(std::floor(v));
     for (int j = v0; j <= v0 + 1; ++j) {
         for (int i = u0; i <= u0 + 1; ++i) {
-            if (i >= 0 && j >= 0 && i < face.width && j < face.height &&
-                face.rays[static_cast<std::size_t>(j) * static_cast<std::size_t>(face.width) +
-                          static_cast<std::size_t>(i)]
-                        .count > 0)
+            if (i >= 0 && j >= 0 && i < face.rays.width() && j < face.rays.height() &&
+                face.rays(i, j).count > 0)
                 return true;
         }
     }
@@ -220,8 +213,8 @@ void ColumnMap::append_breaks(const Ray& ray, const Interval& interval,
             std::ceil(std::max(std::abs(ub - ua), std::abs(vb - va)) / std::max(1.0, per_voxel_)));
         s.push_back(segment.stretch.begin);
         Interval stored{0, 1};  // the part of the line on texels that are stored
-        clip(ua, ub, face.width, stored);
-        clip(va, vb, face.height, stored);
+        clip(ua, ub, face.rays.width(), stored);
+        clip(va, vb, face.rays.height(), stored);
         if (stored.length() < 0) continue;
         const int last = std::min(steps - 1, static_cast<int>(stored.end * steps));
         for (int i = std::max(1, static_cast<int>(stored.begin * steps)); i <= last; ++i) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/grid2d.h"
 #include "core/optics/concentration_field.h"
 #include "media/light/face_rectangle.h"
 
@@ -40,8 +41,8 @@ class ColumnMap {
         std::uint32_t offset = 0;  // of the first in its row's samples
     };
     struct Face {
-        int u0 = 0, v0 = 0, width = 0, height = 0;  // the rectangle of texels that is stored
-        std::vector<TexelRay> rays;
+        int u0 = 0, v0 = 0;                    // the first texel that is stored
+        Grid2D<TexelRay> rays;                 // of the texels that are stored
         std::vector<std::vector<float>> rows;  // [v][ray offset + step * constituents + k]
     };
 

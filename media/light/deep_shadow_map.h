@@ -16,8 +16,8 @@ struct DeepShadowOptions {
     std::size_t column_budget = 80ull << 20;  // bytes of columns, all lamps of a scene together
 };
 
-/// One lamp's light splatted into the scene (docs/design.md): a shadow map and a column map, which
-/// deep shadow maps of other renders may share.
+/// One lamp's light splatted into the scene (docs/design.md): a shadow map and a column map, either
+/// of which may be shared with other deep shadow maps.
 class DeepShadowMap : public DeepShadow {
   public:
     /// `surfaces` outlives the deep shadow map; `field` is only read here. The lamp has the whole

@@ -19,19 +19,9 @@ constexpr double k_beam_margin_texels = 3;
 // The map's depths are float and its texels are compared with points between their centres; a
 // decision needs this relative margin, or the search goes on to exact shadow rays.
 constexpr double k_margin = 1e-3;
-// A shadow's edge is found to this share of its distance from the lamp, half of it off on average:
-// in-scatter over that is less than 1e-4 of what the ray gathers on its way past the lamp.
+// A shadow's edge is found to this fraction of its distance from the lamp, half of it off on
+// average: in-scatter over that is less than 1e-4 of that of the ray on its way past the lamp.
 constexpr double k_edge_width = 3e-4;
-
-std::size_t square(int n) {
-    return static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
-}
-
-// Place of a value in rows of `width`.
-std::size_t texel_index(int row, int column, int width) {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-           static_cast<std::size_t>(column);
-}
 
 }  // namespace
 
@@ -48,7 +38,7 @@ void ShadowMap::trace_face(int face_index) {
     const int padded = n + 2;  // one texel beyond each edge, so that neighbours always exist
     // Cells that the beam touches have all their samples within this.
     const DirectionCone wide = beam_.widened(k_beam_margin_texels * 2.0 / n);
-    std::vector<float> depth(square(padded), k_untraced);
+    Grid2D<float> depth(padded, padded, k_untraced);
     std::atomic<std::uint64_t> traced = 0;
     parallel_for(static_cast<std::size_t>(padded), [&](std::size_t row) {
         thread_local std::vector<Vector3> directions;
@@ -57,6 +47,7 @@ void ShadowMap::trace_face(int face_index) {
         directions.clear();
         columns.clear();
         const double v = (2.0 * static_cast<double>(row) - 1.0) / n - 1.0;
+        const std::span<float> samples = depth.row(static_cast<int>(row));
         const Vector3 middle = face.direction(0, v), across = face.direction(1, v) - middle;
         for (int column = 0; column < padded; ++column) {
             const Vector3 direction = middle + ((2.0 * column - 1.0) / n - 1.0) * across;
@@ -68,8 +59,7 @@ void ShadowMap::trace_face(int face_index) {
         surfaces_->hit_distances(lamp_, directions, hits);
         // Depth is along the face's axis.
         for (std::size_t i = 0; i < hits.size(); ++i)
-            depth[row * static_cast<std::size_t>(padded) + columns[i]] =
-                static_cast<float>(hits[i] * face.depth(directions[i]));
+            samples[columns[i]] = static_cast<float>(hits[i] * face.depth(directions[i]));
         traced += hits.size();
     });
     if (traced == 0) return;
@@ -77,43 +67,42 @@ void ShadowMap::trace_face(int face_index) {
 
     Pyramid& pyramid = faces_[static_cast<std::size_t>(face_index)];
     pyramid.push_back(cell_ranges(depth));
-    while (pyramid.back().size > 1) pyramid.push_back(halved(pyramid.back()));
+    while (pyramid.back().width() > 1) pyramid.push_back(halved(pyramid.back()));
 }
 
 // Four samples bound what lies between them: 1 / depth is linear over a plane.
-ShadowMap::Level ShadowMap::cell_ranges(const std::vector<float>& padded_depth) const {
-    const int n = resolution_ + 1;
-    Level level{n, std::vector<DepthRange>(square(n))};
-    for (int row = 0; row < n; ++row) {
-        for (int column = 0; column < n; ++column) {
-            const float* above = &padded_depth[texel_index(row, column, n + 1)];
-            const float* below = above + n + 1;
-            const float nearest = std::min({above[0], above[1], below[0], below[1]});
-            // Cells that the beam does not touch have no say.
-            level.texels[texel_index(row, column, n)] =
-                nearest == k_untraced
-                    ? DepthRange{k_nothing, 0}
-                    : DepthRange{nearest, std::max({above[0], above[1], below[0], below[1]})};
+ShadowMap::Level ShadowMap::cell_ranges(const Grid2D<float>& samples) {
+    const int n = samples.width() - 1;
+    Level level(n, n);
+    for (int v = 0; v < n; ++v) {
+        const float* const above = samples.row(v).data();
+        const float* const below = samples.row(v + 1).data();
+        DepthRange* const cells = level.row(v).data();
+        for (int u = 0; u < n; ++u) {
+            const float nearest = std::min({above[u], above[u + 1], below[u], below[u + 1]});
+            // Cells outside the beam bound nothing.
+            cells[u] = nearest == k_untraced
+                           ? DepthRange{k_nothing, 0}
+                           : DepthRange{nearest,
+                                        std::max({above[u], above[u + 1], below[u], below[u + 1]})};
         }
     }
     return level;
 }
 
 ShadowMap::Level ShadowMap::halved(const Level& fine) {
-    const int size = (fine.size + 1) / 2;
-    Level coarse{size, std::vector<DepthRange>(square(size), DepthRange{k_nothing, 0})};
-    const auto last = fine.size - 1;
-    for (int row = 0; row < size; ++row) {
-        const DepthRange* const above = &fine.texels[texel_index(2 * row, 0, fine.size)];
-        const DepthRange* const below =
-            &fine.texels[texel_index(std::min(2 * row + 1, last), 0, fine.size)];
-        for (int column = 0; column < size; ++column) {
-            const int left = 2 * column, right = std::min(2 * column + 1, last);
-            coarse.texels[texel_index(row, column, size)] = {
-                std::min({above[left].nearest, above[right].nearest, below[left].nearest,
-                          below[right].nearest}),
-                std::max({above[left].farthest, above[right].farthest, below[left].farthest,
-                          below[right].farthest})};
+    const int size = (fine.width() + 1) / 2, last = fine.width() - 1;
+    Level coarse(size, size);
+    for (int v = 0; v < size; ++v) {
+        const DepthRange* const above = fine.row(2 * v).data();
+        const DepthRange* const below = fine.row(std::min(2 * v + 1, last)).data();
+        DepthRange* const cells = coarse.row(v).data();
+        for (int u = 0; u < size; ++u) {
+            const int left = 2 * u, right = std::min(2 * u + 1, last);
+            cells[u] = {std::min({above[left].nearest, above[right].nearest, below[left].nearest,
+                                  below[right].nearest}),
+                        std::max({above[left].farthest, above[right].farthest, below[left].farthest,
+                                  below[right].farthest})};
         }
     }
     return coarse;
@@ -122,7 +111,7 @@ ShadowMap::Level ShadowMap::halved(const Level& fine) {
 std::size_t ShadowMap::bytes() const {
     std::size_t total = 0;
     for (const Pyramid& pyramid : faces_)
-        for (const Level& level : pyramid) total += level.texels.size() * sizeof(DepthRange);
+        for (const Level& level : pyramid) total += level.size() * sizeof(DepthRange);
     return total;
 }
 
@@ -139,7 +128,7 @@ class ShadowMap::Search {
         for (const FaceSegment& segment : segments) {
             face_ = CubeFace(segment.face);
             pyramid_ = &map_.faces_[static_cast<std::size_t>(segment.face)];
-            if (pyramid_->empty()) continue;  // beside the beam, but for rounding
+            if (pyramid_->empty()) continue;  // outside the beam, if only by rounding
             descend(project(segment.stretch.begin), project(segment.stretch.end));
         }
     }
@@ -198,13 +187,13 @@ class ShadowMap::Search {
             u0 /= 2, u1 /= 2, v0 /= 2, v1 /= 2;
             ++level;
         }
-        const Level& texels = (*pyramid_)[level];
+        const Level& cells = (*pyramid_)[level];
         DepthRange range{k_nothing, 0};
         for (int v = v0; v <= v1; ++v) {
             for (int u = u0; u <= u1; ++u) {
-                const DepthRange& t = texels.texels[texel_index(v, u, texels.size)];
-                range.nearest = std::min(range.nearest, t.nearest);
-                range.farthest = std::max(range.farthest, t.farthest);
+                const DepthRange& cell = cells(u, v);
+                range.nearest = std::min(range.nearest, cell.nearest);
+                range.farthest = std::max(range.farthest, cell.farthest);
             }
         }
         return range;
@@ -212,8 +201,8 @@ class ShadowMap::Search {
 
     bool visible(double s) const { return !map_.surfaces_->occluded(map_.lamp_, ray_.at(s)); }
 
-    // At the end of a stretch, which is looked at a little inside where the ray ends too: there it
-    // may lie on a surface, which hides nothing within 1e-5 of the distance (Surfaces::occluded).
+    // At the end of a stretch; a little inside it where the whole stretch ends, which may be on a
+    // surface, that hides nothing within 1e-5 of the distance (Surfaces::occluded).
     bool visible_at_end(double s, double into) {
         if (s == last_seen_.s) return last_seen_.visible;
         const bool is_end = s == whole_.begin || s == whole_.end;
@@ -265,7 +254,7 @@ void ShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
         return;
     }
     Search search(*this, ray, lit);
-    // The lamp's own place has no direction to look up; what is that near sees the lamp.
+    // At the lamp's own position no direction is defined; whatever is that near counts as lit.
     const double foot = glm::dot(lamp_ - ray.origin, ray.direction);
     const double offset = distance(lamp_, ray.at(foot));
     const double half =

@@ -3,14 +3,15 @@
 #include <array>
 #include <vector>
 
-#include "core/lamps/lamp.h"
+#include "core/base/grid2d.h"
+#include "core/lamps/direction_cone.h"
 #include "core/surfaces/surfaces.h"
 #include "media/light/cube_face.h"
 
 namespace uw {
 
 /// What one lamp sees: the depth of the nearest surface over all directions, as pyramids of
-/// nearest and farthest depth on the faces of a cube. It tells whole stretches of a ray lit or
+/// nearest and farthest depth on the faces of a cube. It finds whole stretches of a ray lit or
 /// dark at once; where the map cannot decide, exact shadow rays find the edge.
 class ShadowMap {
   public:
@@ -19,7 +20,7 @@ class ShadowMap {
     ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution,
               const DirectionCone& beam = {});
 
-    /// Directions that the map knows.
+    /// The directions that the map covers.
     const DirectionCone& beam() const { return beam_; }
 
     /// The parts of a stretch of `ray` within the beam that the lamp sees, ascending and disjoint.
@@ -35,22 +36,19 @@ class ShadowMap {
         float nearest;
         float farthest;
     };
-    struct Level {
-        int size = 0;
-        std::vector<DepthRange> texels;
-    };
+    using Level = Grid2D<DepthRange>;
     using Pyramid = std::vector<Level>;
     class Search;
 
     void trace_face(int face);
-    Level cell_ranges(const std::vector<float>& padded_depth) const;
+    static Level cell_ranges(const Grid2D<float>& samples);
     static Level halved(const Level& fine);
 
     const Surfaces* surfaces_;
     Point3 lamp_;
     int resolution_;
     DirectionCone beam_;
-    std::array<Pyramid, 6> faces_;  // none of faces beside the beam
+    std::array<Pyramid, 6> faces_;  // empty for faces outside the beam
     std::uint64_t rays_traced_ = 0;
 };
 

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <stdexcept>
-#include <system_error>
+#include <string_view>
+#include <variant>
 
 #include "core/base/error.h"
-#include "media/phase/phase_functions.h"
+#include "core/base/text.h"
+#include "core/base/text_file.h"
+#include "media/phase/fournier_forand.h"
+#include "media/phase/henyey_greenstein.h"
+#include "media/phase/molecular_phase.h"
 #include "media/phase/tabulated_phase.h"
 
 namespace uw {
@@ -15,92 +18,65 @@ namespace uw {
 namespace {
 
 /// A phase table is a few kilobytes; more is some other file.
-constexpr std::uintmax_t k_largest_table_file = 4 << 20;
+constexpr std::size_t k_largest_table_file = std::size_t{4} << 20;
 
-std::string file_text(const PhaseDesc& desc) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(desc.file, error))
-        throw IoError(
-            fmt::format("{}: cannot read {}: no such file; give a CSV file with columns "
-                        "angle_deg,phase",
-                        desc.where, desc.file.string()));
-    const std::uintmax_t size = std::filesystem::file_size(desc.file, error);
-    if (error || size > k_largest_table_file)
-        throw InputError(
-            fmt::format("{}: {} is too large for a phase function table; give a CSV "
-                        "file with columns angle_deg,phase",
-                        desc.where, desc.file.string()));
-    std::ifstream stream(desc.file, std::ios::binary);
-    std::string text(static_cast<std::size_t>(size), '\0');
-    if (!stream.read(text.data(), static_cast<std::streamsize>(size)))
-        throw IoError(fmt::format("{}: cannot read {}; check its permissions", desc.where,
-                                  desc.file.string()));
-    return text;
-}
-
-std::shared_ptr<const PhaseFunction> table_phase(const PhaseDesc& desc,
+std::shared_ptr<const PhaseFunction> table_phase(const TabulatedPhaseDesc& desc,
+                                                 const SourceLocation& where,
                                                  std::vector<std::string>& warnings) {
     const std::string name = desc.file.filename().string();
-    auto phase = std::make_shared<TabulatedPhase>(read_phase_table(file_text(desc), name));
+    const std::string text = read_text_file(
+        desc.file, fmt::format("{}: {}", where, printable(desc.file.string(), 300)),
+        k_largest_table_file, "phase function table (CSV with columns angle_deg,phase)");
+    auto phase = std::make_shared<TabulatedPhase>(read_phase_table(text, name));
     // Published tables integrate to 1 within a few per cent.
     const double integral = phase->table_integral();
     if (integral < 0.9 || integral > 1.1)
         warnings.push_back(
             fmt::format("{}: {} integrates to {:.4g}, not 1; its shape is used, "
                         "scaled to 1",
-                        desc.where, name, integral));
+                        where, name, integral));
     if (phase->extrapolated_fraction() > 0.1)
         warnings.push_back(
             fmt::format("{}: {:.0f} % of the scattering lies outside the angles of "
                         "{}; add smaller and larger angles",
-                        desc.where, 100 * phase->extrapolated_fraction(), name));
+                        where, 100 * phase->extrapolated_fraction(), name));
     return phase;
 }
 
-std::shared_ptr<const PhaseFunction> make_unlocated(const PhaseDesc& desc,
-                                                    std::vector<std::string>& warnings) {
-    switch (desc.type) {
-        case PhaseDesc::Type::henyey_greenstein:
-            return std::make_shared<HenyeyGreenstein>(desc.g);
-        case PhaseDesc::Type::fournier_forand:
-            return std::make_shared<FournierForand>(desc.n, desc.mu);
-        case PhaseDesc::Type::petzold:
-            return std::make_shared<PetzoldAverage>();
-        case PhaseDesc::Type::water:
-            return std::make_shared<MolecularPhase>();
-        case PhaseDesc::Type::table:
-            return table_phase(desc, warnings);
+/// One for each that PhaseFunctionDesc may hold.
+struct MakePhaseFunction {
+    using Made = std::shared_ptr<const PhaseFunction>;
+    const SourceLocation& where;
+    std::vector<std::string>& warnings;
+
+    Made operator()(const HenyeyGreensteinDesc& desc) const {
+        return std::make_shared<HenyeyGreenstein>(desc.g);
     }
-    throw std::logic_error("a phase function type is not handled");
-}
+    Made operator()(const FournierForandDesc& desc) const {
+        return std::make_shared<FournierForand>(desc.n, desc.mu);
+    }
+    Made operator()(const PetzoldDesc& /*desc*/) const {
+        return std::make_shared<PetzoldAverage>();
+    }
+    Made operator()(const TabulatedPhaseDesc& desc) const {
+        return table_phase(desc, where, warnings);
+    }
+    Made operator()(const MolecularPhaseDesc& /*desc*/) const {
+        return std::make_shared<MolecularPhase>();
+    }
+};
 
 }  // namespace
 
 std::shared_ptr<const PhaseFunction> make_phase_function(const PhaseDesc& desc,
                                                          std::vector<std::string>& warnings) {
     try {
-        return make_unlocated(desc, warnings);
+        return std::visit(MakePhaseFunction{desc.where, warnings}, desc.function);
     } catch (const InputError& error) {
         const std::string_view message = error.what();
         if (message.starts_with(desc.where)) throw;
         throw InputError(fmt::format("{}: {}", desc.where, message));
     }
-}
-
-std::string phase_key(const PhaseDesc& desc) {
-    switch (desc.type) {
-        case PhaseDesc::Type::henyey_greenstein:
-            return fmt::format("hg {}", desc.g);
-        case PhaseDesc::Type::fournier_forand:
-            return fmt::format("ff {} {}", desc.n, desc.mu);
-        case PhaseDesc::Type::petzold:
-            return "petzold";
-        case PhaseDesc::Type::water:
-            return "water";
-        case PhaseDesc::Type::table:
-            return "table " + desc.file.lexically_normal().string();
-    }
-    throw std::logic_error("a phase function type is not handled");
 }
 
 }  // namespace uw

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/optics/phase_function.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/phase_desc.h"
 
 namespace uw {
 
@@ -15,8 +15,5 @@ namespace uw {
 /// starting with `desc.where`.
 std::shared_ptr<const PhaseFunction> make_phase_function(const PhaseDesc& desc,
                                                          std::vector<std::string>& warnings);
-
-/// Text equal for two descriptions exactly if they describe the same phase function.
-std::string phase_key(const PhaseDesc& desc);
 
 }  // namespace uw

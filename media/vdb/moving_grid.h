@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "core/scene/source_location.h"
+#include "core/scene/volume_desc.h"
 #include "media/vdb/loaded_grid.h"
 
 namespace uw {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/base/affine.h"
+#include "core/scene/volume_desc.h"
 #include "media/vdb/loaded_grid.h"
 
 namespace uw {

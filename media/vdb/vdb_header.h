@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene_desc.h"
+#include "core/scene/source_location.h"
 
 namespace uw {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/affine.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/volume_desc.h"
 
 namespace uw {
 

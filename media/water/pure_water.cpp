@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/tables/csv_table.h"
-#include "media/phase/phase_functions.h"
+#include "media/phase/molecular_phase.h"
 
 namespace uw {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/spectrum.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/water_desc.h"
 #include "media/water/jerlov.h"
 
 namespace uw {

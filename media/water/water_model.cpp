@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <variant>
 
 #include "core/base/error.h"
 #include "media/phase/phase_factory.h"
-#include "media/phase/phase_functions.h"
 #include "media/phase/tabulated_phase.h"
 #include "media/water/jerlov.h"
 #include "media/water/kopelevich.h"
@@ -33,6 +33,9 @@ constexpr ParticleKind k_large_particles{
     "large", k_large_particle_density, kopelevich_large_scattering,
     [] { return std::shared_ptr<const PhaseFunction>(std::make_shared<KopelevichLarge>()); }};
 
+/// What a phase function of the medium is made of: equal ones share it.
+using PhaseSource = std::variant<PhaseFunctionDesc, const ParticleKind*>;
+
 /// Assembles the model step by step: the uniform water first, since grids may refer to it.
 class Builder {
   public:
@@ -45,9 +48,10 @@ class Builder {
     WaterModel model;
 
   private:
-    template <class Make>
-    std::size_t phase_index(const std::string& key, const Make& make);
     std::size_t phase_index(const PhaseDesc& desc);
+    std::size_t phase_index(const ParticleKind& kind);
+    template <class Make>
+    std::size_t phase_index_of(const PhaseSource& source, const Make& make);
     static Spectrum& scattering(OpticalCoefficients& x, std::size_t phase);
 
     void add_uniform_particles(const ParticleKind& kind, double ppm, double absorbing_ppm);
@@ -65,7 +69,7 @@ class Builder {
 
     const WaterDesc& water_;
     const std::size_t band_count_;
-    std::vector<std::string> phase_keys_;  // one per medium phase function
+    std::vector<PhaseSource> phase_sources_;  // one per medium phase function
     std::vector<OpticsEntry> optics_;
 };
 
@@ -88,11 +92,13 @@ void check_per_band(const PerBand& values, std::size_t bands, const std::string&
                                      what, values.size(), bands));
 }
 
+/// Of the same coefficients and the same phase function, wherever each is written.
 bool same_optics(const GridMappingDesc::Optics& a, const GridMappingDesc::Optics& b) {
-    const auto key = [](const GridMappingDesc::Optics& optics) {
-        return optics.phase ? phase_key(*optics.phase) : std::string();
+    const auto function = [](const GridMappingDesc::Optics& optics) {
+        return optics.phase ? std::optional(optics.phase->function) : std::nullopt;
     };
-    return a.absorption == b.absorption && a.scattering == b.scattering && key(a) == key(b);
+    return a.absorption == b.absorption && a.scattering == b.scattering &&
+           function(a) == function(b);
 }
 
 bool is_zero(const Spectrum& x) {
@@ -108,18 +114,22 @@ Builder::Builder(const WaterDesc& water) : water_(water), band_count_(water.band
 }
 
 template <class Make>
-std::size_t Builder::phase_index(const std::string& key, const Make& make) {
-    const auto found = std::find(phase_keys_.begin(), phase_keys_.end(), key);
-    const auto index = static_cast<std::size_t>(found - phase_keys_.begin());
-    if (found == phase_keys_.end()) {
+std::size_t Builder::phase_index_of(const PhaseSource& source, const Make& make) {
+    const auto found = std::find(phase_sources_.begin(), phase_sources_.end(), source);
+    const auto index = static_cast<std::size_t>(found - phase_sources_.begin());
+    if (found == phase_sources_.end()) {
         model.medium.phase_functions.push_back(make());
-        phase_keys_.push_back(key);
+        phase_sources_.push_back(source);
     }
     return index;
 }
 
 std::size_t Builder::phase_index(const PhaseDesc& desc) {
-    return phase_index(phase_key(desc), [&] { return make_phase_function(desc, model.warnings); });
+    return phase_index_of(desc.function, [&] { return make_phase_function(desc, model.warnings); });
+}
+
+std::size_t Builder::phase_index(const ParticleKind& kind) {
+    return phase_index_of(&kind, kind.make_phase);
 }
 
 Spectrum& Builder::scattering(OpticalCoefficients& x, std::size_t phase) {
@@ -135,7 +145,7 @@ double Builder::mineral_absorption(const ParticleKind& kind, std::size_t band) c
 void Builder::add_uniform_particles(const ParticleKind& kind, double ppm, double absorbing_ppm) {
     if (ppm == 0) return;
     OpticalCoefficients& uniform = model.medium.uniform;
-    Spectrum& b = scattering(uniform, phase_index(kind.name, kind.make_phase));
+    Spectrum& b = scattering(uniform, phase_index(kind));
     for (std::size_t i = 0; i < band_count_; ++i) {
         b[i] += ppm * kind.scattering(water_.bands_nm[i]);
         uniform.absorption[i] += absorbing_ppm * mineral_absorption(kind, i);
@@ -163,8 +173,7 @@ void Builder::add_uniform() {
                             water_.where));
         return;
     }
-    PhaseDesc molecules;
-    molecules.type = PhaseDesc::Type::water;
+    const PhaseDesc molecules{MolecularPhaseDesc{}, water_.where};
     Spectrum& b = scattering(uniform, phase_index(molecules));
     for (std::size_t i = 0; i < band_count_; ++i)
         b[i] = water_scattering(water_.bands_nm[i], water_.salinity);
@@ -187,7 +196,7 @@ int Builder::particle_constituent(const ParticleKind& kind) {
     });
     if (found != all.end()) return static_cast<int>(found - all.begin());
     Constituent particles{kind.name, "ppm", {}};
-    Spectrum& b = scattering(particles.per_unit, phase_index(kind.name, kind.make_phase));
+    Spectrum& b = scattering(particles.per_unit, phase_index(kind));
     for (std::size_t i = 0; i < band_count_; ++i) {
         b[i] = kind.scattering(water_.bands_nm[i]);
         particles.per_unit.absorption[i] = mineral_absorption(kind, i);

@@ -5,7 +5,8 @@
 
 #include "core/optics/grid_load.h"
 #include "core/optics/medium.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/volume_desc.h"
+#include "core/scene/water_desc.h"
 
 namespace uw {
 

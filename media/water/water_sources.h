@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene_desc.h"
+#include "core/scene/volume_desc.h"
+#include "core/scene/water_desc.h"
 
 namespace uw {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/base/quadrature.h"
-#include "media/phase/phase_functions.h"
+#include "media/phase/molecular_phase.h"
 #include "media/phase/tabulated_phase.h"
 #include "media/water/water_model.h"
 

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "core/optics/phase_function.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/volume_desc.h"
+#include "core/scene/water_desc.h"
 
 namespace uw {
 

@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "tests/support/cli_test.h"
+#include "tests/support/mesh_fixtures.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw {
@@ -80,6 +81,27 @@ TEST_F(OutputFiles, NeverReplaceWhatIsStillNeeded) {
                    "would replace the preview");
     EXPECT_EQ(read("smoke.vdb"), volume);
     EXPECT_EQ(file_count(), 3U);
+}
+
+TEST_F(OutputFiles, NeverReplaceATableOrATexture) {
+    const std::string table = "angle_deg,phase\n0,3\n60,1\n120,1\n180,1\n";
+    write("phase.csv", table);
+    write("white.csv", "wavelength_nm,power\n300,1\n900,2\n");
+    write("wall.gltf", test::gltf_text({{"images", R"([{"uri":"wall.png"}])"}}));
+    write("wall.png", test::four_texel_png());
+    const auto refused = [&](const std::string& set, const std::string& file,
+                             const std::string& what) {
+        const std::string content = read(file);
+        expect_failure({"render", "scene.yaml", "--size", "8x4", "--set", set, "--stats", file}, 2,
+                       file + ": --stats would replace " + what + "; give another name");
+        EXPECT_EQ(read(file), content);
+    };
+    refused("water.scattering.phase={type: table, file: phase.csv}", "phase.csv",
+            "a phase function of the scene");
+    refused("render={response: cie, white: {file: white.csv}}", "white.csv",
+            "the white light of the scene");
+    refused("geometry=[{file: wall.gltf}]", "wall.png", "a mesh's texture or buffer");
+    EXPECT_EQ(file_count(), 5U);
 }
 
 TEST_F(OutputFiles, StayAsTheyWereWhenAnInputIsWrong) {

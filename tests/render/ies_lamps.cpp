@@ -67,10 +67,9 @@ TEST_P(IesLampWater, AgreesWithQuadrature) {
     desc.geometry = {plane_at_z(k_plane_z)};
     LampDesc lamp = isotropic_lamp({0.6, -0.3, 0.2}, 40);
     lamp.direction = glm::normalize(Vector3(-0.25, 0.1, 1));
-    lamp.profile.type = LampProfileDesc::Type::ies;
-    lamp.profile.rotate = 20;
-    lamp.profile.file =
-        name == "asymmetric" ? folder.write("lamp.ies", asymmetric().text()) : own(name.c_str());
+    lamp.profile = IesProfileDesc{
+        name == "asymmetric" ? folder.write("lamp.ies", asymmetric().text()) : own(name.c_str()),
+        20};
     desc.lamps = {lamp};
     const TestScene scene(desc);
     double brightest = 0;
@@ -103,11 +102,8 @@ TEST(IesLampRendering, ALambertianFileIsTheCosineProfile) {
         desc.lamps[0].profile = profile;
         return TestScene(desc).image();
     };
-    LampProfileDesc cosine, file;
-    cosine.type = LampProfileDesc::Type::cosine;
-    cosine.fwhm = 120;
-    file.type = LampProfileDesc::Type::ies;
-    file.file = own("synthetic_flood_1500lm_120deg.ies");
+    const CosineProfileDesc cosine{120};
+    const IesProfileDesc file{own("synthetic_flood_1500lm_120deg.ies")};
     const std::vector<PixelResult> a = render(cosine), b = render(file);
     for (std::size_t i = 0; i < a.size(); ++i) {
         EXPECT_NEAR(a[i].direct[1], b[i].direct[1], 1e-3 * a[i].direct[1]);

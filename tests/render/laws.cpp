@@ -84,20 +84,5 @@ TEST(RenderLaws, CleanLayerIsTheSurfaceWithoutWater) {
     }
 }
 
-TEST(RenderLaws, SpotPowerIsTheIntegralOfItsIntensity) {
-    LampDesc desc = isotropic_lamp({0, 0, 0}, 0);
-    desc.intensity.reset();
-    desc.power = PerBand{10, 10, 10};
-    EXPECT_NEAR(Lamp(desc, {}, 3).axis_intensity()[0], 10 / (4 * 3.14159265358979), 1e-7);
-    desc.profile.type = LampProfileDesc::Type::spot;
-    desc.profile.beam = 60;  // hard edge: a cone of 2 pi (1 - cos 30 deg) sr
-    const double solid_angle = 2 * 3.14159265358979 * (1 - std::cos(glm::radians(30.0)));
-
-    EXPECT_NEAR(Lamp(desc, {}, 3).axis_intensity()[0], 10 / solid_angle, 1e-9);
-    desc.profile.type = LampProfileDesc::Type::cosine;
-    desc.profile.fwhm = 120;  // cos^1: a Lambertian lamp, Phi = pi I
-    EXPECT_NEAR(Lamp(desc, {}, 3).axis_intensity()[0], 10 / 3.14159265358979, 1e-6);
-}
-
 }  // namespace
 }  // namespace uw::test

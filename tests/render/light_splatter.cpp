@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "render/renderer.h"
 #include "tests/support/field_maker.h"
 #include "tests/support/test_scene.h"
 
@@ -20,7 +21,8 @@ class LightReuse : public testing::Test {
         desc_.lamps = {isotropic_lamp({-0.5, -0.2, 0}, 40), isotropic_lamp({0.6, 0.3, 0.1}, 30)};
         for (LampDesc& lamp : desc_.lamps) lamp.fixed_to_camera = false;
         desc_.volumes = {volume(1.0)};
-        scene_ = assemble_scene(desc_, [](const std::string&) {});
+        renderer_.set_scene(SceneDesc(desc_));
+        renderer_.assemble();
     }
 
     VolumeDesc volume(double value) {
@@ -35,32 +37,33 @@ class LightReuse : public testing::Test {
     /// Another scene, with what is the same taken over.
     void change(const std::function<void(SceneDesc&)>& edit) {
         edit(desc_);
-        scene_ = assemble_scene(
-            desc_, [](const std::string&) {}, std::move(scene_));
+        renderer_.set_scene(SceneDesc(desc_));
+        renderer_.assemble();
     }
 
     /// Splats and holds the light against light that nothing was taken over for: to the bit.
     void expect_splat(std::size_t shadow_maps, std::size_t column_maps,
                       const DeepShadowOptions& options = k_options) {
-        const auto light = splatter_.splat(scene_, options);
-        EXPECT_EQ(splatter_.counts().shadow_maps, shadow_maps);
-        EXPECT_EQ(splatter_.counts().column_maps, column_maps);
+        const DeepShadows& light = renderer_.splat(options);
+        EXPECT_EQ(counts().shadow_maps, shadow_maps);
+        EXPECT_EQ(counts().column_maps, column_maps);
         if (shadow_maps + column_maps == 0) {
-            EXPECT_EQ(splatter_.counts().rays, 0U);
+            EXPECT_EQ(counts().rays, 0U);
         }
-        const AssembledScene fresh_scene = assemble_scene(desc_, [](const std::string&) {});
-        const auto fresh = splat_lamps(fresh_scene, options);
-        ASSERT_EQ(light.size(), fresh.size());
-        const auto a = make_integrator(scene_, light), b = make_integrator(fresh_scene, fresh);
+        Renderer fresh;
+        fresh.set_scene(SceneDesc(desc_));
+        ASSERT_EQ(light.size(), fresh.splat(options).size());
+        const auto a = renderer_.make_transport(), b = fresh.make_transport();
+        const Camera& camera = *scene().camera;
         double brightest = 0;
-        for (int y = 0; y < scene_.camera->height(); ++y) {
-            for (int x = 0; x < scene_.camera->width(); ++x) {
-                const auto ray = scene_.camera->refracted_ray(x + 0.5, y + 0.5);
+        for (int y = 0; y < camera.height(); ++y) {
+            for (int x = 0; x < camera.width(); ++x) {
+                const auto ray = camera.refracted_ray(x + 0.5, y + 0.5);
                 ASSERT_TRUE(ray);
                 InScatter taken_over, splatted;
                 const std::array<double, 2> ends{1.8, 3.5};
-                a->in_scatter(*ray, ends, taken_over);
-                b->in_scatter(*ray, ends, splatted);
+                a.integrator->in_scatter(*ray, ends, taken_over);
+                b.integrator->in_scatter(*ray, ends, splatted);
                 for (std::size_t end = 0; end < ends.size(); ++end)
                     for (std::size_t lamp = 0; lamp < light.size(); ++lamp) {
                         EXPECT_EQ(taken_over.at(end, lamp), splatted.at(end, lamp));
@@ -71,11 +74,13 @@ class LightReuse : public testing::Test {
         EXPECT_GT(brightest, 0);
     }
 
+    const AssembledScene& scene() const { return renderer_.assembled(); }
+    const SplatCounts& counts() const { return renderer_.splat_counts(); }
+
     static constexpr DeepShadowOptions k_options{64, 2, std::size_t{32} << 20};
     FieldMaker maker_;
     SceneDesc desc_;
-    AssembledScene scene_;
-    LightSplatter splatter_;
+    Renderer renderer_;
 };
 
 TEST_F(LightReuse, WhatLeavesPositionsAsTheyAreNeedsNoSplat) {
@@ -89,7 +94,7 @@ TEST_F(LightReuse, WhatLeavesPositionsAsTheyAreNeedsNoSplat) {
     change([](SceneDesc& d) {
         d.lamps[0].intensity = PerBand{5, 20, 90};
         d.lamps[1].direction = {0, 1, 0};
-        d.lamps[1].profile = {LampProfileDesc::Type::spot, 120, 20, 0};
+        d.lamps[1].profile = SpotProfileDesc{120, 20};
     });
     expect_splat(0, 0);
     change([](SceneDesc& d) { d.water.absorption = PerBand{0.1, 0.2, 0.3}; });
@@ -97,20 +102,17 @@ TEST_F(LightReuse, WhatLeavesPositionsAsTheyAreNeedsNoSplat) {
 }
 
 TEST_F(LightReuse, ALampThatTurnsOutOfItsShadowsNeedsOthers) {
-    const auto spot = [](double beam, double edge) {
-        return LampProfileDesc{LampProfileDesc::Type::spot, beam, edge, 0};
-    };
-    change([&](SceneDesc& d) { d.lamps[1].profile = spot(50, 10); });
+    change([](SceneDesc& d) { d.lamps[1].profile = SpotProfileDesc{50, 10}; });
     expect_splat(2, 2);
     const std::uint64_t all = 6 * 66 * 66;
-    EXPECT_LT(splatter_.counts().rays, all + all / 2);  // the spot's are those of its beam
-    change([&](SceneDesc& d) { d.lamps[1].profile = spot(30, 4); });
+    EXPECT_LT(counts().rays, all + all / 2);  // the spot's are those of its beam
+    change([](SceneDesc& d) { d.lamps[1].profile = SpotProfileDesc{30, 4}; });
     expect_splat(0, 0);
     change([&](SceneDesc& d) { d.lamps[1].direction = glm::normalize(Vector3(0.05, 0, 1)); });
     expect_splat(0, 0);
     change([&](SceneDesc& d) { d.lamps[1].direction = glm::normalize(Vector3(0.5, 0, 1)); });
     expect_splat(1, 0);
-    change([&](SceneDesc& d) { d.lamps[1].profile = spot(60, 4); });
+    change([](SceneDesc& d) { d.lamps[1].profile = SpotProfileDesc{60, 4}; });
     expect_splat(1, 0);
 }
 
@@ -154,19 +156,19 @@ TEST_F(LightReuse, OtherOptionsNeedTheirOwn) {
 }
 
 TEST_F(LightReuse, ScenesTakeOverWhatIsTheSame) {
-    const auto field = scene_.field;
-    const auto surfaces = scene_.surfaces;
-    const std::vector<std::string> warnings = scene_.warnings;
+    const auto field = scene().field;
+    const auto surfaces = scene().surfaces;
+    const std::vector<std::string> warnings = scene().warnings;
     change([](SceneDesc& d) { d.camera.world_from_camera = Affine::translation({0, 0, -0.1}); });
-    EXPECT_EQ(scene_.field, field);
-    EXPECT_EQ(scene_.surfaces, surfaces);
-    EXPECT_EQ(scene_.warnings, warnings);
-    EXPECT_EQ(scene_.volume_reports.size(), 1U);
+    EXPECT_EQ(scene().field, field);
+    EXPECT_EQ(scene().surfaces, surfaces);
+    EXPECT_EQ(scene().warnings, warnings);
+    EXPECT_EQ(scene().volume_reports.size(), 1U);
     change([](SceneDesc& d) { d.geometry[0].reflectance = PerBand{0.1, 0.2, 0.3}; });
-    EXPECT_EQ(scene_.field, field);
-    EXPECT_NE(scene_.surfaces, surfaces);
+    EXPECT_EQ(scene().field, field);
+    EXPECT_NE(scene().surfaces, surfaces);
     change([](SceneDesc& d) { d.volumes[0].world_from_upright = Affine::translation({0, 1, 0}); });
-    EXPECT_NE(scene_.field, field);
+    EXPECT_NE(scene().field, field);
 }
 
 }  // namespace

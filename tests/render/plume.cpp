@@ -34,9 +34,7 @@ SceneDesc plume_scene(const std::filesystem::path& file) {
     desc.geometry = {plane_at_z(4), box({-0.35, -0.3, 1.0}, {-0.1, -0.05, 1.25})};
     desc.lamps = {isotropic_lamp({-0.9, -0.7, 0.1}, 50), isotropic_lamp({0.8, -0.4, 0.3}, 20)};
     desc.lamps[1].name = "spot";
-    desc.lamps[1].profile.type = LampProfileDesc::Type::spot;
-    desc.lamps[1].profile.beam = 50;
-    desc.lamps[1].profile.edge = 10;
+    desc.lamps[1].profile = SpotProfileDesc{50, 10};
     desc.lamps[1].direction = glm::normalize(Vector3(-0.8, 0.4, 1.9));
     desc.water.scattering.reset();
     desc.water.small_ppm = 0.02;

@@ -146,7 +146,7 @@ TEST(Outputs, StoredComponentsAddUpToTheBit) {
         for (int x = 0; x < 12; ++x) {
             PixelResult pixel = scene.pixel(x, 5);
             pixel.lamps.clear();
-            store_pixel(pixel, plan, colour, 3, stored);
+            store_pixel(pixel, plan, colour, stored);
             const auto direct = static_cast<std::size_t>(plan.first_channel(Layer::direct));
             const auto back = static_cast<std::size_t>(plan.first_channel(Layer::backscatter));
             for (std::size_t b = 0; b < 3; ++b) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "render/scene_rendering.h"
+#include "render/renderer.h"
 #include "tests/support/test_scene.h"
 
 /// Whole images with their layers, forward scatter included, as `uwvdb render` makes them.
@@ -13,18 +13,7 @@ namespace uw::test {
 class RenderedFilm {
   public:
     explicit RenderedFilm(const SceneDesc& desc)
-        : plan_("all", desc.water.bands_nm, names_of(desc)),
-          film_(desc.camera.width, desc.camera.height,
-                {0, 0, desc.camera.width, desc.camera.height}, plan_.channel_names()) {
-        const AssembledScene scene = assemble_scene(desc, [](const std::string&) {});
-        DeepShadows fields;
-        if (desc.render.integrator == RenderDesc::Integrator::volume)
-            fields = splat_lamps(scene, {});
-        warnings_ = scene.warnings;
-        const auto integrator = make_integrator(scene, fields);
-        render_scene(scene, fields, *integrator, plan_, BandColour(desc.water.bands_nm), film_,
-                     [](const std::string&, double) { return true; });
-    }
+        : plan_(layer_plan(desc, k_layers)), film_(rendered(desc, warnings_)) {}
 
     const Film& film() const { return film_; }
     const std::vector<std::string>& warnings() const { return warnings_; }
@@ -43,18 +32,22 @@ class RenderedFilm {
     }
 
   private:
-    static std::vector<std::string> names_of(const SceneDesc& desc) {
-        std::vector<std::string> names;
-        for (const LampDesc& lamp : desc.lamps) names.push_back(lamp.name);
-        return names;
+    static constexpr const char* k_layers = "all";
+
+    static Film rendered(const SceneDesc& desc, std::vector<std::string>& warnings) {
+        Renderer renderer;
+        renderer.set_scene(SceneDesc(desc));
+        const Film& film = renderer.render({.layers = k_layers});
+        warnings = renderer.report().warnings;
+        return film;
     }
     double at(int channel, int x, int y) const {
         return static_cast<double>(film_.pixel(x, y)[static_cast<std::size_t>(channel)]);
     }
 
     LayerPlan plan_;
-    Film film_;
     std::vector<std::string> warnings_;
+    Film film_;
 };
 
 /// The largest difference of two images in one layer, over the pixels and three bands, relative to

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "core/scene/scene_desc.h"
+#include "core/scene/geometry_desc.h"
 
 /// Surfaces as a scene describes them, with the default reflectance.
 namespace uw::test {

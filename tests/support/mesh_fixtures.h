@@ -91,6 +91,17 @@ inline std::string gltf_text(const std::map<std::string, std::string>& changes =
     return text + "}";
 }
 
+/// A .glb file (glTF 2.0, 4.4) of a JSON text and what its buffer without uri holds.
+inline std::string glb_bytes(std::string json, const std::string& binary = "") {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto word = [](std::size_t value) {
+        return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(value)});
+    };
+    std::string chunks = word(json.size()) + "JSON" + json;
+    if (!binary.empty()) chunks += word(binary.size()) + std::string("BIN\0", 4) + binary;
+    return "glTF" + word(2) + word(12 + chunks.size()) + chunks;
+}
+
 /// A 2 x 2 PNG of 8-bit sRGB: top row 255,0,0 and 0,255,0; bottom row 0,0,255 and 128,128,128.
 inline std::string four_texel_png() {
     static const unsigned char bytes[] = {

@@ -21,6 +21,18 @@ inline std::vector<float> corner_positions(const TriangleMesh& mesh) {
     return values;
 }
 
+/// Sum of the triangles' areas as seen along z: those that turn clockwise count as negative.
+inline double area_about_z(const TriangleMesh& mesh) {
+    const std::vector<float> p = corner_positions(mesh);
+    double area = 0;
+    for (std::size_t t = 0; t < p.size(); t += 9) {
+        const double ax = p[t + 3] - p[t], ay = p[t + 4] - p[t + 1];
+        const double bx = p[t + 6] - p[t], by = p[t + 7] - p[t + 1];
+        area += 0.5 * (ax * by - ay * bx);
+    }
+    return area;
+}
+
 /// Reads meshes that a test writes down as bytes.
 class MeshReading : public testing::Test {
   protected:

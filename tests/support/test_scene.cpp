@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/integrators/integrator_table.h"
 
 namespace uw::test {
 
@@ -24,8 +25,7 @@ WaterDesc hg_water(double g) {
     water.absorption = PerBand{0.35, 0.08, 0.05};
     ScatteringDesc scattering;
     scattering.b = {0.20, 0.22, 0.25};
-    scattering.phase.type = PhaseDesc::Type::henyey_greenstein;
-    scattering.phase.g = g;
+    scattering.phase.function = HenyeyGreensteinDesc{g};
     water.scattering = scattering;
     return water;
 }
@@ -46,27 +46,24 @@ GeometryDesc plane_at_z(double z) {
     return plane;
 }
 
-TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options)
-    : scene_(assemble_scene(desc, [](const std::string&) {})) {
-    if (desc.render.integrator == RenderDesc::Integrator::volume)
-        deep_shadows_ = splat_lamps(scene_, options);
-    integrator_ = make_integrator(scene_, deep_shadows_);
-    renderer_ =
-        std::make_unique<PixelRenderer>(*scene_.camera, scene_.lit(), *integrator_,
-                                        desc.render.samples, scene_.slabs, SensorModel(desc));
+TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options) {
+    scene_.set_scene(SceneDesc(desc));
+    if (integrator_kind(desc.render.integrator).needs_deep_shadows) scene_.splat(options);
+    transport_ = scene_.make_transport();
+    pixels_ = std::make_unique<PixelRenderer>(pixel_renderer(assembled(), transport_));
 }
 
 PixelResult TestScene::pixel(int x, int y) const {
     PixelResult result;
-    renderer_->render(x, y, result);
+    pixels_->render(x, y, result);
     return result;
 }
 
 std::vector<PixelResult> TestScene::image() const {
-    const int width = scene_.camera->width(), height = scene_.camera->height();
+    const int width = assembled().camera->width(), height = assembled().camera->height();
     std::vector<PixelResult> pixels(static_cast<std::size_t>(width * height));
     parallel_for(pixels.size(), [&](std::size_t i) {
-        renderer_->render(static_cast<int>(i) % width, static_cast<int>(i) / width, pixels[i]);
+        pixels_->render(static_cast<int>(i) % width, static_cast<int>(i) / width, pixels[i]);
     });
     return pixels;
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/frame/pixel_renderer.h"
-#include "render/scene_assembly.h"
+#include "render/renderer.h"
 #include "tests/support/geometry_descs.h"
 
 namespace uw::test {
@@ -23,16 +23,15 @@ class TestScene {
   public:
     explicit TestScene(const SceneDesc& desc, const DeepShadowOptions& options = {});
 
-    const AssembledScene& assembled() const { return scene_; }
-    const Integrator& integrator() const { return *integrator_; }
+    const AssembledScene& assembled() const { return scene_.assembled(); }
+    const Integrator& integrator() const { return *transport_.integrator; }
     PixelResult pixel(int x, int y) const;
     std::vector<PixelResult> image() const;
 
   private:
-    AssembledScene scene_;
-    std::vector<std::shared_ptr<const DeepShadowMap>> deep_shadows_;
-    std::unique_ptr<Integrator> integrator_;
-    std::unique_ptr<PixelRenderer> renderer_;
+    Renderer scene_;
+    LightTransport transport_;
+    std::unique_ptr<PixelRenderer> pixels_;
 };
 
 }  // namespace uw::test

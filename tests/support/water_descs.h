@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/scene/scene_desc.h"
+#include "core/scene/phase_desc.h"
+#include "core/scene/volume_desc.h"
+#include "core/scene/water_desc.h"
 #include "media/water/water_model.h"
 
 /// Scene descriptions of water and grids for the tests of what is built from them.
@@ -32,10 +34,7 @@ inline GridMappingDesc particle_grid(const std::string& name, double small_ppm, 
 }
 
 inline PhaseDesc hg(double g) {
-    PhaseDesc phase;
-    phase.g = g;
-    phase.where = "scene.yaml:5:9: water.scattering.phase";
-    return phase;
+    return {HenyeyGreensteinDesc{g}, "scene.yaml:5:9: water.scattering.phase"};
 }
 
 inline GridMappingDesc optics_grid(const std::string& name, const PerBand& absorption,

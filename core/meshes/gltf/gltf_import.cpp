@@ -134,10 +134,9 @@ LampDesc lamp_of(const GltfLight& source, const GeometryDesc& object,
     lamp.direction = direction(world_from_light, {0, 0, -1}, lamp.where);
     if (source.type == GltfLight::Type::spot) {
         constexpr double k_degrees = 180 / std::numbers::pi;
-        lamp.profile.type = LampProfileDesc::Type::spot;
-        lamp.profile.falloff = LampProfileDesc::Falloff::gltf;
-        lamp.profile.beam = (source.outer_cone + source.inner_cone) * k_degrees;
-        lamp.profile.edge = (source.outer_cone - source.inner_cone) * k_degrees;
+        lamp.profile = SpotProfileDesc{(source.outer_cone + source.inner_cone) * k_degrees,
+                                       (source.outer_cone - source.inner_cone) * k_degrees,
+                                       SpotProfileDesc::Falloff::gltf};
     }
     const Spectrum color = bands.from_rgb(source.color);
     const double watts_per_sr = source.intensity * intensity_of_one(object.import.units);
@@ -212,10 +211,6 @@ void import_lamps(const GltfItems& items, const GeometryDesc& object, SceneDesc&
 }  // namespace
 
 void import_gltf(SceneDesc& scene) {
-    const bool is_open = std::ranges::any_of(scene.geometry, [](const GeometryDesc& object) {
-        return object.is_sequence && (object.import.camera || object.import.any_lamps());
-    });
-    if (is_open || std::exchange(scene.gltf_is_imported, true)) return;
     for (const GeometryDesc& object : scene.geometry) {
         if (!object.import.camera && !object.import.any_lamps()) continue;
         const GltfItems items = read_gltf_items(object.file);

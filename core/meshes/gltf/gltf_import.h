@@ -6,8 +6,9 @@ namespace uw {
 
 /// Puts the cameras and lights that `geometry` asks its glTF files for (GltfImportDesc) into
 /// `scene.camera` and `scene.lamps`, placed by the files' nodes and the entries' transforms, with
-/// warnings about what cannot be used. A scene that has been here, asks for nothing, or asks a
-/// sequence of which no frame was chosen yet, is left as it is.
+/// warnings about what cannot be used. A scene that asks for nothing is left as it is. Doing it
+/// twice would bring every lamp twice: scenes that are rendered are imported by ResolvedScene
+/// alone. Precondition: a frame has been chosen of what are sequences.
 ///
 /// - The camera gives what the scene's own leaves out: the focal length from its vertical angle of
 ///   view and the scene's resolution, with square pixels and the principal point in the middle; and

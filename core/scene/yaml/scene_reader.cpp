@@ -3,38 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <fstream>
-#include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/text_file.h"
+#include "core/scene/yaml/camera_reader.h"
 #include "core/scene/yaml/config_map.h"
+#include "core/scene/yaml/geometry_reader.h"
+#include "core/scene/yaml/lamp_reader.h"
+#include "core/scene/yaml/render_reader.h"
+#include "core/scene/yaml/rig_reader.h"
+#include "core/scene/yaml/scene_context.h"
 #include "core/scene/yaml/scene_override.h"
-#include "core/scene/yaml/scene_sections.h"
+#include "core/scene/yaml/volume_reader.h"
+#include "core/scene/yaml/water_reader.h"
 #include "core/scene/yaml/yaml_document.h"
 
 namespace uw {
 namespace {
-
-/// The file's text; of a larger file just enough to be refused for its size.
-std::string read_text(const std::filesystem::path& file, const std::string& origin) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored)) {
-        throw IoError(fmt::format("{}: is a folder; name a scene file in it", origin));
-    }
-    if (!std::filesystem::exists(file, ignored)) {
-        throw IoError(fmt::format("{}: no such file; check the name of the scene", origin));
-    }
-    std::ifstream stream(file, std::ios::binary);
-    std::string text(YamlLimits{}.bytes + 1, '\0');
-    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream.is_open() || stream.bad()) {
-        throw IoError(fmt::format("{}: cannot be read; check its permissions", origin));
-    }
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    return text;
-}
 
 /// Comes first: another version may have other keys.
 void check_version(const ConfigValue& scene) {
@@ -88,57 +74,6 @@ void check_gltf_imports(const SceneDesc& desc) {
     for (const RigCameraDesc& entry : desc.cameras) check(entry.camera);
 }
 
-}  // namespace
-
-PlanesDesc read_planes(const ConfigValue& value) {
-    ConfigMap map(value, {"count", "near", "far"}, "write {count: 64, near: 0.1, far: 12}");
-    PlanesDesc planes;
-    planes.where = value.location();
-    if (const auto entry = map.find("count"))
-        planes.count = entry->integer(1, 65536, "give the number of slabs");
-    if (const auto entry = map.find("near")) planes.near = entry->non_negative("give metres");
-    if (const auto entry = map.find("far")) {
-        planes.far = entry->positive("give metres");
-        if (planes.near && *planes.far <= *planes.near) {
-            entry->fail(fmt::format("must be greater than near ({}); give metres along camera z",
-                                    *planes.near));
-        }
-    }
-    return planes;
-}
-
-RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value,
-                  {"integrator", "output", "planes", "samples", "shutter", "response", "white"},
-                  "write {samples: 4}");
-    RenderDesc render;
-    render.planes.where = value.location() + ".planes";
-    if (const auto entry = map.find("integrator"))
-        render.integrator = entry->choice(k_integrator_names);
-    if (const auto entry = map.find("output")) {
-        constexpr std::array<std::pair<std::string_view, RenderDesc::Output>, 3> k_outputs{
-            {{"radiance", RenderDesc::Output::radiance},
-             {"sensor_irradiance", RenderDesc::Output::sensor_irradiance},
-             {"paper", RenderDesc::Output::paper}}};
-        render.output = entry->choice(k_outputs);
-        render.output_where = entry->location();
-    }
-    if (const auto entry = map.find("planes")) render.planes = read_planes(*entry);
-    if (const auto entry = map.find("samples")) {
-        render.samples = entry->integer(1, 4096, "give the samples per pixel");
-    }
-    if (const auto entry = map.find("shutter")) {
-        constexpr double k_longest = 60;
-        render.shutter = entry->non_negative("give the exposure time in seconds, such as 0.02");
-        if (render.shutter > k_longest)
-            entry->fail("more than a minute is no exposure; give seconds, such as 0.02");
-    }
-    render.colour = read_colour(map, context);
-    return render;
-}
-
-namespace {
-
 void read_camera_or_rig(ConfigMap& map, SceneContext& context, SceneDesc& desc) {
     constexpr auto k_mend = "give camera: {resolution: [W, H], intrinsics: {fov_x: 60}}";
     const auto cameras = map.find("cameras");
@@ -181,7 +116,7 @@ void open_shutter(SceneDesc& desc) {
 
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
     const std::string origin = printable(file.string(), 300);
-    ConfigNode root = parse_yaml(read_text(file, origin), origin);
+    ConfigNode root = parse_yaml(read_text_file(file, origin, YamlLimits{}.bytes, "scene"), origin);
     for (const std::string& text : overrides) apply_override(root, text);
 
     const ConfigValue scene(root, "");

@@ -3,31 +3,21 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "camera/camera.h"
 #include "core/scene/yaml/scene_reader.h"
+#include "tests/support/calibration_reading.h"
 #include "tests/support/calibration_texts.h"
-#include "tests/support/temp_dir.h"
 
 namespace uw {
 namespace {
 
-class Calibrations : public testing::Test {
+class Calibrations : public test::CalibrationReading {
   protected:
-    std::filesystem::path write(const std::string& name, const std::string& text) const {
-        std::ofstream(folder_ / name, std::ios::binary) << text;
-        return folder_ / name;
-    }
-    Calibration read(const std::string& text, const std::string& camera = "") const {
-        return read_calibration(write("calibration", text), camera);
-    }
     /// What was written, read again; a scene's camera by the scene's reader.
     CameraDesc read_again(CalibrationFormat format, const std::string& text) const {
         if (format != CalibrationFormat::scene) return read(text).desc;
         return read_scene(write("scene.yaml", "uwvdb: 1\n" + text), {}).camera;
     }
-    test::TempDir folder_;
 };
 
 /// The largest difference of rays, origin or direction, over the image and beyond its edges;
@@ -141,36 +131,6 @@ TEST_F(Calibrations, WhatAFormatCannotExpressIsSaid) {
     EXPECT_TRUE(calibration_omissions(CalibrationFormat::scene, lossy).empty());
 }
 
-TEST_F(Calibrations, ColmapHasALineForStockColmapToo) {
-    const std::string text =
-        write_calibration(CalibrationFormat::colmap, read(test::k_colmap, "20").desc);
-    EXPECT_NE(text.find("\n1 PINHOLE 1920 1080 1400 1401 961 541 FLATPORT 0 0 1 0.02 0.007 1 1.49 "
-                        "1.334\n"),
-              std::string::npos)
-        << text;
-    EXPECT_NE(text.find("\n# 1 PINHOLE 1920 1080 1400 1401 961 541\n"), std::string::npos) << text;
-}
-
-TEST_F(Calibrations, FourUnnamedCoefficientsAreBrownConradyWithAWarning) {
-    const Calibration read_back = read(R"(%YAML:1.0
-image_width: 100
-image_height: 80
-camera_matrix: !!opencv-matrix
-   rows: 3
-   cols: 3
-   dt: d
-   data: [ 100., 0., 50., 0., 100., 40., 0., 0., 1. ]
-distortion_coefficients: !!opencv-matrix
-   rows: 4
-   cols: 1
-   dt: d
-   data: [ 0.1, 0.2, 0.3, 0.4 ]
-)");
-    EXPECT_EQ(read_back.desc.distortion.p, (std::array<double, 2>{0.3, 0.4}));
-    ASSERT_EQ(read_back.warnings.size(), 1U);
-    EXPECT_NE(read_back.warnings[0].find("cv::fisheye"), std::string::npos);
-}
-
 TEST_F(Calibrations, CameraOfASceneTakesItsCalibration) {
     write("rig.yaml", test::k_calibmar_dome);
     const auto file = write("scene.yaml", "uwvdb: 1\ncamera: {calibration: rig.yaml}\n");
@@ -184,6 +144,20 @@ TEST_F(Calibrations, CameraOfASceneTakesItsCalibration) {
     EXPECT_EQ(worst_difference(camera, calibration->desc), 0);
     CameraDesc none;
     EXPECT_FALSE(apply_calibration(none));
+}
+
+TEST_F(Calibrations, UnknownFilesListWhatIsKnown) {
+    for (const char* text : {"", " \n", "a: 1\n", "[1, 2]\n", "hello\n", "a: {b: c}\n"})
+        expect_refused(text, "known are OpenCV and ROS YAML");
+    expect_refused("uwvdb: 1\ncamera: {}\n", "is a scene and no calibration");
+    expect_refused(std::string("\0\1\2", 3), "not UTF-8 text");
+    expect_refused("a: [1\n", "mend the YAML");
+    expect_refused("model: !!python/object x\nparameters: []\n", "has no meaning in a calibration");
+}
+
+TEST_F(Calibrations, WhatIsNoFile) {
+    EXPECT_THROW(read_calibration(folder_ / "none.yaml"), IoError);
+    EXPECT_THROW(read_calibration(folder_.path()), IoError);
 }
 
 }  // namespace

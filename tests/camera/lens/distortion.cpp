@@ -125,17 +125,5 @@ TEST(Distortion, HostileNumbersGiveNoRay) {
     EXPECT_FALSE(Distortion(brown_conrady(0, 0, 100, -100, 0)).undistort({0.5, 0.5}));
 }
 
-TEST(Polynomial, FirstRootIsNotSteppedOver) {
-    // (x - 1)(x - 1.0000001)(x - 5): the first two lie closer than any coarse step.
-    const double a = 1, b = 1.0000001, c = 5;
-    const std::array<double, 4> cubic{-a * b * c, a * b + b * c + a * c, -(a + b + c), 1};
-    const auto root = first_positive_root(cubic, 1e10);
-    ASSERT_TRUE(root);
-    // Near a pair this close, coefficients rounded to 1e-16 move the root by sqrt(1e-16).
-    EXPECT_NEAR(*root, 1, 5e-8);
-    EXPECT_FALSE(first_positive_root(std::array<double, 3>{1, 0, 1}, 1e10));
-    EXPECT_FALSE(first_positive_root(std::array<double, 2>{-3, 1}, 2));
-}
-
 }  // namespace
 }  // namespace uw

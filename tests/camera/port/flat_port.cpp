@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera/port/refract.h"
-
 namespace uw {
 namespace {
 
@@ -123,16 +121,6 @@ TEST(FlatPort, MissesBehindAndAlongTheGlass) {
     EXPECT_FALSE(FlatPort(port).refracted_ray({1, 0, 0}));
     port.normal = glm::normalize(Vector3(1, 0, 0.1));
     EXPECT_FALSE(FlatPort(port).refracted_ray(glm::normalize(Vector3(-1, 0, 1))));
-}
-
-TEST(Refract, KeepsTheInvariantOfSnell) {
-    // n1 (d x n) = n2 (t x n): the law itself, for directions of no particular plane.
-    const Vector3 n = glm::normalize(Vector3(0.2, -0.4, 1));
-    const Vector3 d = glm::normalize(Vector3(-0.5, 0.3, 0.9));
-    const auto t = refract(d, n, 1.0, 1.49);
-    ASSERT_TRUE(t);
-    expect_near(glm::cross(d, n), 1.49 * glm::cross(*t, n));
-    EXPECT_GT(glm::dot(*t, n), glm::dot(d, n));
 }
 
 }  // namespace

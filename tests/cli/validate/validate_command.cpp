@@ -13,65 +13,83 @@
 namespace uw::test {
 namespace {
 
-/// The volume integrator with one fault.
-class FaultyIntegrator : public Integrator {
+/// An integrator whose in-scatter is off by a factor.
+class FaultyIntegrator final : public Integrator {
   public:
-    FaultyIntegrator(std::unique_ptr<Integrator> honest, double in_scatter, double direct)
-        : honest_(std::move(honest)), in_scatter_(in_scatter), direct_(direct) {}
+    FaultyIntegrator(std::unique_ptr<const Integrator> honest, double factor)
+        : honest_(std::move(honest)), factor_(factor) {}
 
-    void in_scatter(const Ray& ray, std::span<const double> ends,
+    void in_scatter(const Ray& ray, std::span<const double> distances,
                     InScatter& result) const override {
-        honest_->in_scatter(ray, ends, result);
-        for (std::size_t end = 0; end < ends.size(); ++end)
-            for (double& value : result.at(end, 0)) value *= in_scatter_;
-    }
-    void surface_lights(std::span<const SurfaceSample* const> samples,
-                        SurfaceLight& light) const override {
-        honest_->surface_lights(samples, light);
-        for (std::size_t i = 0; i < samples.size(); ++i)
-            for (std::size_t j = 0; j < light.lamp_count(); ++j)
-                for (double& value : light.from_lamp(i, j)) value *= direct_;
+        honest_->in_scatter(ray, distances, result);
+        for (std::size_t i = 0; i < distances.size(); ++i) result.at(i, 0) *= factor_;
     }
 
   private:
-    std::unique_ptr<Integrator> honest_;
-    double in_scatter_, direct_;
+    std::unique_ptr<const Integrator> honest_;
+    double factor_;
 };
 
-IntegratorFactory faulty(double in_scatter, double direct) {
-    return [=](const AssembledScene& scene,
-               const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
-        return std::make_unique<FaultyIntegrator>(make_integrator(scene, deep_shadows), in_scatter,
-                                                  direct);
+/// Lighting whose light on surfaces is off by a factor.
+class FaultyLighting final : public SurfaceLighting {
+  public:
+    FaultyLighting(std::unique_ptr<const SurfaceLighting> honest, double factor)
+        : honest_(std::move(honest)), factor_(factor) {}
+
+    void evaluate(std::span<const SurfaceSample* const> samples,
+                  SurfaceLight& light) const override {
+        honest_->evaluate(samples, light);
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            for (std::size_t j = 0; j < light.lamp_count(); ++j)
+                for (double& value : light.from_lamp(i, j)) value *= factor_;
+    }
+
+  private:
+    std::unique_ptr<const SurfaceLighting> honest_;
+    double factor_;
+};
+
+TransportWrapper faulty(double in_scatter, double direct) {
+    return [=](LightTransport honest) {
+        return LightTransport{
+            std::make_unique<FaultyIntegrator>(std::move(honest.integrator), in_scatter),
+            std::make_unique<FaultyLighting>(std::move(honest.surfaces), direct)};
     };
 }
 
-/// Honest before forward scatter, which alone asks for the light from a distance on, and for what
-/// falls on surfaces apart from what they send back.
-class FaultyInForwardScatter : public Integrator {
+/// Honest before forward scatter, which alone asks for the light from a distance on: each slab's
+/// light is then its neighbour's.
+class IntegratorOfFaultySlabs final : public Integrator {
   public:
-    enum class Fault { layers, irradiance };
-    FaultyInForwardScatter(std::unique_ptr<Integrator> honest, Fault fault)
-        : honest_(std::move(honest)), fault_(fault) {}
+    explicit IntegratorOfFaultySlabs(std::unique_ptr<const Integrator> honest)
+        : honest_(std::move(honest)) {}
 
-    void in_scatter(const Ray& ray, std::span<const double> ends,
+    void in_scatter(const Ray& ray, std::span<const double> distances,
                     InScatter& result) const override {
-        honest_->in_scatter(ray, ends, result);
+        honest_->in_scatter(ray, distances, result);
     }
-    // Each layer's light is its neighbour's.
-    void in_scatter_from(const Ray& ray, double begin, std::span<const double> ends,
+    void in_scatter_from(const Ray& ray, double begin, std::span<const double> distances,
                          InScatter& result) const override {
-        honest_->in_scatter_from(ray, begin, ends, result);
-        if (fault_ != Fault::layers) return;
+        honest_->in_scatter_from(ray, begin, distances, result);
         for (std::size_t lamp = 0; lamp < result.lamp_count(); ++lamp)
-            for (std::size_t end = 0; end + 1 < ends.size(); ++end)
-                result.at(end, lamp) = result.at(end + 1, lamp);
+            for (std::size_t i = 0; i + 1 < distances.size(); ++i)
+                result.at(i, lamp) = result.at(i + 1, lamp);
     }
-    // Where more falls on a surface, as much less of it comes to the camera.
-    void surface_lights(std::span<const SurfaceSample* const> samples,
-                        SurfaceLight& light) const override {
-        honest_->surface_lights(samples, light);
-        if (fault_ != Fault::irradiance) return;
+
+  private:
+    std::unique_ptr<const Integrator> honest_;
+};
+
+/// Honest before forward scatter, which alone asks what falls on surfaces apart from what they send
+/// back: where more falls on a surface, as much less of it comes to the camera.
+class LightingOfFaultyIrradiance final : public SurfaceLighting {
+  public:
+    explicit LightingOfFaultyIrradiance(std::unique_ptr<const SurfaceLighting> honest)
+        : honest_(std::move(honest)) {}
+
+    void evaluate(std::span<const SurfaceSample* const> samples,
+                  SurfaceLight& light) const override {
+        honest_->evaluate(samples, light);
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const double more = 1 + 0.3 * std::sin(3 * samples[i]->hit.position.x);
             for (double& value : light.to_camera(i)) value /= more;
@@ -81,15 +99,20 @@ class FaultyInForwardScatter : public Integrator {
     }
 
   private:
-    std::unique_ptr<Integrator> honest_;
-    Fault fault_;
+    std::unique_ptr<const SurfaceLighting> honest_;
 };
 
-IntegratorFactory faulty_in_forward_scatter(FaultyInForwardScatter::Fault fault) {
-    return [=](const AssembledScene& scene,
-               const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows) {
-        return std::make_unique<FaultyInForwardScatter>(make_integrator(scene, deep_shadows),
-                                                        fault);
+enum class Fault { slabs, irradiance };
+
+TransportWrapper faulty_in_forward_scatter(Fault fault) {
+    return [=](LightTransport transport) {
+        if (fault == Fault::slabs)
+            transport.integrator =
+                std::make_unique<IntegratorOfFaultySlabs>(std::move(transport.integrator));
+        else
+            transport.surfaces =
+                std::make_unique<LightingOfFaultyIrradiance>(std::move(transport.surfaces));
+        return transport;
     };
 }
 
@@ -165,8 +188,7 @@ TEST_F(Validate, PassesWithForwardScatterOfBothShapes) {
 
 TEST_F(Validate, FailsOnWrongLayersOfWaterThatOnlyForwardScatterSees) {
     scatter_forward("gaussian");
-    EXPECT_FALSE(run_validate(arguments_, true, out_,
-                              faulty_in_forward_scatter(FaultyInForwardScatter::Fault::layers)));
+    EXPECT_FALSE(run_validate(arguments_, true, out_, faulty_in_forward_scatter(Fault::slabs)));
     EXPECT_EQ(failed_components(out_.str()), std::set<std::string>{"blurred backscatter"})
         << out_.str();
     EXPECT_NE(out_.str().find("\033[31m"), std::string::npos);
@@ -175,8 +197,7 @@ TEST_F(Validate, FailsOnWrongLayersOfWaterThatOnlyForwardScatterSees) {
 TEST_F(Validate, FailsOnWrongIrradianceThatOnlyForwardScatterSees) {
     scatter_forward("exponential");
     EXPECT_FALSE(
-        run_validate(arguments_, false, out_,
-                     faulty_in_forward_scatter(FaultyInForwardScatter::Fault::irradiance)));
+        run_validate(arguments_, false, out_, faulty_in_forward_scatter(Fault::irradiance)));
     EXPECT_EQ(failed_components(out_.str()), std::set<std::string>{"forward"}) << out_.str();
 }
 
@@ -210,7 +231,7 @@ TEST(Validation, PlanesConvergeAsTheSquareOfTheirThickness) {
     desc.camera.intrinsics = {10, 10, 6, 4.5};
     desc.water.absorption = PerBand{0.35, 0.08, 0.05};
     desc.water.scattering = ScatteringDesc{{0.20, 0.22, 0.25}, {}};
-    desc.water.scattering->phase.g = 0.9;
+    desc.water.scattering->phase.function = HenyeyGreensteinDesc{0.9};
     GeometryDesc wall;
     wall.type = GeometryDesc::Type::plane;
     wall.point = {0, 0, 4};
@@ -221,7 +242,7 @@ TEST(Validation, PlanesConvergeAsTheSquareOfTheirThickness) {
     lamp.position = {1, -0.5, 0};
     lamp.intensity = PerBand{50, 50, 50};
     desc.lamps = {lamp};
-    const SceneValidation result = validate_scene(desc, "test", {});
+    const SceneValidation result = validate_scene(std::move(desc), "test", {});
     EXPECT_TRUE(result.passed());
     ASSERT_EQ(result.planes.back().count, 512);
     for (const PlanesStep& step : result.planes) {

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "cli/command_line.h"
+#include "cli/water/water_options.h"
 #include "core/base/error.h"
 #include "core/tables/csv_table.h"
 #include "media/water/pure_water.h"
@@ -29,9 +31,15 @@ std::string printed(const WaterArguments& arguments) {
     return out.str();
 }
 
+// `words` behind `uwvdb water`, as arguments.
 WaterArguments parsed(std::vector<const char*> words) {
     words.insert(words.begin(), {"uwvdb", "water"});
-    return std::get<WaterArguments>(parse_arguments(static_cast<int>(words.size()), words.data()));
+    WaterArguments arguments;
+    std::vector<Command> commands;
+    commands.push_back({"water", "", "", water_options(arguments), [] { return k_exit_done; }});
+    EXPECT_EQ(read_command_line(static_cast<int>(words.size()), words.data(), commands)(),
+              k_exit_done);
+    return arguments;
 }
 
 std::string write_scene(const test::TempDir& folder, const std::string& water) {
@@ -64,18 +72,6 @@ TEST(WaterArguments, AsTyped) {
     }
     EXPECT_THROW(parsed({"a", "b"}), UsageError);
     EXPECT_THROW(parsed({"--band", "green"}), UsageError);
-}
-
-TEST(WaterArguments, OtherCommandsAreStillThere) {
-    const char* render[] = {"uwvdb", "render", "x.yaml"};
-    EXPECT_EQ(std::get<RenderArguments>(parse_arguments(3, render)).scene, "x.yaml");
-    const char* version[] = {"uwvdb", "--version"};
-    EXPECT_EQ(std::get<MessageArguments>(parse_arguments(2, version)).text.find("uwvdb "), 0U);
-    const char* help[] = {"uwvdb", "water", "--help"};
-    EXPECT_NE(std::get<MessageArguments>(parse_arguments(3, help)).text.find("--bands"),
-              std::string::npos);
-    const char* none[] = {"uwvdb"};
-    EXPECT_THROW(parse_arguments(1, none), UsageError);
 }
 
 TEST(WaterCommand, PrintsTablesWithUnitsAndSources) {

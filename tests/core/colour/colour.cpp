@@ -12,51 +12,10 @@
 namespace uw {
 namespace {
 
-/// XYZ of a spectrum, by the sum over 5 nm that CIE 015 prescribes.
-template <typename Spectral>
-Xyz tristimulus(const Spectral& radiance) {
-    Xyz sum;
-    for (int nm = 360; nm <= 830; nm += 5) {
-        const Xyz cmf = cie1931_matching_functions(nm);
-        sum.x += 5 * cmf.x * radiance(nm);
-        sum.y += 5 * cmf.y * radiance(nm);
-        sum.z += 5 * cmf.z * radiance(nm);
-    }
-    return sum;
-}
-
 Spectrum spectrum(const std::vector<double>& values) {
     Spectrum s{};
     std::copy(values.begin(), values.end(), s.begin());
     return s;
-}
-
-TEST(Cie1931, KnownIntegralsAndPeak) {
-    // Published: each function integrates to 106.857, and V(555 nm) = 1.
-    const Xyz equal_energy = tristimulus([](double) { return 1.0; });
-    EXPECT_NEAR(equal_energy.x, 106.866, 0.02);  // sums of the 5 nm table
-    EXPECT_NEAR(equal_energy.y, 106.857, 0.02);
-    EXPECT_NEAR(equal_energy.z, 106.892, 0.02);
-    EXPECT_EQ(cie1931_matching_functions(555).y, 1);
-}
-
-TEST(Cie1931, IlluminantA) {
-    // Illuminant A is defined by a formula (CIE 015), and so is its chromaticity: 0.44758, 0.40745.
-    const Xyz a = tristimulus([](double nm) {
-        return std::pow(560 / nm, 5) * std::expm1(1.435e7 / (2848 * 560)) /
-               std::expm1(1.435e7 / (2848 * nm));
-    });
-    EXPECT_NEAR(a.x / (a.x + a.y + a.z), 0.44758, 2e-5);
-    EXPECT_NEAR(a.y / (a.x + a.y + a.z), 0.40745, 2e-5);
-}
-
-TEST(Cie1931, LinearBetweenTheTableAndZeroOutside) {
-    const double middle = cie1931_matching_functions(557.5).x;
-    EXPECT_NEAR(middle, 0.5 * (0.5120501 + 0.5945), 1e-12);
-    EXPECT_GT(cie1931_matching_functions(830).y, 0);
-    EXPECT_EQ(cie1931_matching_functions(830.1).y, 0);
-    EXPECT_EQ(cie1931_matching_functions(359.9).x, 0);
-    EXPECT_EQ(cie1931_matching_functions(std::nan("")).x, 0);
 }
 
 TEST(Colour, ThreeBandsAreRgbUnchanged) {

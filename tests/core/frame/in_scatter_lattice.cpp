@@ -20,24 +20,22 @@ constexpr double k_coarsest_tolerance = k_tolerance / 8;
 class MixedImage {
   public:
     explicit MixedImage(const SceneDesc& desc, const InScatterParts& parts = {})
-        : scene_(assemble_scene(desc, [](const std::string&) {})),
-          fields_(splat_lamps(scene_, {})),
-          integrator_(make_integrator(scene_, fields_)),
-          renderer_(*scene_.camera, scene_.lit(), *integrator_, desc.render.samples, scene_.slabs,
-                    SensorModel(desc), parts) {}
+        : renderer_(with_scene(desc)),
+          transport_(renderer_.make_transport()),
+          pixels_(pixel_renderer(renderer_.assembled(), transport_, parts)) {}
 
     std::vector<PixelResult> render(double tolerance) const {
-        return render(tolerance, {0, 0, scene_.camera->width(), scene_.camera->height()});
+        const CameraDesc& camera = renderer_.scene().camera;
+        return render(tolerance, {0, 0, camera.width, camera.height});
     }
     std::vector<PixelResult> render(double tolerance, const PixelWindow& window) const {
-        std::vector<std::string> lamps;
-        for (const Lamp& lamp : scene_.lamps) lamps.push_back(lamp.name());
-        const LayerPlan plan("direct", scene_.desc.water.bands_nm, lamps);
-        Film film(scene_.camera->width(), scene_.camera->height(), window, plan.channel_names());
+        const SceneDesc& scene = renderer_.scene();
+        const LayerPlan plan = layer_plan(scene, "direct");
+        Film film(scene.camera.width, scene.camera.height, window, plan.channel_names());
         std::vector<PixelResult> pixels(static_cast<std::size_t>(window.width()) *
                                         static_cast<std::size_t>(window.height()));
         render_film(
-            renderer_, tolerance, plan, BandColour(scene_.desc.water.bands_nm), film,
+            pixels_, tolerance, plan, BandColour(scene.water.bands_nm), film,
             [](double) { return true; },
             [&](int x, int y, const PixelView&, const PixelResult& result) {
                 pixels[static_cast<std::size_t>((y - window.y0) * window.width() + x - window.x0)] =
@@ -47,10 +45,15 @@ class MixedImage {
     }
 
   private:
-    AssembledScene scene_;
-    std::vector<std::shared_ptr<const DeepShadowMap>> fields_;
-    std::unique_ptr<Integrator> integrator_;
-    PixelRenderer renderer_;
+    static Renderer with_scene(const SceneDesc& desc) {
+        Renderer renderer;
+        renderer.set_scene(SceneDesc(desc));
+        return renderer;
+    }
+
+    Renderer renderer_;
+    LightTransport transport_;
+    PixelRenderer pixels_;
 };
 
 /// A box before a wall throws the shadows of two lamps; a sphere's distance changes over it.

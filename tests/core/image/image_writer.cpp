@@ -114,7 +114,11 @@ TEST_F(ImageWriterTest, MetadataComesBack) {
 }
 
 TEST_F(ImageWriterTest, PngHoldsThePreviewAndItsExposure) {
-    const Preview image{2, 2, {255, 0, 0, 0, 255, 0, 0, 0, 255, 10, 20, 30}};
+    Preview image(2, 2);
+    image(0, 0) = {255, 0, 0};
+    image(1, 0) = {0, 255, 0};
+    image(0, 1) = {0, 0, 255};
+    image(1, 1) = {10, 20, 30};
     write_png(png_, image, {{"exposure", 12.5}, {"uwvdb:version", "0.1.0"}});
     const auto input = OIIO::ImageInput::open(png_.string());
     ASSERT_TRUE(input) << OIIO::geterror();
@@ -125,7 +129,7 @@ TEST_F(ImageWriterTest, PngHoldsThePreviewAndItsExposure) {
     EXPECT_EQ(input->spec().get_string_attribute("oiio:ColorSpace"), "sRGB");
     std::vector<std::uint8_t> pixels(12);
     ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeUInt8, pixels.data()));
-    EXPECT_EQ(pixels, image.rgb);
+    EXPECT_EQ(pixels, (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 10, 20, 30}));
 }
 
 TEST_F(ImageWriterTest, TheSameFilmGivesTheSameBytes) {
@@ -144,9 +148,9 @@ TEST_F(ImageWriterTest, AFullDiskLeavesTheOldFile) {
     std::ofstream(exr_) << "old";
     std::ofstream(png_) << "old";
     const Film film = filled_film(64, 64, {0, 0, 64, 64}, {"R", "G", "B", "A", "depth.Z"});
-    Preview noise{64, 64, std::vector<std::uint8_t>(64 * 64 * 3)};
-    for (std::size_t i = 0; i < noise.rgb.size(); ++i) {
-        noise.rgb[i] = static_cast<std::uint8_t>(i * i * 2654435761u >> 13);
+    Preview noise(64, 64);
+    for (std::size_t i = 0; i < 3 * noise.size(); ++i) {
+        noise[i / 3][i % 3] = static_cast<std::uint8_t>(i * i * 2654435761u >> 13);
     }
     const fs::path whole = directory_.path() / "whole";
     write_exr(whole, film, {});

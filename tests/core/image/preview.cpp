@@ -69,10 +69,12 @@ TEST(Preview, EncodesAsSrgb) {
     film.pixel(3, 1)[k_alpha] = 0;
     film.pixel(4, 1)[k_green] = k_infinity;
     const Preview preview = make_preview(film, 2);
-    EXPECT_EQ(preview.width, 4);
-    EXPECT_EQ(preview.height, 1);
-    ASSERT_EQ(preview.rgb.size(), 12u);
-    EXPECT_EQ(preview.rgb, (std::vector<std::uint8_t>{127, 255, 0, 0, 0, 0, 0, 0, 0, 0, 255, 0}));
+    ASSERT_EQ(preview.width(), 4);
+    ASSERT_EQ(preview.height(), 1);
+    EXPECT_EQ(preview(0, 0), (Srgb8{127, 255, 0}));
+    EXPECT_EQ(preview(1, 0), (Srgb8{0, 0, 0}));
+    EXPECT_EQ(preview(2, 0), (Srgb8{0, 0, 0}));
+    EXPECT_EQ(preview(3, 0), (Srgb8{0, 255, 0}));
 }
 
 }  // namespace

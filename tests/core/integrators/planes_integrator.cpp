@@ -147,7 +147,7 @@ SceneDesc two_lamps() {
     desc.lamps.push_back(isotropic_lamp({-1.2, 0.3, 0.4}, 80));
     desc.lamps[1].name = "spot";
     desc.lamps[1].direction = glm::normalize(Vector3(0.8, -0.2, 1));
-    desc.lamps[1].profile = {LampProfileDesc::Type::spot, 60, 30, 0};
+    desc.lamps[1].profile = SpotProfileDesc{60, 30};
     return desc;
 }
 

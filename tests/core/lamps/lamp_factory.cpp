@@ -44,8 +44,7 @@ class LampFactory : public testing::Test {
         writer.lumens = lumens;
         writer.polar = {0, 180};
         writer.candelas = [&](double, double) { return candelas; };
-        desc_.profile.type = LampProfileDesc::Type::ies;
-        desc_.profile.file = folder_.write("lamp.ies", writer.text());
+        desc_.profile = IesProfileDesc{folder_.write("lamp.ies", writer.text())};
     }
     void use_led() {
         desc_.spectrum = LampSpectrumDesc{};
@@ -113,6 +112,38 @@ TEST_F(LampFactory, FluxIsCheckedAgainstTheLumens) {
     EXPECT_EQ(warnings_with(flux / 1.05), 1U);  // more than its lamps give
     EXPECT_EQ(warnings_with(flux * 1000), 1U);  // candelas per 1000 lm
     EXPECT_EQ(warnings_with(-1), 0U);           // absolute photometry
+}
+
+TEST_F(LampFactory, PowerIsTheIntegralOfTheIntensity) {
+    desc_.power = PerBand{10, 20};
+    const auto intensity = [&](const LampProfileDesc& profile) {
+        desc_.profile = profile;
+        return make({500, 600}).axis_intensity();
+    };
+    EXPECT_NEAR(intensity(IsotropicProfileDesc{})[0], 10 / (4 * pi), 1e-12);
+    EXPECT_NEAR(intensity(IsotropicProfileDesc{})[1], 20 / (4 * pi), 1e-12);
+    // A hard edge: a cone of 2 pi (1 - cos 30 deg) sr.
+    EXPECT_NEAR(intensity(SpotProfileDesc{60})[0], 10 / (2 * pi * (1 - std::cos(pi / 6))), 1e-12);
+    EXPECT_NEAR(intensity(CosineProfileDesc{120})[0], 10 / pi, 1e-12);  // Lambert: Phi = pi I
+}
+
+TEST_F(LampFactory, PlacesTheLampInItsFrame) {
+    desc_.intensity = PerBand{1};
+    desc_.position = {1, 0, 0};
+    desc_.profile = SpotProfileDesc{60};
+    const auto moved = Affine::translation({0, 0, 5}) * Affine::rotation_xyz_degrees({0, 180, 0});
+    const std::vector<double> bands{540};
+    const Lamp with_camera = make_lamp(desc_, moved, bands, warnings_);
+    EXPECT_NEAR(distance(with_camera.position(), {-1, 0, 5}), 0, 1e-12);
+    EXPECT_EQ(with_camera.relative_intensity({0, 0, -1}), 1);
+    desc_.fixed_to_camera = false;
+    const Lamp in_world = make_lamp(desc_, moved, bands, warnings_);
+    EXPECT_NEAR(distance(in_world.position(), {1, 0, 0}), 0, 1e-12);
+    EXPECT_EQ(in_world.relative_intensity({0, 0, 1}), 1);
+    desc_.world_from_mount = moved;
+    const Lamp mounted = make_lamp(desc_, {}, bands, warnings_);
+    EXPECT_NEAR(distance(mounted.position(), {-1, 0, 5}), 0, 1e-12);
+    EXPECT_EQ(mounted.relative_intensity({0, 0, -1}), 1);
 }
 
 TEST_F(LampFactory, RefusesWhatHasNoAnswer) {

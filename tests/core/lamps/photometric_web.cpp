@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/lamps/lamp.h"
 #include "tests/support/ies_files.h"
 
 namespace uw {
@@ -109,74 +108,6 @@ TEST(PhotometricWeb, BreaksFollowTheIntensity) {
             return std::abs(angle - radians(edge)) < 1e-9;
         })) << edge;
     EXPECT_NEAR(web.dark_angle(), radians(33), 1e-12);
-}
-
-// A luminaire twice as bright towards azimuth 0 as towards 180, dark towards 90.
-Lamp asymmetric_lamp(LampDesc desc, const Affine& world_from_camera = {}) {
-    test::IesWriter writer;
-    writer.polar = {0, 90, 180};
-    writer.planes = {0, 90, 180, 270, 360};
-    writer.candelas = [](double polar, double plane) {
-        if (polar != 90) return polar == 0 ? 1.0 : 0.0;
-        return plane == 180 ? 0.5 : (plane == 0 || plane == 360 ? 1.0 : (plane == 90 ? 0.25 : 0.0));
-    };
-    desc.profile.type = LampProfileDesc::Type::ies;
-    desc.intensity = PerBand{1};
-    return {desc, world_from_camera, 1, std::make_shared<PhotometricWeb>(web_of(writer))};
-}
-
-TEST(IesLamp, HangsInTheFrameOfTheLamp) {
-    // Camera axes: x right, y down, z forward. Shining forward, azimuth 0 is right and 90 up.
-    const Lamp lamp = asymmetric_lamp({});
-    EXPECT_NEAR(lamp.relative_intensity({0, 0, 2}), 1, 1e-12);
-    EXPECT_NEAR(lamp.relative_intensity({0, 0, -2}), 0, 1e-12);
-    EXPECT_NEAR(lamp.relative_intensity({3, 0, 0}), 1, 1e-12);
-    EXPECT_NEAR(lamp.relative_intensity({-3, 0, 0}), 0.5, 1e-12);
-    EXPECT_NEAR(lamp.relative_intensity({0, -1, 0}), 0.25, 1e-12);
-    EXPECT_NEAR(lamp.relative_intensity({0, 1, 0}), 0, 1e-12);
-    EXPECT_NEAR(lamp.relative_intensity({1, -1, 0}), 0.625, 1e-12);
-    EXPECT_FALSE(lamp.has_even_core());
-}
-
-TEST(IesLamp, TurnsAndTilts) {
-    LampDesc desc;
-    desc.profile.rotate = 90;  // what was right is up now
-    const Lamp turned = asymmetric_lamp(desc);
-    EXPECT_NEAR(turned.relative_intensity({0, -1, 0}), 1, 1e-12);
-    EXPECT_NEAR(turned.relative_intensity({-1, 0, 0}), 0.25, 1e-12);
-    desc.profile.tilt = 90;  // and now the axis is up, with azimuth 0 backwards
-    const Lamp tilted = asymmetric_lamp(desc);
-    EXPECT_NEAR(tilted.relative_intensity({0, 1, 0}), 0, 1e-12);
-    EXPECT_NEAR(tilted.relative_intensity({0, 0, 1}), 0.5, 1e-12);
-    EXPECT_NEAR(tilted.relative_intensity({-1, 0, 0}), 0.25, 1e-12);
-    // Along x, azimuth 0 is towards y.
-    LampDesc sideways;
-    sideways.direction = {1, 0, 0};
-    EXPECT_NEAR(asymmetric_lamp(sideways).relative_intensity({0, -1, 0}), 0.5, 1e-12);
-}
-
-TEST(IesLamp, MovesWithTheCamera) {
-    LampDesc desc;
-    desc.profile.rotate = 30;
-    desc.direction = glm::normalize(Vector3(0.2, -0.3, 1));
-    const Affine world_from_camera =
-        Affine::translation({1, 2, 3}) * Affine::rotation_xyz_degrees({20, -70, 110});
-    const Lamp at_rest = asymmetric_lamp(desc), moved = asymmetric_lamp(desc, world_from_camera);
-    for (const Vector3& v : {Vector3(1, 0, 0), Vector3(-0.4, 2, 0.1), Vector3(0.3, 0.2, -0.9)})
-        EXPECT_NEAR(moved.relative_intensity(world_from_camera.apply_to_vector(v)),
-                    at_rest.relative_intensity(v), 1e-12);
-    EXPECT_NEAR(distance(moved.position(), {1, 2, 3}), 0, 1e-12);
-}
-
-TEST(IesLamp, PowerIsTheIntegralOfItsIntensity) {
-    LampDesc desc;
-    desc.profile.type = LampProfileDesc::Type::ies;
-    desc.power = PerBand{10};
-    test::IesWriter writer;
-    writer.polar = {0, 90};
-    writer.candelas = [](double, double) { return 123.0; };
-    const Lamp lamp(desc, {}, 1, std::make_shared<PhotometricWeb>(web_of(writer)));
-    EXPECT_NEAR(lamp.axis_intensity()[0], 10 / (2 * pi), 1e-12);  // the half sphere
 }
 
 }  // namespace

@@ -3,18 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <span>
-
-#include "core/base/error.h"
 #include "core/image/image_reader.h"
-#include "tests/support/mesh_fixtures.h"
 
 namespace uw {
 namespace {
-
-std::span<const std::byte> as_bytes(const std::string& text) {
-    return std::as_bytes(std::span(text.data(), text.size()));
-}
 
 /// One row of grey texels whose linear values are exactly 0 and 1, so that decoding cannot blur
 /// what the lookups are tested for.
@@ -80,29 +72,6 @@ TEST(Texture, WrapsAsAsked) {
             EXPECT_LE(red(t, u, TextureFilter::linear, wrap), 1.0);
         }
     }
-}
-
-TEST(Texture, ReadsAPngFromMemoryTopRowFirst) {
-    const PixelImage image = read_image(as_bytes(test::four_texel_png()), "four.png");
-    ASSERT_EQ(image.width, 2);
-    ASSERT_EQ(image.height, 2);
-    ASSERT_EQ(image.channels, 3);
-    const std::vector<float> expected = {1, 0, 0, 0,           1,           0,
-                                         0, 0, 1, 128 / 255.F, 128 / 255.F, 128 / 255.F};
-    for (std::size_t k = 0; k < 12; ++k) EXPECT_NEAR(image.pixels[k], expected[k], 1e-6);
-}
-
-TEST(Texture, RefusesBrokenImages) {
-    const std::string png = test::four_texel_png();
-    EXPECT_THROW(read_image(as_bytes("no image"), "x"), InputError);
-    EXPECT_THROW(read_image(as_bytes(png.substr(0, 20)), "x"), InputError);
-    std::string huge = png;  // IHDR: width 2 -> 0x7f000002; its checksum is wrong then, too
-    huge[16] = 0x7f;
-    EXPECT_THROW(read_image(as_bytes(huge), "x"), InputError);
-    const test::MeshFolder folder;
-    EXPECT_THROW(read_image(folder.path("missing.png")), IoError);
-    EXPECT_THROW(read_image(folder.write("text.png", "hello")), InputError);
-    EXPECT_EQ(read_image(folder.write("four.png", png)).width, 2);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "media/phase/phase_functions.h"
+#include "media/phase/fournier_forand.h"
 #include "media/phase/tabulated_phase.h"
 
 namespace uw::test {

@@ -33,7 +33,7 @@ TEST(Microfacet, TheMirrorDirectionHasTheClosedForm) {
         // On the normal D V = 1/(pi alpha^2) * 1/4.
         const MicrofacetLobe front = microfacet_lobe(k_up, k_up, k_up, roughness);
         EXPECT_NEAR(front.density * 4 * k_pi * alpha * alpha, 1, 1e-12);
-        EXPECT_EQ(front.fresnel_share, 0);
+        EXPECT_EQ(front.fresnel_weight, 0);
         for (const double theta : {0.2, 0.8, 1.3}) {
             const MicrofacetLobe lobe =
                 microfacet_lobe(k_up, at_angle(theta), at_angle(theta, k_pi), roughness);

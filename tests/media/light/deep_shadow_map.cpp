@@ -5,17 +5,14 @@
 
 #include <random>
 
+#include "core/lamps/lamp_factory.h"
 #include "tests/support/gaussian_field.h"
+#include "tests/support/random_direction.h"
 #include "tests/support/sphere_surface.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {
 namespace {
-
-Vector3 random_direction(std::mt19937& rng) {
-    std::normal_distribution<double> normal;
-    return glm::normalize(Vector3(normal(rng), normal(rng), normal(rng)));
-}
 
 bool contains(const std::vector<Interval>& intervals, double s) {
     for (const Interval& i : intervals)
@@ -55,24 +52,6 @@ TEST(ShadowMap, LitIntervalsEndAtTheClosedFormShadowOfASphere) {
     EXPECT_LT(disagreeing / shadowed, 1e-3);
 }
 
-TEST(DirectionCone, HasWhatLiesWithinItsAngle) {
-    std::mt19937 rng(5);
-    for (int n = 0; n < 2000; ++n) {
-        const Vector3 axis = random_direction(rng), direction = 3.0 * random_direction(rng);
-        const double angle = std::acos(glm::dot(axis, direction) / 3.0);
-        EXPECT_TRUE((DirectionCone{axis, -1}.has(direction)));
-        EXPECT_TRUE((DirectionCone{axis, -1}.has(-axis)));
-        for (const double half : {0.3, 1.2, 2.0, 3.0}) {
-            EXPECT_EQ((DirectionCone{axis, std::cos(half)}.has(direction)), angle <= half);
-            EXPECT_EQ((DirectionCone{axis, std::cos(half)}.widened(0.1).has(direction)),
-                      angle <= half + 0.1);
-        }
-        EXPECT_TRUE((DirectionCone{axis, -1}.includes({direction / 3.0, 0.5})));
-        EXPECT_EQ((DirectionCone{axis, std::cos(1.2)}.includes({direction / 3.0, std::cos(0.3)})),
-                  angle + 0.3 <= 1.2);
-    }
-}
-
 TEST(ShadowMap, OfABeamSaysTheSameWithinIt) {
     const SphereSurface sphere({0.5, 0.3, 2}, 0.4);
     const Point3 lamp{-0.7, 0.6, 0.2};
@@ -83,8 +62,9 @@ TEST(ShadowMap, OfABeamSaysTheSameWithinIt) {
     LampDesc desc = isotropic_lamp(lamp, 1);
     desc.fixed_to_camera = false;
     desc.direction = axis;
-    desc.profile = {LampProfileDesc::Type::spot, 50, 0, 0};
-    const Lamp spot(desc, Affine(), 1);
+    desc.profile = SpotProfileDesc{50};
+    std::vector<std::string> warnings;
+    const Lamp spot = make_lamp(desc, Affine(), std::vector{540.0}, warnings);
     std::mt19937 rng(11);
     std::uniform_real_distribution<double> offset(-1.5, 1.5);
     std::vector<Interval> all, known;

@@ -24,23 +24,23 @@ class PhaseTableFile : public ::testing::Test {
         std::string pattern = (std::filesystem::temp_directory_path() / "uwvdb-XXXXXX").string();
         ASSERT_NE(mkdtemp(pattern.data()), nullptr);
         folder_ = pattern;
-        phase_.type = PhaseDesc::Type::table;
-        phase_.file = folder_ / "phase.csv";
+        file_ = folder_ / "phase.csv";
         phase_.where = "scene.yaml:5:9: water.scattering.phase.file";
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
     WaterModel build(const std::string& text) {
-        std::ofstream(phase_.file) << text;
+        std::ofstream(file_) << text;
         return build();
     }
     WaterModel build() {
+        phase_.function = TabulatedPhaseDesc{file_};
         WaterDesc water = basic_water();
         water.scattering = ScatteringDesc{{0.2, 0.2, 0.2}, phase_};
         return build_water_model(water, {});
     }
 
-    std::filesystem::path folder_;
+    std::filesystem::path folder_, file_;
     PhaseDesc phase_;
 };
 
@@ -65,7 +65,7 @@ TEST_F(PhaseTableFile, ErrorsSayWhere) {
     EXPECT_NE(message.find("phase.csv"), std::string::npos) << message;
     EXPECT_THROW(build(std::string(5 << 20, '1')), InputError);  // larger than any table
     EXPECT_THROW(build(std::string("\0\xff\n\0,\n", 6)), InputError);
-    phase_.file = "/dev/zero";
+    file_ = "/dev/zero";
     EXPECT_THROW(build(), IoError);
 }
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/tables/csv_table.h"
-#include "media/phase/phase_functions.h"
+#include "media/phase/fournier_forand.h"
 #include "media/phase/tabulated_phase.h"
 #include "media/water/pure_water.h"
 #include "tests/support/adaptive_quadrature.h"

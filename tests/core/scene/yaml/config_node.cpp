@@ -3,45 +3,41 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <utility>
 
-#include "core/base/text.h"
 #include "core/scene/yaml/yaml_document.h"
 
 namespace uw {
 namespace {
 
-TEST(ConfigNode, numbersAreReadWhole) {
-    double value = 0;
-    for (const auto& [text, expected] : std::vector<std::pair<const char*, double>>{
-             {"1", 1}, {"-2.5", -2.5}, {"+3", 3}, {".5", 0.5}, {"5.", 5}, {"1e3", 1000}}) {
-        EXPECT_EQ(parse_number(text, value), NumberText::number) << text;
-        EXPECT_EQ(value, expected) << text;
-    }
-    for (const char* const text :
-         {"", "2m", "abc", "0x10", "1,5", "1 2", "++1", "+-1", "--1", "-", "1e", "1_000", " 1"}) {
-        EXPECT_EQ(parse_number(text, value) == NumberText::number, false) << text;
-    }
-    for (const char* const text : {"nan", "inf", "-inf", "infinity", ".inf", "-.Inf", ".NaN"}) {
-        EXPECT_EQ(parse_number(text, value), NumberText::not_finite) << text;
-    }
-    EXPECT_EQ(parse_number("1e999", value), NumberText::out_of_range);
+ConfigNode yaml_node(std::string_view text) {
+    return parse_yaml(text, "s.yaml");
 }
 
-TEST(ConfigNode, nearestWordsAreSlipsOnly) {
-    constexpr std::array<std::string_view, 4> k_words{"intensity", "power", "position", "g"};
-    EXPECT_EQ(nearest_word("intensty", k_words), "intensity");  // lost
-    EXPECT_EQ(nearest_word("pwoer", k_words), "power");         // swapped
-    EXPECT_EQ(nearest_word("Positoin", k_words), "position");   // case and swap
-    EXPECT_EQ(nearest_word("x", k_words), "");                  // another word
-    EXPECT_EQ(nearest_word("brightness", k_words), "");
-    EXPECT_EQ(suggestion("brightness", k_words), "use one of: intensity, power, position, g");
+TEST(ConfigNode, findsTheKeysOfAMap) {
+    ConfigNode node = yaml_node("{a: 1, b: {c: 2}}");
+    ASSERT_NE(node.find("b"), nullptr);
+    EXPECT_EQ(node.find("b")->find("c")->scalar, "2");
+    EXPECT_EQ(node.find("c"), nullptr);
+    EXPECT_EQ(node.find("a")->find("b"), nullptr) << "a number has no keys";
+    node.find("a")->scalar = "5";
+    EXPECT_EQ(std::as_const(node).find("a")->scalar, "5");
 }
 
-TEST(ConfigNode, printableTextIsOneShortLine) {
-    EXPECT_EQ(printable("a\nb\x1b[31m"), "a?b?[31m");
-    EXPECT_EQ(printable("abcdef", 4), "abcd...");
-    EXPECT_EQ(printable("ab\xc3\xa9", 3), "ab...") << "not inside a character";
+TEST(ConfigNode, describesItselfForMessages) {
+    EXPECT_EQ(yaml_node("[1, 2, 3]").description(), "a list of 3");
+    EXPECT_EQ(yaml_node("{a: 1}").description(), "a map");
+    EXPECT_EQ(yaml_node("abc").description(), "the text 'abc'");
+    EXPECT_EQ(yaml_node("5").description(), "the number 5");
+    EXPECT_EQ(yaml_node("'5'").description(), "the quoted text '5'");
+}
+
+TEST(ConfigNode, positionsAreFileLineAndColumn) {
+    const ConfigNode node = yaml_node("a: 1\nb:\n  c: 2\n");
+    EXPECT_EQ(node.find("b")->find("c")->position.text(), "s.yaml:3:6");
+    EXPECT_EQ(node.entries.at(1).position.text(), "s.yaml:2:1");
+    const auto origin = std::make_shared<const std::string>("--set a=1");
+    EXPECT_EQ((ConfigPosition{origin, 0, 0}).text(), "--set a=1");
 }
 
 TEST(ConfigNode, hashTellsTextFromNumbersAndNesting) {

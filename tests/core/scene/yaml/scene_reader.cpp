@@ -130,8 +130,8 @@ TEST_F(SceneReader, readsExplicitScatteringAndDissolvedMatter) {
     EXPECT_EQ(scene.water.chlorophyll, 3);
     ASSERT_TRUE(scene.water.scattering);
     EXPECT_EQ(scene.water.scattering->b, (PerBand{0.25, 0.25, 0.25}));
-    EXPECT_EQ(scene.water.scattering->phase.type, PhaseDesc::Type::henyey_greenstein);
-    EXPECT_EQ(scene.water.scattering->phase.g, -0.5);
+    EXPECT_EQ(scene.water.scattering->phase.function,
+              PhaseFunctionDesc(HenyeyGreensteinDesc{-0.5}));
     EXPECT_FALSE(scene.water.small_ppm);
     EXPECT_FALSE(scene.water.absorption);
 }
@@ -154,9 +154,8 @@ TEST_F(SceneReader, readsVolumes) {
     EXPECT_EQ(volume.grids[1].optics->absorption, (PerBand{0.5, 0.5, 0.5, 0.5}));
     EXPECT_EQ(volume.grids[1].optics->scattering, (PerBand{1, 2, 3, 4}));
     ASSERT_TRUE(volume.grids[1].optics->phase);
-    EXPECT_EQ(volume.grids[1].optics->phase->type, PhaseDesc::Type::fournier_forand);
-    EXPECT_EQ(volume.grids[1].optics->phase->n, 1.12);
-    EXPECT_EQ(volume.grids[1].optics->phase->mu, 3.6);
+    EXPECT_EQ(volume.grids[1].optics->phase->function,
+              PhaseFunctionDesc(FournierForandDesc{1.12, 3.6}));
     // scale 2, then a quarter turn about y (x goes to -z), then 3 along z; cos 90 deg rounds
     const Point3 moved = volume.world_from_upright * Point3{1, 0, 0};
     expect_vector(from_origin(moved), {0, 0, 1}, 1e-15);
@@ -189,16 +188,14 @@ TEST_F(SceneReader, readsLampsAndRender) {
     EXPECT_EQ(left.name, "left");
     EXPECT_EQ(left.position, (Point3{-1, -0.5, 0}));
     expect_vector(left.direction, {0, 0, 1});
-    EXPECT_EQ(left.profile.type, LampProfileDesc::Type::spot);
-    EXPECT_EQ(left.profile.beam, 60);
-    EXPECT_EQ(left.profile.edge, 5);
+    EXPECT_EQ(std::get<SpotProfileDesc>(left.profile).beam, 60);
+    EXPECT_EQ(std::get<SpotProfileDesc>(left.profile).edge, 5);
     EXPECT_EQ(left.intensity, (PerBand{50, 51, 52, 53}));
     EXPECT_FALSE(left.power);
     EXPECT_FALSE(left.fixed_to_camera);
     const LampDesc& second = scene.lamps[1];
     EXPECT_EQ(second.name, "lamp2");
-    EXPECT_EQ(second.profile.type, LampProfileDesc::Type::cosine);
-    EXPECT_EQ(second.profile.fwhm, 120);
+    EXPECT_EQ(std::get<CosineProfileDesc>(second.profile).fwhm, 120);
     EXPECT_EQ(second.power, (PerBand{20, 20, 20, 20}));
     EXPECT_FALSE(second.intensity);
     EXPECT_TRUE(second.fixed_to_camera);

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace uw {
+
+/// `uwvdb info` as typed.
+struct InfoArguments {
+    std::filesystem::path subject;       // a VDB file, a sequence of them, or a scene
+    std::vector<std::string> overrides;  // --set key.path=value, of a scene
+    std::optional<int> frame;            // --frame, of a sequence; else the first there is
+    bool json = false;
+};
+
+/// What `uwvdb info --help` ends with.
+extern const char* const k_info_examples;
+
+/// The options of `uwvdb info`, written to `arguments`.
+Options info_options(InfoArguments& arguments);
+
+}  // namespace uw

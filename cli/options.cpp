@@ -1,0 +1,129 @@
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+
+namespace uw {
+
+namespace {
+
+/// All of `text` as a number of type T; empty if it is none.
+template <class T>
+std::optional<T> number_in(const std::string& text) {
+    T value{};
+    const char* const end = text.data() + text.size();
+    const auto [next, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || next != end) return std::nullopt;
+    return value;
+}
+
+int integer_within(const std::string& name, const std::string& text, int low, int high) {
+    const std::optional<int> value = number_in<int>(text);
+    if (value && *value >= low && *value <= high) return *value;
+    throw UsageError(
+        fmt::format("{}: expected {} to {}, found '{}'", name, low, high, printable(text)));
+}
+
+double number_within(const std::string& name, const std::string& text, double low, double high) {
+    const std::optional<double> value = number_in<double>(text);
+    if (value && *value > low && *value <= high) return *value;
+    throw UsageError(fmt::format("{}: expected a number above {}, at most {}; found '{}'", name,
+                                 low, high, printable(text)));
+}
+
+}  // namespace
+
+std::string Option::name() const {
+    const std::size_t comma = names.rfind(',');
+    return comma == std::string::npos ? names : names.substr(comma + 1);
+}
+
+Option& Options::flag(std::string names, bool& variable, std::string help) {
+    Option& option = all_.emplace_back();
+    option.names = std::move(names);
+    option.help = std::move(help);
+    option.take = [&variable](const std::string&) { variable = true; };
+    return option;
+}
+
+Option& Options::parsed(std::string names, std::string value_name,
+                        std::function<void(const std::string&)> take, std::string help) {
+    Option& option = all_.emplace_back();
+    option.names = std::move(names);
+    option.value_name = std::move(value_name);
+    option.help = std::move(help);
+    option.value = Option::Value::text;
+    option.take = std::move(take);
+    return option;
+}
+
+Option& Options::text(std::string names, std::string value_name, std::string& variable,
+                      std::string help) {
+    return parsed(
+        std::move(names), std::move(value_name),
+        [&variable](const std::string& text) { variable = text; }, std::move(help));
+}
+
+Option& Options::path(std::string names, std::string value_name, std::filesystem::path& variable,
+                      std::string help) {
+    Option& option = parsed(
+        std::move(names), std::move(value_name),
+        [&variable](const std::string& text) { variable = text; }, std::move(help));
+    option.value = Option::Value::path;
+    return option;
+}
+
+Option& Options::integer(std::string names, std::string value_name, std::optional<int>& variable,
+                         int low, int high, std::string help) {
+    Option& option = parsed(std::move(names), std::move(value_name), {}, std::move(help));
+    option.take = [name = option.name(), &variable, low, high](const std::string& text) {
+        variable = integer_within(name, text, low, high);
+    };
+    return option;
+}
+
+Option& Options::integer(std::string names, std::string value_name, int& variable, int low,
+                         int high, std::string help) {
+    Option& option = parsed(std::move(names), std::move(value_name), {}, std::move(help));
+    option.take = [name = option.name(), &variable, low, high](const std::string& text) {
+        variable = integer_within(name, text, low, high);
+    };
+    return option;
+}
+
+Option& Options::number(std::string names, std::string value_name, std::optional<double>& variable,
+                        double low, double high, std::string help) {
+    Option& option = parsed(std::move(names), std::move(value_name), {}, std::move(help));
+    option.take = [name = option.name(), &variable, low, high](const std::string& text) {
+        variable = number_within(name, text, low, high);
+    };
+    return option;
+}
+
+Option& Options::number(std::string names, std::string value_name, double& variable, double low,
+                        double high, std::string help) {
+    Option& option = parsed(std::move(names), std::move(value_name), {}, std::move(help));
+    option.take = [name = option.name(), &variable, low, high](const std::string& text) {
+        variable = number_within(name, text, low, high);
+    };
+    return option;
+}
+
+void Options::set(std::vector<std::string>& overrides) {
+    Option& option = parsed(
+        "--set", "KEY.PATH=VALUE",
+        [&overrides](const std::string& text) { overrides.push_back(text); },
+        "replace a value of the scene file; may be repeated");
+    option.repeatable = true;
+}
+
+void Options::threads(int& variable) {
+    integer("--threads", "N", variable, 0, 1024, "threads to use; 0, the default: all there are");
+}
+
+}  // namespace uw

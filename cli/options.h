@@ -1,0 +1,78 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace uw {
+
+/// One option, flag or positional argument of a command as data: what the parser, --help, the man
+/// page and the shells' completions are made of.
+struct Option {
+    enum class Value {
+        none,      // a flag
+        text,      // anything
+        path,      // a file or the beginning of a file's name
+        word,      // one of `words`
+        word_list  // some of `words`, separated by commas
+    };
+
+    std::string names;       // "-o,--output"; without a dash a positional argument: "SCENE"
+    std::string value_name;  // what stands for the value in help: "OUT.exr"
+    std::string help;        // one line
+    Value value = Value::none;
+    std::vector<std::string> words;
+    bool required = false;
+    bool repeatable = false;
+    std::string needs;  // the name of an option that must be given as well; empty: none
+    /// Takes the text given (empty for a flag). Throws UsageError of one line.
+    std::function<void(const std::string& text)> take;
+
+    bool is_positional() const { return !names.starts_with('-'); }
+    bool is_flag() const { return value == Value::none; }
+    /// The long name, or that of a positional argument, for messages.
+    std::string name() const;
+};
+
+/// What a command takes. Each function declares one option that is written to its variable as the
+/// command line is read; the variable outlives the options. The references returned stay valid.
+class Options {
+  public:
+    /// A switch: true where it is given.
+    Option& flag(std::string names, bool& variable, std::string help);
+    /// Any text.
+    Option& text(std::string names, std::string value_name, std::string& variable,
+                 std::string help);
+    /// The name of a file.
+    Option& path(std::string names, std::string value_name, std::filesystem::path& variable,
+                 std::string help);
+    /// A whole number within [low, high].
+    Option& integer(std::string names, std::string value_name, std::optional<int>& variable,
+                    int low, int high, std::string help);
+    Option& integer(std::string names, std::string value_name, int& variable, int low, int high,
+                    std::string help);
+    /// A number above `low`, at most `high`.
+    Option& number(std::string names, std::string value_name, std::optional<double>& variable,
+                   double low, double high, std::string help);
+    Option& number(std::string names, std::string value_name, double& variable, double low,
+                   double high, std::string help);
+    /// Text that `take` understands, or refuses with a UsageError.
+    Option& parsed(std::string names, std::string value_name,
+                   std::function<void(const std::string&)> take, std::string help);
+
+    /// `--set KEY.PATH=VALUE`, any number of times.
+    void set(std::vector<std::string>& overrides);
+    /// `--threads N`.
+    void threads(int& variable);
+
+    /// All that was declared, in that order.
+    const std::deque<Option>& all() const { return all_; }
+
+  private:
+    std::deque<Option> all_;
+};
+
+}  // namespace uw

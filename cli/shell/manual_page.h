@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "cli/command.h"
+
+namespace uw {
+
+/// The manual page uwvdb(1) of all commands, as roff of the man macros.
+std::string manual_page(std::span<const Command> commands);
+
+}  // namespace uw

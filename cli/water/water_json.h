@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "cli/water/water_report.h"
+
+namespace uw {
+
+/// Everything as one JSON object; ratios without a value are null.
+std::string water_json(const WaterReport& report);
+
+}  // namespace uw

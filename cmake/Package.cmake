@@ -1,0 +1,51 @@
+# `cpack -G DEB` in a build folder makes the .deb of the program, for the system it is built on.
+find_package(Git QUIET)
+function(uwvdb_of_last_commit result format otherwise)
+    set(value "")
+    if(GIT_FOUND)
+        execute_process(COMMAND ${GIT_EXECUTABLE} log -1 --format=${format}
+                        WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+                        OUTPUT_VARIABLE value OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    endif()
+    if(NOT value)
+        set(value "${otherwise}")
+    endif()
+    set(${result} "${value}" PARENT_SCOPE)
+endfunction()
+uwvdb_of_last_commit(uwvdb_maintainer "%an <%ae>" "uwvdb maintainers <uwvdb@localhost>")
+uwvdb_of_last_commit(uwvdb_package_date "%aD" "Thu, 01 Jan 1970 00:00:00 +0000")
+string(REGEX MATCH "[0-9][0-9][0-9][0-9]" uwvdb_package_year "${uwvdb_package_date}")
+
+# Packages of different systems have different versions: a newer system's replaces an older's.
+cmake_host_system_information(RESULT uwvdb_system QUERY DISTRIB_INFO)
+set(uwvdb_package_release "1~${uwvdb_system_ID}${uwvdb_system_VERSION_ID}")
+set(uwvdb_package_version ${PROJECT_VERSION}-${uwvdb_package_release})
+
+foreach(file changelog.Debian copyright)
+    configure_file(cmake/debian/${file}.in ${PROJECT_BINARY_DIR}/debian/${file} @ONLY)
+    install(FILES ${PROJECT_BINARY_DIR}/debian/${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}
+            COMPONENT debian EXCLUDE_FROM_ALL)
+endforeach()
+
+set(CPACK_PACKAGE_NAME uwvdb)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_CONTACT "${uwvdb_maintainer}")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "renderer of physically exact underwater images")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_COMPONENTS_ALL program debian)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/policy_script.cmake)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE ${uwvdb_package_release})
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+    "Renders what a camera behind a glass port sees of a lamp-lit scene under
+water: absorption, scattering and refraction, particle plumes from VDB files,
+and exact ground truth beside the image. Example scenes are in
+/usr/share/uwvdb/scenes.")
+include(CPack)

@@ -1,0 +1,32 @@
+#include "core/base/text_file.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <system_error>
+
+#include "core/base/error.h"
+
+namespace uw {
+
+std::string read_text_file(const std::filesystem::path& file, const std::string& subject,
+                           std::size_t most_bytes, std::string_view noun) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (status.type() == std::filesystem::file_type::not_found)
+        throw IoError(fmt::format("{}: no such file; check the name of the {}", subject, noun));
+    if (std::filesystem::is_directory(status))
+        throw IoError(fmt::format("{}: is a folder; name the {} in it", subject, noun));
+    std::ifstream stream(file, std::ios::binary);
+    std::string text(most_bytes + 1, '\0');
+    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!stream.is_open() || stream.bad())
+        throw IoError(fmt::format("{}: cannot be read; check its permissions", subject));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > most_bytes)
+        throw InputError(fmt::format("{}: is larger than {} MiB; this is no {}", subject,
+                                     most_bytes >> 20, noun));
+    return text;
+}
+
+}  // namespace uw

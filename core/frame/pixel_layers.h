@@ -1,0 +1,137 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/base/spectrum.h"
+#include "core/colour/colour.h"
+#include "core/frame/ray_in_scatter.h"
+#include "core/image/layers.h"
+#include "core/surfaces/surfaces.h"
+
+namespace uw {
+
+/// Everything one pixel holds. Radiometric values are means over the pixel's samples; ground truth
+/// (`hit` and the depths) belongs to the pixel's centre. W m^-2, metres, world space. Radiance
+/// (direct, forward, backscatter, clean, lamps) is that in water, W m^-2 sr^-1; in the paper's
+/// output light has its factor by distance as well (SensorModel::surface_factor).
+struct PixelResult {
+    double alpha = 0;         // fraction of the samples whose ray enters the water
+    double pixel_factor = 1;  // what radiance is multiplied by in images: SensorModel::pixel_factor
+    Spectrum direct;
+    Spectrum forward;  // what forward scatter adds to `direct`: 0 before its pass
+    Spectrum backscatter;
+    Spectrum backscatter_first;  // of the first slab
+    Spectrum irradiance;         // on the surface, 0 where there is none
+    Spectrum exitance;           // of the surface: what it reflects of the irradiance
+    Spectrum clean;              // radiance of the surface without water
+    Spectrum transmittance;      // surface to port, mean over the samples that meet a surface
+    double lit = 0;              // mean fraction of the lamps that see the surface
+    /// Radiance due to each lamp: direct + backscatter. Empty unless InScatterParts::lamps.
+    std::vector<Spectrum> lamps;
+    bool has_hit = false;  // whether the centre's ray meets a surface
+    SurfaceHit hit;
+    double depth_z = 0;  // camera-frame z of the hit
+    double range = 0;    // from the camera's centre to the hit
+    double path = 0;     // in water, from the outer glass surface to the hit
+
+    /// Makes it a pixel that shows nothing, with 0 for each of so many lamps. Storage is reused.
+    void reset(std::size_t lamp_count);
+};
+
+/// Ways of filling a layer's channels from a pixel.
+namespace layer_channels {
+
+/// Values as they are, one per band.
+template <Spectrum PixelResult::*values>
+void spectrum(const PixelResult& pixel, std::span<float> channels) {
+    for (std::size_t b = 0; b < channels.size(); ++b)
+        channels[b] = static_cast<float>((pixel.*values)[b]);
+}
+/// Radiance, which images hold times the pixel's factor.
+template <Spectrum PixelResult::*values>
+void radiance(const PixelResult& pixel, std::span<float> channels) {
+    for (std::size_t b = 0; b < channels.size(); ++b)
+        channels[b] = static_cast<float>(pixel.pixel_factor * (pixel.*values)[b]);
+}
+/// One number.
+template <double PixelResult::*value>
+void number(const PixelResult& pixel, std::span<float> channels) {
+    channels[0] = static_cast<float>(pixel.*value);
+}
+/// The sum of direct, forward and backscatter. They are rounded to float before they are added: in
+/// the image their sum is the total to the bit.
+void total(const PixelResult& pixel, std::span<float> channels);
+void albedo(const PixelResult& pixel, std::span<float> channels);
+void normal(const PixelResult& pixel, std::span<float> channels);
+void position(const PixelResult& pixel, std::span<float> channels);
+void id(const PixelResult& pixel, std::span<float> channels);
+
+}  // namespace layer_channels
+
+/// What a layer holds of a pixel.
+struct PixelLayer {
+    /// What forward scatter, a second pass over the image, does to a layer.
+    enum class ForwardScatter { leaves, replaces, adds };
+
+    Layer layer;
+    void (*fill)(const PixelResult& pixel, std::span<float> channels);
+    ForwardScatter forward_scatter = ForwardScatter::leaves;
+    bool of_hit = false;            // 0 where the centre's ray meets no surface
+    bool needs_first_slab = false;  // of the in-scatter
+};
+
+/// What each layer holds, in the order of Layer: a layer that is left out does not compile.
+inline constexpr std::array<PixelLayer, k_layer_count> k_pixel_layers{{
+    {.layer = Layer::total,
+     .fill = layer_channels::total,
+     .forward_scatter = PixelLayer::ForwardScatter::replaces},
+    {.layer = Layer::direct,
+     .fill = layer_channels::radiance<&PixelResult::direct>,
+     .forward_scatter = PixelLayer::ForwardScatter::replaces},
+    {.layer = Layer::forward,
+     .fill = layer_channels::radiance<&PixelResult::forward>,
+     .forward_scatter = PixelLayer::ForwardScatter::replaces},
+    {.layer = Layer::backscatter,
+     .fill = layer_channels::radiance<&PixelResult::backscatter>,
+     .forward_scatter = PixelLayer::ForwardScatter::replaces},
+    {.layer = Layer::backscatter_first,
+     .fill = layer_channels::radiance<&PixelResult::backscatter_first>,
+     .forward_scatter = PixelLayer::ForwardScatter::adds,
+     .needs_first_slab = true},
+    {.layer = Layer::irradiance, .fill = layer_channels::spectrum<&PixelResult::irradiance>},
+    {.layer = Layer::exitance, .fill = layer_channels::spectrum<&PixelResult::exitance>},
+    {.layer = Layer::lit, .fill = layer_channels::number<&PixelResult::lit>},
+    {.layer = Layer::clean, .fill = layer_channels::radiance<&PixelResult::clean>},
+    {.layer = Layer::transmittance, .fill = layer_channels::spectrum<&PixelResult::transmittance>},
+    {.layer = Layer::albedo, .fill = layer_channels::albedo, .of_hit = true},
+    {.layer = Layer::depth, .fill = layer_channels::number<&PixelResult::depth_z>, .of_hit = true},
+    {.layer = Layer::range, .fill = layer_channels::number<&PixelResult::range>, .of_hit = true},
+    {.layer = Layer::path, .fill = layer_channels::number<&PixelResult::path>, .of_hit = true},
+    {.layer = Layer::normal, .fill = layer_channels::normal, .of_hit = true},
+    {.layer = Layer::position, .fill = layer_channels::position, .of_hit = true},
+    {.layer = Layer::id, .fill = layer_channels::id, .of_hit = true},
+}};
+static_assert(has_every_layer(k_pixel_layers));
+
+/// Which parts of the in-scatter the layers of `plan` need.
+InScatterParts in_scatter_parts(const LayerPlan& plan);
+
+/// Writes a pixel into the channels of `plan`: colour, coverage, and every layer. `channels` are
+/// those of a film made with the plan's names.
+void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColour& colour,
+                 std::span<float> channels);
+
+/// Writes what forward scatter changes into channels that store_pixel has filled before, but for
+/// the lamps. `pixel` holds the light after forward scatter, and of `backscatter_first` what it
+/// adds.
+void store_forward_scatter(const PixelResult& pixel, const LayerPlan& plan,
+                           const BandColour& colour, std::span<float> channels);
+
+/// Adds what forward scatter adds to the light of one lamp: `forward` and `backscatter` of `pixel`.
+void add_forward_scatter_of_lamp(const PixelResult& pixel, const LayerPlan& plan, std::size_t lamp,
+                                 std::span<float> channels);
+
+}  // namespace uw

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/ray.h"
+#include "core/lamps/direction_cone.h"
+#include "core/lamps/lamp_placement.h"
+#include "core/lamps/photometric_web.h"
+#include "core/scene/lamp_profile_desc.h"
+
+namespace uw {
+
+/// The profile of a luminaire whose photometry is known, relative to its brightest direction
+/// (IsALampProfile).
+///
+/// Azimuth 0 lies towards the frame's x (its y, where the lamp shines along x), seen along the
+/// lamp's direction; `rotate` turns it about that direction, `tilt` then takes the luminaire's axis
+/// from there towards it. 90 degrees lie anticlockwise of 0 seen from behind the lamp, as LM-63 has
+/// it.
+class IesProfile {
+  public:
+    static constexpr std::string_view k_name = "IES luminaire";
+
+    /// `web` is the photometry of `desc.file`.
+    IesProfile(const IesProfileDesc& desc, const LampPlacement& placement,
+               std::shared_ptr<const PhotometricWeb> web);
+
+    double relative_intensity(const Vector3& v) const;
+    double solid_angle() const { return web_->flux() / web_->peak(); }
+    std::optional<double> peak_candelas() const { return web_->peak(); }
+    bool has_even_core() const { return false; }
+    DirectionCone cone() const { return {axis_, cos_dark_}; }
+    void append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const;
+
+  private:
+    std::shared_ptr<const PhotometricWeb> web_;
+    Vector3 axis_, zero_, quarter_;     // its axis and its azimuths 0 and 90 degrees, across it
+    double cos_dark_;                   // dark outside this angle from the axis
+    std::vector<double> cones_;         // cosines of the cones that break the profile
+    bool breaks_at_equator_ = false;    // the plane across the axis breaks it, too
+    std::vector<Vector3> half_planes_;  // directions across the axis that break the profile
+};
+
+/// Reads the file. One whose candelas do not go with its lumens is warned of, one line each. Throws
+/// InputError for a file that is no LM-63, IoError for one that cannot be read.
+IesProfile make_profile(const IesProfileDesc& desc, const LampPlacement& placement,
+                        std::vector<std::string>& warnings);
+
+}  // namespace uw

@@ -1,0 +1,52 @@
+#include "core/lamps/ray_crossings.h"
+
+#include <cmath>
+
+namespace uw {
+
+void append_cone_crossings(const Ray& ray, const Point3& apex, const Vector3& axis,
+                           double cos_angle, std::vector<double>& s) {
+    const Vector3 o = ray.origin - apex;
+    const double da = glm::dot(ray.direction, axis);
+    const double oa = glm::dot(o, axis);
+    const double cos2 = cos_angle * cos_angle;
+    // (x.a)^2 = cos^2 |x|^2 with x = o + s d: a quadratic in s.
+    const double a = da * da - cos2;
+    const double half_b = da * oa - cos2 * glm::dot(o, ray.direction);
+    const double c = oa * oa - cos2 * glm::dot(o, o);
+    const auto append = [&](double root) {
+        // The quadratic describes both halves of the double cone; keep the lamp's own.
+        const double along_axis = oa + root * da;
+        if (std::isfinite(root) && root > 0 && along_axis * cos_angle >= 0) s.push_back(root);
+    };
+    const double discriminant = half_b * half_b - a * c;
+    if (discriminant < 0) return;
+    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
+    if (a != 0) append(q / a);
+    if (q != 0) append(c / q);
+}
+
+void append_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& normal,
+                           std::vector<double>& s) {
+    const double root = -glm::dot(ray.origin - apex, normal) / glm::dot(ray.direction, normal);
+    if (std::isfinite(root) && root > 0) s.push_back(root);
+}
+
+void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& side,
+                                const Vector3& normal, std::vector<double>& s) {
+    const double root = -glm::dot(ray.origin - apex, normal) / glm::dot(ray.direction, normal);
+    if (std::isfinite(root) && root > 0 && glm::dot(ray.at(root) - apex, side) >= 0)
+        s.push_back(root);
+}
+
+void append_nearest_to_axis(const Ray& ray, const Point3& apex, const Vector3& axis,
+                            std::vector<double>& s) {
+    const Vector3 o = ray.origin - apex;
+    const double da = glm::dot(ray.direction, axis), oa = glm::dot(o, axis);
+    const double od = glm::dot(o, ray.direction);
+    // d/ds (x.a / |x|) = 0 with x = o + s d: linear in s.
+    const double root = (da * glm::dot(o, o) - oa * od) / (oa - da * od);
+    if (std::isfinite(root) && root > 0) s.push_back(root);
+}
+
+}  // namespace uw

@@ -1,0 +1,69 @@
+#include "core/lamps/spot_profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/lamps/ray_crossings.h"
+
+namespace uw {
+
+namespace {
+
+double smoothstep(double x) {
+    return x * x * (3.0 - 2.0 * x);
+}
+
+// 2 pi int smoothstep sin(theta) over the edge of a spot, from full (inner) to dark (outer).
+double edge_solid_angle(double inner, double outer) {
+    constexpr int k_steps = 256;  // Simpson on a cubic times a sine: exact to 1e-9
+    const double h = (outer - inner) / k_steps;
+    double sum = 0;
+    for (int i = 0; i <= k_steps; ++i) {
+        const double simpson = (i == 0 || i == k_steps) ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
+        sum +=
+            simpson * smoothstep(1.0 - static_cast<double>(i) / k_steps) * std::sin(inner + i * h);
+    }
+    return 2.0 * std::numbers::pi * sum * h / 3.0;
+}
+
+}  // namespace
+
+SpotProfile::SpotProfile(const SpotProfileDesc& desc, const LampPlacement& placement)
+    : axis_(placement.axis()),
+      falloff_(desc.falloff),
+      full_angle_(glm::radians(std::max(0.0, 0.5 * (desc.beam - desc.edge)))),
+      cos_full_(std::cos(full_angle_)),
+      dark_angle_(glm::radians(std::min(180.0, 0.5 * (desc.beam + desc.edge)))),
+      cos_dark_(std::cos(dark_angle_)) {
+    cones_.push_back(cos_full_);
+    // Within the edge as well: a ray that grazes the beam sees a narrow bump of it.
+    if (cos_dark_ != cos_full_)
+        for (const double part : {0.25, 0.5, 0.75, 1.0})
+            cones_.push_back(std::cos(full_angle_ + part * (dark_angle_ - full_angle_)));
+}
+
+double SpotProfile::relative_intensity(const Vector3& v) const {
+    const double cosine = glm::dot(v, axis_) / glm::length(v);
+    if (cosine >= cos_full_) return 1.0;
+    if (cosine <= cos_dark_) return 0.0;
+    if (falloff_ == SpotProfileDesc::Falloff::gltf) {
+        const double way = (cosine - cos_dark_) / (cos_full_ - cos_dark_);
+        return way * way;
+    }
+    const double angle = std::acos(glm::clamp(cosine, -1.0, 1.0));
+    return smoothstep((dark_angle_ - angle) / (dark_angle_ - full_angle_));
+}
+
+double SpotProfile::solid_angle() const {
+    const double full = 2.0 * std::numbers::pi * (1.0 - cos_full_);
+    if (falloff_ == SpotProfileDesc::Falloff::gltf)  // a square of the cosine's way
+        return full + 2.0 * std::numbers::pi * (cos_full_ - cos_dark_) / 3.0;
+    return full + edge_solid_angle(full_angle_, dark_angle_);
+}
+
+void SpotProfile::append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const {
+    for (const double cosine : cones_) append_cone_crossings(ray, apex, axis_, cosine, s);
+}
+
+}  // namespace uw

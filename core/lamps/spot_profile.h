@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/ray.h"
+#include "core/lamps/direction_cone.h"
+#include "core/lamps/lamp_placement.h"
+#include "core/scene/lamp_profile_desc.h"
+
+namespace uw {
+
+/// The profile of a spot: 1 within beam/2 - edge/2 of its axis, 0 outside beam/2 + edge/2, and a
+/// smoothstep of the angle or glTF's falloff between (IsALampProfile).
+class SpotProfile {
+  public:
+    static constexpr std::string_view k_name = "spot";
+
+    SpotProfile(const SpotProfileDesc& desc, const LampPlacement& placement);
+
+    double relative_intensity(const Vector3& v) const;
+    double solid_angle() const;
+    std::optional<double> peak_candelas() const { return std::nullopt; }
+    bool has_even_core() const { return true; }
+    DirectionCone cone() const { return {axis_, cos_dark_}; }
+    void append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const;
+
+  private:
+    Vector3 axis_;
+    SpotProfileDesc::Falloff falloff_;
+    double full_angle_, cos_full_;  // the spot shines fully inside this angle [rad]
+    double dark_angle_, cos_dark_;  // and is dark outside this one
+    std::vector<double> cones_;     // cosines of the cones that break the profile
+};
+
+inline SpotProfile make_profile(const SpotProfileDesc& desc, const LampPlacement& placement,
+                                std::vector<std::string>& /*warnings*/) {
+    return {desc, placement};
+}
+
+}  // namespace uw

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/affine.h"
+#include "core/base/vec.h"
+#include "core/scene/per_band.h"
+#include "core/scene/source_location.h"
+
+namespace uw {
+
+/// What a glTF file's light intensities are (Blender's exporter offers these three).
+enum class LightUnits {
+    standard,  ///< candela, as the format has it: W/sr times 683
+    compat,    ///< W/sr
+    raw,       ///< W in all directions
+};
+
+/// What to take from a glTF file beside its meshes (core/meshes/gltf/gltf_import.h).
+struct GltfImportDesc {
+    bool camera = false;
+    std::string camera_name;  ///< empty: the file's only one
+    SourceLocation camera_where;
+    bool all_lamps = false;
+    std::vector<std::string> lamps;  ///< by name; empty with all_lamps
+    SourceLocation lamps_where;
+    LightUnits units = LightUnits::standard;
+
+    bool any_lamps() const { return all_lamps || !lamps.empty(); }
+    friend bool operator==(const GltfImportDesc&, const GltfImportDesc&) = default;
+};
+
+/// One entry of the scene's geometry: the meshes of a file, or a shape.
+struct GeometryDesc {
+    enum class Type { file, plane, box, sphere };
+    Type type = Type::file;
+    std::filesystem::path file;
+    bool is_sequence = false;            ///< `file` has a place for the frame's number
+    Affine world_from_object;            ///< of a file's meshes, in metres
+    Point3 point;                        ///< of a plane, world [m]
+    Vector3 normal{0, 0, 1};             ///< of a plane, world, unit
+    Point3 min, max;                     ///< of a box, world [m]
+    Point3 center;                       ///< of a sphere, world [m]
+    double radius = 0;                   ///< of a sphere [m]
+    std::optional<PerBand> reflectance;  ///< 0..1; replaces the file's colours; without either, 0.5
+    GltfImportDesc import;
+    bool is_pbr = false;  ///< a glTF file's metallic-roughness materials; else all is diffuse
+    SourceLocation where;
+
+    friend bool operator==(const GeometryDesc&, const GeometryDesc&) = default;
+};
+
+}  // namespace uw

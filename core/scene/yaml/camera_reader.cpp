@@ -1,0 +1,182 @@
+#include "core/scene/yaml/camera_reader.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "core/scene/yaml/camera_values.h"
+#include "core/scene/yaml/config_map.h"
+#include "core/scene/yaml/name_reader.h"
+#include "core/scene/yaml/port_reader.h"
+#include "core/scene/yaml/pose_reader.h"
+
+namespace uw {
+namespace {
+
+/// Where a fisheye shows the angle `theta` [rad], in units of the focal length.
+double fisheye_radius(double theta, const DistortionDesc& distortion) {
+    double sum = 0;
+    for (std::size_t i = 4; i-- > 0;) sum = (sum + distortion.k[i]) * theta * theta;
+    return theta * (1 + sum);
+}
+
+/// Whether all angles up to `theta` are shown, each farther out than those before.
+bool grows_to(double theta, const DistortionDesc& distortion) {
+    constexpr int k_steps = 1000;
+    double last = 0;
+    for (int i = 1; i <= k_steps; ++i) {
+        const double here = fisheye_radius(theta * i / k_steps, distortion);
+        if (!(here > last)) return false;
+        last = here;
+    }
+    return true;
+}
+
+IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camera) {
+    ConfigMap map(value, {"fx", "fy", "cx", "cy", "fov_x"}, "write {fov_x: 60} or {fx: 1400}");
+    IntrinsicsDesc intrinsics;
+    intrinsics.cx = camera.width / 2.0;
+    intrinsics.cy = camera.height / 2.0;
+    if (const auto fov = map.find("fov_x")) {
+        map.finish("intrinsics with 'fov_x'");
+        constexpr auto k_mend = "give the horizontal field of view in degrees";
+        const bool fisheye = camera.distortion.model == DistortionDesc::Model::fisheye;
+        const double degrees =
+            fisheye ? fov->within(1e-3, 360, k_mend) : fov->between(0, 180, k_mend);
+        const double half = degrees / 2 * std::numbers::pi / 180;
+        const double edge = fisheye ? fisheye_radius(half, camera.distortion) : std::tan(half);
+        if (fisheye && !grows_to(half, camera.distortion)) {
+            fov->fail(
+                fmt::format("the distortion folds back before {} degrees off the axis; check "
+                            "distortion.k, or give fx in pixels",
+                            degrees / 2));
+        }
+        intrinsics.fx = intrinsics.fy = camera.width / 2.0 / edge;
+        return intrinsics;
+    }
+    constexpr auto k_focal = "give the focal length in pixels";
+    constexpr auto k_centre = "give the principal point in pixels";
+    intrinsics.fx = map.require("fx", "give fx in pixels, or fov_x in degrees").positive(k_focal);
+    intrinsics.fy = intrinsics.fx;
+    if (const auto fy = map.find("fy")) intrinsics.fy = fy->positive(k_focal);
+    if (const auto cx = map.find("cx")) intrinsics.cx = cx->number(k_centre);
+    if (const auto cy = map.find("cy")) intrinsics.cy = cy->number(k_centre);
+    return intrinsics;
+}
+
+/// Numbers into the first places of `places`.
+void read_coefficients(const ConfigValue& value, std::size_t least, std::string_view mend,
+                       std::span<double> places) {
+    const std::vector<ConfigValue> numbers = value.list(mend);
+    if (numbers.size() < least || numbers.size() > places.size()) {
+        const std::string count = least == places.size()
+                                      ? fmt::format("{}", least)
+                                      : fmt::format("{} to {}", least, places.size());
+        value.fail(fmt::format("expected {} numbers, found {}; {}", count, numbers.size(), mend));
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) places[i] = numbers[i].number(mend);
+}
+
+DistortionDesc read_distortion(const ConfigValue& value) {
+    ConfigMap map(value, {"model", "k", "p", "k1", "k2", "k3", "k4"},
+                  "write {model: brown-conrady, k: [0, 0, 0], p: [0, 0]}");
+    using Model = DistortionDesc::Model;
+    constexpr std::array<std::pair<std::string_view, Model>, 2> k_models{
+        {{"brown-conrady", Model::brown_conrady}, {"fisheye", Model::fisheye}}};
+    DistortionDesc distortion;
+    if (const auto model = map.find("model")) distortion.model = model->choice(k_models);
+    const auto k = map.find("k");
+    if (distortion.model == Model::fisheye) {
+        constexpr auto k_mend = "give k1, k2, k3, k4";
+        if (k) read_coefficients(*k, 4, k_mend, std::span(distortion.k).first(4));
+        constexpr std::array<std::string_view, 4> k_names{"k1", "k2", "k3", "k4"};
+        for (std::size_t i = 0; i < k_names.size() && !k; ++i)
+            if (const auto entry = map.find(k_names[i])) distortion.k[i] = entry->number(k_mend);
+        map.finish("model 'fisheye' (write k: [k1, k2, k3, k4])");
+        return distortion;
+    }
+    if (k) {
+        read_coefficients(*k, 3, "give 3 to 6 numbers: k1, k2, k3 and, if rational, k4, k5, k6",
+                          distortion.k);
+    }
+    if (const auto p = map.find("p")) {
+        constexpr auto k_mend = "give two numbers: p1, p2";
+        const std::vector<ConfigValue> numbers = p->list_of(2, k_mend);
+        for (std::size_t i = 0; i < 2; ++i) distortion.p[i] = numbers[i].number(k_mend);
+    }
+    map.finish("model 'brown-conrady' (write k: [k1, k2, k3], p: [p1, p2])");
+    return distortion;
+}
+
+LensDesc read_lens(const ConfigValue& value) {
+    ConfigMap map(value, {"f_number", "focal_length", "transmission"},
+                  "write {f_number: 2.8, focal_length: 0.0085, transmission: 0.95}");
+    LensDesc lens;
+    const ConfigValue f_number = map.require("f_number", "give the f-number, such as 2.8");
+    lens.f_number = f_number.positive("give the f-number, such as 2.8");
+    const ConfigValue focal_length =
+        map.require("focal_length", "give the focal length in metres, such as 0.0085");
+    lens.focal_length = focal_length.positive("give the focal length in metres, such as 0.0085");
+    if (lens.focal_length > 2) {
+        focal_length.fail(fmt::format("{} looks like millimetres; give metres ({})",
+                                      lens.focal_length, lens.focal_length / 1000));
+    }
+    if (const auto transmission = map.find("transmission")) {
+        lens.transmission =
+            transmission->within(0, 1, "give the fraction of light the lens lets through");
+    }
+    return lens;
+}
+
+/// A file's name, or {file, camera}.
+CalibrationDesc read_calibration_name(const ConfigValue& value, const SceneContext& context) {
+    CalibrationDesc calibration;
+    calibration.where = value.location();
+    if (value.node().kind == ConfigNode::Kind::scalar) {
+        calibration.file = read_existing_file(value, context);
+        return calibration;
+    }
+    constexpr auto k_mend = "write calibration: rig.yaml, or {file: rig.yaml, camera: cam0}";
+    ConfigMap map(value, {"file", "camera"}, k_mend);
+    calibration.file = read_existing_file(map.require("file", k_mend), context);
+    if (const auto camera = map.find("camera"))
+        calibration.camera = camera->text("give the camera's name in the file, such as cam0");
+    return calibration;
+}
+
+}  // namespace
+
+CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
+    ConfigMap map(value,
+                  {"resolution", "intrinsics", "distortion", "port", "pose", "lens", "calibration"},
+                  "write {resolution: [1920, 1080], intrinsics: {fov_x: 60}}");
+    CameraDesc camera;
+    if (const auto calibration = map.find("calibration")) {
+        camera.calibration = read_calibration_name(*calibration, context);
+        for (const std::string_view key : {"resolution", "intrinsics", "distortion"}) {
+            if (const auto entry = map.find(key))
+                entry->fail("comes from the calibration file; remove it here, or 'calibration'");
+        }
+    } else {
+        const ConfigValue resolution =
+            map.require("resolution", "give resolution: [width, height] in pixels");
+        const auto sides = resolution.list_of(2, "give [width, height] in pixels");
+        read_resolution(resolution, sides[0], sides[1], camera);
+        const auto intrinsics = map.find("intrinsics");
+        if (const auto entry = map.find("distortion")) camera.distortion = read_distortion(*entry);
+        camera.has_intrinsics = intrinsics.has_value();
+        if (intrinsics) camera.intrinsics = read_intrinsics(*intrinsics, camera);
+    }
+    camera.where = value.location();
+    if (const auto entry = map.find("port")) camera.port = read_port(*entry, context);
+    if (const auto entry = map.find("lens")) camera.lens = read_lens(*entry);
+    const auto pose = map.find("pose");
+    camera.has_pose = pose.has_value();
+    if (pose) camera.world_from_camera = read_pose(*pose);
+    return camera;
+}
+
+}  // namespace uw

@@ -1,0 +1,197 @@
+#include "core/scene/yaml/lamp_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "core/scene/yaml/config_map.h"
+#include "core/scene/yaml/name_reader.h"
+#include "core/scene/yaml/spectrum_reader.h"
+
+namespace uw {
+namespace {
+
+LampProfileDesc read_isotropic(ConfigMap& /*map*/, const SceneContext& /*context*/) {
+    return IsotropicProfileDesc{};
+}
+
+LampProfileDesc read_spot(ConfigMap& map, const SceneContext& /*context*/) {
+    SpotProfileDesc profile;
+    const ConfigValue beam = map.require("beam", "give the full angle at half intensity");
+    profile.beam = beam.number("give the full angle at half intensity in degrees");
+    if (profile.beam <= 0 || profile.beam > 180) {
+        beam.fail(
+            fmt::format("must be greater than 0 and at most 180, found {}; give the full "
+                        "angle at half intensity in degrees",
+                        profile.beam));
+    }
+    if (const auto edge = map.find("edge")) {
+        profile.edge = edge->non_negative("give the width of the edge in degrees");
+        if (profile.edge > profile.beam) {
+            edge->fail(
+                fmt::format("must not be wider than the beam of {}, found {}; the light "
+                            "falls from full at beam/2 - edge/2 to none at beam/2 + edge/2",
+                            profile.beam, profile.edge));
+        }
+    }
+    if (const auto falloff = map.find("falloff")) {
+        using Falloff = SpotProfileDesc::Falloff;
+        constexpr std::array<std::pair<std::string_view, Falloff>, 2> k_falloffs{
+            {{"smooth", Falloff::smooth}, {"gltf", Falloff::gltf}}};
+        profile.falloff = falloff->choice(k_falloffs);
+    }
+    return profile;
+}
+
+LampProfileDesc read_cosine(ConfigMap& map, const SceneContext& /*context*/) {
+    constexpr auto k_mend = "give the full angle at half intensity in degrees";
+    return CosineProfileDesc{map.require("fwhm", k_mend).between(0, 180, k_mend)};
+}
+
+LampProfileDesc read_ies_profile(ConfigMap& map, const SceneContext& context) {
+    IesProfileDesc profile;
+    profile.where = map.value().location();
+    profile.file = read_existing_file(map.require("file", "name the IES file (LM-63)"), context);
+    if (const auto rotate = map.find("rotate"))
+        profile.rotate =
+            rotate->within(-360, 360, "give the turn about the lamp's direction in degrees");
+    if (const auto tilt = map.find("tilt"))
+        profile.tilt = tilt->within(
+            -180, 180, "give the angle between the lamp's direction and its axis in degrees");
+    return profile;
+}
+
+LampProfileDesc read_profile(const ConfigValue& value, const SceneContext& context) {
+    using Read = LampProfileDesc (*)(ConfigMap&, const SceneContext&);
+    constexpr auto k_types =
+        std::to_array<std::pair<std::string_view, Read>>({{"isotropic", read_isotropic},
+                                                          {"spot", read_spot},
+                                                          {"cosine", read_cosine},
+                                                          {"ies", read_ies_profile}});
+    static_assert(k_types.size() == std::variant_size_v<LampProfileDesc>);
+    constexpr auto k_example = "write {type: spot, beam: 60, edge: 5}";
+    ConfigMap map(value, {"type", "beam", "edge", "falloff", "fwhm", "file", "rotate", "tilt"},
+                  k_example);
+    const ConfigValue type = map.require("type", k_example);
+    LampProfileDesc profile = type.choice(k_types)(map, context);
+    map.finish("profile type '" + type.node().scalar + "'");
+    return profile;
+}
+
+/// Whether the profile tells how bright the lamp is.
+bool is_absolute(const LampProfileDesc& profile) {
+    return std::visit([](const auto& desc) { return desc.k_is_absolute; }, profile);
+}
+
+void read_lumens(const ConfigValue& value, LampDesc& lamp) {
+    lamp.lumens = value.positive("give the luminous flux in lm");
+    if (!lamp.spectrum) {
+        value.fail(
+            "lumens become watts by the lamp's spectrum only; give it, such as spectrum: {type: "
+            "led, name: LED-B4}");
+    }
+}
+
+/// A lamp with a spectrum has one number for all of it, one without a number per band.
+void read_watts(const ConfigValue& value, bool is_intensity, const SceneContext& context,
+                LampDesc& lamp) {
+    PerBand values;
+    if (lamp.spectrum) {
+        values = {value.non_negative(is_intensity
+                                         ? "with a spectrum give the W/sr of all of it, one number"
+                                         : "with a spectrum give the W of all of it, one number")};
+    } else {
+        values = value.non_negative_per_band(
+            context.band_count,
+            is_intensity ? "give W/sr on the axis, per band" : "give the total in W, per band");
+    }
+    if (std::all_of(values.begin(), values.end(), [](double x) { return x == 0; })) {
+        context.warn(value, "is 0 in every band: this lamp is dark");
+    }
+    (is_intensity ? lamp.intensity : lamp.power) = std::move(values);
+}
+
+void read_output(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
+    if (const auto entry = map.find("spectrum")) lamp.spectrum = read_spectrum(*entry, context);
+    const auto intensity = map.find("intensity");
+    const auto power = map.find("power");
+    const auto lumens = map.find("lumens");
+    if (intensity && power) {
+        power->fail("a lamp has either intensity or power; remove one");
+    }
+    if (lumens && (intensity || power)) {
+        lumens->fail("a lamp has either lumens or watts; remove one");
+    }
+    if (lumens) {
+        read_lumens(*lumens, lamp);
+    } else if (intensity || power) {
+        read_watts(intensity ? *intensity : *power, intensity.has_value(), context, lamp);
+    } else if (!is_absolute(lamp.profile)) {
+        map.value().fail(
+            "says not how bright it is; give intensity in W/sr or power in W, or its spectrum and "
+            "lumens");
+    }
+}
+
+LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneContext& context) {
+    ConfigMap map(value,
+                  {"name", "position", "direction", "profile", "spectrum", "intensity", "power",
+                   "lumens", "frame"},
+                  "write {name: left, position: [-1, 0, 0], intensity: 50}");
+    LampDesc lamp;
+    lamp.where = value.location();
+    const auto name = map.find("name");
+    lamp.name = name ? read_short_name(*name, "a layer's name", "name the lamp, such as left")
+                     : fmt::format("lamp{}", number);
+    lamp.position =
+        at_origin_plus(map.require("position", "give the lamp's position in metres")
+                           .vector("give the lamp's position, three lengths in metres"));
+    if (const auto entry = map.find("direction")) {
+        lamp.direction = entry->direction("give the direction the lamp shines in, not all 0");
+    }
+    if (const auto entry = map.find("profile")) lamp.profile = read_profile(*entry, context);
+    read_output(map, context, lamp);
+    enum class Frame { camera, rig, world };
+    constexpr std::array<std::pair<std::string_view, Frame>, 3> k_frames{
+        {{"camera", Frame::camera}, {"rig", Frame::rig}, {"world", Frame::world}}};
+    Frame frame = context.rig ? Frame::rig : Frame::camera;
+    if (const auto entry = map.find("frame")) {
+        frame = entry->choice(k_frames);
+        if (frame == Frame::rig && !context.rig) {
+            entry->fail(
+                "there is no rig in this scene; use camera or world, or give cameras: a list of "
+                "named cameras");
+        }
+    }
+    lamp.fixed_to_camera = frame == Frame::camera && !context.rig;
+    if (context.rig && frame != Frame::world) {
+        lamp.world_from_mount =
+            frame == Frame::rig ? context.rig->world_from_rig : context.rig->world_from_camera;
+    }
+    return lamp;
+}
+
+}  // namespace
+
+}
+
+std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context) {
+    std::vector<LampDesc> lamps;
+    for (const ConfigValue& entry : value.list("write one '- name: ...' per lamp")) {
+        LampDesc lamp = read_lamp(entry, lamps.size() + 1, context);
+        for (const LampDesc& other : lamps) {
+            if (other.name == lamp.name) {
+                entry.fail(fmt::format("the name '{}' is taken by another lamp; give each its own",
+                                       lamp.name));
+            }
+        }
+        lamps.push_back(std::move(lamp));
+    }
+    return lamps;
+}
+
+}  // namespace uw

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/scene/yaml/config_value.h"
+#include "core/scene/yaml/scene_context.h"
+
+namespace uw {
+
+/// A file name, resolved against the scene's folder. Throws InputError where no such file exists.
+std::filesystem::path read_existing_file(const ConfigValue& value, const SceneContext& context);
+
+/// Likewise, but a name with places for a frame's number that no file has as it is written stands
+/// for a sequence; its files are not looked at.
+std::filesystem::path read_existing_file_or_sequence(const ConfigValue& value,
+                                                     const SceneContext& context,
+                                                     bool& is_sequence);
+
+/// A name that becomes part of `of` ("a layer's name"): up to 64 letters, digits, _ and -.
+std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend);
+
+}  // namespace uw

@@ -1,0 +1,103 @@
+#include "core/scene/yaml/render_reader.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "core/scene/yaml/config_map.h"
+#include "core/scene/yaml/name_reader.h"
+#include "core/scene/yaml/spectrum_reader.h"
+
+namespace uw {
+namespace {
+
+PlanesDesc read_planes(const ConfigValue& value) {
+    ConfigMap map(value, {"count", "near", "far"}, "write {count: 64, near: 0.1, far: 12}");
+    PlanesDesc planes;
+    planes.where = value.location();
+    if (const auto entry = map.find("count"))
+        planes.count = entry->integer(1, 65536, "give the number of slabs");
+    if (const auto entry = map.find("near")) planes.near = entry->non_negative("give metres");
+    if (const auto entry = map.find("far")) {
+        planes.far = entry->positive("give metres");
+        if (planes.near && *planes.far <= *planes.near) {
+            entry->fail(fmt::format("must be greater than near ({}); give metres along camera z",
+                                    *planes.near));
+        }
+    }
+    return planes;
+}
+
+/// `response` and `white` of `render`.
+ColourDesc read_colour(ConfigMap& map, const SceneContext& context) {
+    using Response = ColourDesc::Response;
+    ColourDesc colour;
+    colour.where = map.value().location() + ".response";
+    if (const auto entry = map.find("response")) {
+        colour.where = entry->location();
+        const std::string text =
+            entry->text("write cie, bands, or the name of a camera's CSV file");
+        if (text.ends_with(".csv")) {
+            colour.response = Response::camera;
+            colour.file = read_existing_file(*entry, context);
+        } else {
+            constexpr std::array<std::pair<std::string_view, Response>, 3> k_responses{
+                {{"auto", Response::automatic},
+                 {"bands", Response::bands},
+                 {"cie", Response::cie}}};
+            colour.response = entry->choice(k_responses);
+        }
+        if (colour.response == Response::bands && context.band_count != 3)
+            entry->fail("only three bands can be R, G and B themselves; write response: cie");
+    }
+    const auto white = map.find("white");
+    if (!white) return colour;
+    const bool bands_themselves =
+        colour.response == Response::bands ||
+        (colour.response == Response::automatic && context.band_count == 3);
+    if (bands_themselves)
+        white->fail("R, G and B are the three bands themselves; write response: cie beside it");
+    if (white->node().kind == ConfigNode::Kind::scalar) {
+        constexpr std::array<std::pair<std::string_view, bool>, 1> k_words{{{"none", true}}};
+        colour.raw = white->choice(k_words);
+    } else {
+        colour.white = read_spectrum(*white, context);
+    }
+    return colour;
+}
+
+}  // namespace
+
+RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
+    ConfigMap map(value,
+                  {"integrator", "output", "planes", "samples", "shutter", "response", "white"},
+                  "write {samples: 4}");
+    RenderDesc render;
+    render.planes.where = value.location() + ".planes";
+    if (const auto entry = map.find("integrator"))
+        render.integrator = entry->choice(k_integrator_names);
+    if (const auto entry = map.find("output")) {
+        constexpr std::array<std::pair<std::string_view, RenderDesc::Output>, 3> k_outputs{
+            {{"radiance", RenderDesc::Output::radiance},
+             {"sensor_irradiance", RenderDesc::Output::sensor_irradiance},
+             {"paper", RenderDesc::Output::paper}}};
+        render.output = entry->choice(k_outputs);
+        render.output_where = entry->location();
+    }
+    if (const auto entry = map.find("planes")) render.planes = read_planes(*entry);
+    if (const auto entry = map.find("samples")) {
+        render.samples = entry->integer(1, 4096, "give the samples per pixel");
+    }
+    if (const auto entry = map.find("shutter")) {
+        constexpr double k_longest = 60;
+        render.shutter = entry->non_negative("give the exposure time in seconds, such as 0.02");
+        if (render.shutter > k_longest)
+            entry->fail("more than a minute is no exposure; give seconds, such as 0.02");
+    }
+    render.colour = read_colour(map, context);
+    return render;
+}
+
+}  // namespace uw

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/affine.h"
+#include "core/scene/yaml/config_value.h"
+
+namespace uw {
+
+/// What the readers of a scene's sections share. Each reads one section and checks all of it: they
+/// throw InputError "file:line:column: key path: what; mend" for what does not fit.
+struct SceneContext {
+    std::filesystem::path folder;        // of the scene file; file names are relative to it
+    std::size_t band_count = 0;          // of water.bands, which is read first
+    std::vector<std::string>* warnings;  // one line each
+    /// Of a scene with a rig, which is read before its lamps.
+    struct RigFrames {
+        Affine world_from_rig, world_from_camera;  // the first camera's
+    };
+    std::optional<RigFrames> rig;
+
+    /// Adds the warning "<location>: <what>".
+    void warn(const ConfigValue& value, const std::string& what) const {
+        warnings->push_back(value.location() + ": " + what);
+    }
+};
+
+}  // namespace uw

@@ -1,0 +1,153 @@
+#include "core/scene/yaml/water_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/spectrum.h"
+#include "core/scene/yaml/config_map.h"
+#include "core/scene/yaml/phase_reader.h"
+
+namespace uw {
+namespace {
+
+constexpr double k_most_ppm = 1e6;
+
+std::vector<double> read_bands(const ConfigValue& value) {
+    constexpr auto k_mend = "give wavelengths in nm, such as [620, 540, 450]";
+    const std::vector<ConfigValue> entries = value.list(k_mend);
+    if (entries.empty() || entries.size() > static_cast<std::size_t>(k_max_bands)) {
+        value.fail(fmt::format("expected 1 to {} bands, found {}; {}", k_max_bands, entries.size(),
+                               k_mend));
+    }
+    std::vector<double> bands;
+    for (const ConfigValue& entry : entries) {
+        const double nm = entry.positive(k_mend);
+        if (nm < 10) {
+            entry.fail(
+                fmt::format("{} looks like micrometres; give nanometres ({})", nm, nm * 1000));
+        }
+        if (nm < 200 || nm > 1100) {
+            entry.fail(fmt::format("must be from 200 to 1100, found {}; {}", nm, k_mend));
+        }
+        if (std::find(bands.begin(), bands.end(), nm) != bands.end()) {
+            entry.fail(fmt::format("{} nm is given twice; remove one", nm));
+        }
+        bands.push_back(nm);
+    }
+    return bands;
+}
+
+/// Preset names of Jerlov's water types.
+std::string read_preset(const ConfigValue& value) {
+    constexpr std::array<std::string_view, 6> k_presets{"jerlov-IB", "jerlov-II", "jerlov-III",
+                                                        "jerlov-1C", "jerlov-3C", "jerlov-5C"};
+    return std::string(k_presets[value.word_index(k_presets)]);
+}
+
+void read_particles(const ConfigValue& value, WaterDesc& water) {
+    constexpr auto k_ppm = "give a concentration in ppm by volume";
+    ConfigMap map(value, {"small", "large", "absorption"}, "write {small: 0.03, large: 0.05}");
+    if (const auto entry = map.find("small")) {
+        water.small_ppm = entry->within(0, k_most_ppm, k_ppm);
+    }
+    if (const auto entry = map.find("large")) {
+        water.large_ppm = entry->within(0, k_most_ppm, k_ppm);
+    }
+    if (const auto entry = map.find("absorption")) {
+        constexpr std::array<std::pair<std::string_view, bool>, 2> k_choices{
+            {{"none", false}, {"mineral", true}}};
+        water.mineral_absorption = entry->choice(k_choices);
+    }
+    if (water.scattering && (water.small_ppm || water.large_ppm)) {
+        value.fail(
+            "'scattering' takes the place of background particles; remove small and large, "
+            "or remove 'scattering'");
+    }
+}
+
+ScatteringDesc read_scattering(const ConfigValue& value, const SceneContext& context) {
+    constexpr auto k_example = "write {b: [0.2, 0.2, 0.2], phase: {type: hg, g: 0.9}}";
+    ConfigMap map(value, {"b", "phase"}, k_example);
+    ScatteringDesc scattering;
+    scattering.b =
+        map.require("b", k_example)
+            .non_negative_per_band(context.band_count, "give the scattering coefficient in 1/m");
+    scattering.phase = read_phase(map.require("phase", k_example), context);
+    return scattering;
+}
+
+ForwardScatterDesc read_forward_scatter(const ConfigValue& value) {
+    constexpr auto k_example = "write {K: 1, G: 0.1, B: 0.02}";
+    ConfigMap map(value, {"K", "G", "B", "shape"}, k_example);
+    ForwardScatterDesc forward;
+    forward.where = value.location();
+    forward.K = map.require("K", k_example).non_negative("give 0 for no forward scatter");
+    if (const auto entry = map.find("G")) forward.G = entry->number("give a coefficient in 1/m");
+    const auto blur = map.find("B");
+    if (blur) forward.B = blur->non_negative("give a width in rad/m");
+    if (forward.K > 0 && !blur)
+        value.fail("has no B, the width of the blur in rad/m; " + std::string(k_example));
+    if (const auto entry = map.find("shape")) {
+        constexpr std::array<std::pair<std::string_view, ForwardScatterDesc::Shape>, 2> k_shapes{
+            {{"gaussian", ForwardScatterDesc::Shape::gaussian},
+             {"exponential", ForwardScatterDesc::Shape::exponential}}};
+        forward.shape = entry->choice(k_shapes);
+    }
+    return forward;
+}
+
+/// Absorption that is given as a number, or measured by a preset, holds what is dissolved already.
+void read_dissolved(ConfigMap& map, WaterDesc& water) {
+    const auto refuse_if_covered = [&](const ConfigValue& value) {
+        if (water.absorption) {
+            value.fail("'absorption' holds what is dissolved already; remove this or 'absorption'");
+        }
+        if (!water.preset.empty()) {
+            value.fail("the preset holds what is dissolved already; remove this or 'preset'");
+        }
+    };
+    if (const auto entry = map.find("cdom")) {
+        water.cdom = entry->non_negative("give a_g at 440 nm in 1/m");
+        refuse_if_covered(*entry);
+    }
+    if (const auto entry = map.find("chlorophyll")) {
+        water.chlorophyll = entry->non_negative("give a concentration in mg/m^3");
+        refuse_if_covered(*entry);
+    }
+}
+
+}  // namespace
+
+WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
+    ConfigMap map(value,
+                  {"bands", "preset", "salinity", "temperature", "absorption", "cdom",
+                   "chlorophyll", "particles", "scattering", "forward_scatter"},
+                  "write {bands: [620, 540, 450]}");
+    WaterDesc water;
+    water.where = value.location();
+    if (const auto entry = map.find("bands")) water.bands_nm = read_bands(*entry);
+    context.band_count = water.bands_nm.size();
+    if (const auto entry = map.find("preset")) water.preset = read_preset(*entry);
+    if (const auto entry = map.find("salinity")) {
+        water.salinity = entry->within(0, 100, "give the salinity in PSU (the sea: 35)");
+    }
+    if (const auto entry = map.find("temperature")) {
+        water.temperature = entry->within(-3, 50, "give the temperature in degrees Celsius");
+    }
+    if (const auto entry = map.find("absorption")) {
+        water.absorption = entry->non_negative_per_band(context.band_count,
+                                                        "give the absorption coefficient in 1/m");
+    }
+    read_dissolved(map, water);
+    if (const auto entry = map.find("scattering")) {
+        water.scattering = read_scattering(*entry, context);
+    }
+    if (const auto entry = map.find("particles")) read_particles(*entry, water);
+    if (const auto entry = map.find("forward_scatter"))
+        water.forward_scatter = read_forward_scatter(*entry);
+    return water;
+}
+
+}  // namespace uw

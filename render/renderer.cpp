@@ -1,0 +1,157 @@
+#include "render/renderer.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/colour/colour_response.h"
+#include "core/integrators/integrator_table.h"
+
+namespace uw {
+
+namespace {
+
+PixelWindow whole_image(const CameraDesc& camera) {
+    return {0, 0, camera.width, camera.height};
+}
+
+void check_window(const PixelWindow& window, const CameraDesc& camera) {
+    if (window.x0 < 0 || window.y0 < 0 || window.x0 >= window.x1 || window.y0 >= window.y1 ||
+        window.x1 > camera.width || window.y1 > camera.height)
+        throw UsageError(fmt::format("{},{},{},{}: not a window of the image of {} x {} pixels",
+                                     window.x0, window.y0, window.x1, window.y1, camera.width,
+                                     camera.height));
+}
+
+}  // namespace
+
+void Renderer::tell(const std::string& stage, double fraction) const {
+    if (progress_ && !progress_(stage, fraction)) throw Interrupted();
+}
+
+bool Renderer::needs_light() const {
+    return integrator_kind(scene_.desc.render.integrator).needs_deep_shadows;
+}
+
+void Renderer::set_scene(ResolvedScene scene) {
+    if (is_edited_) before_ = {};
+    if (is_assembled_ && !is_edited_) before_ = std::move(scene_);
+    scene_ = {};
+    scene_.desc = std::move(scene).release();
+    is_assembled_ = is_edited_ = false;
+    light_.clear();
+    colour_.reset();
+}
+
+const AssembledScene& Renderer::assemble() {
+    if (is_assembled_) return scene_;
+    AssembledScene assembled = assemble_scene(
+        scene_.desc, [this](const std::string& stage) { begin(stage); },
+        std::exchange(before_, {}));
+    assembled.desc = std::move(scene_.desc);
+    scene_ = std::move(assembled);
+    is_assembled_ = true;
+    return scene_;
+}
+
+const DeepShadows& Renderer::splat() {
+    assemble();
+    if (light_.empty()) splat(deep_shadow_options(scene_.desc.render.quality));
+    return light_;
+}
+
+const DeepShadows& Renderer::splat(const DeepShadowOptions& options) {
+    assemble();
+    light_.clear();
+    begin("splat");
+    light_ = splatter_.splat(scene_, options, [this](double share) { tell("splat", share); });
+    splat_rays_ += splatter_.counts().rays;
+    return light_;
+}
+
+LightTransport Renderer::make_transport() {
+    assemble();
+    if (needs_light()) splat();
+    return make_light_transport(scene_, light_);
+}
+
+void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
+    assemble();
+    is_edited_ = true;
+    light_.clear();
+    change(scene_);
+}
+
+void Renderer::drop_light() {
+    splatter_ = {};
+    light_.clear();
+}
+
+// Light from beyond a window is scattered into it: forward scatter needs the whole image.
+void Renderer::fit_film(const RenderOptions& options) {
+    const CameraDesc& camera = scene_.desc.camera;
+    window_ = options.window.value_or(whole_image(camera));
+    check_window(window_, camera);
+    const bool needs_all = scene_.desc.water.forward_scatter.K > 0;
+    const PixelWindow rendered = needs_all ? whole_image(camera) : window_;
+    cropped_.reset();
+    if (film_ && film_->width() == camera.width && film_->height() == camera.height &&
+        film_->window() == rendered && film_->channel_names() == plan_->channel_names()) {
+        if (!is_film_clear_) film_->clear();
+    } else {
+        film_.reset();  // frees the memory
+        film_.emplace(camera.width, camera.height, rendered, plan_->channel_names());
+    }
+    is_film_clear_ = true;
+}
+
+void Renderer::prepare(const RenderOptions& options) {
+    report_ = {};
+    plan_ = layer_plan(scene_.desc, options.layers);
+    if (!colour_) colour_ = make_band_colour(scene_.desc.render.colour, scene_.desc.water.bands_nm);
+    fit_film(options);
+    report_.pixels = static_cast<std::uint64_t>(film_->window().width()) *
+                     static_cast<std::uint64_t>(film_->window().height());
+    assemble();
+    if (!colour_->warning().empty()) report_.warnings.push_back(colour_->warning());
+    report_.warnings.insert(report_.warnings.end(), scene_.warnings.begin(), scene_.warnings.end());
+}
+
+void Renderer::count_work() {
+    const auto samples = static_cast<std::uint64_t>(scene_.desc.render.samples);
+    // One ray a sample, and one more for the pixel's centre unless that is the sample: its water
+    // and ground truth.
+    report_.camera_rays = report_.pixels * (samples == 1 ? 1 : samples + 1);
+    report_.splat_rays = std::exchange(splat_rays_, 0);
+    for (const auto& field : light_) report_.light_bytes += field->bytes();
+    for (const VolumeReport& volume : scene_.volume_reports) {
+        report_.active_voxels += static_cast<std::uint64_t>(volume.statistics.active_voxels);
+        report_.grid_bytes += volume.bytes;
+    }
+    report_.triangles = scene_.surfaces->triangle_count();
+    report_.lamps = scene_.lamps.size();
+    report_.bands = static_cast<std::uint64_t>(scene_.water.medium.band_count());
+}
+
+const Film& Renderer::render(const RenderOptions& options) {
+    prepare(options);
+    if (needs_light())
+        splat();
+    else
+        begin("splat");
+    LightTransport own;
+    if (!options.transport) own = make_light_transport(scene_, light_);
+    begin("render");
+    is_film_clear_ = false;
+    render_scene(scene_, light_, options.transport ? *options.transport : own, *plan_, *colour_,
+                 *film_, [this](const std::string& stage, double fraction) {
+                     return !progress_ || progress_(stage, fraction);
+                 });
+    count_work();
+    if (film_->window() == window_) return *film_;
+    cropped_ = cropped(*film_, window_);
+    return *cropped_;
+}
+
+}  // namespace uw

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene_desc.h"
+
+namespace uw {
+
+/// Reads a scene with its overrides (core/scene/yaml/scene_reader.h) and what its cameras take from
+/// calibration files, whose content is part of the scene's hash. Throws as read_scene and
+/// read_calibration do.
+SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+}  // namespace uw

@@ -1,0 +1,52 @@
+// ctest labels: unit
+#include "core/base/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace uw {
+namespace {
+
+TEST(Parallel, RunsEachIndexOnce) {
+    for (const std::size_t count : {0UL, 1UL, 2UL, 1000UL}) {
+        std::vector<std::atomic<int>> runs(count);
+        parallel_for(count, [&](std::size_t i) { ++runs[i]; });
+        EXPECT_TRUE(std::ranges::all_of(runs, [](const auto& n) { return n == 1; })) << count;
+    }
+}
+
+TEST(Parallel, PassesOnWhatABodyThrows) {
+    EXPECT_THROW(parallel_for(100,
+                              [](std::size_t i) {
+                                  if (i == 57) throw std::out_of_range("57");
+                              }),
+                 std::out_of_range);
+}
+
+TEST(Parallel, ALimitOfOneThreadIsTheCallersAlone) {
+    const ThreadLimit limit(1);
+    std::mutex mutex;
+    std::set<std::thread::id> threads;
+    parallel_for(1000, [&](std::size_t) {
+        const std::lock_guard lock(mutex);
+        threads.insert(std::this_thread::get_id());
+    });
+    EXPECT_EQ(threads, (std::set{std::this_thread::get_id()}));
+}
+
+TEST(Parallel, LoopsMayStandInLoops) {
+    const ThreadLimit all(0);
+    std::atomic<int> sum = 0;
+    parallel_for(20, [&](std::size_t i) { parallel_for(i, [&](std::size_t) { ++sum; }); });
+    EXPECT_EQ(sum, 19 * 20 / 2);
+}
+
+}  // namespace
+}  // namespace uw

@@ -1,0 +1,137 @@
+// ctest labels: unit
+// What each layer's channels hold of a pixel.
+#include "core/frame/pixel_layers.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/image/film.h"
+
+namespace uw::test {
+namespace {
+
+const std::vector<double> k_bands{620, 540, 450};
+
+/// A pixel whose every value is its own.
+PixelResult full_pixel() {
+    PixelResult pixel;
+    pixel.alpha = 0.75;
+    pixel.pixel_factor = 0.5;
+    pixel.direct = {{1, 2, 3}};
+    pixel.backscatter = {{10, 20, 30}};
+    pixel.backscatter_first = {{5, 6, 7}};
+    pixel.irradiance = {{11, 12, 13}};
+    pixel.exitance = {{14, 15, 16}};
+    pixel.clean = {{17, 18, 19}};
+    pixel.transmittance = {{0.1, 0.2, 0.3}};
+    pixel.lit = 0.25;
+    pixel.lamps = {{{100, 200, 300}}};
+    pixel.has_hit = true;
+    pixel.hit.reflectance = {{0.4, 0.5, 0.6}};
+    pixel.hit.normal = {0, -1, 0};
+    pixel.hit.position = {7, 8, 9};
+    pixel.hit.object_id = 42;
+    pixel.depth_z = 2;
+    pixel.range = 3;
+    pixel.path = 4;
+    return pixel;
+}
+
+class PixelLayers : public ::testing::Test {
+  protected:
+    using Values = std::vector<float>;
+
+    void store(const PixelResult& pixel) { store_pixel(pixel, plan_, colour_, channels_); }
+    Values of(Layer layer) {
+        const std::span<float> own = plan_.channels(layer, channels_);
+        return {own.begin(), own.end()};
+    }
+
+    std::vector<std::string> lamps_{"left"};
+    LayerPlan plan_{"all", k_bands, lamps_};
+    BandColour colour_{k_bands};
+    std::vector<float> channels_ = std::vector<float>(plan_.channel_names().size(), -1.0F);
+};
+
+TEST_F(PixelLayers, RadianceHasThePixelsFactorAndTheRestHasNot) {
+    store(full_pixel());
+    EXPECT_EQ(channels_[k_red], 5.5F);  // three bands are R, G and B
+    EXPECT_EQ(channels_[k_green], 11);
+    EXPECT_EQ(channels_[k_alpha], 0.75F);
+    EXPECT_EQ(of(Layer::direct), (Values{0.5, 1, 1.5}));
+    EXPECT_EQ(of(Layer::forward), (Values{0, 0, 0}));
+    EXPECT_EQ(of(Layer::backscatter), (Values{5, 10, 15}));
+    EXPECT_EQ(of(Layer::backscatter_first), (Values{2.5, 3, 3.5}));
+    EXPECT_EQ(of(Layer::clean), (Values{8.5, 9, 9.5}));
+    EXPECT_EQ(of(Layer::irradiance), (Values{11, 12, 13}));
+    EXPECT_EQ(of(Layer::exitance), (Values{14, 15, 16}));
+    EXPECT_EQ(of(Layer::transmittance), (Values{0.1F, 0.2F, 0.3F}));
+    EXPECT_EQ(of(Layer::lit), (Values{0.25}));
+    const std::span<float> lamp = plan_.lamp_channels(0, channels_);
+    EXPECT_EQ(Values(lamp.begin(), lamp.end()), (Values{50, 100, 150}));
+}
+
+TEST_F(PixelLayers, GroundTruthIsThatOfTheHit) {
+    store(full_pixel());
+    EXPECT_EQ(of(Layer::albedo), (Values{0.4F, 0.5F, 0.6F}));
+    EXPECT_EQ(of(Layer::depth), (Values{2}));
+    EXPECT_EQ(of(Layer::range), (Values{3}));
+    EXPECT_EQ(of(Layer::path), (Values{4}));
+    EXPECT_EQ(of(Layer::normal), (Values{0, -1, 0}));
+    EXPECT_EQ(of(Layer::position), (Values{7, 8, 9}));
+    EXPECT_EQ(of(Layer::id), (Values{42}));
+}
+
+// The channels were -1 before: whatever a pixel does not have is written as 0.
+TEST_F(PixelLayers, WithoutAHitGroundTruthIsZero) {
+    PixelResult pixel = full_pixel();
+    pixel.has_hit = false;
+    store(pixel);
+    for (const Layer layer : {Layer::albedo, Layer::depth, Layer::range, Layer::path, Layer::normal,
+                              Layer::position, Layer::id})
+        for (const float value : of(layer)) EXPECT_EQ(value, 0);
+    for (const float value : channels_) EXPECT_NE(value, -1);
+}
+
+TEST_F(PixelLayers, AResetPixelShowsNothing) {
+    PixelResult pixel = full_pixel();
+    pixel.reset(1);
+    ASSERT_EQ(pixel.lamps.size(), 1U);
+    store(pixel);
+    for (const float value : channels_) EXPECT_EQ(value, 0);
+}
+
+TEST_F(PixelLayers, ForwardScatterChangesItsLayersAndLeavesTheOthers) {
+    store(full_pixel());
+    const Values irradiance = of(Layer::irradiance), depth = of(Layer::depth);
+    PixelResult scattered;
+    scattered.pixel_factor = 0.5;
+    scattered.direct = {{1, 2, 3}};
+    scattered.forward = {{4, 4, 4}};
+    scattered.backscatter = {{12, 22, 32}};
+    scattered.backscatter_first = {{1, 1, 1}};
+    store_forward_scatter(scattered, plan_, colour_, channels_);
+    EXPECT_EQ(channels_[k_red], 8.5F);
+    EXPECT_EQ(of(Layer::forward), (Values{2, 2, 2}));
+    EXPECT_EQ(of(Layer::backscatter), (Values{6, 11, 16}));
+    EXPECT_EQ(of(Layer::backscatter_first), (Values{3, 3.5, 4}));
+    EXPECT_EQ(of(Layer::irradiance), irradiance);
+    EXPECT_EQ(of(Layer::depth), depth);
+    add_forward_scatter_of_lamp(scattered, plan_, 0, channels_);
+    EXPECT_EQ(plan_.lamp_channels(0, channels_)[0], 50 + 2 + 6);
+}
+
+TEST(InScatterPartsOfLayers, AreThoseThatSomeLayerNeeds) {
+    const std::vector<std::string> lamps{"left", "right"};
+    const auto parts = [&](const char* layers) {
+        return in_scatter_parts(LayerPlan(layers, k_bands, lamps));
+    };
+    EXPECT_FALSE(parts("direct,backscatter").first_slab);
+    EXPECT_FALSE(parts("direct,backscatter").lamps);
+    EXPECT_TRUE(parts("backscatter_first").first_slab);
+    EXPECT_TRUE(parts("lamp.right").lamps);
+}
+
+}  // namespace
+}  // namespace uw::test
