@@ -177,8 +177,6 @@ LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneCont
 
 }  // namespace
 
-}
-
 std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context) {
     std::vector<LampDesc> lamps;
     for (const ConfigValue& entry : value.list("write one '- name: ...' per lamp")) {
