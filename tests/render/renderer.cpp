@@ -202,12 +202,14 @@ TEST_F(Images, ThatCannotBeLeaveTheRendererAsItWas) {
     EXPECT_THROW(renderer.set_scene(std::move(open)), InputError);
 }
 
-TEST_F(Images, TakeAnotherIntegratorOnTrial) {
+TEST_F(Images, TakeAnotherLightTransportOnTrial) {
     Renderer renderer;
     desc_.render.quality = RenderDesc::Quality::exact;
     renderer.set_scene(SceneDesc(desc_));
-    const ReferenceIntegrator reference(renderer.assemble().lit());
-    const Film tried = renderer.render({.layers = "direct", .integrator = &reference});
+    const LitScene lit = renderer.assemble().lit();
+    const LightTransport reference{std::make_unique<ReferenceIntegrator>(lit),
+                                   std::make_unique<DirectLighting>(lit)};
+    const Film tried = renderer.render({.layers = "direct", .transport = &reference});
     desc_.render.integrator = RenderDesc::Integrator::reference;
     renderer.set_scene(SceneDesc(desc_));
     EXPECT_TRUE(std::ranges::equal(renderer.render({.layers = "direct"}).values(), tried.values()));

@@ -6,7 +6,7 @@
 
 #include "tests/support/cli_test.h"
 #include "tests/support/mesh_fixtures.h"
-#include "tests/support/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw {
 namespace {

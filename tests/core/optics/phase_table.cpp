@@ -9,6 +9,8 @@
 #include <numbers>
 
 #include "media/phase/fournier_forand.h"
+#include "media/phase/henyey_greenstein.h"
+#include "media/phase/molecular_phase.h"
 #include "media/phase/tabulated_phase.h"
 
 namespace uw::test {

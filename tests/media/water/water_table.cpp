@@ -8,6 +8,8 @@
 
 #include "core/tables/csv_table.h"
 #include "media/phase/fournier_forand.h"
+#include "media/phase/henyey_greenstein.h"
+#include "media/phase/molecular_phase.h"
 #include "media/phase/tabulated_phase.h"
 #include "media/water/pure_water.h"
 #include "tests/support/adaptive_quadrature.h"
