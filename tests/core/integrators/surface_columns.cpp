@@ -10,7 +10,6 @@
 #include "media/light/deep_shadow_map.h"
 #include "tests/support/gaussian_field.h"
 #include "tests/support/sphere_surface.h"
-#include "tests/support/test_scene.h"
 
 namespace uw::test {
 namespace {
@@ -36,7 +35,7 @@ class SurfaceColumnsTest : public ::testing::Test {
         medium_.wavelengths_nm = {620, 540};
         medium_.uniform.absorption = {0.2, 0.05};
         medium_.constituents.push_back({"small", "ppm", {{1.0, 0.4}, {}}});
-        lamps_.emplace_back(isotropic_lamp({-0.8, -0.5, 0.1}, 1), Affine(), 2);
+        lamps_.emplace_back("lamp", Point3{-0.8, -0.5, 0.1}, IsotropicProfile(), Spectrum{1, 1});
         deep_shadows_.push_back(std::make_shared<DeepShadowMap>(
             field_, nothing_, lamps_.front().position(), DeepShadowOptions{16, 2, 1 << 24}));
     }
