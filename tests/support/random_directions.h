@@ -1,0 +1,15 @@
+#pragma once
+
+#include <random>
+
+#include "core/base/vec.h"
+
+namespace uw::test {
+
+/// A direction, all alike in probability.
+inline Vector3 random_direction(std::mt19937& rng) {
+    std::normal_distribution<double> normal;
+    return glm::normalize(Vector3(normal(rng), normal(rng), normal(rng)));
+}
+
+}  // namespace uw::test
