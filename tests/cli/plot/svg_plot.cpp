@@ -141,13 +141,5 @@ TEST(SvgPlot, EmptyFiguresArePlotsToo) {
     EXPECT_EQ(xml_fault(svg_document(figure)), "");
 }
 
-TEST(SvgText, WrapsAtSpaces) {
-    const std::vector<std::string> lines = wrapped_lines("one two three four", 60, 10);
-    ASSERT_EQ(lines.size(), 3U);
-    EXPECT_EQ(lines[0], "one two");
-    EXPECT_EQ(lines[1], "  three");
-    EXPECT_EQ(text_width("β [1]", 10), text_width("b [1]", 10));
-}
-
 }  // namespace
 }  // namespace uw

@@ -33,6 +33,7 @@ TEST(Text, PrintableCutsBetweenCharacters) {
     EXPECT_EQ(printable(umlauts, 6), umlauts);
     EXPECT_EQ(printable(umlauts, 5), "\xC3\xA4\xC3\xB6...");
     EXPECT_EQ(printable(umlauts, 1), "...");
+    EXPECT_EQ(printable("ab\xC3\xA9", 3), "ab...");
     EXPECT_EQ(printable("\xF0\x9F\x90\x9F!", 3), "...");  // one character of four bytes
     EXPECT_EQ(printable(std::string(100, 'x')), std::string(60, 'x') + "...");
 }
@@ -43,7 +44,10 @@ TEST(Text, NearestWordForgivesOneSlip) {
     EXPECT_EQ(nearest_word("posizion", k_keys), "position");   // another
     EXPECT_EQ(nearest_word("poistion", k_keys), "position");   // swapped
     EXPECT_EQ(nearest_word("POSITION", k_keys), "position");
-    EXPECT_EQ(nearest_word("fov", k_keys), "fov_x");  // its beginning
+    EXPECT_EQ(nearest_word("intensty", k_keys), "intensity");
+    EXPECT_EQ(nearest_word("pwoer", k_keys), "power");
+    EXPECT_EQ(nearest_word("Positoin", k_keys), "position");  // case and swap
+    EXPECT_EQ(nearest_word("fov", k_keys), "fov_x");          // its beginning
     EXPECT_EQ(nearest_word("int", k_keys), "intensity");
 }
 
@@ -103,6 +107,15 @@ TEST(Text, ParseNumberReadsAllOfTheText) {
                                            {"1e999", NumberText::out_of_range},
                                            {"inf", NumberText::not_finite},
                                            {"-.inf", NumberText::not_finite},
+                                           {".inf", NumberText::not_finite},
+                                           {"-.Inf", NumberText::not_finite},
+                                           {".NaN", NumberText::not_finite},
+                                           {"abc", NumberText::no_number},
+                                           {"1", NumberText::number, 1},
+                                           {"-2.5", NumberText::number, -2.5},
+                                           {"+3", NumberText::number, 3},
+                                           {".5", NumberText::number, 0.5},
+                                           {"1e3", NumberText::number, 1000},
                                            {"+.INF", NumberText::not_finite},
                                            {".nan", NumberText::not_finite},
                                            {"nan", NumberText::not_finite},

@@ -5,157 +5,40 @@
 
 #include <random>
 
-#include "core/lamps/lamp_factory.h"
+#include "core/lamps/lamp.h"
 #include "tests/support/gaussian_field.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/sphere_surface.h"
-#include "tests/support/test_scene.h"
 
 namespace uw::test {
 namespace {
 
-bool contains(const std::vector<Interval>& intervals, double s) {
-    for (const Interval& i : intervals)
-        if (s >= i.begin && s <= i.end) return true;
-    return false;
-}
-
-TEST(ShadowMap, LitIntervalsEndAtTheClosedFormShadowOfASphere) {
+TEST(DeepShadowMap, AsksItsTwoMaps) {
     const SphereSurface sphere({0.5, 0.3, 2}, 0.4);
+    const GaussianField field({0, 0, 2}, 0.3, 1.0, 0.1);
     const Point3 lamp{-0.7, 0.6, 0.2};
-    const ShadowMap map(sphere, lamp, 128);
-    std::mt19937 rng(7);
-    std::uniform_real_distribution<double> offset(-0.5, 0.5);
-    std::vector<Interval> lit;
-    int edges = 0;
-    double disagreeing = 0, shadowed = 0;
-    for (int n = 0; n < 400; ++n) {
-        // Rays that end in the neighbourhood of the sphere or its shadow.
-        const Point3 origin{offset(rng), offset(rng), -1 + offset(rng)};
-        const Point3 target{0.8 + 2 * offset(rng), 2 * offset(rng), 2.3 + offset(rng)};
-        const Ray ray{origin, glm::normalize(target - origin)};
-        const double end = std::min(6.0, sphere.hit_distance(ray));
-        map.lit_intervals(ray, {0, end}, lit);
-        edges += static_cast<int>(lit.size());
-        constexpr int k_samples = 4000;
-        for (int i = 0; i < k_samples; ++i) {
-            const double s = end * (i + 0.5) / k_samples;
-            const bool truth = !sphere.occluded(lamp, ray.at(s));
-            disagreeing += truth != contains(lit, s) ? end / k_samples : 0;
-            shadowed += truth ? 0 : end / k_samples;
-        }
-    }
-    EXPECT_GT(edges, 400);      // some rays have several intervals
-    EXPECT_GT(shadowed, 20.0);  // metres: the test has something to find
-    // Edges are bisected to 1/256 of a texel of 1.4 cm at 2 m; shadows narrower than a texel are
-    // missed where a ray grazes the cone. Both together stay far below a thousandth.
-    EXPECT_LT(disagreeing / shadowed, 1e-3);
-}
-
-TEST(ShadowMap, OfABeamSaysTheSameWithinIt) {
-    const SphereSurface sphere({0.5, 0.3, 2}, 0.4);
-    const Point3 lamp{-0.7, 0.6, 0.2};
-    const Vector3 axis = glm::normalize(Vector3(0.7, -0.1, 1.0));
-    const DirectionCone beam{axis, std::cos(glm::radians(25.0))};
-    const ShadowMap whole(sphere, lamp, 128), of_beam(sphere, lamp, 128, beam);
-    EXPECT_LT(of_beam.rays_traced(), whole.rays_traced() / 8);  // 4.7 % of the sphere, and its edge
-    LampDesc desc = isotropic_lamp(lamp, 1);
-    desc.fixed_to_camera = false;
-    desc.direction = axis;
-    desc.profile = SpotProfileDesc{50};
-    std::vector<std::string> warnings;
-    const Lamp spot = make_lamp(desc, Affine(), std::vector{540.0}, warnings);
-    std::mt19937 rng(11);
-    std::uniform_real_distribution<double> offset(-1.5, 1.5);
-    std::vector<Interval> all, known;
-    int found = 0;
-    for (int n = 0; n < 2000; ++n) {
-        const Point3 origin{offset(rng), offset(rng), offset(rng)};
-        const Ray ray{origin, random_direction(rng)};
-        const Interval stretch = spot.beam(ray, {0, std::min(6.0, sphere.hit_distance(ray))});
-        whole.lit_intervals(ray, stretch, all);
-        of_beam.lit_intervals(ray, stretch, known);
-        ASSERT_EQ(all.size(), known.size()) << n;
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            EXPECT_EQ(all[i].begin, known[i].begin) << n;
-            EXPECT_EQ(all[i].end, known[i].end) << n;
-        }
-        found += static_cast<int>(all.size());
-    }
-    EXPECT_GT(found, 300);
-}
-
-TEST(ShadowMap, RayThroughTheLampIsHandled) {
-    const SphereSurface sphere({0, 0, 5}, 1);
-    const ShadowMap map(sphere, {0, 0, 1}, 64);
-    std::vector<Interval> lit;
-    map.lit_intervals({{0, 0, 0}, {0, 0, 1}}, {0, 4}, lit);
-    ASSERT_EQ(lit.size(), 1u);
-    EXPECT_EQ(lit[0].begin, 0);
-    EXPECT_NEAR(lit[0].end, 4.0, 1e-9);
-}
-
-TEST(ColumnMap, MatchesTheClosedFormAndErrorFallsWithTheSquareOfTheVoxel) {
-    const Point3 center{0.2, -0.1, 2.5};
-    const Point3 lamp{-1.2, 0.4, 0};
-    double error[2];
-    double peak = 0;
-    for (int level = 0; level < 2; ++level) {
-        const GaussianField field(center, 0.3, 2.0, level == 0 ? 0.08 : 0.04);
-        const ColumnMap map(field, lamp, 2, 1 << 28);
-        std::mt19937 rng(3);
-        std::vector<Point3> points(4000);
-        for (Point3& p : points)
-            p = center + std::uniform_real_distribution<double>(0, 2)(rng) * random_direction(rng);
-        std::vector<double> columns(points.size());
-        map.columns(points, columns);
-        error[level] = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            double truth = 0;
-            field.column(lamp, points[i], std::span<double>(&truth, 1));
-            error[level] = std::max(error[level], std::abs(columns[i] - truth));
-            peak = std::max(peak, truth);
-        }
-    }
-    // Bilinear interpolation over texels one voxel wide: h^2/8 of the second derivative, which is
-    // peak/sigma^2 for a Gaussian, in two directions plus that along the ray.
-    EXPECT_LT(error[0], 3 * 0.08 * 0.08 / 8 / (0.3 * 0.3) * peak);
-    EXPECT_LT(error[1], 0.35 * error[0]);
-}
-
-TEST(ColumnMap, LampInsideTheCloudSeesAllDirections) {
-    const GaussianField field({0, 0, 0}, 0.5, 1.0, 0.05);
-    const Point3 lamp{0.1, 0.2, -0.1};
-    const ColumnMap map(field, lamp, 2, 1 << 28);
-    std::mt19937 rng(5);
-    for (int n = 0; n < 2000; ++n) {
-        const Point3 x =
-            lamp + std::uniform_real_distribution<double>(0.01, 4)(rng) * random_direction(rng);
-        double got = 0, truth = 0;
-        map.columns(std::span<const Point3>(&x, 1), std::span<double>(&got, 1));
-        field.column(lamp, x, std::span<double>(&truth, 1));
-        EXPECT_NEAR(got, truth, 2e-3);  // columns reach 0.6
-    }
-}
-
-TEST(ColumnMap, MemoryBudgetIsKept) {
-    const GaussianField field({0, 0, 2}, 0.3, 1.0, 0.01);
-    const std::size_t budget = 4 << 20;
-    const ColumnMap map(field, {0, 0, 0}, 2, budget);
-    EXPECT_GT(map.bytes(), budget / 8);
-    EXPECT_LT(map.bytes(), 2 * budget);
-}
-
-TEST(ColumnMap, BreaksFallOnlyWhereTheLightHasMetParticles) {
-    const GaussianField field({0, 0, 2}, 0.1, 1.0, 0.05);
-    const ColumnMap map(field, {0, 0, 0}, 2, 1 << 26);
-    std::vector<double> s;
-    map.append_breaks({{-1, 0, 4}, {1, 0, 0}}, {0, 2}, s);  // across the cloud's shadow
-    EXPECT_GT(s.size(), 10u);
-    for (const double at : s) EXPECT_TRUE(at >= 0 && at <= 2);
-    s.clear();
-    map.append_breaks({{-1, 3, 0.5}, {1, 0, 0}}, {0, 2}, s);  // far from it
-    EXPECT_LE(s.size(), 2u);
+    const DeepShadowMap whole(field, sphere, lamp, {.shadow_resolution = 64});
+    const auto shadows = std::make_shared<ShadowMap>(sphere, lamp, 64);
+    const auto columns = std::make_shared<ColumnMap>(field, lamp, 2, 80 << 20);
+    const DeepShadowMap shared(shadows, columns);
+    EXPECT_EQ(whole.bytes(), shadows->bytes() + columns->bytes());
+    EXPECT_EQ(whole.rays_traced(), shadows->rays_traced() + columns->rays_traced());
+    const Ray ray{{-1, 0.1, 2.5}, {1, 0, 0}};
+    std::vector<Interval> lit, truth;
+    whole.lit_intervals(ray, {0, 3}, lit);
+    shadows->lit_intervals(ray, {0, 3}, truth);
+    ASSERT_EQ(lit.size(), truth.size());
+    EXPECT_GT(lit.size(), 1U);  // before and behind the shadow
+    for (std::size_t i = 0; i < lit.size(); ++i) EXPECT_EQ(lit[i].end, truth[i].end);
+    std::vector<double> breaks, column_breaks;
+    shared.append_column_breaks(ray, {0, 3}, breaks);
+    columns->append_breaks(ray, {0, 3}, column_breaks);
+    EXPECT_EQ(breaks, column_breaks);
+    const Point3 x = ray.at(1);
+    double column = 0, from_map = 0;
+    shared.columns({&x, 1}, {&column, 1});
+    columns->columns({&x, 1}, {&from_map, 1});
+    EXPECT_EQ(column, from_map);
 }
 
 }  // namespace

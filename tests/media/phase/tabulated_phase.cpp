@@ -130,7 +130,7 @@ TEST(TabulatedPhase, RefusesImpossibleTables) {
     EXPECT_THROW(read_phase_table(std::string(300, ','), "user.csv"), InputError);
 }
 
-TEST(CsvTable, SaysWhereAndWhat) {
+TEST(TabulatedPhase, SaysWhereAndWhat) {
     try {
         read_phase_table("# c\nangle_deg,phase\n0,1\n90,abc\n", "user.csv");
         FAIL();

@@ -22,22 +22,6 @@ using test::TempDir;
 using test::VdbFixture;
 using test::VdbNumbers;
 
-TEST(VdbHeader, ListsGridsWithoutReadingThem) {
-    const TempDir dir;
-    VdbFixture half = single_voxel("density");
-    half.numbers = VdbNumbers::half;
-    VdbFixture wide = single_voxel("heat");
-    wide.numbers = VdbNumbers::float64;
-    wide.grid_class = "";
-    test::write_fixture(dir / "a.vdb", {half, wide}, "a program");
-    const VdbHeader header = read_vdb_header(dir / "a.vdb", k_where);
-    EXPECT_EQ(header.creator, "a program");
-    EXPECT_EQ(header.version, 224U);
-    ASSERT_EQ(header.grids.size(), 2U);
-    EXPECT_EQ(header.describe_grids(), "density (half float, fog volume), heat (double, unknown)");
-    EXPECT_EQ(header.grids[0].active_voxels, 1);
-}
-
 TEST(VdbFile, RefusesByNameAndListsWhatThereIs) {
     const TempDir dir;
     test::write_point_grid(dir / "points.vdb");
