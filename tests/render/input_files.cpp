@@ -7,7 +7,7 @@
 
 #include "render/resolved_scene.h"
 #include "render/scene_loading.h"
-#include "tests/support/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/scene_folder.h"
 
 namespace uw::test {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "tests/support/cli_test.h"
-#include "tests/support/gltf_truth.h"
+#include "tests/support/meshes/gltf_truth.h"
 
 namespace uw {
 namespace {

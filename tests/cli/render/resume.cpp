@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "tests/support/cli_test.h"
-#include "tests/support/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw {

@@ -8,7 +8,7 @@
 
 #include "core/surfaces/surfaces.h"
 #include "tests/support/geometry_descs.h"
-#include "tests/support/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/sphere_surface.h"
 #include "tests/support/surface_probes.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/meshes/textured_gltf.h"
 #include "tests/support/test_scene.h"
-#include "tests/support/textured_gltf.h"
 
 namespace uw {
 namespace {

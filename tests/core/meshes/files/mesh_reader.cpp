@@ -7,8 +7,8 @@
 #include <cstdlib>
 
 #include "core/base/error.h"
-#include "tests/support/mesh_fixtures.h"
-#include "tests/support/mesh_reading.h"
+#include "tests/support/meshes/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_reading.h"
 
 namespace uw {
 namespace {

@@ -6,8 +6,8 @@
 #include <type_traits>
 
 #include "core/base/error.h"
-#include "tests/support/mesh_fixtures.h"
-#include "tests/support/mesh_reading.h"
+#include "tests/support/meshes/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_reading.h"
 #include "tests/support/message_of.h"
 
 namespace uw {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "tests/support/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/message_of.h"
 
 namespace uw {

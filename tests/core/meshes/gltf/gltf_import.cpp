@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/scene/yaml/scene_reader.h"
-#include "tests/support/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/scene_folder.h"
 
 namespace uw {

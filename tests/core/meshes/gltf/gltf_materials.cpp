@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "core/meshes/files/mesh_reader.h"
-#include "tests/support/mesh_reading.h"
+#include "tests/support/meshes/mesh_reading.h"
+#include "tests/support/meshes/textured_gltf.h"
 #include "tests/support/surface_probes.h"
-#include "tests/support/textured_gltf.h"
 
 namespace uw {
 namespace {

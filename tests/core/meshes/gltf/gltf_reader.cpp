@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/meshes/files/mesh_reader.h"
-#include "tests/support/mesh_fixtures.h"
-#include "tests/support/mesh_reading.h"
+#include "tests/support/meshes/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_reading.h"
 
 namespace uw {
 namespace {

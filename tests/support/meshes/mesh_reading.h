@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/meshes/files/mesh_reader.h"
-#include "tests/support/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_fixtures.h"
 
 namespace uw::test {
 

@@ -1,4 +1,4 @@
-#include "tests/support/gltf_truth.h"
+#include "tests/support/meshes/gltf_truth.h"
 
 #include <algorithm>
 #include <cstdint>

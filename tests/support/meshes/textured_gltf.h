@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/mesh_fixtures.h"
+#include "tests/support/meshes/mesh_fixtures.h"
 
 namespace uw::test {
 
