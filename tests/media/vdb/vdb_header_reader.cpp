@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "media/vdb/vdb_header.h"
+#include "media/vdb/vdb_header_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using test::VdbFixture;
 using test::VdbNumbers;
 using test::write_file_bytes;
 
-TEST(VdbHeader, ListsGridsWithoutReadingThem) {
+TEST(VdbHeaderReader, ListsGridsWithoutReadingThem) {
     const TempDir dir;
     VdbFixture half = single_voxel("density");
     half.numbers = VdbNumbers::half;
@@ -38,7 +38,7 @@ TEST(VdbHeader, ListsGridsWithoutReadingThem) {
     EXPECT_EQ(header.grids[0].active_voxels, 1);
 }
 
-TEST(VdbHeader, RefusesWhatIsNoVdb) {
+TEST(VdbHeaderReader, RefusesWhatIsNoVdb) {
     const TempDir dir;
     EXPECT_THROW(read_vdb_header(dir / "none.vdb", k_where), IoError);
     EXPECT_THROW(read_vdb_header(dir.path(), k_where), IoError);
@@ -48,7 +48,7 @@ TEST(VdbHeader, RefusesWhatIsNoVdb) {
     expect_contains(refusal(dir / "empty.vdb", "density"), "is not a VDB file");
 }
 
-TEST(VdbHeader, NamesTheVersionOfAFileThatIsTooNew) {
+TEST(VdbHeaderReader, NamesTheVersionOfAFileThatIsTooNew) {
     const TempDir dir;
     test::write_fixture(dir / "a.vdb", {single_voxel("density")});
     std::string bytes = file_bytes(dir / "a.vdb");
@@ -60,7 +60,7 @@ TEST(VdbHeader, NamesTheVersionOfAFileThatIsTooNew) {
     expect_contains(message, "up to version 224");
 }
 
-TEST(VdbHeader, ForgedSizesAreNotBelieved) {
+TEST(VdbHeaderReader, ForgedSizesAreNotBelieved) {
     const TempDir dir;
     test::write_fixture(dir / "a.vdb", {single_voxel("density")});
     const std::string bytes = file_bytes(dir / "a.vdb");
@@ -76,23 +76,23 @@ TEST(VdbHeader, ForgedSizesAreNotBelieved) {
     }
 }
 
-TEST(VdbHeader, TellsNamesakesApartByNumber) {
+TEST(VdbHeaderReader, TellsNamesakesApartByNumber) {
     const TempDir dir;
     test::write_fixture(dir / "a.vdb", {single_voxel("density", 1), single_voxel("density", 2)});
-    const std::vector<GridSummary> grids = list_grids(dir / "a.vdb", k_where);
+    const std::vector<GridSummary> grids = read_vdb_header(dir / "a.vdb", k_where).grids;
     ASSERT_EQ(grids.size(), 2U);
     EXPECT_EQ(grids[0].name, "density[0]");
     EXPECT_EQ(grids[1].name, "density[1]");
     EXPECT_EQ(grids[1].base_name, "density");
 }
 
-TEST(VdbHeader, HasTheBoxOfTheActiveVoxels) {
+TEST(VdbHeaderReader, HasTheBoxOfTheActiveVoxels) {
     const TempDir dir;
     VdbFixture fixture = single_voxel("density");
     fixture.min = {-3, 0, 2};
     fixture.max = {7, 9, 11};
     test::write_fixture(dir / "a.vdb", {fixture});
-    const GridSummary grid = list_grids(dir / "a.vdb", k_where).at(0);
+    const GridSummary grid = read_vdb_header(dir / "a.vdb", k_where).grids.at(0);
     ASSERT_TRUE(grid.active_box);
     EXPECT_EQ(grid.active_box->min, (std::array<std::int32_t, 3>{-3, 0, 2}));
     EXPECT_EQ(grid.active_box->max, (std::array<std::int32_t, 3>{7, 9, 11}));
@@ -108,7 +108,7 @@ VdbHeader header_of_grids(const std::vector<std::string>& names) {
     return header;
 }
 
-TEST(VdbHeader, KnowsBlendersCachesByTheirNamesOrTheirMark) {
+TEST(VdbHeaderReader, KnowsBlendersCachesByTheirNamesOrTheirMark) {
     EXPECT_TRUE(header_of_grids({"density", "shadow", "velocity"}).from_blender_fluid());
     EXPECT_TRUE(header_of_grids({"density", "density_noise"}).from_blender_fluid());
     EXPECT_FALSE(header_of_grids({"density", "velocity"}).from_blender_fluid());  // anyone's
@@ -121,7 +121,7 @@ TEST(VdbHeader, KnowsBlendersCachesByTheirNamesOrTheirMark) {
     EXPECT_FALSE(marked.from_blender_fluid());
 }
 
-TEST(VdbHeader, DescribesSomeOfManyGrids) {
+TEST(VdbHeaderReader, DescribesSomeOfManyGrids) {
     EXPECT_EQ(VdbHeader().describe_grids(), "no grids");
     const std::string many = header_of_grids(std::vector<std::string>(30, "g")).describe_grids();
     EXPECT_TRUE(many.ends_with(" and 6 more")) << many;
