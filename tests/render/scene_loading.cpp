@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/scene_loading.h"
+#include "render/scene_loading.h"
 
 #include <gtest/gtest.h>
 
