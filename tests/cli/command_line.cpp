@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "cli/command_line.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/support/cli_test.h"

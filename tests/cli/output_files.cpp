@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "cli/output_files.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -1,4 +1,6 @@
 // ctest labels: unit metamorphic
+#include "cli/calibration/calibration_command.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/support/calibration_texts.h"

@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "cli/calibration/calibration_json.h"
+
 #include <gtest/gtest.h>
 
 #include "cli/calibration/calibration_report.h"

@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "cli/info/info_command.h"
+
 //
 // `uwvdb info`: what it says of files and scenes, and that what it hands out renders.
 #include <gtest/gtest.h>

@@ -1,4 +1,6 @@
 // ctest labels: analytic
+#include "cli/render/irradiance_export.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "cli/render/stats.h"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

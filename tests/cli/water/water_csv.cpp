@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "cli/water/water_csv.h"
+
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -48,10 +50,10 @@ TEST(WaterCsv, HasTheScatteringFunctionOfEachBandAtAllAngles) {
     WaterReport report = report_on_water();
     report.vsf_bands = {1};
     const CsvTable csv(water_vsf_csv(report), "t.csv");
-    EXPECT_EQ(csv.numbers("angle_deg"), filed_angles());
+    EXPECT_EQ(csv.numbers("angle_deg"), file_angles());
     const std::vector<double> total = csv.numbers("total_per_m_per_sr");
     for (std::size_t i = 0; i < total.size(); ++i) {
-        const double psi = filed_angles()[i] * std::numbers::pi / 180;
+        const double psi = file_angles()[i] * std::numbers::pi / 180;
         EXPECT_NEAR(total[i], report.table.uniform.vsf(1, psi), 1e-8 * total[i]);
     }
 }

@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "cli/water/water_json.h"
+
 #include <gtest/gtest.h>
 
 #include "cli/json.h"
@@ -38,7 +40,7 @@ TEST(WaterJson, HasTheScatteringFunctionOfTheBandsAskedFor) {
     WaterReport report = report_on_water();
     report.vsf_bands = {1};
     const Json vsf = Json::parse(water_json(report)).at("vsf");
-    EXPECT_EQ(vsf.at("angles_deg").size(), filed_angles().size());
+    EXPECT_EQ(vsf.at("angles_deg").size(), file_angles().size());
     ASSERT_EQ(vsf.at("bands").size(), 1U);
     EXPECT_EQ(vsf.at("bands")[0].at("wavelength_nm"), 450.0);
     EXPECT_EQ(vsf.at("bands")[0].at("total")[0], report.table.uniform.vsf(1, 0));

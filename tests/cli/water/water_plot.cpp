@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "cli/water/water_plot.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "cli/water/water_text.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,13 +40,13 @@ TEST(WaterText, RatiosOfNothingAreDashes) {
 }
 
 TEST(WaterText, AnglesAscendFromForwardToBackward) {
-    for (const std::vector<double>* angles : {&printed_angles(), &filed_angles()}) {
+    for (const std::vector<double>* angles : {&printed_angles(), &file_angles()}) {
         EXPECT_TRUE(std::ranges::is_sorted(*angles));
         EXPECT_EQ(std::ranges::adjacent_find(*angles), angles->end());
         EXPECT_EQ(angles->back(), 180);
     }
-    EXPECT_EQ(filed_angles().front(), 0);
-    EXPECT_EQ(filed_angles().size(), 10U + 9 + 180);
+    EXPECT_EQ(file_angles().front(), 0);
+    EXPECT_EQ(file_angles().size(), 10U + 9 + 180);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // ctest labels: analytic
+#include "core/frame/in_scatter_lattice.h"
+
 // Water mixed from a lattice of rays, as images are rendered, against every pixel's own.
 #include <gtest/gtest.h>
 

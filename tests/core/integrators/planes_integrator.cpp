@@ -1,4 +1,6 @@
 // ctest labels: analytic
+#include "core/integrators/planes_integrator.h"
+
 // McGlamery's planes in uniform water: the midpoint rule by hand, and its convergence to the volume
 // integrator, which shares no integration code with it.
 #include <gtest/gtest.h>

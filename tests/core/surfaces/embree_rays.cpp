@@ -1,4 +1,6 @@
 // ctest labels: unit metamorphic
+#include "core/surfaces/embree_rays.h"
+
 #include <gtest/gtest.h>
 
 #include <array>

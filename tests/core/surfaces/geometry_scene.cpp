@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/surfaces/surfaces.h"
+#include "core/surfaces/geometry_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/surfaces/surfaces.h"
 #include "tests/support/geometry_descs.h"
 #include "tests/support/surface_probes.h"
 

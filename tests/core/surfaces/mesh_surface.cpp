@@ -1,4 +1,6 @@
 // ctest labels: unit analytic
+#include "core/surfaces/mesh_surface.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

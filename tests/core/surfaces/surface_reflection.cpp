@@ -1,4 +1,6 @@
 // ctest labels: analytic
+#include "core/surfaces/surface_reflection.h"
+
 //
 // Surfaces that shine and surfaces that gleam, through the whole renderer, against closed forms.
 #include <gtest/gtest.h>

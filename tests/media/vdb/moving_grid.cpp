@@ -1,4 +1,6 @@
 // ctest labels: analytic
+#include "media/vdb/moving_grid.h"
+
 //
 // A plume that moves while the shutter is open is its average over that time: of one velocity all
 // over, the box-filtered plume, in closed form.

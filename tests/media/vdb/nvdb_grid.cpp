@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "media/vdb/nvdb_grid.h"
+
 //
 // NanoVDB files hold what the VDB files do that they were made from; damaged ones are refused.
 #include <gtest/gtest.h>

@@ -1,4 +1,6 @@
 // ctest labels: unit analytic
+#include "core/meshes/gltf/gltf_materials.h"
+
 #include <gtest/gtest.h>
 
 #include <numbers>

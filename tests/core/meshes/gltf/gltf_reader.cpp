@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "core/meshes/gltf/gltf_reader.h"
+
 #include <gtest/gtest.h>
 
 #include "core/meshes/files/mesh_reader.h"

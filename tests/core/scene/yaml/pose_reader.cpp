@@ -1,4 +1,6 @@
 // ctest labels: unit
+#include "core/scene/yaml/pose_reader.h"
+
 #include <gtest/gtest.h>
 
 #include <string>
