@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/frame_sequence.h"
 #include "cli/progress.h"
+#include "cli/render/frame_sequence.h"
+#include "cli/render/render_arguments.h"
 #include "cli/render/sequence_clock.h"
 #include "cli/render/stats.h"
-#include "cli/render_arguments.h"
 #include "render/renderer.h"
 
 namespace uw {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/output_files.h"
+#include "cli/render/output_files.h"
 #include "core/image/film.h"
 #include "core/image/image_writer.h"
 #include "render/scene_assembly.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/options.h"
-#include "cli/render_arguments.h"
+#include "cli/render/render_arguments.h"
 
 namespace uw {
 

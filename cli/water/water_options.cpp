@@ -1,6 +1,6 @@
 #include "cli/water/water_options.h"
 
-#include "cli/band_list.h"
+#include "cli/water/band_list.h"
 
 namespace uw {
 

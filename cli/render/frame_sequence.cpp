@@ -1,4 +1,4 @@
-#include "cli/frame_sequence.h"
+#include "cli/render/frame_sequence.h"
 
 #include <fmt/format.h>
 

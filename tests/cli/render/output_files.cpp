@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/output_files.h"
+#include "cli/render/output_files.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cli/output_files.h"
+#include "cli/render/output_files.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/output_files.h"
-#include "cli/render_arguments.h"
+#include "cli/render/output_files.h"
+#include "cli/render/render_arguments.h"
 #include "core/scene/scene_desc.h"
 #include "render/input_files.h"
 #include "render/resolved_scene.h"

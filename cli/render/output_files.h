@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render_arguments.h"
+#include "cli/render/render_arguments.h"
 #include "render/input_files.h"
 
 namespace uw {

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/band_list.h"
+#include "cli/water/band_list.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cli/band_list.h"
+#include "cli/water/band_list.h"
 
 #include <fmt/format.h>
 
