@@ -107,7 +107,7 @@ TEST_F(LightReuse, ALampThatTurnsOutOfItsShadowsNeedsOthers) {
     expect_splat(0, 0);
     change([&](SceneDesc& d) { d.lamps[1].direction = glm::normalize(Vector3(0.5, 0, 1)); });
     expect_splat(1, 0);
-    change([&](SceneDesc& d) { d.lamps[1].profile = spot(60, 4); });
+    change([](SceneDesc& d) { d.lamps[1].profile = SpotProfileDesc{60, 4}; });
     expect_splat(1, 0);
 }
 
