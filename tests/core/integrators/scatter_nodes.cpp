@@ -49,7 +49,7 @@ ScatterNodes varied_nodes(std::size_t count, std::size_t constituents, std::size
         nodes.s.push_back(x);
         nodes.radius.push_back(2 * x);
         nodes.weight.push_back(1 / (1 + x));
-        nodes.end.push_back(i % 3);
+        nodes.distance.push_back(i % 3);
     }
     for (std::size_t i = 0; i < count * constituents; ++i) {
         nodes.column.push_back(0.05 * static_cast<double>(i));
@@ -99,7 +99,7 @@ TEST(ScatterSum, IsTheSumOverNodesTermByTerm) {
                     beta += per_unit.scattering[m][band] * nodes.concentration[k * k_count + i] *
                             nodes.phase[m * k_count + i];
             }
-            truth[nodes.end[i]] += intensity[band] * nodes.weight[i] * std::exp(-tau) * beta;
+            truth[nodes.distance[i]] += intensity[band] * nodes.weight[i] * std::exp(-tau) * beta;
         }
         for (std::size_t end = 0; end < 3; ++end)
             EXPECT_NEAR(radiance[end][band], truth[end], 1e-10 * (1 + truth[end]));

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "core/lamps/lamp_factory.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/sphere_surface.h"
 #include "tests/support/test_scene.h"
@@ -60,8 +61,9 @@ TEST(ShadowMap, OfABeamSaysTheSameWithinIt) {
     LampDesc desc = isotropic_lamp(lamp, 1);
     desc.fixed_to_camera = false;
     desc.direction = axis;
-    desc.profile = {LampProfileDesc::Type::spot, 50, 0, 0};
-    const Lamp spot(desc, Affine(), 1);
+    desc.profile = SpotProfileDesc{50};
+    std::vector<std::string> warnings;
+    const Lamp spot = make_lamp(desc, Affine(), std::vector{540.0}, warnings);
     std::mt19937 rng(11);
     std::uniform_real_distribution<double> offset(-1.5, 1.5);
     std::vector<Interval> all, known;
