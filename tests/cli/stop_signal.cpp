@@ -9,7 +9,8 @@
 namespace uw {
 namespace {
 
-// Each in a process of its own, which the signal may end.
+// Each in a process of its own, which the signal may end. It ends without the destructors of
+// libraries, whose threads a forked process does not have.
 class StopSignal : public testing::TestWithParam<int> {};
 
 TEST_P(StopSignal, EndsTheProgramAtOnceBeforeAnythingIsWritten) {
@@ -17,7 +18,7 @@ TEST_P(StopSignal, EndsTheProgramAtOnceBeforeAnythingIsWritten) {
         {
             install_stop_signal();
             std::raise(GetParam());
-            std::exit(0);
+            std::_Exit(0);
         },
         testing::ExitedWithCode(130), "uwvdb: interrupted; nothing was written");
 }
@@ -29,7 +30,7 @@ TEST_P(StopSignal, AsksForAnOrderlyStopFromThenOn) {
             begin_orderly_stop();
             const bool before = stop_requested();
             std::raise(GetParam());
-            std::exit(!before && stop_requested() ? 7 : 1);
+            std::_Exit(!before && stop_requested() ? 7 : 1);
         },
         testing::ExitedWithCode(7), "^$");
 }
@@ -41,7 +42,7 @@ TEST_P(StopSignal, ASecondOneEndsTheProgramAtOnce) {
             begin_orderly_stop();
             std::raise(GetParam());
             std::raise(GetParam());
-            std::exit(0);
+            std::_Exit(0);
         },
         testing::KilledBySignal(GetParam()), "^$");
 }

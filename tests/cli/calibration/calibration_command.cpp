@@ -134,7 +134,7 @@ TEST_F(CalibrationCommand, RefusesInOneLine) {
                    "two.yaml:2:23: camera.calibration: the file has a port of its own");
     write("use.yaml", std::string("uwvdb: 1\ncamera: {calibration: calibration.yaml}") + k_rest);
     expect_failure({"render", "use.yaml", "--stats", "calibration.yaml"}, 2,
-                   "would replace the scene's calibration");
+                   "would replace a calibration of the scene");
 }
 
 TEST_F(CalibrationCommand, APortOfTheSceneGoesWithACalibrationInAir) {
