@@ -23,8 +23,8 @@ constexpr auto k_known =
     "(cam0: {camera_model, intrinsics, ...}), Calibmar's calibration.yaml (model, parameters, "
     "non_svp_model) and COLMAP's cameras.txt (1 OPENCV 1920 1080 ...)";
 
-/// OpenCV's dialect as YAML, every character in its place: "%YAML:1.0" has no space, and the types
-/// of values have tags.
+/// OpenCV's dialect turned into YAML without moving any character: "%YAML:1.0" lacks a space, and
+/// values have type tags.
 std::string as_yaml(std::string text) {
     const auto blank = [&](std::size_t begin, std::size_t length) {
         for (std::size_t i = begin; i < begin + length; ++i) text[i] = ' ';
