@@ -12,7 +12,7 @@ namespace uw {
 
 namespace {
 
-/// All of `text` as a number of type T; empty if it is none.
+/// All of `text` as a number of type T; empty if it is not one.
 template <class T>
 std::optional<T> number_in(const std::string& text) {
     T value{};

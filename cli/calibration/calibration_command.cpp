@@ -17,8 +17,8 @@
 namespace uw {
 namespace {
 
-/// Whether a file calls itself a scene: some line begins with "uwvdb:". What cannot be read is left
-/// to the reader.
+/// Whether a file declares itself a scene: some line begins with "uwvdb:". A file that cannot be
+/// read is left to the reader.
 bool is_scene(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) return false;

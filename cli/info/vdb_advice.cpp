@@ -30,7 +30,7 @@ bool contains_any(const std::string& text, std::initializer_list<const char*> pa
         parts, [&](const char* part) { return text.find(part) != std::string::npos; });
 }
 
-/// Distances to a surface that are not called so.
+/// Distances to a surface, in grids whose class does not say so.
 bool is_level_set_in_disguise(const GridInspection& grid) {
     return grid.values && grid.summary.grid_class != "fog volume" &&
            grid.values->background_value > 0 && grid.values->negative > 0;
@@ -77,7 +77,7 @@ void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
                         advice.map.size(), chosen->summary.base_name, list(advice.map)));
 }
 
-/// Grids whose values are fit but that hold something else.
+/// Grids with valid values that hold something other than a concentration.
 void say_what_to_leave(const VdbInspection& inspection, VdbAdvice& advice) {
     std::vector<std::string> others;
     for (const GridInspection& grid : inspection.grids) {

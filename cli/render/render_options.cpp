@@ -46,7 +46,7 @@ std::array<int, N> parse_integers(const std::string& text, char separator, const
     return values;
 }
 
-/// Makes `option` one of the words of `names`, a table of words and what they mean.
+/// Restricts `option` to the words of `names`, a table of words and their meanings.
 void accept_words(Option& option, const auto& names) {
     option.value = Option::Value::word;
     for (const auto& [word, meaning] : names) option.words.emplace_back(word);

@@ -27,7 +27,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
     return text;
 }
 
-/// Text within single quotes of a POSIX shell.
+/// Text in single quotes for a POSIX shell.
 std::string in_quotes(const std::string& text) {
     return "'" + replaced(text, "'", R"('\'')") + "'";
 }
@@ -92,7 +92,7 @@ std::string bash_script(std::span<const Command> commands) {
         names_of(commands), k_program_options, cases);
 }
 
-/// What _arguments calls an option: '(-o --output)'{-o,--output}'[help]:OUT.exr:_files'.
+/// An option as _arguments specifies it: '(-o --output)'{-o,--output}'[help]:OUT.exr:_files'.
 std::string zsh_specification(const Option& option, int position) {
     const std::string help = replaced(replaced(option.help, "[", R"(\[)"), "]", R"(\])");
     const std::string value_name = replaced(option.value_name, ":", R"(\:)");
