@@ -115,10 +115,10 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv,
     CLI::App program("uwvdb: physically exact images of lamp-lit water, plumes and what is in them",
                      "uwvdb");
     bool version = false;
-    program.add_flag("--version", version, "print the version and stop");
+    program.add_flag("--version", version, "print the version and exit");
     program.footer(
         "Example:\n  uwvdb render assets/scenes/plume.yaml -o plume.exr\n\n"
-        "`uwvdb render --help` and so on tell more.");
+        "See `uwvdb render --help` and so on for more.");
     std::vector<ParsedCommand> parsed;
     for (const Command& command : commands) parsed.push_back(add_command(program, command));
     const auto chosen = [&]() -> const ParsedCommand* {

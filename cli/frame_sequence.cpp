@@ -201,7 +201,7 @@ bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
 
 std::optional<std::string> frame_warning(const RenderArguments& a, const SceneDesc& scene) {
     if (a.frames.size() > 1 && !has_sequence(scene))
-        return "--frames: all frames are alike, for no file of the scene has a place for the "
+        return "--frames: all frames are alike, for no file of the scene has a placeholder for the "
                "frame's number, such as file: smoke_####.vdb";
     if (!a.frames.empty()) return std::nullopt;
     for (const fs::path* name : {&a.output, &a.stats, &a.irradiance_vdb})

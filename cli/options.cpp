@@ -123,7 +123,7 @@ void Options::set(std::vector<std::string>& overrides) {
 }
 
 void Options::threads(int& variable) {
-    integer("--threads", "N", variable, 0, 1024, "threads to use; 0, the default: all there are");
+    integer("--threads", "N", variable, 0, 1024, "threads to use; 0, the default: all");
 }
 
 }  // namespace uw

@@ -156,7 +156,7 @@ std::string write_colmap(const CameraDesc& camera) {
         "# Number of cameras: 1\n";
     text += camera_line(camera, true);
     if (camera.port)
-        text += "# Stock COLMAP knows no ports. The camera alone, as it is in air:\n# " +
+        text += "# Stock COLMAP does not support ports. The camera alone, as it is in air:\n# " +
                 camera_line(camera, false);
     return text;
 }

@@ -106,8 +106,8 @@ void run_calibration(const CalibrationArguments& a, std::ostream& out) {
 
 Command calibration_command() {
     const auto arguments = std::make_shared<CalibrationArguments>();
-    return {"calibration", "what a camera calibration says; converts it", k_calibration_examples,
-            calibration_options(*arguments), [arguments] {
+    return {"calibration", "show what a camera calibration says, and convert it",
+            k_calibration_examples, calibration_options(*arguments), [arguments] {
                 run_calibration(*arguments, std::cout);
                 return k_exit_done;
             }};

@@ -126,7 +126,7 @@ std::string run_info(const InfoArguments& a) {
 
 Command info_command() {
     const auto arguments = std::make_shared<InfoArguments>();
-    return {"info", "what a VDB file or a scene holds, and what to mend", k_info_examples,
+    return {"info", "show what a VDB file or a scene holds, and what to fix", k_info_examples,
             info_options(*arguments), [arguments] {
                 print_output(run_info(*arguments));
                 return k_exit_done;

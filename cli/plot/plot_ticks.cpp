@@ -70,8 +70,7 @@ AxisTicks log_ticks(const AxisRequest& request, double low, double high) {
     const int first = static_cast<int>(std::floor(std::log10(axis.min) + 1e-9));
     const int last = static_cast<int>(std::ceil(std::log10(axis.max) - 1e-9));
     const int decades = last - first;
-    const int labelled =
-        (decades + k_log_labels - 1) / k_log_labels;  // one label per so many decades
+    const int labelled = (decades + k_log_labels - 1) / k_log_labels;  // decades per label
     const bool plain = first >= -2 && last <= 3;
     const bool short_axis = decades <= 2;  // then powers of ten alone are too few labels
     const auto inside = [&](double value) {

@@ -61,7 +61,7 @@ void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
         warn(
             "the image is black: no lamp's light reaches the camera; check the "
             "lamps' positions, directions and intensities, the camera's pose, and how far "
-            "light comes in this water");
+            "light travels in this water");
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ Lattice lattice_over(const AssembledScene& scene) {
     if (bounds.empty() || bounds.diagonal() == 0)
         throw InputError(
             "--irradiance-vdb: the scene has no volume, finite geometry or second lamp "
-            "that would say where to sample; add one");
+            "that would determine where to sample; add one");
     const Vector3 extent = bounds.max - bounds.min;
     const double longest = std::max({extent.x, extent.y, extent.z});
     Lattice lattice;

@@ -177,7 +177,7 @@ void render_frames(const FrameSequence& sequence, FrameScenes& scenes, const std
 
 void run_render(const RenderArguments& a) {
     if (a.resume && a.frames.empty())
-        throw UsageError("--resume: goes on with a sequence; give its --frames");
+        throw UsageError("--resume: continues a sequence; give its --frames");
     RunStats stats;
     const ThreadLimit limit(a.threads);
     FrameSequence sequence = frames_of(a);

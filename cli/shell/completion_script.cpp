@@ -152,7 +152,7 @@ std::string fish_script(std::span<const Command> commands) {
         "# fish completion for uwvdb\n"
         "complete -c uwvdb -n __fish_use_subcommand -f\n"
         "complete -c uwvdb -n __fish_use_subcommand -l help -d 'print help and exit'\n"
-        "complete -c uwvdb -n __fish_use_subcommand -l version -d 'print the version and stop'\n";
+        "complete -c uwvdb -n __fish_use_subcommand -l version -d 'print the version and exit'\n";
     for (const Command& command : commands) {
         script += fmt::format("complete -c uwvdb -n __fish_use_subcommand -a {} -d {}\n",
                               command.name, fish_quotes(command.summary));

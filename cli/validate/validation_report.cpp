@@ -141,7 +141,7 @@ DifferenceMap difference_map(const SceneValidation& scene, const Check& check) {
 constexpr const char* k_colour_scale =
     "<p><span style=\"display:inline-block;width:12em;height:1em;border:1px solid #ccc;background:"
     "linear-gradient(90deg,#00f,#fff,#f00)\"></span> the first is darker … the same … brighter; "
-    "full colour at the largest difference, which stands below each map. Grey: a shadow edge or "
+    "full colour at the largest difference, which is given below each map. Grey: a shadow edge or "
     "hard beam edge crosses the ray of a method that steps over it.</p>\n";
 
 std::string table_of(const SceneValidation& scene) {
@@ -263,7 +263,7 @@ void write_validation_report(const std::filesystem::path& file,
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>uwvdb validate"
         "</title><style>{}</style></head><body>\n<h1>uwvdb validate</h1>\n<p>uwvdb {}. Every way "
         "of computing a scene against the others; tolerances are of the largest relative "
-        "difference, the RMS may be three times what was asked for.</p>\n",
+        "difference; the RMS may be three times the tolerance given.</p>\n",
         k_style, program_version());
     for (const SceneValidation& scene : scenes) html += section_of(scene, pictures);
     html += "</body></html>\n";

@@ -71,7 +71,7 @@ void replace_bands(const WaterArguments& a, WaterReport& report) {
     if (a.bands_nm.empty()) return;
     if (is_given_per_band(report.water, report.volumes))
         throw UsageError(
-            "--bands: this scene gives coefficients per band, which say nothing of other bands; "
+            "--bands: this scene gives coefficients per band, which say nothing about other bands; "
             "leave --bands out, or give the scene a preset or particles instead");
     report.water.bands_nm = a.bands_nm;
 }
@@ -91,7 +91,7 @@ void choose_vsf_bands(const WaterArguments& a, WaterReport& report) {
     if (std::abs(*nearest - wanted) > 1e-6 * wanted)
         throw UsageError(
             fmt::format("--band {:g}: not one of the bands; the nearest is {:g} nm; "
-                        "give --bands to have others",
+                        "choose others with --bands",
                         wanted, *nearest));
     report.vsf_bands = {report.plot_band};
 }

@@ -120,7 +120,7 @@ std::string water_text(const WaterReport& report) {
     for (const std::size_t band : report.vsf_bands) {
         out += heading(fmt::format(
             "Volume scattering function beta(psi) at {:g} nm; psi is the change of direction: 0 "
-            "straight on, 180 back",
+            "forward, 180 backward",
             water.wavelengths_nm[band]));
         out += vsf_text(report, band);
     }
