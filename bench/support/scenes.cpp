@@ -109,7 +109,7 @@ std::string kind_name(const SceneCase& scene) {
         case SceneCase::Kind::fog:
             return fog_name(scene);
     }
-    throw InputError("a scene of no kind");
+    throw InputError("unknown kind of scene");
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace uw {
 
-/// A place is in reach of a lamp if it lies in its beam, no surface stands between, and in some
+/// A place is in reach of a lamp if it lies in its beam, no surface is between, and in some
 /// band the lamp's light arrives with more than this fraction of what the lamp gives on its axis at
 /// 1 m without water: profile e^-tau / r^2.
 inline constexpr double k_reach = 1e-3;

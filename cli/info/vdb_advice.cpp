@@ -12,7 +12,7 @@ namespace uw {
 
 namespace {
 
-// Larger than what lamps light under water, smaller than what one looks at [m].
+// Larger than lamps can light under water; too small to be the intended size [m].
 constexpr double k_too_large = 30, k_too_small = 0.05;
 constexpr double k_convenient = 2;  // what is brought to scale becomes this large
 

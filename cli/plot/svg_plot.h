@@ -34,7 +34,7 @@ struct PlotAxis {
     AxisRequest request;
 };
 
-/// A pair of axes with curves; the legend stands above them, where no curve can pass.
+/// A pair of axes with curves; the legend is above them, where no curve can be.
 struct PlotPanel {
     std::string title;
     PlotAxis x, y;

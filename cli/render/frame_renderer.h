@@ -45,7 +45,7 @@ class FrameRenderer {
     SequenceClock clock_;
     Renderer renderer_;
     std::set<std::string> warned_;
-    // The stage under way: told from any thread.
+    // The current stage: updated from any thread.
     std::mutex mutex_;
     std::string stage_;
     std::unique_ptr<Progress> progress_;
