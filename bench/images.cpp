@@ -1,5 +1,5 @@
-// Whole images: the lamps' light splatted and every pixel rendered, from a scene that is loaded to
-// a film of the total radiance. Each case is best run in a process of its own (scripts/bench does).
+// Whole images: the lamps' light splatted and every pixel rendered, from a loaded scene to a film
+// of the total radiance. Each case is best run in its own process (scripts/bench does so).
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -36,7 +36,7 @@ ReferenceEffort reference_effort(const SceneCase& scene) {
     return {};
 }
 
-/// A scene ready to be rendered, and what is only measured once however often it is.
+/// A scene ready to be rendered, and what is measured only once however often it is rendered.
 class ImageRun {
   public:
     explicit ImageRun(const SceneCase& scene) : case_(scene) {

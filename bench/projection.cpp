@@ -43,7 +43,7 @@ CameraDesc camera(Lens lens, Glass glass) {
     return desc;
 }
 
-constexpr std::size_t k_points = 4096;  // fit into the cache
+constexpr std::size_t k_points = 4096;  // these fit into the cache
 
 struct Samples {
     std::vector<ImagePoint> pixels;

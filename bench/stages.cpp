@@ -50,7 +50,7 @@ class StageRun {
                 plan().channel_names()};
     }
 
-    /// Times `work` and takes the memory down that the scene and it need.
+    /// Times `work` and records the memory that the scene and it need.
     void measure(benchmark::State& state, const std::function<void()>& work) const {
         double peak_mb = 0;
         bench::measure(state, Floor(scene()), threads_, [&] {
@@ -93,7 +93,7 @@ void splat(StageRun& run, benchmark::State& state) {
     });
 }
 
-// Every pixel's values, none kept.
+// Computes every pixel's values and keeps none.
 void march(StageRun& run, benchmark::State& state) {
     const PixelRenderer renderer = run.pixels();
     const CameraDesc& camera = run.desc().camera;

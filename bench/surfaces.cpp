@@ -62,7 +62,7 @@ std::vector<Vector3> tile_directions() {
     return directions;
 }
 
-/// Runs `query` once per loop; `rays` is how many rays it follows.
+/// Runs `query` once per iteration; `rays` is how many rays it traces.
 template <typename Query>
 void measure(benchmark::State& state, std::size_t rays, const Query& query) {
     for (auto _ : state) query();

@@ -8,7 +8,8 @@
 
 namespace uw {
 
-/// A place in the image [pixels]; its corner is (0, 0), the first pixel's centre (0.5, 0.5).
+/// A position in the image [pixels]; the image corner is (0, 0), the first pixel's centre (0.5,
+/// 0.5).
 struct ImagePoint {
     double x = 0;
     double y = 0;
@@ -24,21 +25,21 @@ class Camera final : public RaySource {
 
     int width() const override { return width_; }
     int height() const override { return height_; }
-    /// See RaySource. Empty too where the lens shows nothing (beyond the fold of its distortion).
+    /// See RaySource. Also empty where the lens has no ray (beyond the fold of its distortion).
     std::optional<Ray> refracted_ray(double x, double y) const override;
     LensRay lens_ray(double x, double y) const override;
     bool port_dims() const override { return port_dims_; }
     const Affine& world_from_camera() const override { return world_from_camera_; }
 
-    /// The unit direction that the lens shows at image position (x, y), camera frame, inside the
-    /// housing; empty where the lens shows nothing.
+    /// The unit direction, in the camera frame inside the housing, that the lens images at (x, y);
+    /// empty where the lens has no ray.
     std::optional<Vector3> lens_direction(double x, double y) const;
 
-    /// Where the camera sees a point of the world: the image position whose water ray meets it,
-    /// to 1e-6 pixel, whether inside the image or not. Surfaces in between do not matter. Empty
-    /// where no ray meets it: behind a pinhole, beyond what the lens shows, inside the housing or
-    /// its glass. Through ports it solves one equation in one unknown, which has one root for any
-    /// port whose glass and water are no less dense than its air.
+    /// The image position of a point of the world: the one whose water ray passes through it, to
+    /// 1e-6 pixel, whether inside the image or not. Occluding surfaces are ignored. Empty where
+    /// there is no such ray: behind a pinhole, outside the field of the lens, inside the housing or
+    /// its glass. Behind a port this solves one equation in one unknown, which has a single root if
+    /// glass and water are at least as dense optically as the port's air.
     std::optional<ImagePoint> project(const Point3& world) const;
 
   private:

@@ -4,8 +4,8 @@
 
 namespace uw {
 
-/// Gives the camera another resolution with the same picture: the intrinsics [pixels] are scaled
-/// with it. `width`, `height` >= 1.
+/// Changes the camera's resolution but not its view: the intrinsics [pixels] are scaled with it.
+/// `width`, `height` >= 1.
 inline void resize_image(CameraDesc& camera, int width, int height) {
     const double sx = static_cast<double>(width) / camera.width;
     const double sy = static_cast<double>(height) / camera.height;

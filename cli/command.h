@@ -15,7 +15,7 @@ struct Command {
     std::string
         examples;  // what --help ends with: "Examples:\n  uwvdb ...", explanations, exit codes
     Options options;
-    /// Does the work, after the options have been read. Owns the variables they are written to.
+    /// Does the work, after the options have been read. Owns the variables that hold them.
     std::function<ExitCode()> run;
 };
 

@@ -27,8 +27,8 @@ struct ParsedCommand {
     CLI::App* app;
     std::vector<CLI::Option*> options;  // in the order of command->options
 
-    /// Hands the texts given to their options. They stay out of CLI11's own callbacks, which run
-    /// before it has seen whether help is asked for.
+    /// Passes the texts given to their options. Not done in CLI11's own callbacks, which run before
+    /// it knows whether help is requested.
     void take() const {
         std::size_t i = 0;
         for (const Option& option : command->options.all()) {
@@ -39,7 +39,7 @@ struct ParsedCommand {
                 continue;
             }
             for (const std::string& text : given.results()) {
-                // `-o ''`: most likely a variable of a script that was not set.
+                // `-o ''`: most likely an unset variable in a script.
                 if (text.empty())
                     throw UsageError(fmt::format(
                         "{}: has an empty value; give one, or leave it out", option.name()));
@@ -68,7 +68,7 @@ ParsedCommand add_command(CLI::App& program, const Command& command) {
     return parsed;
 }
 
-// One line about the first word that neither the program nor its command could place.
+// One line about the first word that neither the program nor its command recognises.
 std::string about_unexpected(const CLI::App& program, const ParsedCommand* chosen,
                              std::span<const Command> commands) {
     const std::vector<std::string> words = program.remaining(true);
@@ -115,10 +115,10 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv,
     CLI::App program("uwvdb: physically exact images of lamp-lit water, plumes and what is in them",
                      "uwvdb");
     bool version = false;
-    program.add_flag("--version", version, "print the version and stop");
+    program.add_flag("--version", version, "print the version and exit");
     program.footer(
         "Example:\n  uwvdb render assets/scenes/plume.yaml -o plume.exr\n\n"
-        "`uwvdb render --help` and so on tell more.");
+        "See `uwvdb render --help` and so on for more.");
     std::vector<ParsedCommand> parsed;
     for (const Command& command : commands) parsed.push_back(add_command(program, command));
     const auto chosen = [&]() -> const ParsedCommand* {

@@ -11,7 +11,7 @@
 namespace uw {
 
 void prepare_streams() {
-    // The lowest number that is free is what open() returns: in turn those that were closed.
+    // open() returns the lowest free number: one after the other, those that were closed.
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) < 0) return;
     std::signal(SIGXFSZ, SIG_IGN);

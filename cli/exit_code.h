@@ -6,7 +6,7 @@
 
 namespace uw {
 
-/// What the program's exit code tells (docs/command-line.md).
+/// What the program's exit codes mean (docs/command-line.md).
 enum ExitCode : int {
     k_exit_done = 0,
     k_exit_internal = 1,

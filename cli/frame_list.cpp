@@ -15,7 +15,7 @@ namespace {
 
 constexpr int k_last_frame = 999'999'999;
 constexpr std::size_t k_most_frames = 1'000'000;
-constexpr std::size_t k_most_runs = 50;  // that a message names
+constexpr std::size_t k_most_runs = 50;  // named in a message
 
 [[noreturn]] void refuse(std::string_view part, const std::string& why) {
     throw UsageError(fmt::format("--frames: '{}': {}", printable(part), why));

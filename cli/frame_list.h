@@ -11,8 +11,8 @@ namespace uw {
 /// more than a million frames.
 std::vector<int> parse_frame_list(const std::string& text);
 
-/// Frames as such a list, in ascending order: "3-5,9". Of many runs the first are named, and how
-/// many frames follow.
+/// Frames as such a list, in ascending order: "3-5,9". If there are many runs, the first are
+/// listed, followed by the number of remaining frames.
 std::string format_frame_list(std::vector<int> frames);
 
 }  // namespace uw

@@ -11,7 +11,7 @@ namespace uw {
 /// The JSON that commands print and write, with keys in the order they were added.
 using Json = nlohmann::ordered_json;
 
-/// A number, or null where it is not finite: JSON has no word for that.
+/// A number, or null if it is not finite, which JSON cannot express.
 Json number_json(double value);
 
 /// A list of such numbers.
@@ -24,8 +24,8 @@ Json point_json(const Point3& p);
 /// {"min": [x, y, z], "max": [x, y, z]}, or null where the box is empty.
 Json bounds_json(const Bounds& bounds);
 
-/// Indented, with a newline at the end. Names come from users' files and need not be UTF-8: what is
-/// not is replaced.
+/// Indented, with a newline at the end. Names come from users' files and need not be valid UTF-8:
+/// invalid bytes are replaced.
 std::string json_text(const Json& json);
 
 }  // namespace uw

@@ -18,7 +18,7 @@
 
 namespace {
 
-// One line, whatever the user's files and names brought into it.
+// One line, whatever the user's files and names contain.
 int fail(uw::ExitCode code, const char* what) {
     constexpr std::size_t k_longest_message = 4000;
     uw::print_message(fmt::format("uwvdb: {}\n", uw::printable(what, k_longest_message)));

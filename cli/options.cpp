@@ -12,7 +12,7 @@ namespace uw {
 
 namespace {
 
-/// All of `text` as a number of type T; empty if it is none.
+/// All of `text` as a number of type T; empty if it is not one.
 template <class T>
 std::optional<T> number_in(const std::string& text) {
     T value{};
@@ -123,7 +123,7 @@ void Options::set(std::vector<std::string>& overrides) {
 }
 
 void Options::threads(int& variable) {
-    integer("--threads", "N", variable, 0, 1024, "threads to use; 0, the default: all there are");
+    integer("--threads", "N", variable, 0, 1024, "threads to use; 0, the default: all");
 }
 
 }  // namespace uw

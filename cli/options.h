@@ -9,8 +9,8 @@
 
 namespace uw {
 
-/// One option, flag or positional argument of a command as data: what the parser, --help, the man
-/// page and the shells' completions are made of.
+/// One option, flag or positional argument of a command as data, from which the parser, --help, the
+/// manual page and the shell completions are made.
 struct Option {
     enum class Value {
         none,      // a flag
@@ -21,7 +21,7 @@ struct Option {
     };
 
     std::string names;       // "-o,--output"; without a dash a positional argument: "SCENE"
-    std::string value_name;  // what stands for the value in help: "OUT.exr"
+    std::string value_name;  // the placeholder of the value in help: "OUT.exr"
     std::string help;        // one line
     Value value = Value::none;
     std::vector<std::string> words;
@@ -37,8 +37,9 @@ struct Option {
     std::string name() const;
 };
 
-/// What a command takes. Each function declares one option that is written to its variable as the
-/// command line is read; the variable outlives the options. The references returned stay valid.
+/// What a command accepts. Each function declares one option, whose value is written to its
+/// variable when the command line is read; the variable outlives the options. The references
+/// returned remain valid.
 class Options {
   public:
     /// A switch: true where it is given.
@@ -68,7 +69,7 @@ class Options {
     /// `--threads N`.
     void threads(int& variable);
 
-    /// All that was declared, in that order.
+    /// All that were declared, in that order.
     const std::deque<Option>& all() const { return all_; }
 
   private:

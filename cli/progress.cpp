@@ -18,14 +18,14 @@ constexpr double k_line_interval = 5.0;      // seconds between two plain lines
 constexpr int k_longest_bar = 30;
 constexpr int k_shortest_bar = 5;
 
-// Of the terminal; 80 where it does not say.
+// Width of the terminal; 80 if it is unknown.
 int terminal_columns() {
     winsize size{};
     const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
     return known ? size.ws_col : 80;
 }
 
-// "0.0523", "1.52", "153": three figures, whatever the rate.
+// "0.0523", "1.52", "153": three significant figures.
 std::string format_rate(double rate) {
     const double figures = rate > 0 ? 2 - std::floor(std::log10(rate)) : 0;
     return fmt::format("{:.{}f}", rate, static_cast<int>(std::clamp(figures, 0.0, 6.0)));
@@ -62,7 +62,7 @@ void Progress::update(double fraction) {
     const double interval = terminal_ ? k_terminal_interval : k_line_interval;
     const bool last = fraction >= 1;
     if (!last && elapsed.count() - last_drawn_ < interval) return;
-    if (last && !drawn_) return;  // it was over before anything was due
+    if (last && !drawn_) return;  // finished before anything was due
     last_drawn_ = elapsed.count();
     draw(fraction, elapsed.count());
 }
@@ -86,7 +86,7 @@ void Progress::draw(double fraction, double seconds) {
 }
 
 void Progress::draw_bar(double fraction, const std::string& figures) {
-    // A line that fills the last column may wrap, and then could not be drawn over.
+    // A line that fills the last column may wrap, and then could not be overwritten.
     const int room = terminal_columns() - 1;
     const int for_bar = room - static_cast<int>(label_.size() + figures.size()) - 4;
     std::string line = label_ + " ";

@@ -8,14 +8,13 @@
 
 namespace uw {
 
-/// Progress of long work on stderr: a bar with rate and time left on a terminal, as wide as there
-/// is room; plain lines every few seconds otherwise. Work that is soon done shows nothing. Thread
-/// safe.
+/// Progress of long work on stderr: on a terminal a bar as wide as there is room, with rate and
+/// time left; otherwise plain lines every few seconds. Short work shows nothing. Thread-safe.
 class Progress {
   public:
     /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole. For work that is
-    /// a part of more, `seconds_left` is the time that all of it takes from now on; it is shown
-    /// in place of this part's.
+    /// part of more, `seconds_left` is the time that all of it takes from now on; it is shown
+    /// instead of this part's.
     Progress(std::string label, std::string unit, double scale, bool quiet,
              std::optional<double> seconds_left = {});
     ~Progress();
@@ -24,7 +23,7 @@ class Progress {
     Progress(Progress&&) = delete;
     Progress& operator=(Progress&&) = delete;
 
-    /// Reports that the share `fraction` (0..1) of the work is done.
+    /// Reports that `fraction` (0..1) of the work is done.
     void update(double fraction);
 
   private:

@@ -15,7 +15,7 @@ volatile std::sig_atomic_t g_orderly = 0;
 volatile std::sig_atomic_t g_stop = 0;
 volatile std::sig_atomic_t g_skip = 1;  // 0 on a terminal, where "^C" or a bar fills the line
 
-// Only what may be done inside a signal handler: write(2), _exit(2).
+// Only async-signal-safe calls: write(2), _exit(2).
 void on_signal(int signal) {
     if (g_orderly == 0) {
         const char* const text = "\nuwvdb: interrupted; nothing was written\n";

@@ -1,4 +1,4 @@
-# What `cmake --install` brings: the program with its documents, example scenes, man page and shell
+# What `cmake --install` installs: the program with its documents, example scenes, man page and shell
 # completions (component "program"), and for C++ users a shared library with its headers and
 # find_package(uwvdb) (component "development").
 include(GNUInstallDirs)
@@ -11,7 +11,7 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY assets/cameras assets/grids assets/ies assets/meshes assets/scenes
         DESTINATION ${CMAKE_INSTALL_DATADIR}/uwvdb COMPONENT program)
 
-# Installs as FILE what the program prints when it is run with the arguments that follow.
+# Installs as FILE what the program prints when run with the remaining arguments.
 function(uwvdb_install_printed file folder)
     set(printed ${PROJECT_BINARY_DIR}/printed/${folder}/${file})
     cmake_path(GET printed PARENT_PATH printed_folder)
@@ -37,7 +37,7 @@ list(TRANSFORM uwvdb_library_modules REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>"
      OUTPUT_VARIABLE uwvdb_library_objects)
 uwvdb_public_headers(uwvdb_headers_to_install core media camera render)
 add_library(uwvdb_library SHARED ${uwvdb_library_objects})
-# All objects are there already; linked for the libraries that they need.
+# All objects are in it already; linked for the libraries that they need.
 target_link_libraries(uwvdb_library PRIVATE ${uwvdb_library_modules} INTERFACE glm::glm)
 target_compile_features(uwvdb_library INTERFACE cxx_std_20)
 target_sources(uwvdb_library INTERFACE

@@ -4,8 +4,8 @@
 # scripts/check-layers reads; LIBRARIES are third-party ones that only its sources see.
 #
 # The linker checks the list as well: the target uwvdb_modules_alone links each module's objects
-# once more, as a shared library that finds all of its symbols in the modules that it says it uses
-# and in what these hand on of those that they use.
+# once more, as a shared library that must find all of its symbols in the modules of its USES and,
+# transitively, in theirs.
 add_custom_target(uwvdb_modules_alone)
 
 function(uwvdb_add_module folder)

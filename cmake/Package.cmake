@@ -16,7 +16,7 @@ uwvdb_of_last_commit(uwvdb_maintainer "%an <%ae>" "uwvdb maintainers <uwvdb@loca
 uwvdb_of_last_commit(uwvdb_package_date "%aD" "Thu, 01 Jan 1970 00:00:00 +0000")
 string(REGEX MATCH "[0-9][0-9][0-9][0-9]" uwvdb_package_year "${uwvdb_package_date}")
 
-# Packages of different systems have different versions: a newer system's replaces an older's.
+# Packages for different systems have different versions: a newer system's replaces an older one's.
 cmake_host_system_information(RESULT uwvdb_system QUERY DISTRIB_INFO)
 set(uwvdb_package_release "1~${uwvdb_system_ID}${uwvdb_system_VERSION_ID}")
 set(uwvdb_package_version ${PROJECT_VERSION}-${uwvdb_package_release})

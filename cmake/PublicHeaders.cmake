@@ -1,6 +1,6 @@
 # uwvdb_public_headers(result FOLDER...): the headers below FOLDERs that a program can include with
-# nothing but GLM beside them. Left out are those that include another library's headers, being the
-# doors to it, and those that include one left out.
+# no other library than GLM. Excluded are those that include another library's headers and those
+# that include an excluded one.
 function(uwvdb_public_headers result)
     list(TRANSFORM ARGN APPEND "/*.h" OUTPUT_VARIABLE patterns)
     list(TRANSFORM patterns PREPEND "${PROJECT_SOURCE_DIR}/")

@@ -18,7 +18,7 @@ if(NOT TARGET CLI11::CLI11)
     set_target_properties(CLI11::CLI11 PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${CLI11_INCLUDE_DIR})
 endif()
 
-# FFTW brings no CMake package. Its threads are not used: ours split the work.
+# FFTW has no CMake package. Its threads are not used: ours split the work.
 find_path(FFTW3_INCLUDE_DIR fftw3.h REQUIRED)
 find_library(FFTW3_LIBRARY fftw3 REQUIRED)
 add_library(uwvdb_fftw INTERFACE)
@@ -26,7 +26,7 @@ target_include_directories(uwvdb_fftw SYSTEM INTERFACE ${FFTW3_INCLUDE_DIR})
 target_link_libraries(uwvdb_fftw INTERFACE ${FFTW3_LIBRARY})
 
 # OpenVDB ships find modules, not a package config; their folder names the architecture.
-# They ask for Boost, which CMake is to take from Boost's own package config.
+# They require Boost, which CMake is to find by Boost's own package config.
 set(CMAKE_POLICY_DEFAULT_CMP0167 NEW)
 file(GLOB UWVDB_OPENVDB_MODULES /usr/lib/*/cmake/OpenVDB /usr/lib/cmake/OpenVDB
      /usr/local/lib/cmake/OpenVDB)
@@ -39,7 +39,7 @@ target_link_libraries(uwvdb_nanovdb INTERFACE OpenVDB::openvdb)
 # Its conversions and checksums run on all threads; one setting for all files, unity or not.
 target_compile_definitions(uwvdb_nanovdb INTERFACE NANOVDB_USE_TBB)
 
-# OpenImageIO's exported target names an OpenCV include folder that its package does not bring.
+# OpenImageIO's exported target names an OpenCV include folder that its package does not provide.
 find_package(OpenImageIO REQUIRED)
 get_target_property(uwvdb_oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
 list(FILTER uwvdb_oiio_includes EXCLUDE REGEX opencv)

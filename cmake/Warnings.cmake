@@ -3,9 +3,9 @@ add_library(uwvdb_options INTERFACE)
 target_link_libraries(uwvdb_options INTERFACE glm::glm fmt::fmt)
 target_compile_options(uwvdb_options INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion
-    # a*b+c is never fused behind our back: the same scene gives the same bits on every build
+    # a*b+c is never fused by the compiler: the same scene gives the same bits on every build
     -ffp-contract=off
-    # Inlines as freely in the position-independent code of the library as elsewhere
+    # Allows inlining in the position-independent code of the library as elsewhere
     -fno-semantic-interposition)
 if(UWVDB_WARNINGS_AS_ERRORS)
     target_compile_options(uwvdb_options INTERFACE -Werror)

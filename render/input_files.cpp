@@ -18,7 +18,7 @@ bool is_gltf(const fs::path& file) {
     return ending == ".gltf" || ending == ".glb";
 }
 
-/// Goes through a scene description and collects what it names.
+/// Walks through a scene description and collects the files that it names.
 class InputCollection {
   public:
     explicit InputCollection(GltfSideFiles& known) : known_(known) {}
@@ -65,7 +65,7 @@ class InputCollection {
         for (const GridMappingDesc& grid : volume.grids)
             if (grid.optics && grid.optics->phase) add(*grid.optics->phase);
     }
-    // Neither OBJ, STL nor PLY brings other files: material libraries are not read.
+    // OBJ, STL and PLY refer to no other files: material libraries are not read.
     void add(const GeometryDesc& geometry) {
         if (geometry.type != GeometryDesc::Type::file) return;
         add(geometry.file, "a mesh of the scene");

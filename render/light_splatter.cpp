@@ -46,7 +46,7 @@ DeepShadows LightSplatter::splat(const AssembledScene& scene, const DeepShadowOp
     for (const Lamp& lamp : scene.lamps) {
         const DirectionCone beam = lamp.cone();
         Maps maps{lamp.position(), nullptr, nullptr};
-        // Lamps that stand in one place share their maps.
+        // Lamps at the same position share their maps.
         for (const std::vector<Maps>* known : {&maps_, &before}) {
             for (const Maps& other : *known) {
                 if (other.lamp != maps.lamp) continue;

@@ -11,26 +11,26 @@
 
 namespace uw {
 
-/// Told the share of the lamps that are done.
+/// Receives the fraction of the lamps that are done.
 using ShareCallback = std::function<void(double share)>;
 
-/// What one splat made rather than took over.
+/// What one splat made rather than reused.
 struct SplatCounts {
     std::size_t shadow_maps = 0, column_maps = 0;
     std::uint64_t rays = 0;  // traced for them
 };
 
-/// Splats the light of a scene's lamps and keeps it for the next render. A shadow map hangs on the
-/// lamp's position, the surfaces and the map's resolution; a column map on the lamp's position, the
-/// concentration field, the map's fineness and the memory given to it. Where these are the same as
-/// at the splat before it is taken over: another camera, intensity or colour of a lamp needs no
-/// splat, a lamp that moved one, another frame of a volume new columns only, and a lamp that turned
-/// or widened its beam new shadows only, of its beam.
+/// Splats the light of a scene's lamps and keeps it for the next render. A shadow map depends on
+/// the lamp's position, the surfaces and the map's resolution; a column map on the lamp's position,
+/// the concentration field, the map's resolution and its memory budget. A map is reused if these
+/// are the same as at the previous splat: another camera, or another intensity or colour of a lamp,
+/// needs no splat; a lamp that moved needs its own; another frame of a volume needs new columns
+/// only; a lamp that turned or widened its beam needs new shadows only, within that beam.
 class LightSplatter {
   public:
-    /// The light of every lamp of `scene`, to the bit what a new splatter makes. Surfaces and field
-    /// are the same if they are the same objects. The surfaces are kept alive; a field is not, so
-    /// that its memory is free for the one that follows. What `progress` throws ends the splat.
+    /// The light of every lamp of `scene`, the same to the bit as from a new splatter. Surfaces and
+    /// field are the same if they are the same objects. The surfaces are kept alive; a field is
+    /// not, so that its memory is free for the next one. What `progress` throws ends the splat.
     DeepShadows splat(
         const AssembledScene& scene, const DeepShadowOptions& options,
         const ShareCallback& progress = [](double) {});

@@ -88,7 +88,7 @@ void Renderer::drop_light() {
     light_.clear();
 }
 
-// Light from beyond a window is scattered into it: forward scatter needs the whole image.
+// Light from outside a window is scattered into it: forward scatter needs the whole image.
 void Renderer::fit_film(const RenderOptions& options) {
     const CameraDesc& camera = scene_.desc.camera;
     window_ = options.window.value_or(whole_image(camera));
@@ -120,7 +120,7 @@ void Renderer::prepare(const RenderOptions& options) {
 
 void Renderer::count_work() {
     const auto samples = static_cast<std::uint64_t>(scene_.desc.render.samples);
-    // One ray a sample, and one more for the pixel's centre unless that is the sample: its water
+    // One ray per sample, and one more for the pixel's centre unless that is the sample: its water
     // and ground truth.
     report_.camera_rays = report_.pixels * (samples == 1 ? 1 : samples + 1);
     report_.splat_rays = std::exchange(splat_rays_, 0);

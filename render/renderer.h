@@ -15,83 +15,83 @@
 
 namespace uw {
 
-/// What is wanted of one image beyond what its scene says.
+/// What is requested of one image beyond what its scene says.
 struct RenderOptions {
     std::string layers{};                       // as LayerPlan takes them; empty: the default set
     std::optional<PixelWindow> window{};        // the pixels wanted; none: the whole image
-    const LightTransport* transport = nullptr;  // in place of the scene's, to try one; not owned
+    const LightTransport* transport = nullptr;  // instead of the scene's, for tests; not owned
 };
 
-/// What an image was made of, and what is to be said about it.
+/// What an image was made of, and the warnings about it.
 struct RenderReport {
     std::vector<std::string> warnings;  // about the scene: one line each, in the order met
     std::uint64_t pixels = 0;           // rendered: with forward scatter always the whole image
     std::uint64_t camera_rays = 0;
-    std::uint64_t splat_rays = 0;     // traced for light that was not there from the image before
+    std::uint64_t splat_rays = 0;     // traced for light not kept from the last image
     std::uint64_t light_bytes = 0;    // of all lamps' light
     std::uint64_t active_voxels = 0;  // of all grids
     std::uint64_t grid_bytes = 0;
     std::uint64_t triangles = 0, lamps = 0, bands = 0;
 };
 
-/// Renders images of scenes: the one way from a scene description to pixels.
+/// Renders images of scenes: the only path from a scene description to pixels.
 ///
 ///     Renderer renderer;
 ///     renderer.set_scene(load_scene("scene.yaml", {}));
 ///     write_exr("image.exr", renderer.render(), {});
 ///
-/// Water, volumes, surfaces and light are kept from one image to the next as far as they are the
-/// same; every image is to the bit what a new renderer makes of its scene. Neither prints nor ends
-/// the program. What is wrong with files is an InputError or IoError, with options a UsageError.
+/// Water, volumes, surfaces and light are kept from one image to the next as far as they are
+/// unchanged; every image is the same to the bit as from a new renderer. It neither prints nor ends
+/// the program. Faults in files are an InputError or IoError, in options a UsageError.
 ///
 /// Stages, in this order: "volumes", "geometry", "splat", "render" and, with forward scatter,
-/// "forward scatter". `progress` is told of each with 0 before it begins, from the thread that
-/// called. If it returns false, or throws, the work ends with Interrupted, or with what was thrown;
-/// the renderer is as good as before, and the same image can be asked for again.
+/// "forward scatter". `progress` receives each with 0 before it begins, on the calling thread. If
+/// it returns false, or throws, the work ends with Interrupted, or with what was thrown; the
+/// renderer stays usable, and the same image can be requested again.
 class Renderer {
   public:
     explicit Renderer(RenderProgress progress = {}) : progress_(std::move(progress)) {}
 
-    /// The scene of the images to come. Loads nothing yet: what is the same as in the scene before
-    /// is taken over as it is, even if its files have changed since.
+    /// Sets the scene of the images to come. Loads nothing yet: what is the same as in the scene
+    /// before is reused as it is, even if its files have changed since.
     void set_scene(ResolvedScene scene);
-    /// Precondition of this and all that follows: set_scene.
+    /// Precondition of this and all that follows: set_scene was called.
     const SceneDesc& scene() const { return scene_.desc; }
 
-    /// Gets memory for an image and assembles its scene: then the report has its warnings and its
-    /// pixels. render() does it by itself; this is for those who want to hear of it before.
+    /// Allocates an image and assembles its scene: then the report has its warnings and its pixels.
+    /// render() does so itself; call this to learn of them beforehand.
     void prepare(const RenderOptions& options = {});
 
-    /// Renders the image. The film is the renderer's and stays as it is until the next image is
-    /// prepared; its memory is used again. Throws InputError if there is not enough memory;
+    /// Renders the image. The film belongs to the renderer and stays as it is until the next image
+    /// is prepared, which reuses its memory. Throws InputError if there is not enough memory;
     /// UsageError for a window that is not within the image, and as LayerPlan.
     const Film& render(const RenderOptions& options = {});
 
     /// About the image that was prepared or rendered last.
     const RenderReport& report() const { return report_; }
 
-    /// @name What images are made of, for those that look deeper
-    /// References to them hold until the scene is set or edited again.
+    /// @name What images are made of, for closer inspection
+    /// References to them are valid until the scene is set or edited again.
     /// @{
 
     /// Loads and builds the scene unless that has been done.
     const AssembledScene& assemble();
-    /// Likewise the light of its lamps, as finely as its quality asks for. For an integrator that
-    /// needs no light, forward scatter takes the columns from it if it is there.
+    /// Likewise the light of its lamps, at the resolution that its quality requires. For an
+    /// integrator that needs no light, forward scatter takes the columns from it if it is there.
     const DeepShadows& splat();
-    /// Of this fineness, in place of what there is.
+    /// At this resolution, replacing the light there is.
     const DeepShadows& splat(const DeepShadowOptions& options);
     /// Of the last splat.
     const SplatCounts& splat_counts() const { return splatter_.counts(); }
     /// The light transport of the scene's integrator, with its light if it needs any.
     LightTransport make_transport();
 
-    /// What assemble() and splat() gave last. Precondition: they have been called.
+    /// What assemble() and splat() returned last. Precondition: they have been called.
     const AssembledScene& assembled() const { return scene_; }
     const DeepShadows& light() const { return light_; }
 
-    /// Changes the assembled scene by hand: for water, volumes and slabs that no description names.
-    /// The scene set after it takes nothing over.
+    /// Changes the assembled scene by hand: for water, volumes and slabs that no description can
+    /// express. The next scene that is set reuses nothing.
     void edit(const std::function<void(AssembledScene&)>& change);
     /// Frees the light: the next splat makes all of it anew.
     void drop_light();
@@ -107,7 +107,7 @@ class Renderer {
     RenderProgress progress_;
     AssembledScene scene_;  // its `desc` alone until it is assembled
     bool is_assembled_ = false, is_edited_ = false;
-    AssembledScene before_;  // what the scene takes over when it is assembled
+    AssembledScene before_;  // what the scene reuses when it is assembled
     LightSplatter splatter_;
     DeepShadows light_;             // of the scene; empty: not splatted
     std::uint64_t splat_rays_ = 0;  // since the last image

@@ -8,7 +8,7 @@
 
 namespace uw {
 
-/// Which of the images that a scene describes.
+/// Which of the images that a scene describes to render.
 struct ImageChoice {
     std::optional<int> frame;  // of its sequences; none: files are named as they are
     std::size_t camera = 0;    // of its rig, by index
@@ -16,22 +16,22 @@ struct ImageChoice {
     friend bool operator==(const ImageChoice&, const ImageChoice&) = default;
 };
 
-/// `scene` seen by the chosen camera, with the chosen frame's files in place of its sequences.
+/// `scene` seen by the chosen camera, with the files of the chosen frame instead of its sequences.
 SceneDesc scene_of_image(const SceneDesc& scene, const ImageChoice& choice);
 
-/// The description of one image's scene with nothing left to look up: no sequence of which no frame
-/// was chosen, and the cameras and lamps of its glTF files in it (import_gltf). This is what a
-/// Renderer takes. Making one is what imports, and the only thing that does: a scene cannot be
-/// imported twice, for no function takes a resolved one where it expects one as read.
+/// The description of one image's scene with nothing left to look up: no sequence without a chosen
+/// frame, and the cameras and lamps of its glTF files included (import_gltf). This is what a
+/// Renderer takes. Constructing one is what imports: a scene cannot be imported twice, as no
+/// function takes a resolved one where it expects one as read.
 class ResolvedScene {
   public:
-    /// Consumes the description; whoever needs it afterwards makes the copy where it shows. Throws
-    /// InputError for a sequence without a frame, and what import_gltf does.
+    /// Consumes the description; a caller that needs it afterwards makes an explicit copy. Throws
+    /// InputError for a sequence without a frame, and as import_gltf.
     ResolvedScene(SceneDesc&& scene);
 
     const SceneDesc& desc() const { return desc_; }
-    /// To change what has been resolved, such as the size of its image. What a glTF file is asked
-    /// for here is not imported any more.
+    /// For changing what has been resolved, such as the size of its image. What is requested of a
+    /// glTF file here is no longer imported.
     SceneDesc& edit() { return desc_; }
     SceneDesc release() && { return std::move(desc_); }
 

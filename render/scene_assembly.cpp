@@ -18,7 +18,7 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
     to.insert(to.end(), from.begin(), from.end());
 }
 
-// A lamp where the camera's rays begin has in-scatter that grows without bound (1/r^2).
+// In-scatter from a lamp at the origin of the camera's rays has no bound (1/r^2).
 void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
     const CameraDesc& camera = desc.camera;
     const std::optional<Ray> ray =
@@ -49,7 +49,7 @@ void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
     check_blur_length(medium, desc.where);
 }
 
-// Whether volumes mean the same for the water; their files are no matter.
+// Whether the descriptions give the same water; the volumes' files do not matter.
 bool same_water(const SceneDesc& a, const SceneDesc& b) {
     return a.water == b.water &&
            std::ranges::equal(a.volumes, b.volumes, {}, &VolumeDesc::grids, &VolumeDesc::grids);

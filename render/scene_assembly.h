@@ -31,7 +31,7 @@ struct AssembledScene {
     std::vector<VolumeReport> volume_reports;
     std::vector<std::string> warnings;  // one line each, in the order met
 
-    // For the scene that follows to take over.
+    // For the next scene to reuse.
     std::vector<LoadedVolume> volumes;  // what `field` is made of
     std::vector<std::string> geometry_warnings;
 
@@ -41,18 +41,18 @@ struct AssembledScene {
 /// Called with the name of each stage as it begins.
 using StageCallback = std::function<void(const std::string& stage)>;
 
-/// Loads what `desc`, a resolved scene's, names and builds it, and places the slabs. `desc` of the
-/// result is left empty, for the caller to move the description there: none is copied. `before`, a
-/// scene assembled earlier or none, is used up: water, volumes and surfaces whose description is
-/// the same are taken over from it as they are, even if their files have changed since; what is not
-/// is freed before anything is loaded. The result is to the bit what it is without `before`. Throws
+/// Loads and builds what `desc`, that of a resolved scene, names, and places the slabs. `desc` of
+/// the result is left empty for the caller to move the description into: it is never copied.
+/// `before`, a scene assembled earlier or none, is consumed: water, volumes and surfaces with the
+/// same description are reused as they are, even if their files have changed since; the rest is
+/// freed before anything is loaded. The result is the same to the bit as without `before`. Throws
 /// InputError and IoError of one line each.
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
                               AssembledScene before = {});
 
-/// The light transport of the integrator that the scene asks for, from light splatted before;
+/// The light transport of the integrator that the scene requests, from light splatted before;
 /// `deep_shadows` may be empty unless IntegratorKind::needs_deep_shadows. In-scatter is weighted by
-/// distance where the output is the paper's.
+/// distance if the output is the paper's.
 LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows);
 
 }  // namespace uw

@@ -8,7 +8,7 @@ namespace uw {
 
 namespace {
 
-// Takes from a calibration file what `camera` wants from there.
+// Reads the calibration file that `camera` names, if any, into it.
 void calibrate(CameraDesc& camera, SceneDesc& scene) {
     const auto calibration = apply_calibration(camera);
     if (!calibration) return;

@@ -8,8 +8,8 @@
 
 namespace uw {
 
-/// Reads a scene with its overrides (core/scene/yaml/scene_reader.h) and what its cameras take from
-/// calibration files, whose content is part of the scene's hash. Throws as read_scene and
+/// Reads a scene with its overrides (core/scene/yaml/scene_reader.h) and the calibration files that
+/// its cameras name, whose content is part of the scene's hash. Throws as read_scene and
 /// read_calibration do.
 SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 

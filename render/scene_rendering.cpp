@@ -11,16 +11,17 @@ namespace uw {
 
 namespace {
 
-// Slabs of water that begin at a distance s are k_growth (s + offset) thick, the offset the lesser
-// of two bounds. Where a surface cuts a slab, what is left of it lights all of the slab beside it:
-// a halo around depth edges, of first order in the thickness. It is up to 0.25 % of the backscatter
-// in what `uwvdb validate` renders, no more than the ladder of blur widths leaves.
+// Slabs of water that begin at a distance s are k_growth (s + offset) thick, with the smaller of
+// two offsets. Where a surface cuts a slab, the light of the part before it is spread over the
+// whole slab in the pixels beside it: a halo around depth edges, of first order in the thickness.
+// It is up to 0.25 % of the backscatter in what `uwvdb validate` renders, no more than the error of
+// mixing blur widths.
 constexpr double k_growth = 0.06;
 constexpr double k_offset = 0.3;        // m
 constexpr double k_offset_depth = 0.6;  // optical depth
-// How far in-scatter that is interpolated between pixels may be from their own (InScatterLattice),
-// relative, where the lattice is confirmed; what is shown is interpolated from nearer nodes and off
-// by a quarter of it.
+// How far in-scatter that is interpolated between pixels may be from that of their own rays
+// (InScatterLattice), relative, where the lattice is confirmed; the image is interpolated from
+// closer nodes and has a quarter of that error.
 constexpr double k_in_scatter_tolerance = 2e-3;
 constexpr double k_draft_tolerance = 0.05;
 
@@ -61,8 +62,8 @@ double angle_between(const Ray& a, const Ray& b) {
                       glm::dot(a.direction, b.direction));
 }
 
-// Pixels per radian in the water, at the centre of the image; of a port that the centre does not
-// look through, at the place nearest to it that does.
+// Pixels per radian in the water, at the centre of the image; if the centre does not see through
+// the port, at the closest position that does.
 ScatterPlane scatter_plane(const Camera& camera) {
     ScatterPlane plane{camera.width(), camera.height(), 1, 1};
     constexpr int k_steps = 64;
@@ -94,7 +95,7 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     setup.desc = scene.desc.water.forward_scatter;
     setup.plane = scatter_plane(*scene.camera);
     setup.faces = slab_faces(scene);
-    // Planes of camera z do not reach around a view that is wider than a hemisphere.
+    // Planes of constant camera z do not cover a view wider than a hemisphere.
     setup.shells = scene.desc.camera.distortion.model == DistortionDesc::Model::fisheye;
     setup.sensor = SensorModel(scene.desc);
     setup.first = {scene.slabs.boundary(0), scene.slabs.boundary(1)};

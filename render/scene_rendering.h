@@ -15,20 +15,20 @@
 
 namespace uw {
 
-/// Told how far a stage of the work is (0..1), from any thread; returns false to stop.
+/// Receives the progress of a stage (0..1), on any thread; returns false to stop.
 using RenderProgress = std::function<bool(const std::string& stage, double fraction)>;
 
-/// Which layers an image of `scene`, resolved, has: `request` is what LayerPlan takes.
+/// The layers of an image of `scene`, resolved: `request` is what LayerPlan takes.
 LayerPlan layer_plan(const SceneDesc& scene, std::string_view request);
 
-/// How finely lamps are splatted for an image of this quality.
+/// The resolution at which lamps are splatted for an image of this quality.
 DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality);
 
-/// How closely in-scatter is interpolated between pixels (InScatterLattice); 0 for integrators that
-/// are there for comparison: every pixel by itself.
+/// How closely in-scatter is interpolated between pixels (InScatterLattice); 0 for integrators
+/// meant for comparison: every pixel has its own ray.
 double in_scatter_tolerance(const RenderDesc& render);
 
-/// Renders the pixels of `scene` by `transport`, one by one. Both outlive the result.
+/// Renders the pixels of `scene` by `transport`, one at a time. Both outlive the result.
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts = {});
 
@@ -39,9 +39,9 @@ void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const RenderProgress& progress);
 
-/// How the light of `scene` is scattered forward. Where the integrator sums slabs the water is
-/// split into them; else into slabs that grow with the distance. `deep_shadows` and `scene` outlive
-/// the result.
+/// How the light of `scene` is scattered forward. If the integrator sums slabs the water is split
+/// into them, else into slabs that grow with the distance. `deep_shadows` and `scene` outlive the
+/// result.
 ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
                                           const DeepShadows& deep_shadows);
 

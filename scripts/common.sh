@@ -10,7 +10,7 @@ run_quietly() {
     fi
 }
 
-# Configures and builds a preset, e.g. `build_preset release`. Ninja shows how far it is.
+# Configures and builds a preset, e.g. `build_preset release`. Ninja shows the progress.
 build_preset() {
     echo "Building the $1 preset in build/$1"
     run_quietly cmake --preset "$1"

@@ -12,7 +12,7 @@
 namespace uw::bench {
 namespace {
 
-constexpr int k_tile = 16;  // pixels along an edge, as the renderer goes through an image
+constexpr int k_tile = 16;  // pixels along an edge, as in the renderer
 constexpr double k_least_seconds = 0.05;
 
 }  // namespace

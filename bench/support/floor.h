@@ -4,7 +4,7 @@
 
 namespace uw::bench {
 
-/// The least that an image of a scene takes (docs/performance.md): its primary rays and, where one
+/// The minimum cost of an image of a scene (docs/performance.md): its primary rays and, where one
 /// meets a surface, a shadow ray to each lamp, by Embree alone; and one pass over the voxels of its
 /// grids. No light is computed.
 class Floor {

@@ -5,8 +5,8 @@
 /// Inputs made by formula: the same on every machine.
 namespace uw::bench {
 
-/// Writes a seabed, x -6..6, z -10..4, rough around y = 0, and 24 rocks that hang in the water
-/// above it and throw shadows: about `triangles` in all, half of each. Binary PLY, y up, metres.
+/// Writes a seabed, x -6..6, z -10..4, rough around y = 0, and 24 rocks floating in the water above
+/// it and casting shadows: about `triangles` in all, half of them each. Binary PLY, y up, metres.
 void write_seabed(const std::filesystem::path& file, int triangles);
 
 /// Side of the box of fog [m]: x -1.35..1.05, y 0..2.4, z -1.2..1.2.

@@ -81,7 +81,7 @@ ReferenceError compare_with_reference(const AssembledScene& scene, const LayerPl
     const auto truth = radiance(scene, step, chosen);
     const auto coarse = radiance(scene, 2 * step, chosen);
     const double scale = 1 / mean(truth);
-    // With errors e and 2e that do not follow each other, the difference is sqrt(5) e.
+    // If the errors e and 2e are uncorrelated, the difference is sqrt(5) e.
     return {static_cast<int>(chosen.size()), scale * rmse(measured, truth),
             scale * largest_difference(measured, truth),
             scale * rmse(coarse, truth) / std::sqrt(5.0)};

@@ -5,17 +5,17 @@
 namespace uw::bench {
 
 /// How far a scene's image is from the reference integrator's, on a lattice of its pixels. All
-/// bands of the total radiance, divided by their mean over these pixels.
+/// bands of the total radiance, relative to their mean over these pixels.
 struct ReferenceError {
     int pixels = 0;
     double rmse = 0;       // root of the mean square difference
     double largest = 0;    // difference of any band of any pixel
-    double reference = 0;  // what the reference itself is uncertain by, as an RMSE
+    double reference = 0;  // the reference's own uncertainty, as an RMSE
 };
 
 /// Compares about `pixels` pixels of a rendered film, which has the layer `total` of `plan`, with
-/// the reference. `step`: of the reference integrator; its own uncertainty is taken from a second
-/// one of twice the step, whose error is about double. On all cores.
+/// the reference. `step`: of the reference integrator; its own uncertainty is estimated with a
+/// second one of twice the step, whose error is about double. On all cores.
 ReferenceError compare_with_reference(const AssembledScene& scene, const LayerPlan& plan,
                                       const Film& film, int pixels, double step);
 

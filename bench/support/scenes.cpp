@@ -54,7 +54,7 @@ double absorption(double nm) {
 }
 
 std::string lamp(int index, int bands) {
-    // Neighbours in number are far apart on the ring: few lamps light the scene from all sides too.
+    // Consecutive lamps are far apart on the ring: few lamps light the scene from all sides, too.
     const double angle = index * std::numbers::pi * (3 - std::sqrt(5.0)) + 0.5;
     const double x = std::cos(angle), y = std::sin(angle);
     return fmt::format(
@@ -109,7 +109,7 @@ std::string kind_name(const SceneCase& scene) {
         case SceneCase::Kind::fog:
             return fog_name(scene);
     }
-    throw InputError("a scene of no kind");
+    throw InputError("unknown kind of scene");
 }
 
 }  // namespace

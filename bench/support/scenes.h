@@ -10,10 +10,10 @@
 
 namespace uw::bench {
 
-/// A scene to measure. The scenes but S1 share one camera and one rig of spot lamps around it.
+/// A scene to measure. All but S1 share one camera and one rig of spot lamps around it.
 struct SceneCase {
     enum class Kind {
-        s1,       // of docs/performance.md: a plane, a box, one isotropic lamp; nothing else counts
+        s1,  // of docs/performance.md: a plane, a box, one isotropic lamp; other members are unused
         uniform,  // uniform water above write_seabed's mesh
         plume,    // the same with the Blender plume of 128^3 in it
         fog,      // the same with write_fog's box in it
@@ -27,17 +27,17 @@ struct SceneCase {
     bool dense = true;
     int threads = 1;
 
-    /// "plume/640x360/lamps:3/bands:3/threads:1", and what else sets the case apart.
+    /// "plume/640x360/lamps:3/bands:3/threads:1", and whatever else distinguishes the case.
     std::string name() const;
 };
 
-/// Where the inputs of scenes are kept once made: the environment's UWVDB_BENCH_FILES, or else a
-/// folder that goes with the object.
+/// Where the inputs of scenes are kept once made: the environment variable UWVDB_BENCH_FILES, or
+/// else a folder that is removed with the object.
 class SceneFiles {
   public:
     SceneFiles();
 
-    /// Makes what the scene needs unless it is there, and reads the scene. Throws as read_scene.
+    /// Makes the scene's inputs unless they exist, and reads the scene. Throws as read_scene.
     SceneDesc read(const SceneCase& scene) const;
     const std::filesystem::path& folder() const { return folder_; }
 

@@ -6,7 +6,7 @@
 
 namespace uw::bench {
 
-/// A number in [0, 1) that is the same for the same three on every machine.
+/// A number in [0, 1) that depends only on the three arguments, on every machine.
 double hashed(std::int32_t i, std::int32_t j, std::int32_t k);
 
 /// Smooth noise in [0, 1): the hashed numbers of the integer lattice, interpolated, in `octaves` of

@@ -4,8 +4,8 @@
 #include "camera/calibration/formats.h"
 #include "core/scene/yaml/camera_values.h"
 
-// Calibmar's calibration.yaml: COLMAP's models by name and list of parameters, image corner at
-// (0, 0) (it adds the half pixel to what OpenCV detects), lengths in metres.
+// Calibmar's calibration.yaml: COLMAP's models by name and list of parameters, image corner at (0,
+// 0) (Calibmar adds the half pixel to what OpenCV detects), lengths in metres.
 
 namespace uw {
 

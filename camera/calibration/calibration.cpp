@@ -23,8 +23,8 @@ constexpr auto k_known =
     "(cam0: {camera_model, intrinsics, ...}), Calibmar's calibration.yaml (model, parameters, "
     "non_svp_model) and COLMAP's cameras.txt (1 OPENCV 1920 1080 ...)";
 
-/// OpenCV's dialect as YAML, every character in its place: "%YAML:1.0" has no space, and the types
-/// of values have tags.
+/// OpenCV's dialect turned into YAML without moving any character: "%YAML:1.0" lacks a space, and
+/// values have type tags.
 std::string as_yaml(std::string text) {
     const auto blank = [&](std::size_t begin, std::size_t length) {
         for (std::size_t i = begin; i < begin + length; ++i) text[i] = ' ';
@@ -100,7 +100,7 @@ std::optional<Calibration> apply_calibration(CameraDesc& camera) {
         throw InputError(
             camera.calibration->where +
             ": the file has a port of its own; remove camera.port, or take the numbers of "
-            "'uwvdb calibration FILE --to scene' in place of the file");
+            "'uwvdb calibration FILE --to scene' instead of the file");
     camera.width = result.desc.width;
     camera.height = result.desc.height;
     camera.intrinsics = result.desc.intrinsics;
@@ -129,9 +129,9 @@ std::vector<std::string> calibration_omissions(CalibrationFormat format, const C
     return std::visit(
         [](const auto& port) {
             std::vector<std::string> lines;
-            if (port.fresnel) lines.emplace_back("the port's fresnel has no place in the file");
+            if (port.fresnel) lines.emplace_back("the file cannot hold the port's fresnel");
             if (port.radiance_in_air)
-                lines.emplace_back("the port's radiance_in has no place in the file");
+                lines.emplace_back("the file cannot hold the port's radiance_in");
             return lines;
         },
         *camera.port);

@@ -15,16 +15,16 @@ enum class CalibrationFormat : std::uint8_t {
     kalibr,    // camchain.yaml
     calibmar,  // calibration.yaml
     colmap,    // cameras.txt, stock and refractive
-    scene,     // the camera of a scene of ours
+    scene,     // the camera of a uwvdb scene
 };
 
-/// What a calibration file says of one camera.
+/// What a calibration file says about one camera.
 struct Calibration {
     CalibrationFormat format = CalibrationFormat::opencv;
     std::string camera;                // its name in the file; "" if it has none
     std::vector<std::string> cameras;  // all names in the file
     std::string model;                 // in the file's own words: "pinhole, radtan"
-    /// Resolution, intrinsics in our convention (image corner at 0), distortion and port alone.
+    /// Resolution, intrinsics (image corner at (0, 0)), distortion and port only.
     CameraDesc desc;
     std::vector<std::string> warnings;  // one line each
     std::string hash;                   // of the file's text

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t k_most_tokens = 64;
 
-/// The tokens of one line as values with their places.
+/// The tokens of one line as values with their positions in the file.
 struct Line {
     int number = 0;
     std::vector<ConfigNode> tokens;
@@ -47,12 +47,12 @@ Line split(std::string_view text, int number, const std::shared_ptr<const std::s
         node.scalar = text.substr(begin, i - begin);
         node.position = {origin, number, static_cast<int>(begin) + 1};
         line.tokens.push_back(std::move(node));
-        if (line.tokens.size() > k_most_tokens) break;  // no camera has so many
+        if (line.tokens.size() > k_most_tokens) break;  // no camera has this many
     }
     return line;
 }
 
-/// All lines that are neither empty nor comments.
+/// Visits all lines that are neither empty nor comments.
 template <class Visit>
 void for_each_line(std::string_view text, Visit visit) {
     int number = 0;
@@ -156,7 +156,7 @@ std::string write_colmap(const CameraDesc& camera) {
         "# Number of cameras: 1\n";
     text += camera_line(camera, true);
     if (camera.port)
-        text += "# Stock COLMAP knows no ports. The camera alone, as it is in air:\n# " +
+        text += "# Stock COLMAP does not support ports. The camera alone, as it is in air:\n# " +
                 camera_line(camera, false);
     return text;
 }

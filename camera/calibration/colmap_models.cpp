@@ -24,14 +24,14 @@ constexpr std::array<ColmapModel, 9> k_colmap_models{{
     {"SIMPLE_RADIAL_FISHEYE", "f cx cy k1", true},
     {"RADIAL_FISHEYE", "f cx cy k1 k2", true},
 }};
-/// COLMAP's other models: of other lenses.
+/// COLMAP's models of lenses that are not supported.
 constexpr std::array<std::string_view, 6> k_others{"FOV",
                                                    "THIN_PRISM_FISHEYE",
                                                    "RAD_TAN_THIN_PRISM_FISHEYE",
                                                    "METASHAPE_FISHEYE",
                                                    "SIMPLE_DIVISION",
                                                    "DIVISION"};
-/// A normal whose length differs from 1 by more is a slip and not a matter of digits.
+/// A normal whose length differs from 1 by more is a mistake, not rounding.
 constexpr double k_normal_tolerance = 1e-3;
 
 std::vector<std::string> words(std::string_view text) {
@@ -57,7 +57,7 @@ const ColmapModel& model_called(const ConfigValue& value) {
         fmt::format("unknown camera model '{}'; {}", printable(name), suggestion(name, names)));
 }
 
-/// Where the parameter of this name is kept; f is fx, and fy by its absence.
+/// Where the parameter of this name is stored; f is stored as fx, and the caller copies it to fy.
 double* parameter_of(std::string_view name, CameraDesc& camera) {
     IntrinsicsDesc& i = camera.intrinsics;
     if (name == "f" || name == "fx") return &i.fx;

@@ -27,7 +27,7 @@ const ConfigNode* find_any(const ConfigNode& map, Names names) {
     return nullptr;
 }
 
-/// The value under the first of several names.
+/// The value of the first of several keys that is present.
 ConfigValue require_any(const ConfigValue& map, Names names, std::string_view mend) {
     for (const std::string_view name : names)
         if (const ConfigNode* const node = map.node().find(name)) return {*node, std::string(name)};

@@ -4,7 +4,7 @@
 
 #include "camera/calibration/formats.h"
 
-// The camera of a scene file, to paste.
+// The camera section of a scene file, ready to paste.
 
 namespace uw {
 namespace {

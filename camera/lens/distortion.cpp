@@ -15,9 +15,9 @@ namespace {
 constexpr double k_largest_r2 = 1e10;
 constexpr int k_brown_conrady_max_iterations = 100;
 constexpr int k_max_halvings = 60;
-/// Newton's last step bounds what is left of the error; ten times better than promised.
+/// Newton's last step bounds the remaining error; ten times smaller than promised.
 constexpr double k_brown_conrady_tolerance = 1e-11;
-/// Points nearer to each other are one, but for what the inverse is short of and a fold magnifies.
+/// Points closer than this are the same; allows for the inverse's error, which a fold magnifies.
 constexpr double k_same_point = 1e-6;
 
 /// Radius where d(r f)/dr changes sign or f has a pole. With u = r^2 and f = N/D,
@@ -75,8 +75,8 @@ Distortion::Jacobian Distortion::jacobian(const NormalizedPoint& p) const {
 
 bool Distortion::in_domain(const NormalizedPoint& p, const Jacobian& j) const {
     // Where its Jacobian is positive definite the model is the gradient of a convex potential, so
-    // that no two points of a convex part are shown at one place. The radius keeps out the parts
-    // beyond the fold where that holds again.
+    // no two points of a convex region are imaged at the same position. The radius excludes the
+    // regions beyond the fold where that holds again.
     const bool definite = j.xx + j.yy > 0 && j.xx * j.yy > j.xy * j.xy;
     return definite && std::hypot(p.x, p.y) < fold_radius_;
 }
@@ -85,8 +85,9 @@ std::optional<NormalizedPoint> Distortion::undistort(const NormalizedPoint& dist
     if (!std::isfinite(distorted.x) || !std::isfinite(distorted.y)) return std::nullopt;
     if (identity_) return distorted;
 
-    // Newton from the axis, where the Jacobian is 1. A step is halved until it stays in the domain
-    // and brings the image closer; a target without an image stalls at the fold.
+    // Newton's method from the axis, where the Jacobian is 1. A step is halved until it stays in
+    // the domain and reduces the residual; for a target outside the lens's image it stalls at the
+    // fold.
     NormalizedPoint p;
     Jacobian j = jacobian(p);
     NormalizedPoint missing = distorted;

@@ -10,7 +10,7 @@ namespace uw {
 namespace {
 
 constexpr int k_fisheye_max_iterations = 100;
-/// Angles nearer to each other [rad] are one: a thousandth of the 1e-10 that is promised.
+/// Angles closer than this [rad] are the same: a thousandth of the promised 1e-10.
 constexpr double k_fisheye_tolerance = 1e-14;
 
 }  // namespace
@@ -35,7 +35,7 @@ double Fisheye::slope(double theta) const {
 }
 
 double Fisheye::angle(double r) const {
-    // Newton, kept between angles that show less and more than r.
+    // Newton's method, kept between angles that are imaged below and above r.
     double low = 0, high = largest_angle_;
     double theta = std::min(r, high);
     for (int iteration = 0; iteration < k_fisheye_max_iterations; ++iteration) {
@@ -61,7 +61,7 @@ std::optional<Vector3> Fisheye::direction(const NormalizedPoint& image) const {
 std::optional<NormalizedPoint> Fisheye::image(const Vector3& direction) const {
     const double across = std::hypot(direction.x, direction.y);
     const double theta = std::atan2(across, direction.z);
-    // Straight back is shown all around the circle: nowhere in particular.
+    // The backward direction is imaged all around the circle: at no particular point.
     if (theta > largest_angle_ || (across == 0 && direction.z < 0)) return std::nullopt;
     if (across == 0) return NormalizedPoint{};
     const double scale = radius(theta) / across;

@@ -22,8 +22,8 @@ double bisect(std::span<const double> c, double low, double high) {
     }
 }
 
-/// Every sign change in (0, limit], ascending. Between two of the derivative's the polynomial is
-/// monotone, so that it changes sign there once or not at all.
+/// Every sign change in (0, limit], ascending. Between two sign changes of its derivative the
+/// polynomial is monotone, so it changes sign there at most once.
 std::vector<double> sign_changes(std::span<const double> c, double limit) {
     if (c.size() < 2) return {};
     std::vector<double> derivative;

@@ -10,24 +10,25 @@ namespace uw {
 namespace {
 
 constexpr int k_dome_max_iterations = 200;
-/// Newton's last step [rad]; it converges quadratically, so that nothing is left of the error.
+/// Newton's last step [rad]; convergence is quadratic, so no error remains.
 constexpr double k_dome_tolerance = 1e-13;
-/// The origin of a water ray may be rounded into the glass by this share of its radius.
+/// The origin of a water ray may be rounded into the glass by this fraction of its radius.
 constexpr double k_dome_rounding = 1e-12;
 
 /// Distance along a ray from `origin` (from the sphere's centre, inside) to the sphere.
 double leave_sphere(const Vector3& origin, const Vector3& direction, double radius) {
     const double along = glm::dot(origin, direction);
-    // radius^2 - origin^2 as a product: a camera close to the glass keeps its digits.
+    // radius^2 - origin^2 as a product: precise for a camera close to the glass.
     const double length = glm::length(origin);
     const double inside = (radius - length) * (radius + length);
     const double root = std::sqrt(along * along + inside);
-    // The larger root of t^2 + 2 along t - inside, without a difference.
+    // The larger root of t^2 + 2 along t - inside, without cancellation.
     return along > 0 ? inside / (along + root) : root - along;
 }
 
 /// The angle to the radius at radius * index = `a` of the ray with Bouguer's invariant `h`, with
-/// its derivative by h; where h > a the ray does not come there, and the angle stays at 90 degrees.
+/// its derivative with respect to h; where h > a the ray does not get there, and the angle stays at
+/// 90 degrees.
 struct Angle {
     double value, slope;
 };
@@ -86,8 +87,9 @@ std::optional<Vector3> DomePort::direction_to(const Point3& point) const {
     const double swept = std::atan2(beside, along);
     if (beside == 0) return along > 0 ? u : -u;
 
-    // The angle that a ray sweeps grows with its own angle `a` to u from 0 to pi, where the indices
-    // grow from air to water and glass; a bracket keeps Newton safe where they do not.
+    // The angle that a ray sweeps increases with its own angle `a` to u, from 0 to pi, if the
+    // indices increase from air to water and glass; a bracket keeps Newton's method safe if they do
+    // not.
     double low = 0, high = std::numbers::pi, a = swept;
     bool passes = false;
     for (int iteration = 0; iteration < k_dome_max_iterations; ++iteration) {

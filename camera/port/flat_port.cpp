@@ -10,22 +10,21 @@ namespace uw {
 namespace {
 
 constexpr int k_flat_max_iterations = 200;
-/// Newton's last step, relative; it converges quadratically, so that nothing is left of the error,
-/// and goes back only by what is rounded.
+/// Newton's last step, relative; convergence is quadratic, so no error remains, and a step
+/// backwards is rounding only.
 constexpr double k_flat_tolerance = 1e-13;
-/// The origin of a water ray may be rounded into the glass by this share of its depth.
+/// The origin of a water ray may be rounded into the glass by this fraction of its depth.
 constexpr double k_flat_rounding = 1e-12;
 
-/// A stretch of the way through one medium, in the plane of refraction.
+/// One medium on the path, in the plane of refraction.
 struct Layer {
     double depth;  // along the normal [m]
     double index;
 };
 
-/// Distance from the normal that is covered by a ray of slope `u` (tangent of its angle to the
-/// normal) in the medium of the least index `n`, and its derivative. With Snell's invariant
-/// s = n u / sqrt(1 + u^2) a layer covers depth * s / sqrt(index^2 - s^2), here without
-/// differences that cancel.
+/// Distance from the normal covered by a ray of slope `u` (tangent of its angle to the normal) in
+/// the medium of the lowest index `n`, and its derivative. With Snell's invariant s = n u / sqrt(1
+/// + u^2) a layer covers depth * s / sqrt(index^2 - s^2), here written without cancellation.
 struct Reach {
     double distance = 0, slope = 0;
 };
@@ -80,8 +79,9 @@ std::optional<Vector3> FlatPort::direction_to(const Point3& point) const {
     const std::array<Layer, 3> layers{
         {{desc_.distance, desc_.n_air}, {desc_.thickness, desc_.n_glass}, {water, desc_.n_water}}};
     const double n = std::min({desc_.n_air, desc_.n_glass, desc_.n_water});
-    // The distance is a concave function of the slope, so that from below Newton never oversteps.
-    // What it cannot reach (no depth in the medium of the least index) makes it run to infinity.
+    // The distance is a concave function of the slope, so Newton's method from below never
+    // overshoots. If the distance cannot be reached (no depth in the medium of the lowest index) it
+    // diverges.
     double u = 0;
     for (int iteration = 0;; ++iteration) {
         const Reach here = reach(layers, n, u);

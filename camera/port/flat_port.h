@@ -18,17 +18,17 @@ class FlatPort {
     /// the glass, or is totally reflected at either surface.
     std::optional<Ray> refracted_ray(const Vector3& direction) const;
 
-    /// What the port makes of the radiance in water on its way to the camera centre along
-    /// `direction` (unit, in air), as the description asks: Fresnel's transmittance of unpolarised
-    /// light through both surfaces, without the light that is reflected to and fro in the glass,
-    /// and (n_air / n_water)^2 where the radiance is asked for in air. 1 if neither is.
-    /// Precondition: there is a water ray.
+    /// The factor between the radiance in water and what arrives at the camera centre along
+    /// `direction` (unit, in air), as the description requests: Fresnel's transmittance for
+    /// unpolarised light through both surfaces, without inter-reflections in the glass, and (n_air
+    /// / n_water)^2 if the radiance is requested in air. 1 if neither is. Precondition: there is a
+    /// water ray.
     double transmittance(const Vector3& direction) const;
 
     /// The unit direction in air, from the camera centre, of the ray that meets `point` (camera
     /// frame) in the water; empty if none does, as for points in the housing or in the glass.
-    /// Refraction stays in the plane of the normal and the point, where the ray's distance from
-    /// the normal at the point's depth grows with its slope: one monotone equation (Agrawal et al.
+    /// Refraction stays in the plane of the normal and the point, where the ray's distance from the
+    /// normal at the point's depth increases with its slope: one monotone equation (Agrawal et al.
     /// 2012), solved to the last digits.
     std::optional<Vector3> direction_to(const Point3& point) const;
 

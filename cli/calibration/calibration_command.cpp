@@ -17,8 +17,8 @@
 namespace uw {
 namespace {
 
-/// Whether a file calls itself a scene: some line begins with "uwvdb:". What cannot be read is left
-/// to the reader.
+/// Whether a file declares itself a scene: some line begins with "uwvdb:". A file that cannot be
+/// read is left to the reader.
 bool is_scene(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) return false;
@@ -106,8 +106,8 @@ void run_calibration(const CalibrationArguments& a, std::ostream& out) {
 
 Command calibration_command() {
     const auto arguments = std::make_shared<CalibrationArguments>();
-    return {"calibration", "what a camera calibration says; converts it", k_calibration_examples,
-            calibration_options(*arguments), [arguments] {
+    return {"calibration", "show what a camera calibration says, and convert it",
+            k_calibration_examples, calibration_options(*arguments), [arguments] {
                 run_calibration(*arguments, std::cout);
                 return k_exit_done;
             }};

@@ -15,7 +15,7 @@ namespace uw {
 namespace {
 
 constexpr double k_degree = std::numbers::pi / 180;
-/// The share of covered pixels is looked at by this many along each side.
+/// The fraction of covered pixels is sampled at this many positions along each side.
 constexpr int k_looks = 256;
 
 double angle_between(const Vector3& a, const Vector3& b) {
@@ -23,7 +23,7 @@ double angle_between(const Vector3& a, const Vector3& b) {
 }
 
 /// The angle from the ray at `from` to the last one on the way to `to`; 0 without a ray at `from`.
-/// In steps, so that it may exceed 180 degrees.
+/// Summed in steps, so that it may exceed 180 degrees.
 template <class Direction>
 double reach(const Direction& direction, const ImagePoint& from, const ImagePoint& to) {
     constexpr int k_steps = 512;

@@ -9,8 +9,8 @@
 
 namespace uw {
 
-/// Angles between the outermost rays of the image through its principal point [rad]; less than the
-/// image where the lens or the port shows less of it.
+/// Angles between the outermost rays of the image through its principal point [rad]; narrower than
+/// the image where the lens or the port has no rays for part of it.
 struct FieldOfView {
     double horizontal = 0, vertical = 0, diagonal = 0;
 };
@@ -21,10 +21,10 @@ struct CalibrationReport {
     Calibration calibration;
     FieldOfView in_lens;                  // in the housing; in the water without a port
     std::optional<FieldOfView> in_water;  // behind a port
-    /// Angle to the axis up to which the lens shows anything [rad], and its distance from the
-    /// principal point along x [pixels]; none for a lens that shows all before it.
+    /// Angle to the axis up to which the lens has rays [rad], and its distance from the principal
+    /// point along x [pixels]; empty for a lens that covers everything before it.
     std::optional<double> fold_angle, fold_radius;
-    double covered = 0;  // share of the image's pixels with a ray into the water
+    double covered = 0;  // fraction of the image's pixels with a ray into the water
     struct Target {
         CalibrationFormat format;
         std::string obstacle;  // empty: it can be written

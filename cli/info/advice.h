@@ -7,15 +7,15 @@
 
 namespace uw {
 
-/// What to make of a file's grids, in words and as a part of a scene.
+/// How to use a file's grids, in words and as part of a scene.
 struct VdbAdvice {
     std::vector<std::string> lines;  // one sentence or two each
-    std::vector<std::string> map;    // the grids to map, as scenes address them; none: none is fit
+    std::vector<std::string> map;    // the grids to map, as scenes address them; empty: none is fit
     double scale = 1;                // to apply, 1 where the file's size is plausible
     double small_ppm = 0, large_ppm = 0;  // per unit of grid value
     std::vector<double> bands_nm;
-    /// Of the mapped grids alone, with these concentrations, per band: through their densest
-    /// part, along the world's axis that lies between the other two in this.
+    /// Of the mapped grids alone, with these concentrations, per band: through their densest part,
+    /// along the world axis with the median value of this.
     std::vector<double> optical_depth;
     /// YAML, ready to paste into a scene; empty where nothing can be mapped.
     std::string volumes;

@@ -39,12 +39,12 @@ void require_file(const fs::path& file) {
     const std::string name = printable(file.string(), 300);
     if (status.type() == fs::file_type::not_found)
         throw IoError(fmt::format("{}: no such file; check the name", name));
-    // A pipe would keep the program waiting, a device might never end.
+    // Reading a pipe would keep the program waiting; a device might never end.
     if (!fs::is_regular_file(status))
         throw IoError(fmt::format("{}: is not a file; name a VDB file or a scene", name));
 }
 
-/// The frames of a sequence that are there, and which of them to look at.
+/// The existing frames of a sequence, and which of them to inspect.
 SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>& frame) {
     SequenceReport sequence;
     sequence.pattern = pattern.string();
@@ -105,7 +105,7 @@ std::string info_on_scene(const InfoArguments& a) {
     return a.json ? survey_json(survey) : survey_text(survey);
 }
 
-/// Whether it is for VDB readers: by its name, or else by how it begins.
+/// Whether VDB readers should read it: by its name, or else by its first bytes.
 bool is_volume_file(const fs::path& file) {
     std::string extension = file.extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -126,7 +126,7 @@ std::string run_info(const InfoArguments& a) {
 
 Command info_command() {
     const auto arguments = std::make_shared<InfoArguments>();
-    return {"info", "what a VDB file or a scene holds, and what to mend", k_info_examples,
+    return {"info", "show what a VDB file or a scene holds, and what to fix", k_info_examples,
             info_options(*arguments), [arguments] {
                 print_output(run_info(*arguments));
                 return k_exit_done;

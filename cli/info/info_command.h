@@ -7,8 +7,8 @@
 
 namespace uw {
 
-/// `uwvdb info`: what a VDB file or a scene holds, in metres, and what to mend, as text or JSON
-/// for stdout. Throws UsageError, InputError and IoError of one line each.
+/// `uwvdb info`: what a VDB file or a scene holds, in metres, and what to fix, as text or JSON for
+/// stdout. Throws UsageError, InputError and IoError of one line each.
 std::string run_info(const InfoArguments& arguments);
 
 /// `uwvdb info` as the command line knows it.

@@ -8,9 +8,9 @@ const char* const k_info_examples = R"(Examples:
   uwvdb info plume.yaml --set 'volumes[0].grids.density.large=50'
   uwvdb info plume.yaml --json
 
-Of a VDB or NanoVDB file: every grid in metres, what is wrong with it, which to map and how, and a
-`volumes:` block to paste into a scene. Of a scene: water, camera, lamps, how opaque each grid is, how
-much of it is in view and in a lamp's reach, and what will be black or opaque. Renders nothing.
+For a VDB or NanoVDB file: every grid in metres, what is wrong with it, which to map and how, and a
+`volumes:` block to paste into a scene. For a scene: water, camera, lamps, how opaque each grid is,
+how much of it is in view and in a lamp's reach, and what will be black or opaque. Renders nothing.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
 
 Options info_options(InfoArguments& a) {
@@ -19,7 +19,7 @@ Options info_options(InfoArguments& a) {
         .required = true;
     options.set(a.overrides);
     options.integer("--frame", "N", a.frame, 0, 999'999'999,
-                    "which frame of a sequence; the first there is if left out");
+                    "which frame of a sequence; default: the first that exists");
     options.flag("--json", a.json, "print everything as JSON");
     return options;
 }

@@ -13,7 +13,7 @@ namespace uw {
 struct InfoArguments {
     std::filesystem::path subject;       // a VDB file, a sequence of them, or a scene
     std::vector<std::string> overrides;  // --set key.path=value, of a scene
-    std::optional<int> frame;            // --frame, of a sequence; else the first there is
+    std::optional<int> frame;            // --frame, of a sequence; else the first that exists
     bool json = false;
 };
 

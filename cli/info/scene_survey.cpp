@@ -33,7 +33,8 @@ class Reach {
             depth.push_back(attenuation_.optical_depth(band, distance(from, to), columns));
         return depth;
     }
-    /// Whether some lamp's light arrives at `x` (k_reach); with a normal, from its side.
+    /// Whether some lamp's light arrives at `x` (k_reach); with a normal, from its side of the
+    /// surface.
     bool any(const Point3& x, const Vector3* normal) const {
         return std::ranges::any_of(scene_.lamps,
                                    [&](const Lamp& lamp) { return reaches(lamp, x, normal); });
@@ -65,7 +66,7 @@ bool is_in_view(const AssembledScene& scene, const Point3& x) {
     return ray && !scene.surfaces->occluded(ray->origin, x);
 }
 
-/// Fills in the shares: sums over points that fill the grid's bounds evenly.
+/// Fills in the fractions: sums over points distributed evenly in the grid's bounds.
 void measure_shares(const AssembledScene& scene, const Reach& reach, const GridVolume& grid,
                     GridSurvey& survey) {
     const Bounds& box = grid.voxel_bounds();

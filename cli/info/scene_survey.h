@@ -4,7 +4,7 @@
 
 namespace uw {
 
-/// Looks at an assembled scene, which outlives the result. Deterministic.
+/// Surveys an assembled scene, which outlives the result. Deterministic.
 SceneSurvey survey_scene(const AssembledScene& scene);
 
 }  // namespace uw

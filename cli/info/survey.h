@@ -9,23 +9,23 @@
 
 namespace uw {
 
-/// A place is in reach of a lamp if it lies in its beam, no surface stands between, and in some
-/// band the lamp's light arrives with more than this share of what the lamp gives on its axis at
+/// A place is in reach of a lamp if it lies in its beam, no surface is between, and in some
+/// band the lamp's light arrives with more than this fraction of what the lamp gives on its axis at
 /// 1 m without water: profile e^-tau / r^2.
 inline constexpr double k_reach = 1e-3;
-/// From here on what lies behind is black [optical depth].
+/// Whatever lies behind this optical depth is taken to be black.
 inline constexpr double k_opaque_depth = 10;
 
-/// One grid of the scene. Shares are of what the grid holds: the sum of its values.
+/// One grid of the scene. Fractions are of what the grid holds: the sum of its values.
 struct GridSurvey {
     VolumeReport report;
-    std::array<std::vector<double>, 3> depth;  // through its middle along world x, y, z, per band
+    std::array<std::vector<double>, 3> depth;  // through its centre along world x, y, z, per band
     double in_view = 0;                        // within the image and behind no surface
     double in_reach = 0;                       // of at least one lamp
     double in_both = 0;
 };
 
-/// The ray of the image's centre, from where it enters the water.
+/// The ray of the image centre, from where it enters the water.
 struct CentralRaySurvey {
     bool enters = false;
     double surface_distance = 0;  // infinite: no surface ends it [m]
@@ -35,14 +35,14 @@ struct CentralRaySurvey {
 
 /// Rays over the whole image.
 struct ViewSurvey {
-    double in_water = 0;    // share of the image whose rays enter the water
+    double in_water = 0;    // fraction of the image whose rays enter the water
     double on_surface = 0;  // and meet a surface
-    double lit = 0;         // share of those surfaces that a lamp reaches
+    double lit = 0;         // fraction of those surfaces that a lamp reaches
     double hidden = 0;      // and of those behind an optical depth over k_opaque_depth in all bands
     double nearest = 0, farthest = 0;  // surface [m]
 };
 
-/// What `uwvdb info` finds out about a scene without rendering it.
+/// What `uwvdb info` reports about a scene without rendering it.
 struct SceneSurvey {
     explicit SceneSurvey(const AssembledScene& of) : scene(of) {}
 
@@ -51,7 +51,7 @@ struct SceneSurvey {
     std::vector<GridSurvey> grids;
     CentralRaySurvey central_ray;
     ViewSurvey view;
-    std::array<double, 2> field_of_view{};  // in the water, through the middle [degrees]
+    std::array<double, 2> field_of_view{};  // in the water, through the centre [degrees]
     std::vector<std::string> warnings;      // the scene's, then what will be black or opaque
 };
 

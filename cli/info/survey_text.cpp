@@ -15,7 +15,7 @@ std::string per_band(const std::vector<double>& values) {
     std::string text;
     for (const double value : values)
         text += fmt::format("{}{}", text.empty() ? "" : ", ",
-                            std::isfinite(value) ? fmt::format("{:.3g}", value) : "endless");
+                            std::isfinite(value) ? fmt::format("{:.3g}", value) : "infinite");
     return text;
 }
 

@@ -16,7 +16,7 @@ void warn_of_grid(const GridSurvey& grid, bool has_lamps, std::vector<std::strin
     const std::string name = fmt::format("grid '{}' of '{}': ", grid.report.grid,
                                          printable(grid.report.file.filename().string(), 300));
     const auto warn = [&](const std::string& what) { warnings.push_back(name + what); };
-    if (grid.report.bounds.empty()) return;  // loading has said so
+    if (grid.report.bounds.empty()) return;  // loading has warned of it
     if (grid.in_view == 0)
         warn(
             "nothing of it is in view of the camera; compare its world bounds with camera.pose, "

@@ -4,7 +4,7 @@
 
 namespace uw {
 
-/// Appends to `survey.warnings` one line for each thing that will be black, opaque or not there.
+/// Appends to `survey.warnings` one line for each thing that will be black, opaque or missing.
 void append_survey_warnings(SceneSurvey& survey);
 
 }  // namespace uw

@@ -12,7 +12,7 @@ namespace uw {
 
 namespace {
 
-// Larger than what lamps light under water, smaller than what one looks at [m].
+// Larger than lamps can light under water; too small to be the intended size [m].
 constexpr double k_too_large = 30, k_too_small = 0.05;
 constexpr double k_convenient = 2;  // what is brought to scale becomes this large
 
@@ -30,7 +30,7 @@ bool contains_any(const std::string& text, std::initializer_list<const char*> pa
         parts, [&](const char* part) { return text.find(part) != std::string::npos; });
 }
 
-/// Distances to a surface that are not called so.
+/// Distances to a surface, in grids whose class does not say so.
 bool is_level_set_in_disguise(const GridInspection& grid) {
     return grid.values && grid.summary.grid_class != "fog volume" &&
            grid.values->background_value > 0 && grid.values->negative > 0;
@@ -66,9 +66,9 @@ void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
         }
     const char* const why = best == 4   ? "the name says density"
                             : best == 3 ? "by its name a concentration"
-                            : best == 2 ? "the only likely one; its name tells nothing"
+                            : best == 2 ? "the only likely one; its name says nothing"
                                         : "no density in this file, and this is the nearest to it: "
-                                          "look whether that is what you mean";
+                                          "check that it is what you mean";
     if (advice.map.size() == 1)
         advice.lines.push_back(fmt::format("Map {}: {}.", list(advice.map), why));
     else
@@ -77,7 +77,7 @@ void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
                         advice.map.size(), chosen->summary.base_name, list(advice.map)));
 }
 
-/// Grids whose values are fit but that hold something else.
+/// Grids with valid values that hold something other than a concentration.
 void say_what_to_leave(const VdbInspection& inspection, VdbAdvice& advice) {
     std::vector<std::string> others;
     for (const GridInspection& grid : inspection.grids) {
@@ -107,8 +107,8 @@ void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
     if (v.negative > 0 && v.negative < v.finite && !is_level_set_in_disguise(grid))
         say(fmt::format("has {} negative values: they count as 0", v.negative));
     if (v.finite > 0 && v.max <= 0)
-        say(fmt::format("has no value above 0 (from {:g} to {:g}): nothing would be seen of it",
-                        v.min, v.max));
+        say(fmt::format("has no value above 0 (from {:g} to {:g}): it would be invisible", v.min,
+                        v.max));
     if (v.background_value != 0 && !is_level_set_in_disguise(grid))
         say("has a background of " + v.background + ": it counts as 0 outside the active voxels");
 }
@@ -117,9 +117,9 @@ void say_placement(const VdbInspection& inspection, VdbAdvice& advice) {
     const VdbHeader& header = inspection.header;
     if (header.from_blender_fluid()) {
         advice.lines.push_back(
-            "Up is z, values sit in the middle of cells: a cache of Blender's fluid solver, known "
-            "by its grids. Index (0, 0, 0) is the domain's corner, the file does not hold where "
-            "the domain stands: translate it there, (x, y, z) in Blender is [x, z, -y] here.");
+            "Up is z, values sit in the middle of cells: a cache of Blender's fluid solver, "
+            "recognised by its grids. Index (0, 0, 0) is the domain's corner; the file does not "
+            "record where that is: translate it there, (x, y, z) in Blender is [x, z, -y] here.");
         return;
     }
     const bool houdini = header.creator.find("Houdini") != std::string::npos ||
@@ -152,8 +152,8 @@ void say_motion(const VdbInspection& inspection, VdbAdvice& advice) {
                     "seconds as render: {{shutter: 0.02}}.{}",
                     grid,
                     inspection.header.from_blender_fluid()
-                        ? " Its unit is 2.5 voxels a second, as Blender's solver has it."
-                        : " Its unit is taken for m/s."));
+                        ? " Its unit is 2.5 voxels a second, as in Blender's solver."
+                        : " Its unit is taken to be m/s."));
 }
 
 std::string size_of(const VdbAdvice& advice) {
@@ -176,7 +176,7 @@ void say_units(const VdbInspection& inspection, VdbAdvice& advice) {
     if (unit_voxels) {
         advice.scale = fitting;
         advice.lines.push_back(fmt::format(
-            "Units look wrong: a voxel is exactly 1 m, as where nobody set a size, and the whole "
+            "Units look wrong: a voxel is exactly 1 m, as if no size was set, and the whole "
             "{}. Give its true size by transform.scale; {:g} makes it {:.3g} m.",
             size_of(advice), fitting, fitting * side));
     } else if (side > k_too_large) {

@@ -41,7 +41,7 @@ VolumeDesc describe(const VdbInspection& inspection, const VdbAdvice& advice) {
     return desc;
 }
 
-/// The optical depth per band across the densest voxel: what lines may miss in a sparse grid.
+/// The optical depth per band across the densest voxel, which lines may miss in a sparse grid.
 std::vector<double> across_voxel(const LoadedVolume& volume, const Medium& medium) {
     const AttenuationTable attenuation(medium);
     std::vector<double> depth(static_cast<std::size_t>(medium.band_count()));
@@ -59,8 +59,8 @@ std::vector<double> across_voxel(const LoadedVolume& volume, const Medium& mediu
     return depth;
 }
 
-/// The largest optical depth per band among lines along `axis`, which fill the bounds evenly, and
-/// `depth`.
+/// The largest optical depth per band of `depth` and of the lines along `axis`, which are spaced
+/// evenly over the bounds.
 std::vector<double> deepest(const GridField& field, const Medium& medium, const Bounds& bounds,
                             int axis, std::vector<double> depth) {
     AttenuationTable attenuation(medium);

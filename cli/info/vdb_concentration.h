@@ -6,9 +6,9 @@
 namespace uw {
 
 /// Chooses `small_ppm` and `large_ppm` of the grids in `advice.map`, at `advice.scale`, so that the
-/// plume is neither invisible nor black: an optical depth of 1.5 at 540 nm, small and large
-/// particles with about half of it each. Fills in `optical_depth` and `bounds` and says so. Throws
-/// InputError if the grids cannot be loaded.
+/// plume is neither invisible nor black: an optical depth of 1.5 at 540 nm, with small and large
+/// particles each contributing about half of it. Fills in `optical_depth` and `bounds` and adds a
+/// line about it. Throws InputError if the grids cannot be loaded.
 void choose_concentrations(const VdbInspection& inspection, VdbAdvice& advice);
 
 }  // namespace uw

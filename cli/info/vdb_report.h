@@ -10,11 +10,11 @@ namespace uw {
 /// The files of a sequence.
 struct SequenceReport {
     std::string pattern;              // empty: it is one file
-    int frame = 0;                    // the one looked at
+    int frame = 0;                    // the one inspected
     std::vector<int> found, missing;  // missing: between the first and the last found
 };
 
-/// What `uwvdb info` says of a VDB file.
+/// What `uwvdb info` says about a VDB file.
 struct VdbReport {
     std::string file;  // as typed
     SequenceReport sequence;

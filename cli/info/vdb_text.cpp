@@ -16,7 +16,7 @@ std::string describe_bounds(const Bounds& b) {
                        b.min.y, b.max.y, b.min.z, b.max.z);
 }
 
-/// One character a bin, by the logarithm of its count: a blank for none, then . to @.
+/// One character per bin, by the logarithm of its count: a blank for none, then . to @.
 std::string histogram(const ValueSummary& values) {
     constexpr std::string_view k_shades = ".:-=+*#%@";
     const std::int64_t most = *std::ranges::max_element(values.histogram);

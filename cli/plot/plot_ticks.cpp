@@ -12,8 +12,8 @@ namespace {
 
 constexpr double k_linear_intervals = 7;  // at most, between labelled ticks
 constexpr int k_log_labels = 8;           // at most, at powers of ten
-constexpr int k_minor_decades = 12;       // with more, minor ticks run together
-// Axes reach no further: room for every double that means something, none for overflow.
+constexpr int k_minor_decades = 12;       // with more, minor ticks would merge
+// Axes extend no further: room for every meaningful double without overflow.
 constexpr double k_largest = 1e200;
 
 /// 10^n as "10⁻³"; superscripts are characters, as SVG programs differ on baseline-shift.
@@ -70,9 +70,9 @@ AxisTicks log_ticks(const AxisRequest& request, double low, double high) {
     const int first = static_cast<int>(std::floor(std::log10(axis.min) + 1e-9));
     const int last = static_cast<int>(std::ceil(std::log10(axis.max) - 1e-9));
     const int decades = last - first;
-    const int labelled = (decades + k_log_labels - 1) / k_log_labels;  // every how many
+    const int labelled = (decades + k_log_labels - 1) / k_log_labels;  // decades per label
     const bool plain = first >= -2 && last <= 3;
-    const bool short_axis = decades <= 2;  // then powers of ten alone say too little
+    const bool short_axis = decades <= 2;  // then powers of ten alone are too few labels
     const auto inside = [&](double value) {
         return value >= axis.min * (1 - 1e-9) && value <= axis.max * (1 + 1e-9);
     };

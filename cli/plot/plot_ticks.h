@@ -21,18 +21,18 @@ struct AxisTicks {
     std::vector<AxisTick> ticks;
 };
 
-/// What is asked of an axis; what is left out follows from the data.
+/// The requested properties of an axis; those left out follow from the data.
 struct AxisRequest {
     AxisScale scale = AxisScale::linear;
     std::optional<double> min, max;   // log: > 0
-    std::optional<double> tick_step;  // linear: distance of labelled ticks; else a round one
+    std::optional<double> tick_step;  // linear: spacing of labelled ticks; else a round one
 };
 
 /// Chooses range and ticks for `values`. Those that are not finite, or not positive on a log axis,
-/// do not count; with none left the axis is 0 to 1, or 1 to 10. Without a limit asked for, the
-/// range ends on a round number: linear a labelled tick, log a power of ten. At most some ten
-/// ticks are labelled; log axes have minor ticks at 2 to 9 times the powers of ten, unless they
-/// span so much that these would run together.
+/// are ignored; with none left the axis is 0 to 1, or 1 to 10. Unless limits are requested, the
+/// range ends on round numbers: labelled ticks of a linear axis, powers of ten of a log axis. At
+/// most about ten ticks are labelled; log axes have minor ticks at 2 to 9 times the powers of ten,
+/// unless they span so much that these would merge.
 AxisTicks choose_ticks(const AxisRequest& request, std::span<const double> values);
 
 }  // namespace uw

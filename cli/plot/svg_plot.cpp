@@ -14,7 +14,7 @@ namespace {
 
 constexpr double k_font = 13, k_title_font = 17, k_line = 18;
 constexpr double k_left = 76, k_right = 18, k_bottom = 50, k_margin = 14;
-constexpr std::size_t k_many_dots = 12;  // on one curve: smaller ones, that do not run together
+constexpr std::size_t k_many_dots = 12;  // on one curve: above this, smaller dots that do not merge
 constexpr double k_swatch = 30, k_legend_gap = 16;
 
 struct Box {
@@ -140,7 +140,7 @@ void Writer::curve(const PlotPanel& panel, const PlotCurve& curve, const AxisTic
         return std::isfinite(value) && (axis.request.scale == AxisScale::linear || value > 0);
     };
     const double radius = curve.x.size() > k_many_dots ? 2 : 3.5;
-    // Far outside the frame a point only gives its line a direction; keep it a sane number.
+    // Far outside the frame a point only sets the direction of its line; limit its coordinates.
     const auto place = [](double from, double to, double t) {
         return from + std::clamp(t, -50.0, 50.0) * (to - from);
     };
@@ -178,7 +178,7 @@ void Writer::panel(const PlotPanel& panel, double x, double y) {
                 curve.x[i] <= x_range.max.value_or(curve.x[i]))
                 ys.push_back(curve.y[i]);
     }
-    // Legends as high as the figure's highest, so that the axes of a row align.
+    // All legends of a row are as high as its highest, so that its axes align.
     for (const PlotPanel& other : figure_.panels) rows = std::max(rows, legend_rows(other));
     const double head = k_line * (rows + 1) + 10;
     const Box box{x + k_left, y + head, x + figure_.panel_width - k_right,
@@ -188,7 +188,7 @@ void Writer::panel(const PlotPanel& panel, double x, double y) {
     put("<g>\n");
     text(box.left, y + k_line - 4, "start", panel.title, " font-weight=\"bold\"");
     legend(panel, box.left, y + 2 * k_line);
-    // A little more than the frame, so that a curve along it keeps its width.
+    // Slightly more than the frame, so that a curve along it keeps its width.
     constexpr double k_slack = 2;
     put("<clipPath id=\"clip{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
         "height=\"{:.1f}\"/></clipPath>\n",

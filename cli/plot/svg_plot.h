@@ -7,7 +7,7 @@
 
 namespace uw {
 
-/// Okabe and Ito's colours, which people of any colour vision tell apart (2008).
+/// Okabe and Ito's colours (2008), distinguishable with any colour vision.
 namespace plot_colour {
 inline constexpr const char* k_black = "#000000";
 inline constexpr const char* k_orange = "#E69F00";
@@ -34,7 +34,7 @@ struct PlotAxis {
     AxisRequest request;
 };
 
-/// A pair of axes with curves; the legend stands above them, where no curve can pass.
+/// A pair of axes with curves; the legend is above them, where no curve can be.
 struct PlotPanel {
     std::string title;
     PlotAxis x, y;
@@ -50,8 +50,8 @@ struct PlotFigure {
     double panel_width = 470, panel_height = 340;  // pixels, of title, legend, axes and labels
 };
 
-/// The figure as a self-contained SVG 1.1 document: no scripts, links or fonts of its own, a white
-/// ground. The same figure gives the same bytes. Text that is no UTF-8 has its bad bytes replaced.
+/// The figure as a self-contained SVG 1.1 document: no scripts, links or embedded fonts, a white
+/// background. The same figure gives the same bytes. Invalid UTF-8 has its bad bytes replaced.
 std::string svg_document(const PlotFigure& figure);
 
 }  // namespace uw

@@ -14,7 +14,7 @@ namespace uw {
 
 namespace {
 
-// What `warning` says of any frame: with the sequences' names in place of their files'.
+// What `warning` says about any frame: with the names of the sequences instead of their files.
 std::string without_frame(std::string warning, const SceneDesc& frame, const SceneDesc& all) {
     const auto replace = [&](const auto& of_frame, const auto& of_all) {
         const std::string file = of_frame.file.string();
@@ -62,7 +62,7 @@ bool FrameRenderer::proceed(const std::string& stage, double fraction) {
 
 void FrameRenderer::begin_stage(const std::string& stage) {
     stage_ = stage;
-    progress_.reset();  // ends the line of the stage before
+    progress_.reset();  // ends the line of the previous stage
     const auto show = [&](const char* unit, double scale) {
         progress_ = std::make_unique<Progress>(clock_.label(stage), unit, scale, arguments_.quiet,
                                                clock_.seconds_left());
@@ -71,7 +71,7 @@ void FrameRenderer::begin_stage(const std::string& stage) {
     if (stage == "render" || stage == "forward scatter")
         show("Mpx", 1e-6 * static_cast<double>(renderer_.report().pixels));
     if (stage == "render") begin_orderly_stop();
-    if (stage != "forward scatter") stats_->begin_stage(stage);  // that is part of "render"
+    if (stage != "forward scatter") stats_->begin_stage(stage);  // which is part of "render"
 }
 
 void FrameRenderer::prepare(const Frame& frame, const RenderOptions& options) {

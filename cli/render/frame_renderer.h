@@ -16,17 +16,17 @@
 
 namespace uw {
 
-/// Renders and writes the images of a run one after the other, and tells the user how it goes.
+/// Renders and writes the images of a run one after the other, and reports progress to the user.
 class FrameRenderer {
   public:
-    /// `scene`: of all frames; `windows`: of the pixels written, by camera; `count`: how many
-    /// images there will be. All references outlive the renderer.
+    /// `scene`: of all frames; `windows`: the pixels written, by camera; `count`: the number of
+    /// images to come. All references outlive the renderer.
     FrameRenderer(const RenderArguments& arguments, const SceneDesc& scene,
                   const std::vector<PixelWindow>& windows, std::size_t count);
 
-    /// Renders one frame, `scene` its own, and writes all its files but the statistics, whose
-    /// figures go to `stats`. Says on stderr what it does; a warning that is the same for several
-    /// frames but for the file's name is given once. Throws InputError, also if the image does not
+    /// Renders one frame, with `scene` its own, and writes all its files but the statistics, which
+    /// go to `stats`. Reports on stderr what it does; a warning that recurs in several frames with
+    /// only the file's name changed is given once. Throws InputError, also if the image does not
     /// fit into memory; IoError; Interrupted, and then no image of this frame has been written.
     void render(const Frame& frame, ResolvedScene scene, RunStats& stats);
 
@@ -45,7 +45,7 @@ class FrameRenderer {
     SequenceClock clock_;
     Renderer renderer_;
     std::set<std::string> warned_;
-    // The stage under way: told from any thread.
+    // The current stage: updated from any thread.
     std::mutex mutex_;
     std::string stage_;
     std::unique_ptr<Progress> progress_;

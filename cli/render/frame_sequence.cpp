@@ -36,7 +36,7 @@ fs::path expanded(const fs::path& name, int frame) {
     return name.empty() ? name : file_of_frame(name, frame);
 }
 
-// The frames that lack the file of a sequence of the scene.
+// Lists the frames that lack a file of a sequence in the scene.
 class MissingFrames {
   public:
     void look(const SourceLocation& where, const fs::path& name, const FrameSequence& sequence) {
@@ -71,7 +71,7 @@ void check_volumes(const FrameSequence& sequence, const SceneDesc& scene) {
 
 constexpr std::string_view k_camera_place = "{camera}";
 
-// The file of one camera: its name stands in its place, or before the ending.
+// The file of one camera: its name replaces the placeholder, or goes before the ending.
 fs::path of_camera(const fs::path& file, const std::string& camera) {
     std::string name = file.string();
     std::size_t at = name.find(k_camera_place);
@@ -155,7 +155,7 @@ void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::str
     }
     sequence.frames = std::move(frames);
     if (sequence.frames.size() == 1 || sequence.frames.front().number) return;
-    // Without --frames the figures of all cameras go to one file.
+    // Without --frames the statistics of all cameras go to one file.
     sequence.stats = sequence.frames.front().files.stats;
     for (Frame& frame : sequence.frames) frame.files.stats.clear();
 }
@@ -201,7 +201,7 @@ bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
 
 std::optional<std::string> frame_warning(const RenderArguments& a, const SceneDesc& scene) {
     if (a.frames.size() > 1 && !has_sequence(scene))
-        return "--frames: all frames are alike, for no file of the scene has a place for the "
+        return "--frames: all frames are alike, for no file of the scene has a placeholder for the "
                "frame's number, such as file: smoke_####.vdb";
     if (!a.frames.empty()) return std::nullopt;
     for (const fs::path* name : {&a.output, &a.stats, &a.irradiance_vdb})

@@ -44,7 +44,7 @@ std::string matrix_rows(const Affine& pose) {
     return text;
 }
 
-// One line if the image shows nothing, or is empty in part; no black image without a word.
+// A warning of one line if the image is black, or empty in part.
 void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
     const PixelWindow& window = film.window();
     std::size_t empty = 0;
@@ -61,7 +61,7 @@ void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
         warn(
             "the image is black: no lamp's light reaches the camera; check the "
             "lamps' positions, directions and intensities, the camera's pose, and how far "
-            "light comes in this water");
+            "light travels in this water");
 }
 
 }  // namespace

@@ -11,18 +11,18 @@
 
 namespace uw {
 
-/// What an image's header says that follows from the scene's description alone: an image of the
-/// same scene, frame and program has the same.
+/// The part of an image's header that follows from the scene's description alone: images of the
+/// same scene, frame and program have the same.
 ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame);
 
-/// All that an image's header says.
+/// The whole header of an image.
 ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame);
 
 /// Prints one line.
 using SayCallback = std::function<void(const std::string& line)>;
 
-/// Writes the EXR and its preview, each whole or not at all; says where they are and what exposure
-/// the preview has, and warns of an image that is black or empty in part. Throws IoError.
+/// Writes the EXR and its preview, each whole or not at all; prints where they are and the exposure
+/// of the preview, and warns of an image that is black or empty in part. Throws IoError.
 void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata,
                   const SayCallback& say, const SayCallback& warn);
 

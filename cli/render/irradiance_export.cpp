@@ -16,7 +16,7 @@ namespace uw {
 namespace {
 
 constexpr int k_longest_side = 256;
-// Of all grids together: 1 GiB here, and as much again in OpenVDB's hands.
+// Of all grids together: 1 GiB here, and as much again in OpenVDB.
 constexpr double k_most_values = 1 << 28;
 
 struct Lattice {
@@ -48,7 +48,7 @@ Lattice lattice_over(const AssembledScene& scene) {
     if (bounds.empty() || bounds.diagonal() == 0)
         throw InputError(
             "--irradiance-vdb: the scene has no volume, finite geometry or second lamp "
-            "that would say where to sample; add one");
+            "that would determine where to sample; add one");
     const Vector3 extent = bounds.max - bounds.min;
     const double longest = std::max({extent.x, extent.y, extent.z});
     Lattice lattice;
@@ -82,7 +82,8 @@ std::vector<std::vector<float>> sample_lamp(const AssembledScene& scene, std::si
                 const Vector3 v = x - lamp.position();
                 const double radius = glm::length(v);
                 if (radius == 0 || scene.surfaces->occluded(lamp.position(), x)) continue;
-                // A voxel that holds the lamp has no one value: that at its edge stands for it.
+                // A voxel that contains the lamp has no single value: that at its edge is used
+                // instead.
                 const double r = std::max(radius, 0.5 * lattice.voxel);
                 light.columns(std::span<const Point3>(&x, 1), column);
                 const Spectrum t = attenuation.transmittance(radius, column);

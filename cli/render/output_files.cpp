@@ -29,7 +29,7 @@ std::vector<NamedFile> named(const OutputFiles& files) {
     return result;
 }
 
-// One name for a file however it is written: without links, "." and "..".
+// One name per file, however it is written: without links, "." and "..".
 fs::path identity(const fs::path& file) {
     std::error_code error;
     const fs::path found = fs::weakly_canonical(fs::absolute(file, error), error);

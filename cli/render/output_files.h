@@ -18,18 +18,18 @@ struct OutputFiles {
     std::filesystem::path irradiance_vdb;  // empty: none
 };
 
-/// What the arguments ask for; names hold places for the frame's number where they do there, and
-/// so does the image's default name for a sequence. Throws UsageError for a name whose ending is
-/// not that of its format.
+/// The files that the arguments request; names keep their placeholders for the frame number, and so
+/// does the default name of a sequence's images. Throws UsageError for a name whose ending is not
+/// that of its format.
 OutputFiles output_files(const RenderArguments& arguments);
 
-/// Finds out before the work rather than after it whether all can be written.
+/// Checks before the work, rather than after it, that all files can be written.
 class OutputCheck {
   public:
-    /// Takes note of files that are read.
+    /// Registers files that are read.
     void take_inputs(const std::vector<InputFile>& inputs);
-    /// Throws UsageError if two files are one, or one is a file that has been taken note of;
-    /// IoError if one cannot be made.
+    /// Throws UsageError if two files are the same, or one has been registered before; IoError if
+    /// one cannot be created.
     void take_outputs(const OutputFiles& files);
 
   private:

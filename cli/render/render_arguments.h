@@ -11,13 +11,13 @@ namespace uw {
 /// `uwvdb render` as typed.
 struct RenderArguments {
     std::filesystem::path scene;
-    std::filesystem::path output;            // empty: the scene's name with .exr, here
-    std::vector<int> frames;                 // --frames; empty: no sequence
-    bool resume = false;                     // --resume
-    std::vector<std::string> overrides;      // --set key.path=value
+    std::filesystem::path output;        // empty: the scene's name with .exr, in the working folder
+    std::vector<int> frames;             // --frames; empty: no sequence
+    bool resume = false;                 // --resume
+    std::vector<std::string> overrides;  // --set key.path=value
     std::optional<std::array<int, 2>> size;  // --size WxH
     std::optional<std::array<int, 4>> crop;  // --crop x0,y0,x1,y1
-    std::string camera;                      // --camera: of a rig this one only; empty: all
+    std::string camera;                      // --camera: this one of a rig only; empty: all
     std::string integrator;                  // empty: the scene's
     std::string layers;                      // empty: the default set
     std::optional<int> samples;

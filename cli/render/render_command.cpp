@@ -85,7 +85,7 @@ bool is_whole(const PixelWindow& window, const CameraDesc& camera) {
     return window == PixelWindow{0, 0, camera.width, camera.height};
 }
 
-// What can be said about the run before anything of the scene is loaded.
+// Warnings about the run that need nothing of the scene loaded.
 void append_warnings(const RenderArguments& a, const Frame& first,
                      const std::vector<PixelWindow>& windows, SceneDesc& desc) {
     if (const auto warning = frame_warning(a, desc)) desc.warnings.push_back(*warning);
@@ -97,7 +97,7 @@ void append_warnings(const RenderArguments& a, const Frame& first,
             "cropped; set water.forward_scatter.K=0 to save that time");
 }
 
-// Leaves out the images that are there already.
+// Removes the images that already exist.
 void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const LayerPlan& layers,
                         const std::vector<PixelWindow>& windows, bool quiet) {
     std::vector<int> there;
@@ -107,7 +107,7 @@ void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const La
         const SceneDesc scene = scene_of_image(desc, frame.choice());
         const ImageLayout layout{scene.camera.width, scene.camera.height, windows[frame.camera],
                                  layers.channel_names()};
-        // Headers tell of the camera that was rendered, be it a glTF file's.
+        // Headers describe the camera that was rendered, possibly a glTF file's.
         const auto is_image_of = [&](const std::filesystem::path& file) {
             const ResolvedScene resolved{SceneDesc(scene)};
             return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number));
@@ -125,8 +125,8 @@ void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const La
                                   desc.cameras.empty() ? "" : "images "));
 }
 
-// The scenes of frames one after the other, each resolved once. The first is there before any is
-// rendered: its lamps name layers, and all frames must have the same.
+// The scenes of frames one after the other, each resolved once. The first is resolved before
+// anything is rendered: its lamps name layers, and all frames must have the same.
 class FrameScenes {
   public:
     FrameScenes(const SceneDesc& desc, const Frame& first)
@@ -157,7 +157,7 @@ class FrameScenes {
     std::vector<std::string> lamp_names_;
 };
 
-// Renders all frames; `done` gets the figures of each, whatever ends the run.
+// Renders all frames; `done` receives the statistics of each, whatever ends the run.
 void render_frames(const FrameSequence& sequence, FrameScenes& scenes, const std::string& name,
                    FrameRenderer& renderer, RunStats stats, std::vector<RunStats>& done) {
     try {
@@ -177,7 +177,7 @@ void render_frames(const FrameSequence& sequence, FrameScenes& scenes, const std
 
 void run_render(const RenderArguments& a) {
     if (a.resume && a.frames.empty())
-        throw UsageError("--resume: goes on with a sequence; give its --frames");
+        throw UsageError("--resume: continues a sequence; give its --frames");
     RunStats stats;
     const ThreadLimit limit(a.threads);
     FrameSequence sequence = frames_of(a);
@@ -204,7 +204,7 @@ void run_render(const RenderArguments& a) {
         render_frames(sequence, scenes, desc.file.filename().string(), renderer, std::move(stats),
                       done);
     } catch (...) {
-        write_stats();  // of what is done
+        write_stats();  // of the frames done
         throw;
     }
     write_stats();

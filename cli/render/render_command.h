@@ -5,9 +5,9 @@
 
 namespace uw {
 
-/// `uwvdb render`: reads the scene, renders it and writes the EXR, its preview and what else the
-/// arguments ask for, each file whole or not at all. Says what it does on stderr. Throws
-/// UsageError, InputError and Interrupted, and then no file has been touched; IoError.
+/// `uwvdb render`: reads the scene, renders it and writes the EXR, its preview and whatever else
+/// the arguments request, each file whole or not at all. Reports on stderr. Throws UsageError,
+/// InputError and Interrupted, and then no file has been touched; IoError.
 void run_render(const RenderArguments& arguments);
 
 /// `uwvdb render` as the command line knows it.

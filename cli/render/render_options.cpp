@@ -22,8 +22,8 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render houdini.yaml --set 'volumes[0].file=/data/my.vdb' --irradiance-vdb light.vdb
 
 Writes OUT.exr (32-bit float, layers by name) and OUT.png beside it, a preview. With --frames, a
-volume's file may hold the place of the frame's number: file: smoke_####.vdb. A scene of several
-cameras becomes an image of each, OUT.NAME.exr, or where {camera} stands in the name.
+volume's file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of
+several cameras becomes an image of each, OUT.NAME.exr, or with NAME in place of {camera}.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted. More: docs/command-line.md)";
 
@@ -46,7 +46,7 @@ std::array<int, N> parse_integers(const std::string& text, char separator, const
     return values;
 }
 
-/// Makes `option` one of the words of `names`, a table of words and what they mean.
+/// Restricts `option` to the words of `names`, a table of words and their meanings.
 void accept_words(Option& option, const auto& names) {
     option.value = Option::Value::word;
     for (const auto& [word, meaning] : names) option.words.emplace_back(word);
@@ -58,12 +58,12 @@ Options render_options(RenderArguments& a) {
     Options options;
     options.path("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
     options.path("-o,--output", "OUT.exr", a.output,
-                 "EXR to write; without it, the scene's name, here");
+                 "EXR to write; default: the scene's name, in this folder");
     options.parsed(
         "--frames", "1-10,20-40:2",
         [&a](const std::string& text) { a.frames = parse_frame_list(text); },
-        "render these frames; file names hold %04d, ####, $F4 or {frame}");
-    options.flag("--resume", a.resume, "with --frames: leave out frames that are there already");
+        "render these frames; file names contain %04d, ####, $F4 or {frame}");
+    options.flag("--resume", a.resume, "with --frames: skip frames that already exist");
     options.set(a.overrides);
     options.parsed(
         "--size", "WxH",
@@ -77,7 +77,7 @@ Options render_options(RenderArguments& a) {
             a.crop = parse_integers<4>(text, ',', "--crop", "x0,y0,x1,y1");
         },
         "render these pixels only; x1 and y1 are excluded");
-    options.text("--camera", "NAME", a.camera, "of a rig's cameras render this one only");
+    options.text("--camera", "NAME", a.camera, "render only this camera of a rig");
     accept_words(options.text("--integrator", "NAME", a.integrator,
                               alternatives(words_of(k_integrator_names))),
                  k_integrator_names);
@@ -85,8 +85,8 @@ Options render_options(RenderArguments& a) {
                  "all, or names separated by commas, among them default and lamps");
     options.integer("--samples", "N", a.samples, 1, 4096, "surface samples per pixel, 1 to 4096");
     accept_words(options.text("--quality", "NAME", a.quality,
-                              "draft: within 3 %, one sample, for looking; final; or exact: every "
-                              "pixel's water by itself"),
+                              "draft: within 3 %, one sample, for previews; final; or exact: water "
+                              "integrated for every pixel"),
                  k_quality_names);
     options.threads(a.threads);
     options.path("--stats", "FILE", a.stats, "write times, rays, voxels and memory as JSON");

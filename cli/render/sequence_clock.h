@@ -8,7 +8,7 @@
 
 namespace uw {
 
-/// How far a run of several images is, and how long it will take.
+/// How far a run of several images has got, and how long it will take.
 class SequenceClock {
   public:
     /// `noun`: what messages call one of them.
@@ -27,7 +27,7 @@ class SequenceClock {
                pass;
     }
 
-    /// From now until all images are done, if they take as long as those before [s]; none before
+    /// From now until all images are done, if they take as long as those before [s]; empty until
     /// the first is done.
     std::optional<double> seconds_left() const {
         if (!is_sequence() || done_ == 0) return std::nullopt;

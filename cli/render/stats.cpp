@@ -47,7 +47,7 @@ void RunStats::set_output(const std::string& name, std::optional<int> frame) {
     frame_ = frame;
 }
 
-/// The one door to the JSON library.
+/// The only user of the JSON library here.
 struct StatsJson {
     using Json = nlohmann::ordered_json;
 

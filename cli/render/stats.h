@@ -16,7 +16,7 @@ class RunStats {
   public:
     RunStats() : stage_start_(std::chrono::steady_clock::now()) {}
 
-    /// Ends the stage under way, if any, and begins `name`.
+    /// Ends the current stage, if any, and begins `name`.
     void begin_stage(const std::string& name);
     void end_stage();
     /// Adds a figure, e.g. count("camera_rays", 1e6).
@@ -26,12 +26,12 @@ class RunStats {
     /// Largest resident memory of the process so far [bytes].
     static std::uint64_t peak_memory_bytes();
 
-    /// Says which image this is about: its name, and its number in a sequence.
+    /// Identifies the image: its name, and its number in a sequence.
     void set_output(const std::string& name, std::optional<int> frame);
 
     /// Writes everything as JSON. Throws IoError.
     void write_json(const std::filesystem::path& file, const std::string& scene) const;
-    /// Writes one JSON about several images, whose figures stand in the list `frames`.
+    /// Writes one JSON file about several images, which are listed under `frames`.
     static void write_json(const std::filesystem::path& file, const std::string& scene,
                            std::span<const RunStats> images);
 

@@ -7,7 +7,7 @@
 namespace uw {
 
 /// `uwvdb completion SHELL`: prints the script that completes `uwvdb` in a shell. `commands` are
-/// all of the program's, this one among them by the time it runs; they outlive the command.
+/// all of the program's, including this one by the time it runs; they outlive the command.
 Command completion_command(const std::vector<Command>& commands);
 
 }  // namespace uw

@@ -27,7 +27,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
     return text;
 }
 
-/// Text within single quotes of a POSIX shell.
+/// Text in single quotes for a POSIX shell.
 std::string in_quotes(const std::string& text) {
     return "'" + replaced(text, "'", R"('\'')") + "'";
 }
@@ -92,7 +92,7 @@ std::string bash_script(std::span<const Command> commands) {
         names_of(commands), k_program_options, cases);
 }
 
-/// What _arguments calls an option: '(-o --output)'{-o,--output}'[help]:OUT.exr:_files'.
+/// An option as _arguments specifies it: '(-o --output)'{-o,--output}'[help]:OUT.exr:_files'.
 std::string zsh_specification(const Option& option, int position) {
     const std::string help = replaced(replaced(option.help, "[", R"(\[)"), "]", R"(\])");
     const std::string value_name = replaced(option.value_name, ":", R"(\:)");
@@ -152,7 +152,7 @@ std::string fish_script(std::span<const Command> commands) {
         "# fish completion for uwvdb\n"
         "complete -c uwvdb -n __fish_use_subcommand -f\n"
         "complete -c uwvdb -n __fish_use_subcommand -l help -d 'print help and exit'\n"
-        "complete -c uwvdb -n __fish_use_subcommand -l version -d 'print the version and stop'\n";
+        "complete -c uwvdb -n __fish_use_subcommand -l version -d 'print the version and exit'\n";
     for (const Command& command : commands) {
         script += fmt::format("complete -c uwvdb -n __fish_use_subcommand -a {} -d {}\n",
                               command.name, fish_quotes(command.summary));

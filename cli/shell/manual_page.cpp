@@ -10,7 +10,7 @@ namespace uw {
 
 namespace {
 
-/// Text as roff: what has a meaning there is escaped, also at the beginning of a line.
+/// Text as roff: special characters are escaped, also at the beginning of a line.
 std::string roff(std::string_view text) {
     std::string out;
     bool line_begins = true;

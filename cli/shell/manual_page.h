@@ -7,7 +7,7 @@
 
 namespace uw {
 
-/// The manual page uwvdb(1) of all commands, as roff of the man macros.
+/// The manual page uwvdb(1) of all commands, in roff with the man macros.
 std::string manual_page(std::span<const Command> commands);
 
 }  // namespace uw

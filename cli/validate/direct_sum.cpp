@@ -14,13 +14,13 @@ namespace {
 
 using Image = std::vector<Spectrum>;
 
-// Mirror images are summed out to this many image sides; the light that goes farther is spread
-// evenly. Twice as many change no pixel by more than 2e-4 (exponential, 6 pixels wide).
+// Mirror images are summed out to this many image sides; light that goes farther is spread evenly.
+// Doubling it changes no pixel by more than 2e-4 (exponential, 6 pixels wide).
 constexpr int k_reach_sides = 4;
 // A kernel narrower than this leaves all its light in its pixel [pixels].
 constexpr double k_narrowest = 1e-6;
 
-/// Shares of one pixel's light that land in the pixels 0..reach away from it in either direction.
+/// Fractions of one pixel's light that reach the pixels 0..reach away from it in either direction.
 class Kernel {
   public:
     Kernel(ForwardScatterDesc::Shape shape, double width_x, double width_y, int reach)
@@ -45,7 +45,7 @@ class Kernel {
         return shares_[static_cast<std::size_t>(std::abs(down)) * side_ +
                        static_cast<std::size_t>(std::abs(across))];
     }
-    /// What goes farther than the reach.
+    /// The fraction that goes farther than the reach.
     double outside() const { return outside_; }
 
   private:
@@ -151,7 +151,7 @@ class DirectSum {
         return seen;
     }
 
-    // What `light` adds when every pixel spreads its own over its own range.
+    // The change due to `light` when every pixel spreads its own over its own range.
     Image scattered(const Image& light, const std::vector<double>& range) const {
         const auto height = static_cast<std::size_t>(trial_.height());
         const auto width = static_cast<std::size_t>(trial_.width());

@@ -8,10 +8,10 @@
 
 namespace uw {
 
-/// `uwvdb validate`: prints a table per scene to `out`, red where a check failed and `colour`, and
-/// writes the report asked for; says on stderr what it is at. Returns whether all checks passed.
-/// `volume` wraps the volume integrator where it is given: a test that the checks can fail.
-/// Throws UsageError, InputError, IoError and Interrupted.
+/// `uwvdb validate`: prints a table per scene to `out`, in red where a check failed and `colour` is
+/// set, and writes the requested report; reports progress on stderr. Returns whether all checks
+/// passed. `volume` wraps the volume integrator if given: tests use it to show that the checks can
+/// fail. Throws UsageError, InputError, IoError and Interrupted.
 bool run_validate(const ValidateArguments& arguments, bool colour, std::ostream& out,
                   const TransportWrapper& volume = {});
 

@@ -19,26 +19,26 @@ namespace {
 constexpr double k_quadrature_tolerance = 1e-5;
 constexpr int k_fewest_planes = 8;
 
-// In a plume as rough as its voxels, columns interpolated between a lamp's rays and the straight
-// lines between a ray's knots leave 0.2 %; this many tolerances.
+// In a plume as rough as its voxels, interpolating columns between a lamp's rays, and linearly
+// between a ray's knots, leaves an error of 0.2 %; this many tolerances.
 constexpr double k_rough_water = 3;
 
-// Likewise, with forward scatter. Kernels between neighbouring widths are mixtures: they put up to
-// 0.25 % of the light elsewhere, on surfaces and again on its way to the camera, and are up to 1.7
-// % too high in the middle, which shows where a small thing is bright (0.4 % in
-// assets/scenes/plume). The RMS, of which three tolerances are allowed as everywhere, is the
-// sharper. What leaves a bright pixel is no share of a dark one's light: pixels darker than the
-// mean are compared with it.
+// Likewise, with forward scatter. Kernels between neighbouring widths are mixtures: they misplace
+// up to 0.25 % of the light, on surfaces and again on its way to the camera, and are up to 1.7 %
+// too high at the centre, which shows where a small thing is bright (0.4 % in
+// assets/scenes/plume.yaml). The RMS, which may be three tolerances as everywhere, is the sharper
+// test. Light lost by a bright pixel bears no relation to that of a dark one: pixels darker than
+// the mean are compared with the mean.
 constexpr double k_mixed_kernels = 10;
 constexpr double k_dark_in_mixtures = 1;
-// Where a surface cuts a slab of water, what is left of it lights all of the slab in the pixels
-// beside it: at depth edges this leaves an error of first order in the slabs' thickness, 0.23 % in
-// the suite and 0.4 % in assets/scenes/plume with K = 1. The slabs of the planes integrator are
-// thin and make nearly all of it visible; water that is half in a VDB has slabs like those of
-// uniform water, but in other places.
+// Where a surface cuts a slab of water, the light of the part before it is spread over the whole
+// slab in the pixels beside it: at depth edges this leaves an error of first order in the slabs'
+// thickness, 0.23 % in the suite and 0.4 % in assets/scenes/plume.yaml with K = 1. The slabs of the
+// planes integrator are thin and reveal nearly all of it; water that is half in a VDB has slabs
+// like those of uniform water, but in other places.
 constexpr double k_cut_slabs = 5;
 constexpr double k_other_slabs = 3;
-// Pixels darker than this share of the mean are compared with it, otherwise.
+// Otherwise pixels darker than this fraction of the mean are compared with that.
 constexpr double k_dark = 0.01;
 
 const char* const k_volume = "volume";
@@ -83,7 +83,7 @@ bool scatters_in_all_bands(const Medium& medium) {
                                [](double of_band) { return of_band != 0; });
 }
 
-// Over the pixels that `counted` marks; those darker than the share `dark` of the mean count as
+// Over the pixels that `counted` marks; those darker than the fraction `dark` of the mean count as
 // that bright.
 double largest_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
                           const std::vector<char>& counted, std::size_t band, double dark) {
@@ -179,8 +179,8 @@ class SceneTrial {
         compare(k_volume, sum, both, {.where = k_smooth, .tolerances = k_cut_slabs});
     }
 
-    // Half of the water stays uniform: the blur is measured by what it scatters, which is nothing
-    // where all water is in the grid.
+    // Half of the water stays uniform: the blur is measured relative to what it scatters, which is
+    // nothing if all water is in the grid.
     void compare_half_constant_grid(const TrialScene& uniform) {
         if (!scatters_in_all_bands(uniform.scene().water.medium)) {
             options_.say(result_.name + ": " + k_constant_grid +
@@ -214,20 +214,20 @@ class SceneTrial {
         render_forward_scatter(trial, transport, result_.images[method]);
     }
 
-    // Likewise by an integrator that takes light and columns from no splats.
+    // Likewise by an integrator that uses no splatted light or columns.
     void scatter_without_splats(const std::string& method, TrialScene& trial,
                                 RenderDesc::Integrator which) {
         trial.renderer.edit([&](AssembledScene& parts) { parts.desc.render.integrator = which; });
         scatter(method, trial, trial.renderer.make_transport());
     }
 
-    // Methods that step over a shadow's edge are held to the largest difference where there is
-    // none.
+    // Methods that step over shadow edges are held to the largest difference only in pixels without
+    // any.
     enum Where { k_all, k_smooth };
     struct Measure {
         Where where = k_all;
-        double tolerances = 1;  // how many of the one asked for `largest` may be
-        double dark = k_dark;   // share of the mean
+        double tolerances = 1;  // `largest` may be this many times the requested one
+        double dark = k_dark;   // fraction of the mean
     };
 
     void compare(const std::string& left, const std::string& right,
@@ -251,7 +251,7 @@ class SceneTrial {
     }
 
     // Sums over ever more slabs; the midpoint rule's error falls with the square of the thickness,
-    // so that (4 fine - coarse) / 3 is their limit (Richardson).
+    // so (4 fine - coarse) / 3 is their limit (Richardson).
     void sum_planes(const TrialScene& uniform) {
         std::vector<MethodImage> sums;
         for (int count = k_fewest_planes; count <= options_.most_planes; count *= 2) {

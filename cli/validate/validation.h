@@ -10,19 +10,19 @@
 
 namespace uw {
 
-/// Wraps the light transport that is on trial; tests make it wrong here.
+/// Wraps the light transport under test; tests make it wrong here.
 using TransportWrapper = std::function<LightTransport(LightTransport honest)>;
 
 struct ValidationOptions {
     double tolerance = 1e-3;  // largest relative difference allowed at a smooth pixel
     int longest_side = 48;    // of the image that is compared [pixels]
     int most_planes = 512;    // slabs of the finest sum
-    TransportWrapper volume;  // of the volume integrator's; empty: it is on trial as it is
+    TransportWrapper volume;  // of the volume integrator's; empty: it is tested as it is
     std::function<bool()> proceed = [] { return true; };  // false stops with Interrupted
     std::function<void(const std::string&)> say = [](const std::string&) {};
 };
 
-/// What of a picture is compared.
+/// Which part of a picture is compared.
 struct Component {
     const char* name;
     std::vector<Spectrum> MethodImage::*image;
@@ -39,8 +39,8 @@ struct Check {
     Component component;
     std::size_t band = 0;
     bool everywhere = true;    // false: `largest` is over smooth pixels only
-    std::size_t pixels = 0;    // how many that is
-    double dark = 0;           // darker pixels count as this share of the mean
+    std::size_t pixels = 0;    // how many these are
+    double dark = 0;           // darker pixels count as this fraction of the mean
     double largest = 0;        // relative, over these pixels
     double rms = 0;            // over all pixels, of the image's mean
     double tolerance = 0;      // of `largest`
@@ -48,14 +48,14 @@ struct Check {
     bool passed() const { return largest <= tolerance && rms <= rms_tolerance; }
 };
 
-/// One sum over slabs, against the limit of many.
+/// One sum over slabs, compared with the limit of many.
 struct PlanesStep {
     int count = 0;
     double error = 0;  // largest relative difference to the limit over smooth pixels and bands
     double order = 0;  // log2 of how much smaller it is than with half the slabs; 0 for the first
 };
 
-/// What validation found out about one scene.
+/// The results for one scene.
 struct SceneValidation {
     std::string name;
     int width = 0, height = 0;
@@ -76,8 +76,8 @@ double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band);
 /// quadrature, the reference integrator and a VDB of constant value against the volume integrator,
 /// all in uniform water (a scene with volumes is homogenised: its grids replaced by their mean),
 /// and on the scene's own grids the volume against the reference integrator. With forward scatter
-/// also what it makes of each method's light: the finest sum over planes, the reference integrator,
-/// a VDB that holds half of the water, and a sum over all pairs of pixels against the volume
+/// also its effect on each method's light: the finest sum over planes, the reference integrator, a
+/// VDB that holds half of the water, and a sum over all pairs of pixels against the volume
 /// integrator.
 SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
                                const ValidationOptions& options);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int k_mean_samples = 64;     // along each edge of the field's bounds
 constexpr int k_grid_side = 48;        // voxels of the constant grid along each edge
-constexpr double k_reach_depths = 15;  // optical depths that the constant grid reaches
+constexpr double k_reach_depths = 15;  // optical depths that the constant grid extends
 
 Renderer make_renderer(const ResolvedScene& scene, const std::function<bool()>& proceed) {
     Renderer renderer([proceed](const std::string&, double) { return proceed(); });
@@ -59,7 +59,7 @@ void add_scaled(OpticalCoefficients& to, const OpticalCoefficients& from, double
         to.scattering[m] += scale * from.scattering[m];
 }
 
-// Everything that light between lamps and camera can pass before it is used up.
+// Bounds of everything that light passes between lamps and camera before it is extinguished.
 Bounds reach_of(const TrialScene& trial) {
     Bounds bounds = trial.scene().surfaces->bounds();
     for (const Lamp& lamp : trial.scene().lamps) bounds.extend(lamp.position());
@@ -70,8 +70,8 @@ Bounds reach_of(const TrialScene& trial) {
     return {bounds.min - Vector3(margin), bounds.max + Vector3(margin)};
 }
 
-// Distances at which the lamp's beam ends at once. A soft edge has a slope everywhere and leaves
-// the midpoint rule its order.
+// Distances at which the lamp's beam ends abruptly. A soft edge has a finite slope and leaves the
+// midpoint rule its order.
 void append_hard_beam_edges(const Ray& ray, const Lamp& lamp, std::vector<double>& edges) {
     constexpr double k_step = 1e-6;
     std::vector<double> breaks;
@@ -199,7 +199,7 @@ void render_forward_scatter(TrialScene& trial, const LightTransport& transport,
 }
 
 std::vector<char> smooth_pixels(const TrialScene& trial) {
-    constexpr double k_edge = 1e-3;  // of the ray's length: nearer to its ends is no edge
+    constexpr double k_edge = 1e-3;  // of the ray's length: closer to its ends does not count
     std::vector<char> smooth(static_cast<std::size_t>(trial.width() * trial.height()), 1);
     parallel_for(smooth.size(), [&](std::size_t i) {
         const int x = static_cast<int>(i) % trial.width(), y = static_cast<int>(i) / trial.width();

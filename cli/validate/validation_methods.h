@@ -9,15 +9,15 @@
 
 namespace uw {
 
-/// What a method says of every pixel of a scene, row by row, one sample at each pixel's centre
-/// [W m^-2 sr^-1]. Components that the method says nothing of are empty.
+/// The result of a method for every pixel of a scene, row by row, one sample at each pixel's centre
+/// [W m^-2 sr^-1]. Components that the method does not compute are empty.
 struct MethodImage {
     std::vector<Spectrum> direct, backscatter;  // before forward scatter
     std::vector<Spectrum> forward;              // what forward scatter adds to `direct`
     std::vector<Spectrum> blurred_backscatter;  // with forward scatter
 };
 
-/// A scene on trial, assembled, with its lamps splatted.
+/// A scene under test, assembled, with its lamps splatted.
 struct TrialScene {
     Renderer renderer;
 
@@ -28,7 +28,7 @@ struct TrialScene {
 };
 
 /// Assembles `scene` and splats its lamps. This, and whatever is rendered of it, ends with
-/// Interrupted when `proceed` says no; so in the two that follow.
+/// Interrupted if `proceed` returns false; likewise the two functions that follow.
 TrialScene make_trial(const ResolvedScene& scene, const std::function<bool()>& proceed);
 
 /// `trial` with its grids replaced by their mean over the field's bounds: uniform water, which
@@ -38,18 +38,17 @@ TrialScene homogenised(const TrialScene& trial, const ResolvedScene& scene,
 
 /// `trial`, whose water is uniform, with a `share` of that water (above 0, at most 1) moved into a
 /// VDB grid of constant value: the grid is written to a file and read back, and outside it is only
-/// the rest. It reaches from all cameras, lamps and surfaces to where 15 optical depths have
-/// passed. G and B of forward scatter are measured by the uniform water that they stand for
-/// (physics section 6): where some of it stays, they are made less with it, so that the blur is the
-/// same.
+/// the rest. It extends from all cameras, lamps and surfaces as far as 15 optical depths. G and B
+/// of forward scatter are relative to the uniform water that they describe (physics section 6): if
+/// some of it stays, they are reduced with it, so that the blur is the same.
 TrialScene with_constant_grid(const TrialScene& trial, const ResolvedScene& scene, double share,
                               const std::function<bool()>& proceed);
 
 /// `count` of McGlamery's planes in the water of `trial`, placed as its scene says.
 Slabs planes_of(const TrialScene& trial, int count);
 
-/// Renders every pixel by `transport` before forward scatter. Stops with Interrupted when
-/// `proceed` says no.
+/// Renders every pixel by `transport` before forward scatter. Throws Interrupted if `proceed`
+/// returns false.
 MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
                           const std::function<bool()>& proceed);
 
@@ -58,7 +57,7 @@ MethodImage render_method(const TrialScene& trial, const LightTransport& transpo
 void render_forward_scatter(TrialScene& trial, const LightTransport& transport, MethodImage& image);
 
 /// Pixels whose water ray meets no shadow edge and no hard edge of a lamp's beam, row by row: where
-/// a sum over slabs converges as their thickness squared.
+/// a sum over slabs converges with the square of their thickness.
 std::vector<char> smooth_pixels(const TrialScene& trial);
 
 }  // namespace uw

@@ -46,7 +46,7 @@ std::string base64(const std::string& bytes) {
     return text;
 }
 
-/// Turns pictures into HTML; holds the folder that they pass through.
+/// Turns pictures into HTML; owns the folder for their temporary files.
 class Pictures {
   public:
     std::string figure(const Preview& picture, const std::string& caption) {
@@ -101,7 +101,7 @@ double exposure_of(const SceneValidation& scene, const MethodImage& image,
     return bright > 0 ? 0.8 / bright : 1;
 }
 
-/// The relative differences of one component, the band that differs most at each pixel.
+/// The relative differences of one component, in the band that differs most at each pixel.
 struct DifferenceMap {
     Preview picture;
     double full_colour = 0;  // the difference that is shown in full colour
@@ -137,11 +137,11 @@ DifferenceMap difference_map(const SceneValidation& scene, const Check& check) {
     return map;
 }
 
-// A strip from blue over white to red, as the maps are coloured.
+// A colour bar from blue over white to red, as in the maps.
 constexpr const char* k_colour_scale =
     "<p><span style=\"display:inline-block;width:12em;height:1em;border:1px solid #ccc;background:"
     "linear-gradient(90deg,#00f,#fff,#f00)\"></span> the first is darker … the same … brighter; "
-    "full colour at the largest difference, which stands below each map. Grey: a shadow edge or "
+    "full colour at the largest difference, which is given below each map. Grey: a shadow edge or "
     "hard beam edge crosses the ray of a method that steps over it.</p>\n";
 
 std::string table_of(const SceneValidation& scene) {
@@ -181,7 +181,7 @@ std::string convergence_plot(const SceneValidation& scene) {
     return svg_document(figure);
 }
 
-// One picture per method that tells all of `components`; empty if none does.
+// One picture per method that has all of `components`; empty if none has.
 std::string pictures_of(const SceneValidation& scene, const Components& components,
                         const std::string& title, Pictures& pictures) {
     std::string html;
@@ -263,7 +263,7 @@ void write_validation_report(const std::filesystem::path& file,
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>uwvdb validate"
         "</title><style>{}</style></head><body>\n<h1>uwvdb validate</h1>\n<p>uwvdb {}. Every way "
         "of computing a scene against the others; tolerances are of the largest relative "
-        "difference, the RMS may be three times what was asked for.</p>\n",
+        "difference; the RMS may be three times the tolerance given.</p>\n",
         k_style, program_version());
     for (const SceneValidation& scene : scenes) html += section_of(scene, pictures);
     html += "</body></html>\n";

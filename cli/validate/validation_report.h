@@ -8,7 +8,7 @@
 
 namespace uw {
 
-/// The checks of one scene as lines of text; failed ones are red where `colour`.
+/// The checks of one scene as lines of text; failed ones are red if `colour` is set.
 std::string validation_table(const SceneValidation& scene, bool colour);
 
 /// Writes one self-contained HTML page: the tables, the pictures of every method, maps of their

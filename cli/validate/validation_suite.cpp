@@ -42,7 +42,7 @@ WaterDesc kopelevich() {
     return water;
 }
 
-// Strong, and some pixels wide at the wall.
+// Strong, and several pixels wide at the wall.
 ForwardScatterDesc forward_scatter(ForwardScatterDesc::Shape shape) {
     ForwardScatterDesc desc;
     desc.K = 1;
@@ -129,7 +129,7 @@ SceneDesc plume(const std::filesystem::path& file) {
     mapping.where = "plume";
     volume.grids = {mapping};
     desc.volumes = {volume};
-    // The reference takes exact columns at every sample: fewer pixels.
+    // The reference integrates exact columns at every sample: fewer pixels.
     desc.camera.width /= 2;
     desc.camera.height /= 2;
     IntrinsicsDesc& k = desc.camera.intrinsics;

@@ -9,10 +9,10 @@
 
 namespace uw {
 
-/// The scenes that `uwvdb validate` looks at by itself: lamps beside, far from, behind and in view
-/// of the camera, both kinds of phase function, a port, a shadow, a spot, and a plume in a grid
-/// that is written to a folder of its own for as long as the suite lives. The last three scatter
-/// forward, by both kernels.
+/// The built-in scenes of `uwvdb validate`: lamps beside, far from, behind and in view of the
+/// camera, both kinds of phase function, a port, a shadow, a spot, and a plume in a grid that is
+/// written to a folder of its own for as long as the suite exists. The last three scatter forward,
+/// with both kernels.
 class ValidationSuite {
   public:
     ValidationSuite();

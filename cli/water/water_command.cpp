@@ -24,7 +24,7 @@ namespace uw {
 
 namespace {
 
-/// The wavelength at which Kopelevich's tables are given, and the paper's figure 4 is drawn.
+/// The wavelength of Kopelevich's tables and of the paper's figure 4.
 constexpr double k_reference_nm = 550;
 
 bool same_ignoring_case(const std::string& a, const std::string& b) {
@@ -33,7 +33,7 @@ bool same_ignoring_case(const std::string& a, const std::string& b) {
     });
 }
 
-/// The preset called `subject`, "" if there is none.
+/// The preset called `subject`; "" if there is none.
 std::string preset_called(const std::string& subject) {
     for (const std::string& name : jerlov_preset_names())
         if (same_ignoring_case(name, subject)) return name;
@@ -71,7 +71,7 @@ void replace_bands(const WaterArguments& a, WaterReport& report) {
     if (a.bands_nm.empty()) return;
     if (is_given_per_band(report.water, report.volumes))
         throw UsageError(
-            "--bands: this scene gives coefficients per band, which say nothing of other bands; "
+            "--bands: this scene gives coefficients per band, which say nothing about other bands; "
             "leave --bands out, or give the scene a preset or particles instead");
     report.water.bands_nm = a.bands_nm;
 }
@@ -91,12 +91,12 @@ void choose_vsf_bands(const WaterArguments& a, WaterReport& report) {
     if (std::abs(*nearest - wanted) > 1e-6 * wanted)
         throw UsageError(
             fmt::format("--band {:g}: not one of the bands; the nearest is {:g} nm; "
-                        "give --bands to have others",
+                        "choose others with --bands",
                         wanted, *nearest));
     report.vsf_bands = {report.plot_band};
 }
 
-/// Files that come into being together, or, where one cannot be written, not at all.
+/// Files that are created together or, if one cannot be written, not at all.
 class OutputFiles {
   public:
     void add(const std::filesystem::path& path, const std::string& content) {
@@ -121,7 +121,7 @@ class OutputFiles {
     std::vector<Entry> files_;
 };
 
-/// `prefix` with `-tail.csv` behind it; an extension .csv of the prefix's own goes.
+/// `prefix` with `-tail.csv` appended, without the prefix's own extension .csv if it has one.
 std::filesystem::path csv_path(std::filesystem::path prefix, const char* tail) {
     if (prefix.extension() == ".csv") prefix.replace_extension();
     if (!prefix.has_filename())
@@ -149,7 +149,7 @@ void run_water(const WaterArguments& a, std::ostream& out) {
     if (!a.svg.empty()) files.add(a.svg, svg_document(water_figure(report)));
     for (const std::string& warning : report.table.warnings)
         print_message(fmt::format("warning: {}\n", warning));
-    // First the files: whoever reads the tables may stop reading, which ends the program.
+    // Files first: whoever reads the tables may stop reading, which ends the program.
     files.commit();
     out << (a.json ? water_json(report) : water_text(report)) << std::flush;
     if (!out) throw IoError("standard output: cannot write; is the disk full?");

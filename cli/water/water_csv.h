@@ -7,7 +7,7 @@
 namespace uw {
 
 /// CSV (RFC 4180, preceded by one comment line with units and sources): one row per wavelength.
-/// Ratios without a value (0/0) are blank.
+/// Undefined ratios (0/0) are blank.
 std::string water_coefficients_csv(const WaterReport& report);
 /// CSV: one row per wavelength and angle, total first, then each component, then per unit of each
 /// constituent.

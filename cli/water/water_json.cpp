@@ -75,7 +75,7 @@ std::string water_json(const WaterReport& report) {
     json["units"] = {{"coefficients", "1/m; of constituents 1/m per unit of concentration"},
                      {"vsf", "1/(m sr); of constituents per unit of concentration"},
                      {"attenuation_length", "m"},
-                     {"angles", "degrees; 0 is straight on"}};
+                     {"angles", "degrees; 0 is forward"}};
     json["wavelengths_nm"] = water.wavelengths_nm;
     json["small_ppm"] = water.small_ppm;
     json["large_ppm"] = water.large_ppm;

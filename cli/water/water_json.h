@@ -6,7 +6,7 @@
 
 namespace uw {
 
-/// Everything as one JSON object; ratios without a value are null.
+/// Everything as one JSON object; undefined ratios are null.
 std::string water_json(const WaterReport& report);
 
 }  // namespace uw

@@ -10,19 +10,20 @@ const char* const k_water_examples = R"(Examples:
   uwvdb water --set water.particles='{small: 1, large: 1}' --band 540 --svg vsf.svg
   uwvdb water plume.yaml --set water.preset=jerlov-3C --json
 
-Prints a, b, c and what follows from them per band [1/m], then the volume scattering function by
-component. --set water.* needs no scene. docs/water.md explains the tables and names their sources.
+Prints a, b and c [1/m] per band and what is derived from them, then the volume scattering function
+by component. --set water.* needs no scene. docs/water.md explains the tables and names their
+sources.
 Presets: jerlov-IB, jerlov-II, jerlov-III, jerlov-1C, jerlov-3C, jerlov-5C.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
 
 Options water_options(WaterArguments& a) {
     Options options;
     options.text("PRESET|SCENE", "", a.subject,
-                 "jerlov-II, or a scene file; pure sea water if left out");
+                 "a preset such as jerlov-II, or a scene file; default: pure sea water");
     options.set(a.overrides);
     options.parsed(
         "--bands", "LIST", [&a](const std::string& text) { a.bands_nm = parse_bands(text); },
-        "nm: 620,540,450 or first:last:step; replaces the water's");
+        "nm: 620,540,450 or first:last:step, instead of the water's");
     options.number("--band", "NM", a.band_nm, 0, 1e5,
                    "nm: the scattering function at this band only");
     options.path("--csv", "PREFIX", a.csv,

@@ -15,7 +15,7 @@ namespace uw {
 
 namespace {
 
-/// Bands more than this lie so close that their dots would hide the curve.
+/// More bands than this are so close that their dots would hide the curve.
 constexpr std::size_t k_most_dots = 40;
 
 using Value = std::function<double(const CoefficientTable&, std::size_t)>;
@@ -34,7 +34,7 @@ LineStyle style_of(const std::string& part) {
     return {plot_colour::k_orange, "5 2"};
 }
 
-/// For what has no colour of its own.
+/// For components without a colour of their own.
 LineStyle style_of(std::size_t index) {
     static constexpr std::array<LineStyle, 5> k_styles{{{plot_colour::k_green, "2 2.5"},
                                                         {plot_colour::k_blue, "9 3 2 3"},
@@ -44,13 +44,13 @@ LineStyle style_of(std::size_t index) {
     return k_styles[index % k_styles.size()];
 }
 
-/// The same water at many wavelengths, as far as models give it.
+/// The same water at many wavelengths, as far as its models extend.
 struct FineCurves {
     WaterTable table;
     bool absorption, scattering;  // whether those of the uniform water are known
 };
 
-/// First and last wavelength [nm] of the plots: visible light, and further where the bands go.
+/// First and last wavelength [nm] of the plots: the visible range, extended to the bands.
 std::pair<double, double> plotted_range(const WaterReport& report) {
     const std::vector<double>& bands = report.table.wavelengths_nm;
     const auto [low, high] = std::minmax_element(bands.begin(), bands.end());
@@ -138,7 +138,7 @@ PlotPanel scattering_panel(const WaterReport& report, const FineCurves& fine) {
     return panel;
 }
 
-/// What grids add; particles are known at all wavelengths, a grid's own optics at the bands.
+/// What grids add; particles are known at all wavelengths, a grid's own coefficients at the bands.
 PlotPanel constituent_panel(const WaterReport& report, const FineCurves& fine) {
     PlotPanel panel = spectral_panel(report, "What grids add: attenuation", "c* [1/m per unit]");
     for (std::size_t k = 0; k < report.table.constituents.size(); ++k) {
@@ -154,8 +154,8 @@ PlotPanel constituent_panel(const WaterReport& report, const FineCurves& fine) {
     return panel;
 }
 
-/// Angles [deg] fine enough for the forward peak on a logarithmic axis and the rest on a linear.
-/// The peak below 0.1 degrees, unbounded in some models, would leave no room for the rest.
+/// Angles [deg] fine enough for the forward peak on a logarithmic axis and the rest on a linear
+/// one. The peak below 0.1 degrees, unbounded in some models, would leave no room for the rest.
 std::vector<double> plot_angles() {
     std::vector<double> angles;
     angles.reserve(60 + 171);

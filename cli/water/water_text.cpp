@@ -13,14 +13,14 @@ namespace {
 constexpr double k_degree = std::numbers::pi / 180;
 constexpr std::size_t k_narrowest = 9;
 
-/// Columns of right-aligned cells, as wide as their widest.
+/// Columns of right-aligned cells, each as wide as its widest cell.
 class TextTable {
   public:
     void add_column(std::string name, std::string unit) {
         columns_.push_back({std::move(name), std::move(unit)});
     }
     void add(std::size_t column, double value) {
-        // Column 0 is the wavelength or angle, which has the digits it was given with.
+        // Column 0 is the wavelength or angle, printed with the digits given.
         const int digits = column == 0 ? 8 : 4;
         columns_[column].push_back(std::isfinite(value) ? fmt::format("{:.{}g}", value, digits)
                                                         : "-");
@@ -120,7 +120,7 @@ std::string water_text(const WaterReport& report) {
     for (const std::size_t band : report.vsf_bands) {
         out += heading(fmt::format(
             "Volume scattering function beta(psi) at {:g} nm; psi is the change of direction: 0 "
-            "straight on, 180 back",
+            "forward, 180 backward",
             water.wavelengths_nm[band]));
         out += vsf_text(report, band);
     }

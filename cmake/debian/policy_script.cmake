@@ -1,4 +1,4 @@
-# Run by CPack before it packs the installed files: brings them into the form of Debian's policy.
+# Run by CPack before it packs the installed files: makes them conform to Debian's policy.
 file(GLOB_RECURSE installed ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*)
 foreach(file IN LISTS installed)
     cmake_path(GET file PARENT_PATH folder)
@@ -6,7 +6,7 @@ foreach(file IN LISTS installed)
     if(file MATCHES "/doc/uwvdb/CHANGELOG\\.md$")
         set(renamed ${folder}/changelog)
     elseif(file MATCHES "/zsh/site-functions/_uwvdb$")
-        # Where Debian's zsh looks for what packages bring.
+        # Where Debian's zsh looks for completions of packages.
         string(REGEX REPLACE "/site-functions/" "/vendor-completions/" renamed ${file})
     endif()
     if(NOT renamed STREQUAL file)

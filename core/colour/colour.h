@@ -25,10 +25,10 @@ double srgb_encode(double linear);
 /// - Three bands are R, G and B themselves, unchanged.
 /// - One band is grey.
 /// - Any other number goes through CIE 1931: each band stands for the wavelengths around it
-///   (core/band_intervals.h), in which its radiance is even; X, Y and Z are each scaled so that
-///   equal values in all bands are the white of sRGB (D65), then turned into linear sRGB. Bands may
-///   come in any order. Colours outside the gamut have negative components, which are kept.
-///   Where the bands see nothing of X, Y or Z (all in the infrared, say) there is no white to
+///   (core/colour/band_intervals.h), in which its radiance is even; X, Y and Z are each scaled so
+///   that equal values in all bands are the white of sRGB (D65), then turned into linear sRGB.
+///   Bands may come in any order. Colours outside the gamut have negative components, which are
+///   kept. Where the bands see nothing of X, Y or Z (all in the infrared, say) there is no white to
 ///   balance: the image is grey then, the mean of the bands, and `warning` says so.
 class BandColour {
   public:

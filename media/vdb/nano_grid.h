@@ -27,8 +27,8 @@ struct LatticeLine {
 /// in lattice space, where the value of voxel (i, j, k) sits at (i, j, k). Thread safe.
 class NanoGrid {
   public:
-    /// `grid` points to the NanoVDB grid inside what `storage` owns (media/vdb_file.cpp makes it).
-    /// `min` and `max` bound its nonzero voxels, both included, |coordinates| < 2^30.
+    /// `grid` points to the NanoVDB grid inside what `storage` owns (media/vdb/vdb_file.cpp makes
+    /// it). `min` and `max` bound its nonzero voxels, both included, |coordinates| < 2^30.
     NanoGrid(std::shared_ptr<const void> storage, const void* grid, std::size_t bytes,
              const std::array<int, 3>& min, const std::array<int, 3>& max);
 

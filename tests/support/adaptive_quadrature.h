@@ -5,8 +5,8 @@
 
 namespace uw::test {
 
-/// Adaptive Simpson quadrature of `f` over [a, b] to an absolute error of about `tolerance`;
-/// the independent judge of every integral in the program.
+/// Adaptive Simpson quadrature of `f` over [a, b] to an absolute error of about `tolerance`; the
+/// independent check of every integral in the program.
 class AdaptiveQuadrature {
   public:
     using Function = std::function<double(double)>;

@@ -25,7 +25,7 @@ inline double blur_in_corner(ForwardScatterDesc::Shape shape, double s, double x
     return std::erf(x / (2 * s)) * std::erf(y / (2 * s)) / 4;
 }
 
-/// Shares of a pixel's light that land in the pixels at offsets 0..reach in either direction.
+/// Fractions of a pixel's light that land in the pixels at offsets 0..reach in either direction.
 class BlurShares {
   public:
     BlurShares(ForwardScatterDesc::Shape shape, double s, int reach)
@@ -43,9 +43,9 @@ class BlurShares {
         outside_ = 1 - inside;
     }
 
-    /// The share of a pixel at (x0, y0) that lands in (x, y) of a width x height image whose scene
-    /// reflects at its borders: that of all its mirror images. What lies beyond the reach is spread
-    /// evenly.
+    /// The fraction of a pixel at (x0, y0) that lands in (x, y) of a width x height image whose
+    /// scene is mirrored at its borders: that of all its mirror images. What lies beyond the reach
+    /// is spread evenly.
     double mirrored(int x0, int y0, int x, int y, int width, int height) const {
         double sum = outside_ / (width * height);
         for (int v : {y0, -1 - y0}) {

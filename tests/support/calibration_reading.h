@@ -23,7 +23,7 @@ class CalibrationReading : public testing::Test {
     Calibration read(const std::string& text, const std::string& camera = "") const {
         return read_calibration(write("c.yaml", text), camera);
     }
-    /// That `text` is refused in one line that has `part`.
+    /// Expects that `text` is refused with one line that contains `part`.
     void expect_refused(const std::string& text, const std::string& part,
                         const std::string& camera = "") const {
         const std::string found = message_of<InputError>([&] { read(text, camera); });
@@ -33,7 +33,7 @@ class CalibrationReading : public testing::Test {
     TempDir folder_;
 };
 
-/// `text` with its first `from` as `to`.
+/// `text` with its first `from` replaced by `to`.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;

@@ -7,7 +7,7 @@
 namespace uw::test {
 
 /// Files as their programs write them, a name and a text each; the last part of the name is the
-/// camera to take.
+/// camera to choose.
 struct CalibrationText {
     std::string name, camera, text;
 };

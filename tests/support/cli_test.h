@@ -14,7 +14,8 @@
 
 namespace uw::test {
 
-/// A small lit scene: hazy water, a wall at z = 4 and a box before it, a lamp beside the camera.
+/// A small lit scene: hazy water, a wall at z = 4 and a box in front of it, a lamp beside the
+/// camera.
 inline constexpr const char* k_small_scene = R"(uwvdb: 1
 camera:
   resolution: [33, 19]
@@ -54,7 +55,7 @@ class CliTest : public testing::Test {
                            {.folder = folder_.path(), .terminal_columns = terminal_columns});
     }
 
-    /// Renders scene.yaml to out.exr with what else is given; the run must succeed.
+    /// Renders scene.yaml to out.exr with the further arguments; the run must succeed.
     ImageFile render(const std::vector<std::string>& more = {}) const {
         std::vector<std::string> arguments{"render", "scene.yaml", "-o", "out.exr"};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -77,7 +78,7 @@ class CliTest : public testing::Test {
     TempDir folder_;
 };
 
-/// No value of any channel is NaN or infinite, and none of R, G, B is black all over.
+/// Expects that no value is NaN or infinite, and that none of R, G, B is entirely black.
 inline void expect_finite_and_lit(const ImageFile& image) {
     for (const auto& [name, values] : image.channels)
         for (const float value : values) ASSERT_TRUE(std::isfinite(value)) << name;

@@ -65,7 +65,7 @@ inline double profile_column(const ConcentrationField& field, const Point3& a, c
     return profile.column.back();
 }
 
-/// The laws every profile keeps, whatever the field.
+/// The laws that every profile obeys, whatever the field.
 inline void expect_lawful(const ConcentrationProfile& p, double s_end) {
     const auto count = static_cast<std::size_t>(p.constituent_count);
     ASSERT_GE(p.s.size(), 2U);
@@ -85,7 +85,7 @@ inline void expect_lawful(const ConcentrationProfile& p, double s_end) {
     }
 }
 
-/// Values without symmetry on 20 x 18 x 22 voxels that cross block boundaries and zero.
+/// Asymmetric values on 20 x 18 x 22 voxels that cross block boundaries and zero.
 inline double bumpy(int i, int j, int k) {
     return 1.5 + std::sin(0.9 * i + 0.3 * k) + 0.4 * std::cos(1.3 * j - 0.5 * k);
 }

@@ -9,7 +9,7 @@
 /// Whole images with their layers, forward scatter included, as `uwvdb render` makes them.
 namespace uw::test {
 
-/// The layers that a test looks at, per band and pixel, row by row.
+/// The layers that a test examines, per band and pixel, row by row.
 class RenderedFilm {
   public:
     explicit RenderedFilm(const SceneDesc& desc)

@@ -8,9 +8,9 @@
 
 namespace uw::test {
 
-/// What `light` adds to each pixel of an image of `width` columns in one band, summed over all
-/// pairs of pixels: each spreads its own over its own `range` [m] in uniform water of attenuation
-/// `c`, seen with focal length `focal` [pixels].
+/// The change due to `light` in each pixel of an image of `width` columns in one band, summed over
+/// all pairs of pixels: each spreads its own over its own `range` [m] in uniform water of
+/// attenuation `c`, seen with focal length `focal` [pixels].
 inline std::vector<double> direct_sum(const ForwardScatterDesc& desc, double c, double focal,
                                       int width, const std::vector<double>& light,
                                       const std::vector<double>& range) {

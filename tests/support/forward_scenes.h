@@ -29,7 +29,7 @@ inline double attenuation(std::size_t band) {
     return (*water.absorption)[band] + water.scattering->b[band];
 }
 
-// A wall, a box before it and two lamps: depth edges and shadows.
+// A wall, a box in front of it and two lamps: depth edges and shadows.
 inline SceneDesc staged() {
     SceneDesc desc = uniform_scene({1, -0.5, 0});
     desc.camera.width = 32;

@@ -5,10 +5,10 @@
 namespace uw::test {
 
 /// A Gaussian cloud of one constituent, nu = peak exp(-r^2 / 2 sigma^2), with closed-form columns:
-/// the truth that grids and deep shadow maps are measured against. Zero beyond 6 sigma (1.5e-8).
+/// the truth against which grids and deep shadow maps are measured. Zero beyond 6 sigma (1.5e-8).
 class GaussianField : public ConcentrationField {
   public:
-    /// `pace`: what it reports as voxel, and twice the spacing of its profiles' knots [m].
+    /// `pace`: the voxel size that it reports, and twice the spacing of its profiles' knots [m].
     GaussianField(const Point3& center, double sigma, double peak, double pace);
 
     int constituent_count() const override { return 1; }

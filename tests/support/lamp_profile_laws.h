@@ -11,7 +11,7 @@
 #include "core/lamps/lamp_profile.h"
 #include "tests/support/random_direction.h"
 
-/// The laws every lamp profile obeys, for one line per concrete class.
+/// The laws that every lamp profile obeys, so that each class is tested in one line.
 namespace uw::test {
 
 /// The relative intensity of `profile` integrated over the sphere by the midpoint rule, in the
@@ -38,7 +38,7 @@ double solid_angle_by_quadrature(const P& profile, int polar_steps, int azimuth_
 }
 
 /// Checks that the profile of a lamp at the origin is 0..1 and the same at any distance, dark
-/// outside its cone, and in an even core 1 from break to break along rays.
+/// outside its cone, and, if its core is even, 1 from break to break along rays.
 template <IsALampProfile P>
 void expect_lamp_profile_laws(const P& profile) {
     SCOPED_TRACE(P::k_name);

@@ -6,8 +6,8 @@
 
 namespace uw::test {
 
-/// The message that `action` ends with, which must be an `Error` of one line; fails the test, and
-/// returns "", if it is none or nothing is thrown.
+/// The message of the `Error` that `action` throws, which must be one line; fails the test, and
+/// returns "", if it is not or nothing is thrown.
 template <class Error, class Action>
 std::string message_of(const Action& action) {
     try {

@@ -10,7 +10,7 @@
 
 #include "core/optics/phase_function.h"
 
-/// The laws every PhaseFunction obeys, for one line per concrete class.
+/// The laws that every PhaseFunction obeys, so that each class is tested in one line.
 namespace uw::test {
 
 /// Adaptive Simpson of f over [a, b] to the absolute tolerance; knows nothing of f's structure.
@@ -35,8 +35,8 @@ inline double adaptive_simpson(const std::function<double(double)>& f, double a,
                             40);
 }
 
-/// 2 pi int_0^pi f(psi) sin(psi) dpsi for a f that may be peaked by many decades at psi = 0:
-/// constant below 1e-8 rad, in ln psi from there to 0.1 rad, in psi beyond. About 1e-8 absolute.
+/// 2 pi int_0^pi f(psi) sin(psi) dpsi for an f that may peak by many decades at psi = 0: constant
+/// below 1e-8 rad, in ln psi from there to 0.1 rad, in psi beyond. About 1e-8 absolute.
 inline double integral_over_sphere(const std::function<double(double)>& f) {
     const double pi = std::numbers::pi;
     const double smallest = 1e-8, seam = 0.1;

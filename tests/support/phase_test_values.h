@@ -10,7 +10,7 @@
 #include "core/optics/phase_function.h"
 #include "core/tables/csv_table.h"
 
-/// Phase functions as tabulated in tests/data by others.
+/// Published values of phase functions, tabulated in tests/data.
 namespace uw::test {
 
 /// A table of tests/data.
@@ -21,8 +21,8 @@ inline CsvTable phase_test_table(const std::string& name) {
     return CsvTable(text.str(), name);
 }
 
-/// That `p` times `scale` is the column `column` of `table` to its printed digits: 6 significant,
-/// so 1e-5 relative covers the rounding of the last one.
+/// Expects that `p` times `scale` is the column `column` of `table` to its printed digits: 6
+/// significant, so 1e-5 relative covers the rounding of the last one.
 inline void expect_phase_column(const PhaseFunction& p, const CsvTable& table, const char* column,
                                 double scale = 1) {
     const SampledCurve expected = table.curve("angle_deg", column);

@@ -4,7 +4,7 @@
 
 #include "tests/support/test_scene.h"
 
-/// Uniform water for the planes integrator and what it is compared with.
+/// Uniform water for the planes integrator and the others it is compared with.
 namespace uw::test {
 
 inline constexpr double k_plane_z = 4;
@@ -34,7 +34,7 @@ inline SceneDesc with_planes(SceneDesc desc, int count, double near, double far)
     return desc;
 }
 
-/// The same with a camera of its own pose behind thick, tilted glass.
+/// The same with a camera in another pose behind thick, tilted glass.
 inline SceneDesc ported(SceneDesc desc) {
     desc.camera.port =
         FlatPortDesc{glm::normalize(Vector3(0.05, -0.1, 1)), 0.02, 0.04, 1.0, 1.49, 1.334};

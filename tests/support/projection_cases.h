@@ -61,7 +61,7 @@ inline ProjectionTally tally_projections(const CameraDesc& desc, int count) {
     while (tally.points < count) {
         const double u = x(random), v = y(random), distance = std::exp(exponent(random));
         const auto ray = camera.refracted_ray(u, v);
-        if (!ray) continue;  // a flat port shows less than a fisheye does
+        if (!ray) continue;  // a flat port has a narrower field than a fisheye
         ++tally.points;
         const auto seen = camera.project(ray->at(distance));
         if (!seen) {

@@ -6,7 +6,7 @@
 
 namespace uw::test {
 
-/// A direction, all of them equally likely; unit.
+/// A unit vector, uniformly distributed over the sphere.
 inline Vector3 random_direction(std::mt19937& rng) {
     std::normal_distribution<double> normal;
     return glm::normalize(Vector3(normal(rng), normal(rng), normal(rng)));

@@ -11,7 +11,7 @@
 
 namespace uw::test {
 
-/// A scene that is wrong in one way, and what the one line must say, place and path included.
+/// A scene with one fault, and what the one-line message must say, position and path included.
 struct BadScene {
     std::string text;
     std::string expected;
@@ -43,7 +43,7 @@ class SceneErrors : public ::testing::Test {
     SceneFolder folder_;
 };
 
-/// A scene that is whole but for what a case appends.
+/// A scene that is complete but for what a case appends.
 inline constexpr auto k_base =
     "uwvdb: 1\ncamera: {resolution: [64, 48], intrinsics: {fov_x: 60}}\n";
 

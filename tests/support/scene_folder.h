@@ -10,7 +10,7 @@
 
 namespace uw::test {
 
-/// A folder of its own for a test's files, removed at the end.
+/// A temporary folder for a test's files, removed at the end.
 class SceneFolder {
   public:
     SceneFolder() {

@@ -18,7 +18,7 @@ inline std::unique_ptr<Surfaces> build(const std::vector<GeometryDesc>& geometry
     return build_surfaces(geometry, std::vector<double>{620, 540, 450}, warnings);
 }
 
-/// Points and directions to shoot rays with, the same in every run.
+/// Origins and directions of rays, the same in every run.
 class Random {
   public:
     double uniform(double from, double to) {

@@ -7,7 +7,7 @@
 
 namespace uw::test {
 
-/// A directory of its own for one test, removed with everything in it afterwards.
+/// A temporary directory for one test, removed afterwards with everything in it.
 class TempDir {
   public:
     TempDir() {

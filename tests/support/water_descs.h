@@ -56,7 +56,7 @@ inline double total_scattering(const OpticalCoefficients& x, std::size_t band) {
     return b;
 }
 
-/// beta(psi) of coefficients of the medium in one band.
+/// beta(psi) of some coefficients of the medium in one band.
 inline double vsf(const Medium& medium, const OpticalCoefficients& x, std::size_t band,
                   double psi) {
     double beta = 0;

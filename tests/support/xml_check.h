@@ -55,7 +55,7 @@ inline std::string xml_fault(std::string_view text) {
     return seen_root ? "" : "no root";
 }
 
-/// How often `part` occurs in `text`.
+/// How many times `part` occurs in `text`.
 inline int occurrences(std::string_view text, std::string_view part) {
     int count = 0;
     for (std::size_t i = text.find(part); i != std::string_view::npos; i = text.find(part, i + 1))

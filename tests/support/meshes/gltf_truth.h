@@ -9,8 +9,8 @@
 
 namespace uw::test {
 
-/// A glTF file read anew for tests, straight from its JSON and bytes: nothing of the program's own
-/// reader is used. Knows what Blender writes for meshes of floats: no strides, no sparse data.
+/// A glTF file read for tests straight from its JSON and bytes, without the program's own reader.
+/// Supports what Blender writes for meshes of floats: no strides, no sparse data.
 struct GltfTruth {
     struct Triangle {
         Point3 a, b, c;

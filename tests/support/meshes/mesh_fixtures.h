@@ -12,7 +12,7 @@
 
 namespace uw::test {
 
-/// A folder of its own for mesh files written by a test; removed with everything in it.
+/// A temporary folder for mesh files written by a test; removed with everything in it.
 class MeshFolder {
   public:
     MeshFolder() {
@@ -59,8 +59,8 @@ inline std::string base64(const std::string& bytes) {
 }
 
 /// The pieces of a small glTF: one triangle (0,0,0) (1,0,0) (0,1,0) with the texture coordinates
-/// (0.25, 0.25) at each corner and one vertex colour. A test replaces what it is about; each value
-/// is JSON text.
+/// (0.25, 0.25) and the same colour at each vertex. A test replaces the pieces that it is about;
+/// each value is JSON text.
 inline std::string gltf_text(const std::map<std::string, std::string>& changes = {}) {
     const std::string buffer = bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) +
                                bytes_of<std::uint16_t>({0, 1, 2, 0}) +
@@ -91,7 +91,7 @@ inline std::string gltf_text(const std::map<std::string, std::string>& changes =
     return text + "}";
 }
 
-/// A .glb file (glTF 2.0, 4.4) of a JSON text and what its buffer without uri holds.
+/// A .glb file (glTF 2.0, 4.4) of a JSON text and the contents of its buffer without uri.
 inline std::string glb_bytes(std::string json, const std::string& binary = "") {
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const auto word = [](std::size_t value) {

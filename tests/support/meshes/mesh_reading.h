@@ -12,7 +12,7 @@
 
 namespace uw::test {
 
-/// The corners of all triangles in order, x y z of each.
+/// The vertices of all triangles in order, x y z of each.
 inline std::vector<float> corner_positions(const TriangleMesh& mesh) {
     std::vector<float> values;
     for (const std::uint32_t v : mesh.triangles) {
@@ -21,7 +21,7 @@ inline std::vector<float> corner_positions(const TriangleMesh& mesh) {
     return values;
 }
 
-/// Sum of the triangles' areas as seen along z: those that turn clockwise count as negative.
+/// Sum of the triangles' areas projected along z: clockwise ones count as negative.
 inline double area_about_z(const TriangleMesh& mesh) {
     const std::vector<float> p = corner_positions(mesh);
     double area = 0;
@@ -39,7 +39,7 @@ class MeshReading : public testing::Test {
     TriangleMesh read(const std::string& name, const std::string& bytes) {
         return read_mesh(folder_.write(name, bytes), warnings_);
     }
-    /// What the file is refused with, one line; empty if it is read.
+    /// The one-line message that refuses the file; empty if it is read.
     std::string error_of(const std::string& name, const std::string& bytes) {
         try {
             read(name, bytes);

@@ -9,8 +9,8 @@
 namespace uw::test {
 
 /// A glTF of one unit square in the plane z = 0, its corners (0,0) (1,0) (1,1) (0,1): u and v run
-/// along x and y in the first set of coordinates; in the second, both are 0.75. Attributes beside
-/// POSITION and the coordinates are a test's own.
+/// along x and y in the first set of coordinates; in the second, both are 0.75. Attributes other
+/// than POSITION and the coordinates are set by the test.
 struct TexturedGltf {
     std::string material = "{}";  // JSON
     std::string images = R"([{"uri":"t.tga"}])", node = R"({"mesh":0})";

@@ -46,10 +46,10 @@ void write_frustum_grid(const std::filesystem::path& file);
 /// Two grids "density" and "copy" that share one tree in the file but differ in transform.
 void write_instanced_grids(const std::filesystem::path& file);
 
-/// How velocities are kept.
+/// How velocities are stored.
 enum class VelocityKind { vectors, staggered, three_numbers };
-/// `density` with a grid "vel" (or "vel.x", "vel.y", "vel.z") of one velocity all over
-/// [-64, 63]^3, on the same voxels.
+/// `density` with a grid "vel" (or "vel.x", "vel.y", "vel.z") of one velocity throughout [-64,
+/// 63]^3, on the same voxels.
 void write_moving_grid(const std::filesystem::path& file, const VdbFixture& density,
                        const Vector3& velocity, VelocityKind kind);
 

@@ -14,7 +14,7 @@
 
 namespace uw::test {
 
-/// The place in the scene file that names the volume.
+/// The position in the scene file at which the volume is named.
 inline constexpr const char* k_where = "scene.yaml:3:5: volumes[0]";
 
 inline LoadedGrid load(const std::filesystem::path& file, const std::string& grid,
@@ -22,8 +22,8 @@ inline LoadedGrid load(const std::filesystem::path& file, const std::string& gri
     return load_grid(read_vdb_header(file, k_where), grid, k_where, slab_bytes);
 }
 
-/// The message of the InputError that loading ends with; fails the test if there is none, or if it
-/// is not one line that begins with the place in the scene file.
+/// The message of the InputError thrown by loading; fails the test if there is none, or if it is
+/// not one line that begins with the position in the scene file.
 inline std::string refusal(const std::filesystem::path& file, const std::string& grid) {
     try {
         load(file, grid);
