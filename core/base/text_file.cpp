@@ -17,6 +17,8 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
         throw IoError(fmt::format("{}: no such file; check the name of the {}", subject, noun));
     if (std::filesystem::is_directory(status))
         throw IoError(fmt::format("{}: is a folder; name the {} in it", subject, noun));
+    if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
+        throw IoError(fmt::format("{}: is a device; name the {}", subject, noun));
     std::ifstream stream(file, std::ios::binary);
     std::string text(most_bytes + 1, '\0');
     if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -50,10 +50,10 @@ TEST(TextFile, SaysWhatIsWrong) {
               "IoError scene.yaml: lamps[0].file: is a folder; name the IES file in it");
 }
 
-// Without an end, but not without a limit.
-TEST(TextFile, OfADeviceIsRefusedForItsSize) {
+// Without an end, such as /dev/zero.
+TEST(TextFile, IsNoDevice) {
     EXPECT_EQ(text_file_failure("/dev/zero"),
-              "InputError scene.yaml: lamps[0].file: is larger than 1 MiB; this is no IES file");
+              "IoError scene.yaml: lamps[0].file: is a device; name the IES file");
 }
 
 }  // namespace

@@ -21,12 +21,14 @@ TEST(CsvFile, IsTheTableInIt) {
 
 TEST(CsvFile, ThatCannotBeReadIsNamedWithItsEntry) {
     const test::SceneFolder folder;
-    for (const auto& file : {folder.path() / "none.csv", folder.path()}) {
-        const std::string message =
-            test::message_of<IoError>([&] { read_csv_file(file, k_entry); });
-        EXPECT_EQ(message, std::string(k_entry) + ": cannot read " + file.string() +
-                               "; check its name and permissions");
-    }
+    const auto refusal = [](const std::filesystem::path& file) {
+        return test::message_of<IoError>([&] { read_csv_file(file, k_entry); });
+    };
+    const std::filesystem::path none = folder.path() / "none.csv";
+    EXPECT_EQ(refusal(none), std::string(k_entry) + ": " + none.string() +
+                                 ": no such file; check the name of the table");
+    EXPECT_EQ(refusal(folder.path()), std::string(k_entry) + ": " + folder.path().string() +
+                                          ": is a folder; name the table in it");
 }
 
 TEST(CsvFile, TooLargeForATableIsRefused) {
@@ -37,7 +39,7 @@ TEST(CsvFile, TooLargeForATableIsRefused) {
     const auto file = folder.write("large.csv", comment + "x\n1\n2\n33\n");
     const std::string message = test::message_of<InputError>([&] { read_csv_file(file, k_entry); });
     EXPECT_EQ(message, std::string(k_entry) + ": " + file.string() +
-                           " is larger than 4 MiB; give a table of some rows");
+                           ": is larger than 4 MiB; this is no table");
 }
 
 TEST(CsvFile, ContentThatIsNoTableIsRefused) {
