@@ -39,7 +39,7 @@ fs::path read_file(const ConfigValue& value, const SceneContext& context, bool* 
     if (fs::is_directory(status)) {
         value.fail(fmt::format("'{}' is a folder; name a file in it", printable(name, 200)));
     }
-    // A pipe would keep the program waiting, a device might never end.
+    // A pipe would block the program, a device might never end.
     if (!fs::is_regular_file(status)) {
         value.fail(fmt::format("'{}' is a pipe or device; name a file", printable(name, 200)));
     }
