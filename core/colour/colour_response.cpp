@@ -17,10 +17,10 @@ namespace uw {
 namespace {
 
 constexpr std::array<std::string_view, 3> k_channels{"r", "g", "b"};
-/// Share of a channel's greatest response below which it sees nothing.
+/// Fraction of a channel's greatest response below which it is considered blind.
 constexpr double k_least_response = 1e-6;
 
-// The light that is shown white per band, with a mean of 1.
+// The light displayed as white, per band, with a mean of 1.
 std::vector<double> white_of(const ColourDesc& desc, std::span<const double> bands_nm) {
     if (!desc.white) return std::vector<double>(bands_nm.size(), 1.0);
     if (bands_nm.size() < 2)
@@ -38,7 +38,7 @@ std::vector<double> white_of(const ColourDesc& desc, std::span<const double> ban
     return white;
 }
 
-// The mean of `curve` over the band's interval; of a single band the value itself.
+// The mean of `curve` over the band's interval; for a single band, the value itself.
 double mean_response(const SampledCurve& curve, double band_nm, const BandInterval& interval) {
     if (interval.width() > 0)
         return integral(curve, interval.begin, interval.end) / interval.width();
