@@ -33,8 +33,7 @@ double peak_candelas(const LampProfile& profile) {
     return *candelas;
 }
 
-// Sets watts per band where the lamp is given by its spectrum, by lumens or by the candelas of its
-// profile.
+// Sets watts per band if the lamp is given by its spectrum, by lumens or by its profile's candelas.
 void resolve_output(LampDesc& desc, const LampProfile& profile, std::span<const double> bands_nm,
                     std::vector<std::string>& warnings) {
     const bool candelas = !desc.intensity && !desc.power && !desc.lumens;

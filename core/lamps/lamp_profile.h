@@ -18,19 +18,19 @@
 
 namespace uw {
 
-/// Every profile there is, placed in the world: how a lamp's radiant intensity depends on
-/// direction. One for each alternative of LampProfileDesc, with a function `make_profile` beside it
-/// that makes it of its description.
+/// All profiles, placed in the world: how a lamp's radiant intensity depends on direction. There is
+/// one for each alternative of LampProfileDesc, and beside it a function `make_profile` that
+/// constructs it from its description.
 using LampProfile = std::variant<IsotropicProfile, SpotProfile, CosineProfile, IesProfile>;
 
-/// Makes the profile that `desc` describes. Reads the files it needs; adds lines to `warnings` and
-/// throws as make_profile of that profile does.
+/// Makes the profile that `desc` describes. Reads the files it needs; adds warnings and throws as
+/// that profile's make_profile does.
 LampProfile make_lamp_profile(const LampProfileDesc& desc, const LampPlacement& placement,
                               std::vector<std::string>& warnings);
 
-/// What a profile has to know of itself.
+/// The requirements on a profile.
 ///
-/// - k_name: what reports call it ("spot").
+/// - k_name: its name in reports ("spot").
 /// - relative_intensity(v): intensity in the direction of `v` (from the lamp, of any length),
 ///   relative to that where the lamp is brightest: 0..1.
 /// - solid_angle(): the relative intensity integrated over the sphere [sr], the power of the lamp
