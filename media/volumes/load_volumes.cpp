@@ -11,7 +11,7 @@
 namespace uw {
 namespace {
 
-/// Integrals along the world's axes through the middle of `bounds`.
+/// Integrals along the world's axes through the centre of `bounds`.
 std::array<double, 3> columns_through_middle(const GridVolume& volume) {
     std::array<double, 3> columns{};
     if (volume.bricks().empty()) return columns;
