@@ -85,7 +85,7 @@ void BandColour::show_cie1931(std::span<const double> bands_nm, std::span<const 
     if (!(*std::ranges::min_element(seen) > k_blind * static_cast<double>(bands_))) {
         show_grey();
         warning_ =
-            "water.bands: no colour can be made of these wavelengths; shown grey, the mean "
+            "water.bands: these wavelengths do not define a colour; shown grey, the mean "
             "of the bands (add bands between 400 and 650 nm for colour)";
         return;
     }

@@ -65,7 +65,7 @@ LampSpectrum from_file(const LampSpectrumDesc& desc) {
     if (curve.x.size() < 2 || *std::ranges::min_element(curve.y) < 0 ||
         *std::ranges::max_element(curve.y) <= 0)
         throw InputError(fmt::format(
-            "{}: {} is no spectrum: it needs two rows or more, none negative and not all 0",
+            "{}: {} is not a spectrum: it needs two or more rows, none negative and not all 0",
             desc.where, table.name()));
     if (curve.last() < 100 || curve.first() > 5000)
         throw InputError(fmt::format("{}: the wavelengths of {} go from {} to {}; give them in nm",

@@ -58,7 +58,7 @@ void write_whole(const std::filesystem::path& file, const char* format, const OI
     const std::string error = output->geterror();
     const bool whole = checked.finish();
     if (!written || !closed) fail(file, error);
-    if (!whole) fail(file, "a part was not taken");
+    if (!whole) fail(file, "some of the data was rejected");
     atomic.commit();
 }
 

@@ -36,7 +36,7 @@ std::vector<std::string> band_suffixes(std::span<const double> bands_nm) {
         }
         if (std::set(names.begin(), names.end()).size() == names.size()) return names;
     }
-    throw InputError("water.bands: a wavelength stands there twice; leave one out");
+    throw InputError("water.bands: a wavelength occurs twice; remove one");
 }
 
 std::optional<std::size_t> find_layer(std::string_view name) {

@@ -133,7 +133,7 @@ std::string read_header(IesText& text, IesFile& file) {
         if (text.at_end())
             text.fail(
                 "there is no line 'TILT=': this is no IES file (LM-63); EULUMDAT (.ldt) and "
-                "others must be converted first");
+                "other formats must be converted first");
         line = text.line();
     }
 }
@@ -141,7 +141,7 @@ std::string read_header(IesText& text, IesFile& file) {
 void read_tilt(IesText& text, std::string_view tilt, IesFile& file) {
     if (trimmed(tilt) == "NONE") return;
     file.warnings.push_back(fmt::format(
-        "{}: its TILT factors, by which a lamp is dimmer in another attitude, are not applied",
+        "{}: its TILT factors, by which a lamp dims in other orientations, are not applied",
         text.name()));
     if (trimmed(tilt) != "INCLUDE") return;
     text.number("the lamp's orientation");
@@ -171,7 +171,7 @@ double read_factors(IesText& text, IesFile& file, std::size_t& polar, std::size_
     for (const char* const what : {"the type of units", "the width", "the length", "the height"})
         text.number(what);
     factor *= text.non_negative("the ballast factor");
-    const double second = text.non_negative("the number behind the ballast factor");
+    const double second = text.non_negative("the number after the ballast factor");
     // The ballast-lamp factor of the older standards; reserved for future use in later ones.
     if (file.year <= 1991) factor *= second;
     text.number("the input watts");
@@ -224,7 +224,7 @@ IesFile parse_ies(std::string_view content, const std::string& name) {
         text.fail("all candelas are 0: this luminaire is dark; check the file and its multiplier");
     if (text.has_number())
         file.warnings.push_back(
-            text.name() + ": goes on behind the candelas it announces; what follows is not read");
+            text.name() + ": continues after the candelas it announces; the rest is not read");
     return file;
 }
 

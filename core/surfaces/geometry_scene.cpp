@@ -111,7 +111,7 @@ class Builder {
         const double determinant = desc.world_from_object.determinant();
         if (determinant == 0 || !std::isfinite(determinant)) {
             throw InputError(
-                fmt::format("{}: the transform squeezes the object flat; give a scale "
+                fmt::format("{}: the transform flattens the object; give a scale "
                             "other than 0",
                             desc.where));
         }
@@ -145,7 +145,7 @@ class Builder {
         for (int axis = 0; axis < 3; ++axis) {
             if (!(bounds.min[axis] >= -k_max_coordinate && bounds.max[axis] <= k_max_coordinate)) {
                 throw InputError(
-                    fmt::format("{}: reaches beyond 1e15 m; check its transform", desc.where));
+                    fmt::format("{}: extends beyond 1e15 m; check its transform", desc.where));
             }
         }
         objects_.bounds.extend(bounds);

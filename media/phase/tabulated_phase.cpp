@@ -36,8 +36,8 @@ void check_phase_table(const SampledCurve& table, const std::string& name) {
         // For closer angles the slope between them would be rounding noise.
         if (i > 0 && !(table.x[i] > table.x[i - 1] * (1 + 1e-9) && table.x[i] > 1e-7))
             throw InputError(
-                fmt::format("{}: angles {} and {} degrees cannot be told apart; leave "
-                            "one out",
+                fmt::format("{}: angles {} and {} degrees are too close to distinguish; "
+                            "remove one",
                             name, table.x[i - 1], table.x[i]));
     }
 }

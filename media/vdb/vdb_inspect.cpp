@@ -91,7 +91,7 @@ bool is_readable(const std::string& value_type) {
 
 void read_values(const VdbHeader& header, const SourceLocation& where, GridInspection& grid) {
     if (!is_readable(grid.summary.value_type)) {
-        grid.unread = fmt::format("values of type {} are not looked at", grid.summary.value_type);
+        grid.unread = fmt::format("values of type {} are not inspected", grid.summary.value_type);
         return;
     }
     ValueSummary summary;

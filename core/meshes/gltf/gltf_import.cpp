@@ -74,8 +74,8 @@ void import_camera(const GltfItems& items, const GeometryDesc& object, SceneDesc
     const SourceLocation& where = object.import.camera_where;
     if (!source.perspective) {
         throw InputError(fmt::format(
-            "{}: the camera '{}' is orthographic, which no camera under water is; make it "
-            "perspective",
+            "{}: the camera '{}' is orthographic, but underwater cameras are perspective; "
+            "make it perspective",
             where, printable(source.name)));
     }
     CameraDesc& camera = scene.camera;

@@ -64,7 +64,7 @@ class MeshJoiner {
         for (const Json& primitive : document_.list(mesh, "primitives")) {
             const std::uint64_t mode = document_.whole_number(primitive, "mode", k_triangles);
             if (mode < k_triangles) continue;  // points and lines
-            if (mode > k_fan) document_.fail("a glTF primitive is of no known mode");
+            if (mode > k_fan) document_.fail("a glTF primitive has an unknown mode");
             Placement placement{&primitive, mesh.value("name", ""), node.file_from_node, stand_in};
             if (primitive.contains("material")) {
                 placement.material = document_.whole_number(primitive, "material", 0);

@@ -151,7 +151,7 @@ LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneCont
         at_origin_plus(map.require("position", "give the lamp's position in metres")
                            .vector("give the lamp's position, three lengths in metres"));
     if (const auto entry = map.find("direction")) {
-        lamp.direction = entry->direction("give the direction the lamp shines in, not all 0");
+        lamp.direction = entry->direction("give the direction in which the lamp shines, not all 0");
     }
     if (const auto entry = map.find("profile")) lamp.profile = read_profile(*entry, context);
     read_output(map, context, lamp);

@@ -33,7 +33,7 @@ fs::path read_file(const ConfigValue& value, const SceneContext& context, bool* 
                         printable(name, 200), printable(folder.string(), 300)));
     }
     if (error) {
-        value.fail(fmt::format("cannot look at '{}': {}; check the permissions of its folder",
+        value.fail(fmt::format("cannot access '{}': {}; check the permissions of its folder",
                                printable(name, 200), error.message()));
     }
     if (fs::is_directory(status)) {
