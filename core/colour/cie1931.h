@@ -10,8 +10,8 @@ struct Xyz {
 };
 
 /// The colour matching functions of the CIE 1931 2 degree standard observer, dimensionless,
-/// interpolated linearly in the 5 nm table; zero outside 360..830 nm. Source: CIE 015 tables as in
-/// colour-science/colour, colour/colorimetry/datasets/cmfs.py (BSD-3).
+/// interpolated linearly in the 5 nm table; zero outside 360..830 nm.
+/// Source: CIE 015 tables as in colour-science/colour, colour/colorimetry/datasets/cmfs.py (BSD-3).
 Xyz cie1931_matching_functions(double wavelength_nm);
 
 /// Their means over a wavelength interval, `begin_nm` < `end_nm`.

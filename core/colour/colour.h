@@ -20,16 +20,16 @@ double luminance(const LinearRgb& rgb);
 /// The sRGB transfer function: linear 0..1 to encoded 0..1, clamped; 0 for NaN.
 double srgb_encode(double linear);
 
-/// Converts radiance per band into a colour. Linear, and a spectrum of 1 in all bands is white: R =
-/// G = B = 1, Y = 1.
+/// Converts radiance per band into a colour. Linear, and a spectrum of 1 in all bands is white:
+/// R = G = B = 1, Y = 1.
 /// - Three bands are R, G and B themselves, unchanged.
 /// - One band is grey.
 /// - Any other number goes through CIE 1931: each band represents the wavelengths around it
 ///   (core/colour/band_intervals.h), over which its radiance is constant; X, Y and Z are each
 ///   scaled so that equal values in all bands are the white of sRGB (D65), then turned into linear
 ///   sRGB. Bands may come in any order. Colours outside the gamut have negative components, which
-///   are kept. Where the bands do not cover X, Y or Z (all in the infrared, say) there is no white
-///   to balance: the image is then grey, the mean of the bands, and `warning` says so.
+///   are kept. If the bands do not cover X, Y or Z (all in the infrared, say), there is no white to
+///   balance: the image is then grey, the mean of the bands, and `warning` says so.
 class BandColour {
   public:
     /// `bands_nm`: 1 to k_max_bands wavelengths.

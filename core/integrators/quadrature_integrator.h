@@ -8,8 +8,8 @@
 namespace uw {
 
 /// Single scattering in uniform water by adaptive Simpson quadrature in the scattering angle
-/// (physics section 5): with D the lamp's distance from the ray and s_0 the foot of the
-/// perpendicular from the lamp, R + s = s_0 + D tan(psi/2), so that
+/// (physics section 5): with D the lamp's distance from the ray and s_0 the position along the ray
+/// nearest to it, R + s = s_0 + D tan(psi/2), so that
 ///
 ///     L_b = I/D e^(-c s_0) int V(psi) beta(psi) e^(-c D tan(psi/2)) dpsi,
 ///

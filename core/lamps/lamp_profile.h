@@ -36,12 +36,12 @@ LampProfile make_lamp_profile(const LampProfileDesc& desc, const LampPlacement& 
 /// - solid_angle(): the relative intensity integrated over the sphere [sr], the power of the lamp
 ///   for 1 W/sr where it is brightest.
 /// - peak_candelas(): luminous intensity where it is brightest [cd], if the profile is absolute.
-/// - has_even_core(): whether a relative intensity of 1 somewhere means 1 all around, up to a
-/// break.
-/// - cone(): directions beyond which it is dark.
+/// - has_even_core(): whether a relative intensity of 1 at a point implies 1 around it, up to a
+///   break.
+/// - cone(): a cone outside which it is dark.
 /// - append_breaks(ray, apex, s): appends the distances along `ray` where the profile of a lamp at
-///   `apex` is not smooth or changes much: the edges of its beam and cones of equal intensity
-///   within.
+///   `apex` is not smooth or changes considerably: the edges of its beam and the cones of equal
+///   intensity inside.
 template <class P>
 concept IsALampProfile = requires(const P& profile, const Vector3& v, const Ray& ray,
                                   const Point3& apex, std::vector<double>& s) {
