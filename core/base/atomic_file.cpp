@@ -20,16 +20,16 @@ namespace fs = std::filesystem;
     throw IoError(fmt::format("{}: cannot write: {}", target.string(), why));
 }
 
-/// Refuses what a rename must not replace, and follows a symbolic link to the file it stands for.
+/// Rejects targets that a rename must not replace, and resolves a symbolic link to its target.
 fs::path checked(const fs::path& target) {
     if (!target.has_filename()) fail(target, "not a file name; add one");
-    // What cannot be looked at is found out when the file is made, with a better message.
+    // Inaccessible paths are detected when the file is created, with a better message.
     std::error_code error;
     fs::path resolved = target;
     constexpr int k_most_links = 40;  // as many as Linux follows
     for (int links = 0; fs::is_symlink(fs::symlink_status(resolved, error)); ++links) {
         if (links == k_most_links) fail(target, "its symbolic links lead in a circle");
-        // Relative to the link's folder; what it names need not be there yet.
+        // Relative to the link's folder; its target need not exist yet.
         resolved = resolved.parent_path() / fs::read_symlink(resolved, error);
         if (error) fail(target, error.message());
     }

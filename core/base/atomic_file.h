@@ -4,14 +4,14 @@
 
 namespace uw {
 
-/// Writes a file so that its name only ever holds a whole one: write to `temporary_path`, beside
-/// the target, then `commit`. What is not committed is removed.
-/// Making one and dropping it tells, before any work is done, whether the target can be written.
+/// Writes a file such that its name only ever refers to a complete one: write to `temporary_path`,
+/// beside the target, then `commit`. A file that is not committed is removed. Constructing and
+/// destroying one checks, before any work is done, whether the target can be written.
 class AtomicFile {
   public:
     /// Creates the empty temporary file. A target that is a symbolic link is written through.
-    /// Throws IoError if that is not possible: folder missing, not writable, or the target is a
-    /// folder or a device.
+    /// Throws IoError if this is impossible: the folder is missing or not writable, or the target
+    /// is a folder or a device.
     explicit AtomicFile(const std::filesystem::path& target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -21,7 +21,7 @@ class AtomicFile {
 
     const std::filesystem::path& temporary_path() const { return temporary_; }
 
-    /// Gives the temporary file the target's name, replacing what had it. Throws IoError.
+    /// Renames the temporary file to the target, replacing any existing file. Throws IoError.
     void commit();
 
   private:

@@ -5,8 +5,8 @@
 
 namespace uw {
 
-/// A user's file (scene, VDB, mesh) is wrong. `what()` is one line: where, what, how to mend.
-/// The program ends with exit code 3.
+/// A user's file (scene, VDB, mesh) is wrong. `what()` is one line: where, what, how to fix it. The
+/// program ends with exit code 3.
 class InputError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -21,7 +21,7 @@ class UsageError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The user asked to stop (Ctrl-C). `what()` says what there is of the work. Exit code 130.
+/// The user requested a stop (Ctrl-C). `what()` states what was written. Exit code 130.
 class Interrupted : public std::runtime_error {
   public:
     Interrupted() : std::runtime_error("interrupted; nothing was written") {}

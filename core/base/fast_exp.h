@@ -7,11 +7,12 @@
 
 namespace uw {
 
-/// e^-x for x >= 0 (an optical depth), to 1e-11 relative and 0 beyond x = 700. Without branches or
-/// calls, so that loops over it are vectorised: a third of the time of std::exp in the integrators.
+/// e^-x for x >= 0 (an optical depth), with relative error 1e-11, and 0 beyond x = 700. Free of
+/// branches and calls, so that loops over it are vectorised: a third of the time of std::exp in the
+/// integrators.
 inline double exp_of_minus(double x) {
     constexpr double k_log2_e = 1.4426950408889634074;
-    // ln 2 in two parts: the first times any exponent is exact (Cody and Waite 1980).
+    // ln 2 in two parts: the product of the first with any exponent is exact (Cody and Waite 1980).
     constexpr double k_ln2_high = 0x1.62e42fefap-1, k_ln2_low = 0x1.cf79abc9e3b39p-40;
     constexpr double k_to_integer = 0x1.8p52;  // adding it leaves the integer in the low bits
 
@@ -19,7 +20,7 @@ inline double exp_of_minus(double x) {
     const double shifted = y * k_log2_e + k_to_integer;
     const double n = shifted - k_to_integer;
     const double r = (y - n * k_ln2_high) - n * k_ln2_low;  // |r| <= ln 2 / 2
-    // Taylor's series to r^9: what is left out is r^10 / 10! < 7e-12.
+    // Taylor series up to r^9: the remainder is r^10 / 10! < 7e-12.
     double p = 1.0 / 362880;
     for (const double c :
          {1.0 / 40320, 1.0 / 5040, 1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0})
@@ -29,7 +30,7 @@ inline double exp_of_minus(double x) {
     return x > 700 ? 0.0 : p * scale;
 }
 
-/// e^-x of every x >= 0, in place.
+/// Replaces every x >= 0 by e^-x.
 void exp_of_minus(std::span<double> x);
 
 }  // namespace uw

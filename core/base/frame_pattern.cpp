@@ -14,7 +14,7 @@ namespace uw {
 namespace {
 
 struct Place {
-    std::size_t length = 0;  // of the text that stands for the number
+    std::size_t length = 0;  // of the pattern
     int digits = 0;          // at least
 };
 
@@ -40,7 +40,7 @@ bool take(std::string_view& text, std::string_view beginning) {
     return true;
 }
 
-// The place that `text` begins with.
+// The pattern with which `text` begins.
 std::optional<Place> place_at(std::string_view text) {
     std::string_view rest = text;
     const auto place = [&](int digits) { return Place{text.size() - rest.size(), digits}; };
@@ -119,7 +119,7 @@ std::vector<int> frames_found(const std::filesystem::path& name) {
     std::filesystem::directory_iterator entry(folder, error);
     for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
         const std::string file = entry->path().filename().string();
-        // Any run of digits may be the number: the one that gives the name back is.
+        // Any run of digits may be the number; the right one reproduces the name.
         for (std::size_t at = 0; at < file.size(); ++at) {
             if (!is_digit(file[at]) || (at > 0 && is_digit(file[at - 1]))) continue;
             int number = 0;

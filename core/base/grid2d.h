@@ -7,8 +7,8 @@
 
 namespace uw {
 
-/// A rectangle of values, row by row from the top: an image, a map, a lattice. Places are given as
-/// (x, y), x counting to the right, always in this order. Bounds are asserted.
+/// A rectangle of values, row by row from the top: an image, a map, a lattice. Positions are given
+/// as (x, y), always in this order, with x to the right. Bounds are asserted.
 template <class T>
 class Grid2D {
   public:
@@ -16,14 +16,13 @@ class Grid2D {
     /// `width` times `height` values, all `value`. Throws std::bad_alloc or std::length_error.
     Grid2D(int width, int height, const T& value = T{}) { assign(width, height, value); }
 
-    /// Makes it that many values, all `value`; storage is reused.
+    /// Resizes and sets all values to `value`; storage is reused.
     void assign(int width, int height, const T& value = T{}) {
         values_.assign(area(width, height), value);
         width_ = width;
         height_ = height;
     }
-    /// Makes it that many values, whose contents are of no meaning: storage that they hold is
-    /// reused.
+    /// Resizes, leaving the values unspecified: storage that they own is reused.
     void resize(int width, int height) {
         values_.resize(area(width, height));
         width_ = width;
@@ -36,7 +35,7 @@ class Grid2D {
     std::size_t size() const { return values_.size(); }
     bool empty() const { return values_.empty(); }
 
-    /// Where (x, y) stands among all values.
+    /// Index of (x, y) among all values.
     std::size_t index(int x, int y) const {
         assert(x >= 0 && x < width_ && y >= 0 && y < height_);
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
@@ -44,7 +43,7 @@ class Grid2D {
     }
     T& operator()(int x, int y) { return values_[index(x, y)]; }
     const T& operator()(int x, int y) const { return values_[index(x, y)]; }
-    /// The value that stands at `index`.
+    /// The value at `index`.
     T& operator[](std::size_t index) { return values_[index]; }
     const T& operator[](std::size_t index) const { return values_[index]; }
 

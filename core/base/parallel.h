@@ -5,8 +5,8 @@
 
 namespace uw {
 
-/// Runs `body(i)` for i in [0, count) on all threads allowed. Iterations must be independent;
-/// the first exception thrown by a body stops the rest and is rethrown.
+/// Runs `body(i)` for i in [0, count) on all permitted threads. Iterations must be independent; the
+/// first exception thrown by a body stops the rest and is rethrown.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// Limits how many threads parallel_for (and the libraries that share its pool) may use for as

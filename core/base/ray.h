@@ -4,7 +4,7 @@
 
 namespace uw {
 
-/// A half-line; `direction` is unit, so that the parameter of `at` is metres.
+/// A half-line; `direction` is unit, so that the parameter of `at` is in metres.
 struct Ray {
     Point3 origin;
     Vector3 direction{0, 0, 1};
@@ -12,7 +12,7 @@ struct Ray {
     Point3 at(double s) const { return origin + s * direction; }
 };
 
-/// A stretch [begin, end] of a ray, in metres from its origin.
+/// An interval [begin, end] along a ray, in metres from its origin.
 struct Interval {
     double begin = 0;
     double end = 0;
@@ -20,7 +20,7 @@ struct Interval {
     double length() const { return end - begin; }
 };
 
-/// An axis-aligned box in the space that the owner names; empty while min > max.
+/// An axis-aligned bounding box in the space that its owner specifies; empty while min > max.
 struct Bounds {
     Point3 min{1e300, 1e300, 1e300};
     Point3 max{-1e300, -1e300, -1e300};

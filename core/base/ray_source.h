@@ -12,11 +12,11 @@ struct LensRay {
     /// The irradiance behind the lens relative to that on its axis, for equal radiance: cos^4 of
     /// the angle to the optical axis, inside the housing, for a rectilinear lens.
     double falloff = 1;
-    /// What the port makes of the radiance in water; 1 unless the scene asks for it.
+    /// The port's factor on the radiance in water; 1 unless the scene requests it.
     double port_transmittance = 1;
 };
 
-/// Where camera rays come from: pixel in, ray in the water out. Thread safe.
+/// Generates camera rays: from a pixel to its ray in the water. Thread safe.
 class RaySource {
   public:
     virtual ~RaySource() = default;
@@ -24,10 +24,10 @@ class RaySource {
     virtual int width() const = 0;
     virtual int height() const = 0;
 
-    /// The ray in water (world space) that the camera sees at image position (x, y) in pixels;
-    /// the image's corner is (0, 0), the first pixel's centre (0.5, 0.5). Its origin lies on the
-    /// outer glass surface, or at the camera centre without a port. Empty where no ray enters the
-    /// water: the port is missed or reflects totally.
+    /// The ray in water (world space) that the camera sees at image position (x, y) in pixels; the
+    /// image's corner is (0, 0), the first pixel's centre (0.5, 0.5). Its origin lies on the outer
+    /// glass surface, or at the camera centre without a port. Empty if no ray enters the water: it
+    /// misses the port or is totally reflected.
     virtual std::optional<Ray> refracted_ray(double x, double y) const = 0;
 
     /// How the light of the water ray at image position (x, y) arrives at the lens.

@@ -4,10 +4,11 @@
 
 namespace uw {
 
-/// A new folder for files of the moment; it goes with everything in it when the object does.
+/// A new folder for temporary files; it is removed with all its contents when the object is
+/// destroyed.
 class ScratchFolder {
   public:
-    /// Throws IoError if none can be made.
+    /// Throws IoError if it cannot be created.
     ScratchFolder();
     ~ScratchFolder();
     ScratchFolder(const ScratchFolder&) = delete;

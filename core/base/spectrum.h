@@ -8,15 +8,17 @@
 
 namespace uw {
 
-/// Most wavelength bands a scene may have; the number in use is a run-time property of the medium.
+/// Maximum number of wavelength bands in a scene; the number in use is a run-time property of the
+/// medium.
 inline constexpr int k_max_bands = 32;
 
 /// One value per wavelength band, in the order of `water.bands`; entries past the scene's band
 /// count are zero and not read.
 ///
 /// The operators work band by band on all k_max_bands entries, and zeros past the band count stay
-/// zeros. Where that would be too slow, or a function does not map 0 to 0, the bands in use are
-/// named: `per_band` makes a spectrum of them, `first` is a view of them, for `add` and the like.
+/// zeros. Where that would be too slow, or a function does not map 0 to 0, work on the bands in
+/// use: `per_band` makes a spectrum from them, `first` is a view of them, for `add` and similar
+/// functions.
 struct Spectrum {
     std::array<double, k_max_bands> values{};
 
@@ -27,7 +29,7 @@ struct Spectrum {
     constexpr double* end() { return values.data() + values.size(); }
     constexpr const double* end() const { return values.data() + values.size(); }
 
-    /// The first `bands` values: those that the scene has.
+    /// The first `bands` values: those of the scene's bands.
     constexpr std::span<double> first(std::size_t bands) { return std::span(values).first(bands); }
     constexpr std::span<const double> first(std::size_t bands) const {
         return std::span(values).first(bands);
@@ -94,17 +96,17 @@ constexpr Spectrum per_band(std::size_t bands, const Function& value) {
     return result;
 }
 
-/// sum += more, value by value. Both are of one length; so below.
+/// sum += more, elementwise. Both have the same length, as in the functions below.
 inline void add(std::span<double> sum, std::span<const double> more) {
     assert(sum.size() == more.size());
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
 }
-/// sum -= less, value by value.
+/// sum -= less, elementwise.
 inline void subtract(std::span<double> sum, std::span<const double> less) {
     assert(sum.size() == less.size());
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] -= less[i];
 }
-/// sum += factor * more, value by value.
+/// sum += factor * more, elementwise.
 inline void add_scaled(std::span<double> sum, double factor, std::span<const double> more) {
     assert(sum.size() == more.size());
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * more[i];

@@ -16,7 +16,8 @@ char lower(char c) {
     return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
 }
 
-/// Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
+/// Number of insertions, deletions, substitutions and transpositions of neighbours that turn `a`
+/// into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -52,9 +53,9 @@ std::string printable(std::string_view text, std::size_t max_bytes) {
 std::string_view nearest_word(std::string_view text, std::span<const std::string_view> candidates) {
     if (text.size() > k_longest_word) return {};
     std::string_view best;
-    std::size_t best_distance = 2 + text.size() / 4;  // one slip per four letters, and one more
+    std::size_t best_distance = 2 + text.size() / 4;  // one error per four letters, plus one
     for (const std::string_view candidate : candidates) {
-        // "fov" stands for "fov_x", however much is missing
+        // "fov" matches "fov_x", however much is missing
         const bool shortened = text.size() > 1 && candidate.starts_with(text);
         const std::size_t distance = shortened ? 1 : edit_distance(text, candidate);
         if (distance < best_distance && distance < std::max(text.size(), candidate.size())) {

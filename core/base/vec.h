@@ -4,7 +4,7 @@
 
 namespace uw {
 
-/// A displacement, direction or normal. Unit length where a name says `direction` or `normal`.
+/// A displacement, direction or normal. Unit length if its name contains `direction` or `normal`.
 using Vector3 = glm::dvec3;
 using Matrix3 = glm::dmat3;
 
@@ -30,11 +30,11 @@ inline Vector3 operator-(const Point3& a, const Point3& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// The vector from the origin to `p`; the one way to turn a point into a vector.
+/// The vector from the origin to `p`; the only way to turn a point into a vector.
 inline Vector3 from_origin(const Point3& p) {
     return {p.x, p.y, p.z};
 }
-/// The point at `v` from the origin.
+/// The point displaced by `v` from the origin.
 inline Point3 at_origin_plus(const Vector3& v) {
     return {v.x, v.y, v.z};
 }

@@ -1,8 +1,9 @@
 #pragma once
 
-/// Put before the definition of a function whose loops are worth wider registers than every
-/// processor has: the compiler then makes one for each of these and the loader takes the widest
-/// that the machine knows. Results are the same bits: nothing is contracted or reordered.
+/// Placed before the definition of a function whose loops benefit from wider vector registers than
+/// all processors have: the compiler emits a version for each of these targets and the loader picks
+/// the widest that the machine supports. Results are bit-identical: nothing is contracted or
+/// reordered.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define UWVDB_VECTOR_CLONES [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]]
 #else

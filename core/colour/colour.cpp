@@ -25,8 +25,9 @@ constexpr std::array<double, 3> k_white_xyz{0.3127 / 0.3290, 1, (1 - 0.3127 - 0.
 /// Mean response below which a band set is blind to X, Y or Z; the functions peak at 1.06 to 1.78.
 constexpr double k_blind = 1e-6;
 
-/// What X, Y and Z see of a radiance of 1 in each band: the matching functions' means over the
-/// bands' intervals, by the share of the bands' widths; zero in bands that are none apart.
+/// The response of X, Y and Z to a radiance of 1 in each band: the matching functions' means over
+/// the bands' intervals, times their widths relative to the mean width; all zero if the mean width
+/// is zero.
 std::vector<std::array<double, 3>> tristimulus_of_bands(std::span<const double> bands_nm) {
     const std::vector<BandInterval> intervals = band_intervals(bands_nm);
     const double mean_width = mean_band_width(intervals);
@@ -84,12 +85,12 @@ void BandColour::show_cie1931(std::span<const double> bands_nm, std::span<const 
     if (!(*std::ranges::min_element(seen) > k_blind * static_cast<double>(bands_))) {
         show_grey();
         warning_ =
-            "water.bands: no colour can be made of these wavelengths; shown grey, the mean "
+            "water.bands: these wavelengths do not define a colour; shown grey, the mean "
             "of the bands (add bands between 400 and 650 nm for colour)";
         return;
     }
     for (std::size_t c = 0; c < 3; ++c) {
-        // Equal values have Y = 1, whatever is white.
+        // Equal values have Y = 1, whatever the white.
         const double scale =
             white.empty() ? 1 / equal_values[1]
                           : k_white_xyz[c] * white_values[1] / white_values[c] / equal_values[1];

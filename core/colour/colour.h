@@ -20,26 +20,28 @@ double luminance(const LinearRgb& rgb);
 /// The sRGB transfer function: linear 0..1 to encoded 0..1, clamped; 0 for NaN.
 double srgb_encode(double linear);
 
-/// Shows a radiance per band as a colour. Linear, and a spectrum of 1 in all bands is white:
+/// Converts radiance per band into a colour. Linear, and a spectrum of 1 in all bands is white:
 /// R = G = B = 1, Y = 1.
 /// - Three bands are R, G and B themselves, unchanged.
 /// - One band is grey.
-/// - Any other number goes through CIE 1931: each band stands for the wavelengths around it
-///   (core/colour/band_intervals.h), in which its radiance is even; X, Y and Z are each scaled so
-///   that equal values in all bands are the white of sRGB (D65), then turned into linear sRGB.
-///   Bands may come in any order. Colours outside the gamut have negative components, which are
-///   kept. Where the bands see nothing of X, Y or Z (all in the infrared, say) there is no white to
-///   balance: the image is grey then, the mean of the bands, and `warning` says so.
+/// - Any other number goes through CIE 1931: each band represents the wavelengths around it
+///   (core/colour/band_intervals.h), over which its radiance is constant; X, Y and Z are each
+///   scaled so that equal values in all bands are the white of sRGB (D65), then turned into linear
+///   sRGB. Bands may come in any order. Colours outside the gamut have negative components, which
+///   are kept. If the bands do not cover X, Y or Z (all in the infrared, say), there is no white to
+///   balance: the image is then grey, the mean of the bands, and `warning` says so.
 class BandColour {
   public:
     /// `bands_nm`: 1 to k_max_bands wavelengths.
     explicit BandColour(std::span<const double> bands_nm);
 
-    /// CIE 1931 for any number of bands. `white`: the light that is shown white, per band; empty:
-    /// none is, X, Y and Z are those of the light itself. Y is that of equal values in all bands.
+    /// CIE 1931 for any number of bands. `white`: the light displayed as white, per band; if empty,
+    /// there is no white balance and X, Y and Z are those of the light itself. Y is normalised to
+    /// equal values in all bands.
     BandColour(std::span<const double> bands_nm, std::span<const double> white);
 
-    /// By another response: `response[i]` is what R, G and B see of a radiance of 1 in band i.
+    /// Uses another response: `response[i]` is the response of R, G and B to a radiance of 1 in
+    /// band i.
     explicit BandColour(std::vector<LinearRgb> response) : bands_(response.size()), rgb_of_band_{} {
         std::copy(response.begin(), response.end(), rgb_of_band_.begin());
     }
@@ -47,7 +49,7 @@ class BandColour {
     /// Reads the first `bands` values of `radiance`.
     LinearRgb operator()(const Spectrum& radiance) const;
 
-    /// One line, empty if there is nothing to say.
+    /// One line; empty if there is no warning.
     const std::string& warning() const { return warning_; }
 
   private:

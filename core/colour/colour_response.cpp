@@ -17,15 +17,15 @@ namespace uw {
 namespace {
 
 constexpr std::array<std::string_view, 3> k_channels{"r", "g", "b"};
-/// Share of a channel's greatest response below which it sees nothing.
+/// Fraction of a channel's greatest response below which it is considered blind.
 constexpr double k_least_response = 1e-6;
 
-// The light that is shown white per band, with a mean of 1.
+// The light displayed as white, per band, with a mean of 1.
 std::vector<double> white_of(const ColourDesc& desc, std::span<const double> bands_nm) {
     if (!desc.white) return std::vector<double>(bands_nm.size(), 1.0);
     if (bands_nm.size() < 2)
-        throw InputError(fmt::format(
-            "{}: one band has no colour, so nothing to be white; remove it", desc.white->where));
+        throw InputError(fmt::format("{}: a single band has no colour to balance; remove it",
+                                     desc.white->where));
     std::vector<double> white =
         band_values(make_lamp_spectrum(*desc.white), 1, band_intervals(bands_nm));
     double sum = 0;
@@ -38,7 +38,7 @@ std::vector<double> white_of(const ColourDesc& desc, std::span<const double> ban
     return white;
 }
 
-// The mean of `curve` over the band's interval; of a single band the value itself.
+// The mean of `curve` over the band's interval; for a single band, the value itself.
 double mean_response(const SampledCurve& curve, double band_nm, const BandInterval& interval) {
     if (interval.width() > 0)
         return integral(curve, interval.begin, interval.end) / interval.width();
@@ -63,8 +63,8 @@ BandColour camera_colour(const ColourDesc& desc, std::span<const double> bands_n
         const double most = *std::ranges::max_element(curve.y);
         if (!(most > 0) || !(std::min(of_equal[c], of_white[c]) > k_least_response * most))
             throw InputError(fmt::format(
-                "{}: the camera's {} sees nothing of water.bands, or of the light that is white; "
-                "check the table's wavelengths, or take another response",
+                "{}: the camera's {} does not respond to water.bands, or to the white light; "
+                "check the table's wavelengths, or use another response",
                 desc.where, k_channels[c]));
     }
     for (LinearRgb& band : response)

@@ -24,7 +24,7 @@ LampSpectrum whole(SampledCurve curve) {
 }
 
 LampSpectrum blackbody(double temperature) {
-    constexpr int k_lowest_nm = 100, k_highest_nm = 2000;            // more than bands can reach
+    constexpr int k_lowest_nm = 100, k_highest_nm = 2000;            // beyond any band
     const double scale = k_second_radiation_constant / temperature;  // [m]
     // Planck's law over x = lambda T / c_2, up to a factor: x^-5 / (e^{1/x} - 1), integral pi^4/15.
     LampSpectrum spectrum;
@@ -65,7 +65,7 @@ LampSpectrum from_file(const LampSpectrumDesc& desc) {
     if (curve.x.size() < 2 || *std::ranges::min_element(curve.y) < 0 ||
         *std::ranges::max_element(curve.y) <= 0)
         throw InputError(fmt::format(
-            "{}: {} is no spectrum: it needs two rows or more, none negative and not all 0",
+            "{}: {} is not a spectrum: it needs two or more rows, none negative and not all 0",
             desc.where, table.name()));
     if (curve.last() < 100 || curve.first() > 5000)
         throw InputError(fmt::format("{}: the wavelengths of {} go from {} to {}; give them in nm",
@@ -77,7 +77,7 @@ double value_within(const SampledCurve& curve, double at) {
     return curve.covers(at) ? curve.value(at) : 0;
 }
 
-// The places where either of two piecewise linear curves bends, 360 to 830 nm.
+// The knots of either of two piecewise linear curves, 360 to 830 nm.
 std::vector<double> knots_with_cie1931(const SampledCurve& curve) {
     std::vector<double> knots;
     for (int nm = 360; nm <= 830; nm += 5) knots.push_back(nm);
@@ -126,8 +126,8 @@ double luminous_efficacy(const LampSpectrum& spectrum) {
     const auto product = [&](double nm) {
         return cie1931_matching_functions(nm).y * value_within(spectrum.density, nm);
     };
-    // Simpson is exact for the product of two straight lines. A curve that begins or ends with a
-    // value above 0 jumps there: its ends are taken from within.
+    // Simpson's rule is exact for the product of two linear functions. A curve that begins or ends
+    // with a value above 0 has a jump there: its ends are evaluated from inside.
     double sum = 0;
     constexpr double k_within = 1e-9;
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {

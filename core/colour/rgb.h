@@ -5,7 +5,7 @@
 
 namespace uw {
 
-/// Linear red, green, blue of a diffuse reflectance, 0..1 (sRGB primaries, as files bring them).
+/// Linear red, green, blue of a diffuse reflectance, 0..1 (sRGB primaries, as in files).
 using Rgb = std::array<double, 3>;
 
 /// IEC 61966-2-1: the sRGB code value in 0..1 as linear light.

@@ -15,7 +15,8 @@ const double k_largest_exponent = -std::log(k_negligible);
 
 // Beyond this sigma a Gaussian's spectrum at half a cycle per pixel is below 3e-9: no aliases.
 constexpr double k_alias_free_sigma = 2;
-// Of an exponential's mixture of Gaussians (below), a part of 2e-9 is narrower than s / 6.
+// In the mixture of Gaussians that makes up the exponential (below), a fraction of 2e-9 is narrower
+// than s / 6.
 constexpr double k_largest_deviate = 6;
 
 // The table of aliases: nodes over 0 to half a cycle per pixel, and one beyond either end.
@@ -27,13 +28,13 @@ double sinc(double f) {
     return f == 0 ? 1.0 : std::sin(k_pi * f) / (k_pi * f);
 }
 
-// Spectrum of a Gaussian averaged over a pixel, before it is sampled at the pixels' centres.
+// Spectrum of a Gaussian averaged over a pixel, before sampling at the pixel centres.
 double smooth_gaussian(double sigma, double f) {
     const double x = k_pi * sigma * f;
     return std::exp(-2 * x * x) * sinc(f);
 }
 
-// How much of a Gaussian falls on each pixel of a line, and the spectrum of these weights.
+// The weights of a Gaussian on the pixels of a line, and their spectrum.
 class PixelGaussian {
   public:
     explicit PixelGaussian(double sigma) : sigma_(sigma) {
@@ -110,9 +111,9 @@ BlurKernel::TablePosition BlurKernel::table_position(double f) {
 }
 
 /// The exponential kernel is a mixture of Gaussians of sigma = s/|z|, z standard normal (a Cauchy
-/// distribution in the plane), and what sampling adds to a Gaussian's spectrum is known. The
-/// mixture is summed in ln z, where the integrand is smooth and falls to nothing at both ends: the
-/// trapezoidal rule is exact to 1e-9.
+/// distribution in the plane), and the aliases of a sampled Gaussian's spectrum are known. The
+/// mixture is integrated over ln z, where the integrand is smooth and decays to zero at both ends:
+/// the trapezoidal rule is accurate to 1e-9.
 void BlurKernel::tabulate_aliases() {
     const double narrow = std::min(blur_.x, blur_.y);
     const double least_deviate = narrow / k_alias_free_sigma;
@@ -132,7 +133,7 @@ void BlurKernel::tabulate_aliases() {
             for (std::size_t j = 0; j < k_nodes; ++j)
                 aliases_[i * k_nodes + j] += lines[0][i] * lines[1][j] - lines[2][i] * lines[3][j];
     };
-    // Below this width nothing leaves the pixel, and the mixture would have no end.
+    // Below this width no light leaves the pixel, and the mixture would be endless.
     constexpr double k_least_deviate = 1e-7;
     constexpr double k_log_step = 0.1;
     table_rows_.reserve(static_cast<std::size_t>(height_));

@@ -14,21 +14,23 @@ struct BlurWidth {
     double x = 0, y = 0;
 };
 
-/// The blur of light scattered by small angles (physics section 6), as the fraction of a pixel's
-/// light that lands in every other pixel: the kernel, centred on the pixel, integrated over each.
+/// The blur of light scattered through small angles (physics section 6), as the fraction of a
+/// pixel's light that lands in each other pixel: the kernel, centred on the pixel, integrated over
+/// the other.
 ///
 ///   exponential   F^-1{e^{-2 pi s f}} = s / (2 pi (s^2 + r^2)^{3/2})      (Jaffe, McGlamery)
-///   gaussian      of sigma = sqrt(2) s, with the same f where the spectrum is 1/e   (the paper)
+///   gaussian      sigma = sqrt(2) s, whose spectrum falls to 1/e at the same f   (the paper)
 ///
 /// The fractions are positive and sum to 1 for every width; a width of 0 leaves the light where it
-/// is. The kernel is given by its spectrum (of period 1 cycle per pixel), so that no tails are cut
-/// off.
+/// is. The kernel is represented by its spectrum (with a period of 1 cycle per pixel), so that its
+/// tails are not truncated.
 class BlurKernel {
   public:
-    /// The kernel for images of `width` times `height` pixels that go on as their own mirrors.
+    /// The kernel for images of `width` times `height` pixels, extended by reflection at their
+    /// borders.
     BlurKernel(ForwardScatterDesc::Shape shape, BlurWidth blur, int width, int height);
 
-    /// Number of columns, from 0, whose spectrum is not all below 1e-15.
+    /// Number of leading columns whose spectrum is not everywhere below 1e-15.
     int column_count() const { return column_count_; }
 
     /// Fills the spectrum of column `column` (column / (2 width) cycles per pixel across, row /
@@ -52,7 +54,7 @@ class BlurKernel {
     int height_;
     int column_count_ = 0;
     std::vector<double> across_, down_;  // per column, per row: factors of the spectrum
-    std::vector<double> aliases_;        // what pixels add to an exponential's spectrum, or empty
+    std::vector<double> aliases_;        // of the exponential's sampled spectrum, or empty
     std::vector<TablePosition> table_rows_;
 };
 

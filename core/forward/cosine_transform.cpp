@@ -37,8 +37,8 @@ struct CosineTransform::Plans {
     static Plan plan_line(int length, fftw_r2r_kind kind) {
         std::vector<double> line(static_cast<std::size_t>(length));
         const std::lock_guard lock(planner_mutex());
-        // Estimated, not measured: the plan, and so the rounding, is the same in every run. Lines
-        // of an image are not aligned alike.
+        // Estimated, not measured, so that the plan, and thus the rounding, is the same in every
+        // run. Lines of an image differ in alignment.
         Plan plan(fftw_plan_r2r_1d(length, line.data(), line.data(), kind,
                                    FFTW_ESTIMATE | FFTW_UNALIGNED));
         if (!plan) throw std::bad_alloc();

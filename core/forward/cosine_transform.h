@@ -4,13 +4,13 @@
 
 namespace uw {
 
-/// The cosine transform of one line of an image: the Fourier transform of the line continued by
-/// mirrors without end, ... c b a | a b c ... z | z y x ... (DCT-II). Frequency k of n is k/(2n)
-/// cycles per pixel. The one door to FFTW. Its plans are always the same, so that the same line
-/// gives the same bits. Thread safe.
+/// The cosine transform of one line of an image (DCT-II): the Fourier transform of the line
+/// extended periodically by reflection, ... c b a | a b c ... z | z y x ... Frequency k of n is
+/// k/(2n) cycles per pixel. The only user of FFTW. Its plans are deterministic, so that the same
+/// line gives the same bits. Thread safe.
 class CosineTransform {
   public:
-    /// Plans lines of `length` >= 1 values.
+    /// Plans the transform of lines of `length` >= 1 values.
     explicit CosineTransform(int length);
 
     int length() const { return length_; }
@@ -19,7 +19,7 @@ class CosineTransform {
     void forward(double* line) const;
     /// Undoes `forward` up to the factor `scale()`, in place.
     void inverse(double* line) const;
-    /// What `forward` and `inverse` together multiply a line by: 2n.
+    /// The factor by which `forward` followed by `inverse` scales a line: 2n.
     double scale() const { return 2.0 * length_; }
 
   private:

@@ -50,8 +50,8 @@ void check_blur_length(const Medium& medium, const SourceLocation& where) {
     for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band)
         if (!(b[band] > 0))
             throw InputError(
-                fmt::format("{}: beside volumes the blur is measured by how much the water itself "
-                            "scatters, and it does not at {:g} nm; give water.particles or "
+                fmt::format("{}: with volumes, the blur length is defined by the scattering of the "
+                            "water itself, which is 0 at {:g} nm; give water.particles or "
                             "water.scattering, or K: 0",
                             where, medium.wavelengths_nm[band]));
 }

@@ -33,15 +33,15 @@ class PathImage {
     std::vector<ImagePlane> columns_;
 };
 
-/// Blurs images over the paths of their pixels, one band after the other (ForwardScatter). In water
-/// that varies, a path counts by its blur length, int b/b_0 ds, and its optical depth: both are
-/// linear in its columns.
+/// Blurs images according to their pixels' paths, one band at a time (ForwardScatter). In water
+/// that varies, a path is characterised by its blur length, int b/b_0 ds, and its optical depth:
+/// both are linear in its columns.
 class PathScatter {
   public:
     PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Medium& medium);
 
-    /// Writes into `added` what the light of band `band` adds to the image when each pixel spreads
-    /// its light over its path. Paths of dark pixels are not read.
+    /// Writes into `added` the light of band `band` that is added to the image when each pixel's
+    /// light is scattered along its path. Paths of dark pixels are not read.
     void operator()(std::size_t band, const ImagePlane& light, const PathImage& paths,
                     ImagePlane& added);
 
@@ -53,7 +53,7 @@ class PathScatter {
     ImagePlane blur_length_, optical_depth_;
 };
 
-/// Throws InputError at `where` unless blur lengths can be measured in `medium`: water that varies
+/// Throws InputError at `where` unless blur lengths are defined in `medium`: water that varies
 /// needs a uniform part that scatters.
 void check_blur_length(const Medium& medium, const SourceLocation& where);
 

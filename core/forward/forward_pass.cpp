@@ -18,10 +18,10 @@ namespace uw {
 
 namespace {
 
-// As many slabs are done at once as need less than this [bytes].
+// Memory limit for the slabs processed at once [bytes].
 constexpr double k_slab_bytes = 256e6;
 
-// Light that can be blurred: a number, not below zero.
+// Light in a form that can be blurred: finite and non-negative.
 float as_light(double value) {
     constexpr double k_most = 1e30;
     return value > 0 ? static_cast<float>(std::min(value, k_most)) : 0.0F;
@@ -138,7 +138,7 @@ void ForwardPass::add_surface(const SurfaceSample& sample, SurfaceSums& sums) co
     const double weight = 1.0 / renderer_.samples();
     const double seen = setup_.sensor.surface_factor(hit.distance);
     const std::span<const double> to_camera = std::as_const(light).to_camera(0);
-    // Light scattered on its way comes from no single direction: the diffuse part reflects it.
+    // Light scattered on its way has no single direction: it is reflected by the diffuse part.
     sums.response += per_band(bands_, [&](std::size_t b) {
         return weight * hit.reflectance[b] * std::numbers::inv_pi * seen * to_camera[b];
     });

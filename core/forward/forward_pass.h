@@ -14,14 +14,14 @@
 
 namespace uw {
 
-/// How a scene's light is scattered forward.
+/// The parameters of a scene's forward scatter.
 struct ForwardScatterSetup {
     ForwardScatterDesc desc;  // K > 0
     ScatterPlane plane;       // the whole image
-    /// Camera z of the faces of the slabs that the water is split into [m], ascending.
+    /// Camera z of the boundaries between the slabs that the water is split into [m], ascending.
     std::vector<double> faces;
     bool shells = false;  // `faces` and `first` are distances along water rays instead
-    Interval first;       // camera z of the water of `backscatter_first`; its ends are faces
+    Interval first;       // camera z range of `backscatter_first`; both ends are among `faces`
     LampPaths::PointColumn lamp_column;
     SensorModel sensor;  // the renderer's
 };
@@ -32,37 +32,36 @@ struct ForwardScatterSetup {
 ///     (14)  E     = E' + E' * g(R_lamps)      light falling on surfaces
 ///     (16)  L_s   = L_d + L_d * g(R_c)        the signal, with (14) in it
 ///     (17)  E_s   = E_s' + E_s' * g(R_lamps)  light scattered to the camera by a slab of water
-///     (18)  L_b   = sum_i L_i + L_i * g(R_i)  each slab's light on its way to the camera, with
-///     (17)
-///                                             in it
+///     (18)  L_b   = sum_i L_i + L_i * g(R_i)  each slab's light on its way to the camera,
+///                                             with (17) in it
 ///
-/// What (14) and (16) add is the layer `forward`; what (17) and (18) add belongs to `backscatter`.
-/// What is blurred is radiance in water, and the factor (PixelResult::pixel_factor) of the pixel
-/// where it lands is applied afterwards; in the paper's output (16) and (18) blur light that has
-/// the factor of the pixel it comes from. Slabs are done a few at a time: memory does not grow
-/// with their number. The result does not depend on the number of threads.
+/// The light added by (14) and (16) is the layer `forward`; that added by (17) and (18) belongs to
+/// `backscatter`. The blur acts on radiance in water, and the factor (PixelResult::pixel_factor) of
+/// the pixel where it lands is applied afterwards; in the paper's output, (16) and (18) blur light
+/// that carries the factor of the pixel it comes from. Slabs are processed a few at a time, so
+/// memory does not grow with their number. The result does not depend on the number of threads.
 class ForwardPass {
   public:
-    /// All references outlive the pass. Throws InputError if there is not enough memory.
+    /// All references must outlive the pass. Throws InputError if there is not enough memory.
     ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
                 const ForwardScatterSetup& setup, const LayerPlan& plan);
 
-    /// Keeps what pixel (x, y) of the first pass needs in the second. From any thread.
+    /// Stores what the second pass needs of pixel (x, y). Callable from any thread.
     void keep(int x, int y, const PixelView& view, const PixelResult& result);
 
-    /// Scatters all that was kept. Throws Interrupted if `progress` returned false.
+    /// Scatters everything stored. Throws Interrupted if `progress` returned false.
     void run(const ProgressCallback& progress);
 
-    /// Adds the result to a film that holds the first pass: its window is the whole image.
+    /// Adds the result to a film that holds the first pass and whose window is the whole image.
     void write(const LayerPlan& plan, const BandColour& colour, Film& film) const;
 
   private:
-    /// The light of all lamps, or of the one whose layer is asked for.
+    /// The light of all lamps, or of a single lamp whose layer is requested.
     struct Component {
         std::vector<std::size_t> lamps;
         std::vector<ImagePlane> direct;       // per band
         std::vector<ImagePlane> forward;      // per band; irradiance until (14) has been done
-        std::vector<ImagePlane> backscatter;  // per band; of single lamps, what is added to it
+        std::vector<ImagePlane> backscatter;  // per band; for a single lamp, only the light added
     };
     struct Slab;
     struct SurfaceSums;
@@ -70,16 +69,16 @@ class ForwardPass {
     void keep_surfaces(std::size_t i, const PixelView& view, const PixelResult& result);
     void add_surface(const SurfaceSample& sample, SurfaceSums& sums) const;
     void scatter_surfaces();
-    // Integrates the slabs from `first` on, as many as `slabs` has, for every pixel.
+    // Integrates slabs.size() slabs from `first` on, for every pixel.
     void integrate(std::size_t first, std::vector<Slab>& slabs) const;
-    // What light of pixel `i` is multiplied by before and after its blur on the way to the camera.
+    // The factors on the light of pixel `i` before and after its blur on the way to the camera.
     double factor_before(std::size_t i) const {
         return setup_.sensor.factors_before_blur() ? pixel_factor_[i] : 1.0;
     }
     double factor_after(std::size_t i) const {
         return setup_.sensor.factors_before_blur() ? 1.0 : pixel_factor_[i];
     }
-    // Puts one pixel's light into the slab; `light` is null where no ray enters the water.
+    // Stores one pixel's light in the slab; `light` is null where no ray enters the water.
     void store(const SlabLight* light, std::size_t i, Slab& slab) const;
     void scatter_slab(std::size_t index, Slab& slab);
     std::vector<ImagePlane> planes(std::size_t count) const {

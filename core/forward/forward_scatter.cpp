@@ -15,9 +15,9 @@ namespace uw {
 
 namespace {
 
-/// The widths s [pixels] that kernels are made for: offset + s grows by `ratio` from one to the
-/// next. A mixture of two neighbours and the kernel between them disagree about where less than
-/// 0.25 % of the light lands. From `widest` image sides on, all kernels spread light evenly.
+/// The widths s [pixels] for which kernels are made: offset + s grows by `ratio` from one to the
+/// next. A mixture of two neighbours misplaces less than 0.25 % of the light compared with the
+/// exact kernel between them. Beyond `widest` image sides, all kernels spread light evenly.
 struct LadderRule {
     double ratio, offset, widest;
 };
@@ -54,7 +54,7 @@ void check_forward_scatter(const ForwardScatterDesc& desc, std::span<const doubl
                             where, desc.G, c));
 }
 
-/// Each pixel's blur length and the factor its light is spread with.
+/// Each pixel's blur length and the factor on its spread light.
 class ForwardScatter::Paths {
   public:
     Paths(const ForwardScatterDesc& desc, const ScatterSource& source)
@@ -76,7 +76,7 @@ class ForwardScatter::Paths {
         return depths_ != nullptr ? static_cast<double>(depths_[pixel])
                                   : attenuation_ * length(pixel);
     }
-    /// K [e^{-(G/c) tau} - e^{-tau}], without cancellation where tau is small.
+    /// K [e^{-(G/c) tau} - e^{-tau}], without cancellation for small tau.
     double factor(std::size_t pixel) const {
         const double tau = depth(pixel);
         return strength_ * std::exp(-fraction_of_depth_ * tau) *
@@ -90,7 +90,7 @@ class ForwardScatter::Paths {
     double range_ = 0;
 };
 
-/// The least and the greatest blur length of lit pixels; empty where none is lit.
+/// The least and the greatest blur length of lit pixels; empty if none is lit.
 struct ForwardScatter::Extent {
     double least = std::numeric_limits<double>::infinity();
     double greatest = -std::numeric_limits<double>::infinity();
@@ -184,7 +184,7 @@ std::vector<double> ForwardScatter::ladder(const Extent& lengths) const {
     const double greatest = std::min(width * lengths.greatest, widest);
     const double begin = std::log1p(least / rule.offset);
     const double end = std::log1p(greatest / rule.offset);
-    // Longer ones than the last are spread by its kernel.
+    // Greater lengths than the last use its kernel.
     std::vector<double> result{lengths.least};
     if (!(end - begin > 1e-9)) return result;
     const int steps = static_cast<int>(std::ceil((end - begin) / std::log1p(rule.ratio)));
@@ -212,7 +212,7 @@ void ForwardScatter::finish(std::span<float> added) {
     }
     sum_->finish([&](int y, std::span<const double> row) {
         float* out = added.data() + static_cast<std::size_t>(y) * width;
-        // No light is negative; what the transforms' rounding leaves below zero is nothing.
+        // Light is never negative; negative values are rounding errors of the transforms.
         for (std::size_t x = 0; x < width; ++x) out[x] = static_cast<float>(std::max(row[x], 0.0));
     });
 }

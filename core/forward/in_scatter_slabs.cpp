@@ -16,12 +16,12 @@ void LampPaths::add_mean(double weight, const Point3& x, WaterPath& path) const 
     }
 }
 
-/// Stretches of one ray, one after another, split at the slabs' faces and at the pixel's distances.
+/// Consecutive segments of one ray, split at the slabs' faces and at the pixel's distances.
 struct InScatterSlabs::Stretches {
     double begin = 0;               // of the first [m]
     std::vector<double> ends;       // of each [m]
     std::vector<double> visible;    // fraction of the pixel that sees it
-    std::vector<std::size_t> slab;  // counted from the first asked for
+    std::vector<std::size_t> slab;  // counted from the first requested
     InScatter light;                // from `begin` to each end
 };
 
@@ -65,7 +65,7 @@ void InScatterSlabs::split(const Ray& ray, std::span<const double> distances,
     const auto face = [&](std::size_t i) { return std::max(0.0, depth.distance(faces_[i])); };
     stretches.begin = face(first);
     double begin = stretches.begin;
-    // Samples whose ray misses the water leave the sum of the weights short of 1.
+    // The weights sum to less than 1 if some samples' rays miss the water.
     double visible = std::accumulate(weights.begin(), weights.end(), 0.0);
     std::size_t next = 0;  // of the distances
     const auto pass_distances = [&](double s) {
@@ -109,13 +109,13 @@ void InScatterSlabs::fill_slabs(const Ray& ray, const Stretches& stretches,
             const double visible_length = stretches.visible[i] * part.length;
             light += gained;
             length += visible_length;
-            path.add(0.5, part.length, part.columns);  // to the middle of the stretch
+            path.add(0.5, part.length, part.columns);  // to the midpoint of the segment
             lit.add(gained, path.length, path.columns);
             seen.add(visible_length, path.length, path.columns);
             path.add(0.5, part.length, part.columns);
             path.length = stretches.ends[i];
         }
-        // A dark slab has no middle of its light; that of its water does for the light of others.
+        // A dark slab has no centroid of its light; that of its water serves for light from others.
         if (light > 0)
             slab.to_camera.add(1 / light, lit.length, lit.columns);
         else if (length > 0)
@@ -131,7 +131,7 @@ void InScatterSlabs::add_weight(const WaterPath& path, const WaterPath& part, do
     weight += per_band(static_cast<std::size_t>(attenuation_.band_count), [&](std::size_t band) {
         const double tau = attenuation_.optical_depth(band, path.length, path.columns);
         const double more = attenuation_.optical_depth(band, part.length, part.columns);
-        // As if e^-tau fell exponentially along the stretch: exact where the water is uniform.
+        // Assumes that e^-tau falls exponentially along the segment: exact in uniform water.
         const double mean = more > 0 ? -std::expm1(-more) / more : 1.0;
         return length * std::exp(-tau) * mean;
     });
@@ -143,7 +143,7 @@ double InScatterSlabs::add_light(const Stretches& stretches, std::size_t i,
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         Spectrum gained = stretches.light.at(i, j);
         if (i > 0) gained -= stretches.light.at(i - 1, j);
-        // Rounding may leave a difference below zero; light does not fall there.
+        // Rounding may make a difference negative; cumulative in-scatter never decreases.
         for (double& value : gained) value = std::max(0.0, value);
         gained *= stretches.visible[i];
         lamps[j] += gained;

@@ -7,18 +7,18 @@ namespace uw {
 
 namespace {
 
-// How much farther than its least the greatest distance of a depth may be, relative: up to there a
-// parabola follows the in-scatter to a tenth of the tolerance.
+// Greatest relative width of a depth (greatest over least distance, minus 1) for which a parabola
+// follows the in-scatter to a tenth of the tolerance.
 double distance_reach(double tolerance) {
     return 0.12 * std::cbrt(tolerance / 1e-3);
 }
 
-// Light darker than this fraction of the tile's mean is compared with that.
+// Errors in radiance below this fraction of the tile's mean are measured relative to that level.
 constexpr double k_dark = 0.02;
 
 }  // namespace
 
-/// Where in a cell something is interpolated, and up to which distances.
+/// The position within a cell at which to interpolate, and the distances.
 struct InScatterLattice::Place {
     double u, v;  // 0..1 across and down the cell
     std::span<const double> distances, weights;
@@ -67,7 +67,8 @@ const InScatterLattice::Node& InScatterLattice::node(int i, int j) {
     return node;
 }
 
-/// The depths at which the water ends in the pixels around a node, as far around as these are few.
+/// The depths at which the water ends in the pixels around a node, within the radius where there
+/// are few of them.
 void InScatterLattice::find_depths(int i, int j, Node& node) const {
     int reach = k_coarsest;
     while (i % reach != 0 || j % reach != 0) reach /= 2;
@@ -89,7 +90,7 @@ void InScatterLattice::find_depths(int i, int j, Node& node) const {
     }
 }
 
-/// Makes `distance` part of one of the node's depths; false if it has too many already.
+/// Includes `distance` in one of the node's depths; false if it already has too many.
 bool InScatterLattice::include(double distance, Node& node) const {
     for (std::size_t d = 0; d < node.depth_count; ++d) {
         Depth& depth = node.depths[d];
@@ -151,18 +152,18 @@ bool InScatterLattice::corners(int i, int j, int spacing, Corners& found) {
 }
 
 bool InScatterLattice::confirmed(int i, int j, int spacing) {
-    // Pointers stay: all nodes have their place from the start.
+    // Pointers stay valid: all nodes are allocated from the start.
     Corners from{};
     if (!corners(i, j, spacing, from)) return false;
     const int half = spacing / 2;
-    // What five nodes miss in a large cell, those of smaller cells find.
+    // Features that five nodes miss in a large cell are found by those of smaller cells.
     const double allowed = tolerance_ * k_coarsest / spacing;
     for (int v = 0; v <= 2; ++v) {
         for (int u = 0; u <= 2; ++u) {
             if (u != 1 && v != 1) continue;
             const Node& middle = node(i + u * half, j + v * half);
             if (middle.state != Node::State::ready || middle.reach < half) return false;
-            // Up to every surface seen around the node, not only the one that it sees itself.
+            // Up to every surface seen around the node, not only the one it sees itself.
             constexpr std::array<double, 1> k_whole{1.0};
             for (std::size_t d = 0; d < middle.depth_count; ++d) {
                 for (const double& distance : {middle.depths[d].least, middle.depths[d].greatest}) {
@@ -213,7 +214,7 @@ void InScatterLattice::fill_cell(int i, int j, int spacing) {
             fill_pixel(x, y, interpolate ? half : 0);
 }
 
-/// `spacing` of the lattice that the pixel is interpolated from; 0: from none.
+/// `spacing`: that of the lattice from which the pixel is interpolated; 0: none.
 void InScatterLattice::fill_pixel(int x, int y, int spacing) {
     const PixelView& view = (*views_)(x, y);
     if (view.distances.empty()) return;

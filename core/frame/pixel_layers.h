@@ -13,35 +13,35 @@
 
 namespace uw {
 
-/// Everything one pixel holds. Radiometric values are means over the pixel's samples; ground truth
-/// (`hit` and the depths) belongs to the pixel's centre. W m^-2, metres, world space. Radiance
+/// All values of one pixel. Radiometric values are means over the pixel's samples; ground truth
+/// (`hit` and the depths) refers to the pixel's centre. W m^-2, metres, world space. Radiance
 /// (direct, forward, backscatter, clean, lamps) is that in water, W m^-2 sr^-1; in the paper's
-/// output light has its factor by distance as well (SensorModel::surface_factor).
+/// output it includes the distance-dependent factor (SensorModel::surface_factor).
 struct PixelResult {
     double alpha = 0;         // fraction of the samples whose ray enters the water
-    double pixel_factor = 1;  // what radiance is multiplied by in images: SensorModel::pixel_factor
+    double pixel_factor = 1;  // on radiance in images: SensorModel::pixel_factor
     Spectrum direct;
-    Spectrum forward;  // what forward scatter adds to `direct`: 0 before its pass
+    Spectrum forward;  // added to `direct` by forward scatter: 0 before that pass
     Spectrum backscatter;
     Spectrum backscatter_first;  // of the first slab
     Spectrum irradiance;         // on the surface, 0 where there is none
-    Spectrum exitance;           // of the surface: what it reflects of the irradiance
+    Spectrum exitance;           // of the surface: the part of the irradiance it reflects
     Spectrum clean;              // radiance of the surface without water
-    Spectrum transmittance;      // surface to port, mean over the samples that meet a surface
+    Spectrum transmittance;      // surface to port, mean over the samples that hit a surface
     double lit = 0;              // mean fraction of the lamps that see the surface
     /// Radiance due to each lamp: direct + backscatter. Empty unless InScatterParts::lamps.
     std::vector<Spectrum> lamps;
-    bool has_hit = false;  // whether the centre's ray meets a surface
+    bool has_hit = false;  // whether the centre's ray hits a surface
     SurfaceHit hit;
     double depth_z = 0;  // camera-frame z of the hit
     double range = 0;    // from the camera's centre to the hit
     double path = 0;     // in water, from the outer glass surface to the hit
 
-    /// Makes it a pixel that shows nothing, with 0 for each of so many lamps. Storage is reused.
+    /// Resets to an empty pixel, with 0 for each of `lamp_count` lamps. Storage is reused.
     void reset(std::size_t lamp_count);
 };
 
-/// Ways of filling a layer's channels from a pixel.
+/// Functions that fill a layer's channels from a pixel.
 namespace layer_channels {
 
 /// Values as they are, one per band.
@@ -50,7 +50,7 @@ void spectrum(const PixelResult& pixel, std::span<float> channels) {
     for (std::size_t b = 0; b < channels.size(); ++b)
         channels[b] = static_cast<float>((pixel.*values)[b]);
 }
-/// Radiance, which images hold times the pixel's factor.
+/// Radiance, which images hold multiplied by the pixel's factor.
 template <Spectrum PixelResult::*values>
 void radiance(const PixelResult& pixel, std::span<float> channels) {
     for (std::size_t b = 0; b < channels.size(); ++b)
@@ -61,8 +61,8 @@ template <double PixelResult::*value>
 void number(const PixelResult& pixel, std::span<float> channels) {
     channels[0] = static_cast<float>(pixel.*value);
 }
-/// The sum of direct, forward and backscatter. They are rounded to float before they are added: in
-/// the image their sum is the total to the bit.
+/// The sum of direct, forward and backscatter, each rounded to float before the addition, so that
+/// in the image they add up to the total to the bit.
 void total(const PixelResult& pixel, std::span<float> channels);
 void albedo(const PixelResult& pixel, std::span<float> channels);
 void normal(const PixelResult& pixel, std::span<float> channels);
@@ -71,19 +71,19 @@ void id(const PixelResult& pixel, std::span<float> channels);
 
 }  // namespace layer_channels
 
-/// What a layer holds of a pixel.
+/// How a layer is filled from a pixel.
 struct PixelLayer {
-    /// What forward scatter, a second pass over the image, does to a layer.
+    /// The effect of forward scatter, a second pass over the image, on a layer.
     enum class ForwardScatter { leaves, replaces, adds };
 
     Layer layer;
     void (*fill)(const PixelResult& pixel, std::span<float> channels);
     ForwardScatter forward_scatter = ForwardScatter::leaves;
-    bool of_hit = false;            // 0 where the centre's ray meets no surface
+    bool of_hit = false;            // 0 where the centre's ray hits no surface
     bool needs_first_slab = false;  // of the in-scatter
 };
 
-/// What each layer holds, in the order of Layer: a layer that is left out does not compile.
+/// The contents of each layer, in the order of Layer: omitting one is a compile-time error.
 inline constexpr std::array<PixelLayer, k_layer_count> k_pixel_layers{{
     {.layer = Layer::total,
      .fill = layer_channels::total,
@@ -124,13 +124,14 @@ InScatterParts in_scatter_parts(const LayerPlan& plan);
 void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColour& colour,
                  std::span<float> channels);
 
-/// Writes what forward scatter changes into channels that store_pixel has filled before, but for
-/// the lamps. `pixel` holds the light after forward scatter, and of `backscatter_first` what it
-/// adds.
+/// Writes the changes due to forward scatter into channels previously filled by store_pixel, except
+/// for the lamps. `pixel` holds the light after forward scatter, but in `backscatter_first` only
+/// the light added.
 void store_forward_scatter(const PixelResult& pixel, const LayerPlan& plan,
                            const BandColour& colour, std::span<float> channels);
 
-/// Adds what forward scatter adds to the light of one lamp: `forward` and `backscatter` of `pixel`.
+/// Adds the contribution of forward scatter to the light of one lamp: `forward` and `backscatter`
+/// of `pixel`.
 void add_forward_scatter_of_lamp(const PixelResult& pixel, const LayerPlan& plan, std::size_t lamp,
                                  std::span<float> channels);
 

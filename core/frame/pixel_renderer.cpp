@@ -9,12 +9,12 @@ namespace uw {
 
 namespace {
 
-// Surface samples whose distances agree this well share one integral through the water: the
-// radiance between them differs by less than 1 % of that of the last centimetres.
+// Surface samples whose distances agree to within this fraction share one integral through the
+// water: their in-scatter differs by less than 1 % of that of the last centimetres.
 constexpr double k_same_distance = 0.01;
-// Samples of the object that the pixel's centre sees count as being at the centre's distance if
-// theirs is this close to it: to first order the mean of a slanted surface is its centre, and the
-// water ray does not go on behind what it meets itself.
+// Samples on the object seen at the pixel's centre are assigned the centre's distance if theirs is
+// this close to it: to first order the mean over a slanted surface is its centre, and the water ray
+// does not continue behind the surface it hits.
 constexpr double k_same_surface = 0.25;
 
 // Base-2 radical inverse: 0, 1/2, 1/4, 3/4, ...
@@ -36,7 +36,7 @@ ImageOffset sample_offset(int i, int count) {
     return {static_cast<double>(i) / count + half_step, count == 1 ? 0.5 : y};
 }
 
-// Makes the view's distances and weights of those of its samples; what agrees becomes one.
+// Derives the view's distances and weights from its samples, merging distances that agree.
 void group_distances(std::vector<double>& distances, int samples, PixelView& view) {
     std::sort(distances.begin(), distances.end());
     for (std::size_t first = 0; first < distances.size();) {
@@ -115,7 +115,7 @@ void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
     view.ray = rays_.refracted_ray(view.x, view.y);
 }
 
-// The ray of a single sample is the one that the ground truth has.
+// The ray of a single sample is that of the ground truth.
 void PixelRenderer::add_center(PixelView& view) {
     if (!view.ray) return;
     view.alpha = 1;
@@ -222,7 +222,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
         if (!light.visible(sample, j)) continue;
         result.lit += weight / static_cast<double>(light.lamp_count());
         reflection.brdf((*scene_.lamps)[j].position(), brdf);
-        // One loop, not a spectrum for each product: this is every sample under every lamp.
+        // One loop instead of a spectrum per product: this runs for every sample and every lamp.
         for (std::size_t b = 0; b < bands; ++b) {
             const double irradiance = weight * light.irradiance(sample, j, b);
             const double response = brdf[b] * seen;

@@ -16,13 +16,12 @@
 
 namespace uw {
 
-/// Turns light transport into pixels: many samples for the edges of surfaces, one ray for the
-/// water.
+/// Turns light transport into pixels: many samples to antialias surfaces, one ray for the water.
 class PixelRenderer {
   public:
-    /// All references outlive the renderer. `samples` >= 1 per pixel; a single one lies at the
-    /// centre. The first of `slabs` is the water of `backscatter_first`. `sensor` decides what
-    /// the image holds: the radiance itself by default.
+    /// All references must outlive the renderer. `samples` >= 1 per pixel; a single one lies at the
+    /// centre. The first of `slabs` is the water of `backscatter_first`. `sensor` determines the
+    /// quantity that the image holds: by default radiance.
     PixelRenderer(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
                   int samples, const Slabs& slabs, const SensorModel& sensor = {},
                   const InScatterParts& parts = {});
@@ -36,29 +35,29 @@ class PixelRenderer {
 
     /// Traces the samples of pixel (x, y). Thread safe.
     void trace(int x, int y, PixelView& view) const;
-    /// Likewise those of all pixels of a window: faster than one after another.
+    /// Traces the samples of all pixels of a window: faster than one pixel at a time.
     void trace(const PixelWindow& window, Grid2D<PixelView>& views) const;
-    /// Light on the surfaces that pixels see: the samples of one view after those of another.
-    /// Thread safe.
+    /// Light on the surfaces that pixels see; the samples of the views follow one another in
+    /// `light`. Thread safe.
     void light_surfaces(std::span<const PixelView> views, SurfaceLight& light) const;
-    /// Puts a pixel together: its samples are those of `light` from `first_sample` on, and its
-    /// water has the values `in_scatter` (RayInScatter). `result` is reused storage. Thread safe.
+    /// Assembles a pixel from the samples of `light` from `first_sample` on and the in-scatter
+    /// values `in_scatter` (RayInScatter). `result` is reused storage. Thread safe.
     void shade(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
                std::span<const double> in_scatter, PixelResult& result) const;
-    /// All of this for one pixel by itself.
+    /// All of the above for a single pixel.
     void render(int x, int y, PixelResult& result) const;
 
   private:
     void add_surface(const SurfaceSample& surface, const SurfaceLight& light, std::size_t sample,
                      PixelResult& result) const;
     void add_water(std::span<const double> in_scatter, PixelResult& result) const;
-    // Begins a view with the ray at the pixel's centre.
+    // Starts a view with the ray through the pixel's centre.
     void begin_view(int x, int y, PixelView& view) const;
     // Takes the ground truth from the ray's hit, if it has one.
     void finish_ground_truth(PixelView& view) const;
     // Makes the pixel's centre its only sample.
     static void add_center(PixelView& view);
-    // Traces the samples: all but a single one, which is the pixel's centre.
+    // Traces the samples, unless there is only one, which is the pixel's centre.
     void add_samples(int x, int y, PixelView& view) const;
 
     const RaySource& rays_;

@@ -7,16 +7,16 @@
 
 namespace uw {
 
-/// What the rays of one pixel meet, before any light is asked for. Reused storage.
+/// What the rays of one pixel hit, before any lighting. Reused storage.
 struct PixelView {
     double alpha = 0;        // fraction of the samples whose ray enters the water
     std::optional<Ray> ray;  // along which the pixel's water is integrated, if one enters it
     double x = 0, y = 0;     // image position of that ray
-    /// How far the pixel's water reaches [m along `ray`, ascending; k_far without a surface], and
-    /// the fraction of the samples whose water reaches that far. Empty without a ray.
+    /// The distances to which the pixel's water extends [m along `ray`, ascending; k_far without a
+    /// surface], and the fraction of the samples for each. Empty without a ray.
     std::vector<double> distances, weights;
 
-    std::vector<SurfaceSample> samples;  // those that meet a surface
+    std::vector<SurfaceSample> samples;  // those that hit a surface
 
     // Ground truth at the pixel's centre:
     bool has_hit = false;

@@ -9,26 +9,26 @@
 
 namespace uw {
 
-/// Which parts of the in-scatter an image asks for.
+/// The parts of the in-scatter that an image requires.
 struct InScatterParts {
-    bool lamps = true;       // of each lamp by itself, not only the sum
+    bool lamps = true;       // each lamp separately, not only the sum
     bool first_slab = true;  // of the first slab
 };
 
 /// The in-scatter along a ray up to a distance, as a list of values that can be interpolated: the
-/// bands of each lamp's light (or of all lamps' together), then those of the first slab's, if it is
-/// asked for [W m^-2 sr^-1].
+/// bands for each lamp (or for all lamps together), then those for the first slab, if requested [W
+/// m^-2 sr^-1].
 class RayInScatter {
   public:
-    /// `integrator` outlives this; the first slab is that of `slabs`.
+    /// `integrator` must outlive this object; the first slab is that of `slabs`.
     RayInScatter(const Integrator& integrator, const Affine& world_from_camera, const Slabs& slabs,
                  int lamps, int bands, const InScatterParts& parts);
 
-    /// Values in a list.
+    /// Number of values in a list.
     std::size_t value_count() const { return (groups_ + (parts_.first_slab ? 1 : 0)) * bands_; }
     std::size_t band_count() const { return bands_; }
     const InScatterParts& parts() const { return parts_; }
-    /// Groups of lamps: each by itself, or all in one.
+    /// Number of lamp groups: one per lamp, or one for all lamps.
     std::size_t group_count() const { return groups_; }
     /// The bands of one group's light in a list.
     std::span<const double> group(std::span<const double> values, std::size_t group) const {
@@ -39,8 +39,8 @@ class RayInScatter {
         return values.subspan(groups_ * bands_, bands_);
     }
 
-    /// Integrates up to each of `distances` [m, > 0] and writes a list for each, one after another.
-    /// Thread safe.
+    /// Integrates up to each of `distances` [m, > 0] and writes the lists consecutively. Thread
+    /// safe.
     void integrate(const Ray& ray, std::span<const double> distances,
                    std::span<double> values) const;
 

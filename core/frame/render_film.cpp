@@ -21,7 +21,7 @@ PixelWindow tile_within(int x0, int y0, const PixelWindow& bounds) {
             std::min(y0 + k_tile, bounds.y1)};
 }
 
-/// Lends tile renderers, as many as tiles are rendered at once.
+/// Lends out tile renderers, one for each tile in progress.
 class TileRendererPool {
   public:
     TileRendererPool(const PixelRenderer& renderer, double in_scatter_tolerance)
@@ -61,7 +61,7 @@ void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, con
     const int columns = (window.x1 + k_tile - 1) / k_tile - left;
     const int rows = (window.y1 + k_tile - 1) / k_tile - top;
     const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-    // Counted by rows of tiles: a tile of the reference integrator may take a minute.
+    // Counted in rows of pixels within tiles: a tile may take the reference integrator a minute.
     const auto all = static_cast<double>(columns) * window.height();
     std::atomic<std::size_t> done = 0;
     TileRendererPool pool(renderer, in_scatter_tolerance);

@@ -9,16 +9,16 @@
 
 namespace uw {
 
-/// Told the fraction of the pixels that are done, from any thread; returns false to stop.
+/// Receives the fraction of the pixels that are done, from any thread; returns false to stop.
 using ProgressCallback = std::function<bool(double fraction)>;
 
-/// Shown each pixel that is done, from any thread.
+/// Receives each finished pixel, from any thread.
 using PixelCallback =
     std::function<void(int x, int y, const PixelView& view, const PixelResult& result)>;
 
-/// Renders every pixel of the film's window on all threads allowed. The result depends neither on
-/// their number nor on the window. `in_scatter_tolerance`: of InScatterLattice; 0 integrates every
-/// pixel's own ray. Throws Interrupted if `progress` returned false.
+/// Renders every pixel of the film's window on all permitted threads. The result depends neither on
+/// their number nor on the window. `in_scatter_tolerance`: that of InScatterLattice; 0 integrates
+/// every pixel's own ray. Throws Interrupted if `progress` returned false.
 void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, const LayerPlan& plan,
                  const BandColour& colour, Film& film, const ProgressCallback& progress,
                  const PixelCallback& done = {});

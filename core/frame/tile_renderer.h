@@ -9,31 +9,31 @@
 
 namespace uw {
 
-/// Renders one tile after another: what its pixels' rays meet, the water on the way, and both
-/// together.
+/// Renders tile by tile: the surfaces that the pixels' rays hit, the in-scatter on the way, and the
+/// final pixels.
 class TileRenderer {
   public:
-    /// `in_scatter_tolerance`: of InScatterLattice; 0 integrates every pixel's own ray.
+    /// `in_scatter_tolerance`: that of InScatterLattice; 0 integrates every pixel's own ray.
     TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance);
 
-    /// Traces the whole of a tile, whatever part of it is rendered: its lattice depends on all of
-    /// it, and its surfaces are lit together.
+    /// Traces the whole tile, even if only part of it is rendered: its lattice depends on all of
+    /// it, and its surfaces are lit in one batch.
     void begin(const PixelWindow& tile);
 
     /// Renders a pixel of the tile.
     const PixelResult& render(int x, int y);
-    /// Of the pixel rendered last.
+    /// The view of the pixel rendered last.
     const PixelView& view() const { return *view_; }
 
   private:
     const PixelRenderer& renderer_;
-    std::optional<InScatterLattice> lattice_;  // none: every pixel by itself
+    std::optional<InScatterLattice> lattice_;  // empty: every pixel by itself
     PixelWindow tile_;
     Grid2D<PixelView> views_;                 // of the tile
     SurfaceLight light_;                      // on all their samples
-    std::vector<std::size_t> first_samples_;  // of each view among these
+    std::vector<std::size_t> first_samples_;  // index of each view's first sample in light_
     const PixelView* view_ = nullptr;
-    std::vector<double> in_scatter_;  // of the pixel, without a lattice
+    std::vector<double> in_scatter_;  // of the current pixel, if there is no lattice
     PixelResult result_;
 };
 

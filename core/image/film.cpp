@@ -30,7 +30,7 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
             window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9,
             static_cast<double>(available_memory_bytes()) * 1e-9));
     };
-    // Checked first: Linux grants more memory than it has, and kills the program that uses it.
+    // Checked first: Linux grants more memory than it has, and kills the process that uses it.
     if (bytes > static_cast<double>(available_memory_bytes())) throw no_memory();
     try {
         values_.assign(window.width() * static_cast<int>(channel_names_.size()), window.height());

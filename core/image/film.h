@@ -18,16 +18,16 @@ struct PixelWindow {
     friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
 };
 
-/// Where every film holds the colour and coverage that previews show.
+/// Channel indices, in every film, of the colour and coverage that previews show.
 enum FilmChannel : std::size_t { k_red = 0, k_green = 1, k_blue = 2, k_alpha = 3 };
 
-/// An image of any number of 32-bit float channels, of which only a window is stored. All values
-/// start at 0. One allocation of 4 bytes * channels * pixels of the window, pixel by pixel.
-/// Different pixels may be written from different threads.
+/// An image with any number of 32-bit float channels, of which only a window is stored. All values
+/// are initially 0. A single allocation of 4 bytes * channels * pixels of the window, channels
+/// interleaved. Different pixels may be written from different threads.
 class Film {
   public:
-    /// `channel_names` begins with R, G, B, A. Throws UsageError if the window is empty or leaves
-    /// the image, InputError if there is not enough memory.
+    /// `channel_names` begins with R, G, B, A. Throws UsageError if the window is empty or extends
+    /// beyond the image, InputError if there is not enough memory.
     Film(int width, int height, const PixelWindow& window, std::vector<std::string> channel_names);
 
     int width() const { return width_; }
@@ -35,7 +35,7 @@ class Film {
     const PixelWindow& window() const { return window_; }
     const std::vector<std::string>& channel_names() const { return channel_names_; }
 
-    /// The channels of one pixel. x, y count in the full image and lie within the window.
+    /// The channels of one pixel. x, y are coordinates in the full image and lie within the window.
     std::span<float> pixel(int x, int y) {
         return values_.row(y - window_.y0).subspan(first_channel(x), channel_names_.size());
     }
@@ -44,7 +44,7 @@ class Film {
     }
     /// All values of the window: row by row, pixel by pixel, channel by channel.
     std::span<const float> values() const { return values_.values(); }
-    /// Sets all values to 0, as they were at first.
+    /// Resets all values to 0.
     void clear() { values_.assign(values_.width(), values_.height()); }
 
   private:
@@ -57,7 +57,7 @@ class Film {
     int height_;
     PixelWindow window_;
     std::vector<std::string> channel_names_;
-    Grid2D<float> values_;  // the channels of a pixel beside each other
+    Grid2D<float> values_;  // a pixel's channels are contiguous
 };
 
 /// The part of `film` within `window`. Throws as Film's constructor.

@@ -56,7 +56,8 @@ OIIO::ImageSpec reading_options() {
     return options;
 }
 
-/// A file name of the format that the first bytes announce; empty if it is neither PNG nor JPEG.
+/// A file name with the extension of the format indicated by the first bytes; empty if it is
+/// neither PNG nor JPEG.
 std::string format_hint(std::span<const std::byte> encoded) {
     const auto starts_with = [&](std::initializer_list<int> magic) {
         return encoded.size() >= magic.size() &&
@@ -72,7 +73,7 @@ std::string format_hint(std::span<const std::byte> encoded) {
 
 PixelImage read_image(const std::filesystem::path& file) {
     std::error_code status;
-    // A pipe or device under a picture's name would block the reader.
+    // A pipe or device under an image's name would block the reader.
     if (!std::filesystem::is_regular_file(file, status)) {
         throw IoError(file.string() + ": no such image file; check the name");
     }
@@ -115,7 +116,7 @@ bool has_header_of(const std::filesystem::path& file, const ImageLayout& layout,
     }
     const OIIO::ImageSpec& spec = input->spec();
     const PixelWindow window{spec.x, spec.y, spec.x + spec.width, spec.y + spec.height};
-    // Readers put the channels in an order of their own.
+    // Readers may reorder the channels.
     if (window != layout.window || spec.full_width != layout.width ||
         spec.full_height != layout.height ||
         !std::ranges::is_permutation(spec.channelnames, layout.channel_names))

@@ -20,8 +20,8 @@ namespace {
     throw IoError(fmt::format("{}: cannot write: {}; is the disk full?", file.string(), why));
 }
 
-/// A file that remembers whether all of it could be written. The library's own reports success when
-/// the disk is full: always for PNG, and for what is written last in EXR.
+/// A file that records whether all of it could be written. The library's own reports success when
+/// the disk is full: always for PNG, and for the last bytes written to an EXR.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
   public:
     explicit CheckedFile(const std::filesystem::path& path)
@@ -34,7 +34,7 @@ class CheckedFile final : public OIIO::Filesystem::IOProxy {
         const auto count = static_cast<std::streamsize>(size);
         return stream_.write(static_cast<const char*>(bytes), count) ? size : 0;
     }
-    /// Closes the file; true if it is whole.
+    /// Closes the file; true if it is complete.
     bool finish() {
         stream_.close();
         return stream_.good();
@@ -58,7 +58,7 @@ void write_whole(const std::filesystem::path& file, const char* format, const OI
     const std::string error = output->geterror();
     const bool whole = checked.finish();
     if (!written || !closed) fail(file, error);
-    if (!whole) fail(file, "a part was not taken");
+    if (!whole) fail(file, "some of the data was rejected");
     atomic.commit();
 }
 
@@ -75,7 +75,7 @@ void write_exr(const std::filesystem::path& file, const Film& film, const ImageM
     spec.full_width = film.width();
     spec.full_height = film.height();
     spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "");  // not the clock's: the same scene gives the same bytes
+    spec.attribute("DateTime", "");  // no timestamp: the same scene gives the same bytes
     for (const auto& [name, value] : metadata) {
         if (const auto* text = std::get_if<std::string>(&value)) {
             spec.attribute(name, *text);

@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-/// One suffix per band: R, G, B or the wavelengths, with as many digits as tell them apart.
+/// One suffix per band: R, G, B or the wavelengths, with enough digits to distinguish them.
 std::vector<std::string> band_suffixes(std::span<const double> bands_nm) {
     if (bands_nm.size() == 3) return {"R", "G", "B"};
     constexpr int k_digits_of_double = 17;
@@ -36,7 +36,7 @@ std::vector<std::string> band_suffixes(std::span<const double> bands_nm) {
         }
         if (std::set(names.begin(), names.end()).size() == names.size()) return names;
     }
-    throw InputError("water.bands: a wavelength stands there twice; leave one out");
+    throw InputError("water.bands: a wavelength occurs twice; remove one");
 }
 
 std::optional<std::size_t> find_layer(std::string_view name) {
@@ -45,14 +45,15 @@ std::optional<std::size_t> find_layer(std::string_view name) {
     return static_cast<std::size_t>(found - k_layers.begin());
 }
 
-/// Every word that --layers takes, for the message about one that it does not.
+/// Every word that --layers accepts, for the message about an unknown one.
 std::string mend_of(std::string_view item) {
     std::vector<std::string_view> words{"all", "default", "lamps", "lamp.<name>"};
     for (const LayerKind& layer : k_layers) words.push_back(layer.name);
     return suggestion(item, words);
 }
 
-/// A lamp becomes part of a channel's name: readers end it at NUL, terminals break at controls.
+/// A lamp's name becomes part of a channel name: readers end it at NUL, and control characters
+/// corrupt terminals.
 void check_lamp_name(const std::string& name) {
     const auto is_control = [](char c) {
         const auto byte = static_cast<unsigned char>(c);
@@ -68,7 +69,7 @@ void check_lamp_name(const std::string& name) {
 
 }  // namespace
 
-/// What --layers asks for.
+/// The layers requested by --layers.
 struct LayerPlan::Selection {
     std::array<bool, k_layer_count> layers{};
     std::vector<bool> lamps;

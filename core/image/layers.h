@@ -11,7 +11,7 @@ namespace uw {
 
 /// The layers of an image (docs: image layers) besides the colour R G B A, in the order in which
 /// their channels are stored. Each has a line in k_layers, and one in k_pixel_layers
-/// (core/frame/pixel_layers.h), which says what of a pixel it holds.
+/// (core/frame/pixel_layers.h), which defines how it is filled from a pixel.
 enum class Layer {
     total,
     direct,
@@ -30,15 +30,15 @@ enum class Layer {
     normal,
     position,
     id,
-    count,  // none: how many there are
+    count,  // not a layer: the number of layers
 };
 inline constexpr auto k_layer_count = static_cast<std::size_t>(Layer::count);
 
-/// A layer as files and --layers know it.
+/// A layer's name in files and --layers.
 struct LayerKind {
     Layer layer;
     std::string_view name;
-    std::string_view suffixes;  // one channel for each letter; one for each band if empty
+    std::string_view suffixes;  // one channel per letter; one per band if empty
 };
 
 /// Every layer, in the order of Layer.
@@ -62,7 +62,7 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::id, "id", "V"},
 }};
 
-/// Whether a table with a line for each layer has them all, in their order.
+/// Whether a table holds one line for every layer, in order.
 template <class Line>
 constexpr bool has_every_layer(const std::array<Line, k_layer_count>& table) {
     for (std::size_t i = 0; i < table.size(); ++i)
@@ -74,30 +74,30 @@ static_assert(has_every_layer(k_layers));
 /// Which channels an image has, what they are called, and where each layer begins.
 ///
 /// The first four channels are always R, G, B, A. Layers of one value per band are named
-/// `direct.R`, `direct.G`, `direct.B` with three bands and `direct.540nm` with any other number;
-/// the point of a fraction is written as an underscore (`direct.540_5nm`), since readers take what
-/// stands before the last point for the layer. Then the total per band is a layer of its own,
-/// `total`; with three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`,
-/// `normal.X .Y .Z`, `position.X .Y .Z`, `id.V`. A lamp's own light is `lamp.<name>.R` and so on.
+/// `direct.R`, `direct.G`, `direct.B` with three bands and `direct.540nm` with any other number; a
+/// decimal point is written as an underscore (`direct.540_5nm`), since readers take everything
+/// before the last point as the layer. Then the total per band is a layer of its own, `total`; with
+/// three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`, `normal.X .Y .Z`,
+/// `position.X .Y .Z`, `id.V`. A lamp's own light is `lamp.<name>.R` and so on.
 class LayerPlan {
   public:
-    /// `request` is what --layers was given: layers separated by commas, among them `lamps` for
-    /// every lamp, `lamp.<name>` for one, `all`, and `default` for everything but the lamps. Empty
-    /// is `default`. Order and repetition do not matter.
-    /// Throws UsageError for an unknown layer or lamp, or one that is not supported yet;
-    /// InputError if bands or lamps cannot be told apart by name or a lamp's name is no channel's.
+    /// `request` is the argument of --layers: comma-separated layers, including `lamps` for every
+    /// lamp, `lamp.<name>` for one, `all`, and `default` for everything but the lamps. Empty means
+    /// `default`. Order and repetition do not matter. Throws UsageError for an unknown layer or
+    /// lamp, or one that is not supported yet; InputError if bands or lamps cannot be distinguished
+    /// by name or a lamp's name is not valid in a channel name.
     LayerPlan(std::string_view request, std::span<const double> bands_nm,
               std::span<const std::string> lamp_names);
 
-    /// Every channel by its name in the file, in order.
+    /// The names of all channels in the file, in order.
     const std::vector<std::string>& channel_names() const { return channel_names_; }
 
-    /// Index of the layer's first channel; its others follow. -1 if it was not asked for.
+    /// Index of the layer's first channel; its others follow. -1 if it was not requested.
     int first_channel(Layer layer) const { return first_[static_cast<std::size_t>(layer)]; }
     bool has(Layer layer) const { return first_channel(layer) >= 0; }
-    /// Likewise for the light of one lamp, by its index in the scene.
+    /// The same for the light of one lamp, by its index in the scene.
     int first_channel_of_lamp(std::size_t lamp) const { return first_of_lamp_[lamp]; }
-    /// Whether the light of any lamp was asked for by itself.
+    /// Whether the light of any single lamp was requested.
     bool has_lamps() const;
 
     /// The layer's channels among all those of a pixel. Precondition: has(layer).
@@ -106,7 +106,7 @@ class LayerPlan {
         return pixel.subspan(static_cast<std::size_t>(first_channel(layer)),
                              suffixes == 0 ? band_count_ : suffixes);
     }
-    /// Likewise those of one lamp's light; none if it was not asked for.
+    /// The same for one lamp's light; empty if it was not requested.
     std::span<float> lamp_channels(std::size_t lamp, std::span<float> pixel) const {
         const int begin = first_channel_of_lamp(lamp);
         if (begin < 0) return {};

@@ -12,16 +12,15 @@ namespace uw {
 /// An 8-bit sRGB colour: red, green, blue.
 using Srgb8 = std::array<std::uint8_t, 3>;
 
-/// An image for viewing. Of a film it shows the window only.
+/// An image for viewing; for a film, its window only.
 using Preview = Grid2D<Srgb8>;
 
-/// The factor that brings the brighter parts of the film to a luminance of 0.8: their 99th
-/// percentile over the pixels with a ray (alpha > 0) and finite values, or the brightest pixel
-/// where fewer than 1 % are not black. Empty if all are: the caller should say that the image is
-/// black.
+/// The factor that brings the brighter parts of the film to a luminance of 0.8: the 99th percentile
+/// over the pixels with a ray (alpha > 0) and finite values, or the brightest pixel if fewer than 1
+/// % are not black. Empty if all are black, which the caller should report.
 std::optional<double> automatic_exposure(const Film& film);
 
-/// R, G and B times `exposure` as sRGB. Negative values, NaN and pixels without a ray are black.
+/// R, G and B times `exposure` as sRGB. Negative values, NaN and pixels without a ray become black.
 Preview make_preview(const Film& film, double exposure);
 
 }  // namespace uw

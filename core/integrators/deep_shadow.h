@@ -7,19 +7,20 @@
 
 namespace uw {
 
-/// What one lamp's light meets on its way: visibility and column concentrations, splatted ahead
-/// of time so that integrators need not trace. Thread safe.
+/// Visibility and column concentrations along the light paths of one lamp, precomputed by splatting
+/// so that integrators need not trace shadow rays. Thread safe.
 class DeepShadow {
   public:
     virtual ~DeepShadow() = default;
 
-    /// The parts of a stretch of `ray` that the lamp sees, ascending and disjoint. Precondition:
-    /// the stretch lies in the lamp's beam (Lamp::beam); elsewhere the map is empty.
+    /// The parts of the interval `stretch` of `ray` that the lamp illuminates, ascending and
+    /// disjoint. Precondition: the interval lies within the lamp's beam (Lamp::beam); elsewhere the
+    /// map is empty.
     virtual void lit_intervals(const Ray& ray, const Interval& stretch,
                                std::vector<Interval>& lit) const = 0;
 
-    /// Appends distances along `ray` inside `interval` such that between neighbours the lamp's
-    /// columns are close to linear. None where the light has met no grid.
+    /// Appends distances along `ray` inside `interval` between which the lamp's columns are nearly
+    /// linear; nothing where its light has crossed no grid.
     virtual void append_column_breaks(const Ray& ray, const Interval& interval,
                                       std::vector<double>& s) const = 0;
 

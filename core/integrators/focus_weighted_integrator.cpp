@@ -9,8 +9,8 @@ namespace uw {
 
 namespace {
 
-// Slices from F to where the weight differs from 1 by less than 1e-3. Equal steps of sqrt(F / Z)
-// are small near F, where the weight is steep, and large where it hardly changes.
+// Number of slices from F to where the weight differs from 1 by less than 1e-3. Equal steps of
+// sqrt(F / Z) are small near F, where the weight is steep, and large where it hardly changes.
 constexpr int k_slices = 64;
 
 }  // namespace

@@ -6,11 +6,11 @@
 
 namespace uw {
 
-/// Another integrator's in-scatter with each stretch of water weighted by ((Z - F)/Z)^2, Z its
-/// distance along the ray: the camera's part of equation (18) of Sedlazeck and Koch 2011 that
-/// depends on the slab. The other is asked for its in-scatter in slices that grow from F on,
-/// whatever slabs it sums itself, and each slice is weighted by its middle: exact to 0.1 %.
-/// Surfaces have their weight from SensorModel::surface_factor.
+/// Wraps another integrator and weights the in-scatter of each segment of water by ((Z - F)/Z)^2,
+/// where Z is its distance along the ray: the camera's slab-dependent factor in equation (18) of
+/// Sedlazeck and Koch 2011. The wrapped integrator is evaluated over slices whose thickness grows
+/// from F onwards, independently of any slabs it sums itself, and each slice is weighted at its
+/// midpoint: accurate to 0.1 %. Surfaces get their weight from SensorModel::surface_factor.
 class FocusWeightedIntegrator final : public Integrator {
   public:
     /// `focal_length` F [m], > 0.
@@ -22,11 +22,11 @@ class FocusWeightedIntegrator final : public Integrator {
                          InScatter& result) const override;
 
   private:
-    // The distances and the slices' faces between `begin` and the last of them, ascending.
+    // `distances` merged with the slice boundaries between `begin` and the last of them, ascending.
     void find_stops(double begin, std::span<const double> distances,
                     std::vector<double>& stops) const;
-    // Weights what lies between neighbouring `stops`, up to which `unweighted` holds the
-    // in-scatter, and sums it up to each of `distances`.
+    // Weights the in-scatter between neighbouring `stops`, given cumulatively in `unweighted`, and
+    // sums it up to each of `distances`.
     void weigh(double begin, std::span<const double> stops, const InScatter& unweighted,
                std::span<const double> distances, InScatter& result) const;
 

@@ -12,27 +12,27 @@
 
 namespace uw {
 
-/// What integrators are made from.
+/// The inputs from which integrators are constructed.
 struct IntegratorInputs {
     LitScene scene;
     Affine world_from_camera;
-    Slabs slabs;  // those of `render.planes`
+    Slabs slabs;  // as given by `render.planes`
     RenderDesc::Quality quality = RenderDesc::Quality::final;
     /// One per lamp; may be empty unless IntegratorKind::needs_deep_shadows.
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows;
 };
 
-/// One of the integrators that users choose from (`render.integrator`): what it needs, what it
-/// refuses, and how it is made. Each integrator states its own.
+/// One of the integrators that users can select (`render.integrator`): its requirements, the scenes
+/// it rejects, and its factory. Each integrator defines its own.
 struct IntegratorKind {
-    /// Takes light from deep shadow maps: lamps must be splatted first.
+    /// Reads deep shadow maps: the lamps must be splatted first.
     bool needs_deep_shadows = false;
-    /// Its in-scatter may be interpolated between pixels (InScatterLattice). Not that of
-    /// integrators that are there for comparison: with them every pixel has a ray of its own.
+    /// Its in-scatter may be interpolated between pixels (InScatterLattice). False for the
+    /// integrators that serve for comparison: they integrate every pixel's own ray.
     bool interpolates_between_pixels = false;
-    /// Sums over the slabs of `render.planes`, which are then the slabs of forward scatter, too.
+    /// Sums over the slabs of `render.planes`; forward scatter then uses the same slabs.
     bool sums_slabs = false;
-    /// Throws InputError for a scene that it cannot do.
+    /// Throws InputError for a scene that it cannot render.
     void (*check)(const SceneDesc& scene) = [](const SceneDesc&) {};
     LightTransport (*make)(const IntegratorInputs& inputs) = nullptr;
 };

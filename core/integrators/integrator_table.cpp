@@ -16,7 +16,7 @@ struct Entry {
     const IntegratorKind* kind;
 };
 
-// As long as the list of names: an integrator that is left out does not compile.
+// The same size as the list of names: omitting an integrator is a compile-time error.
 constexpr std::array<Entry, k_integrator_names.size()> k_integrators{
     {{RenderDesc::Integrator::volume, &VolumeIntegrator::k_kind},
      {RenderDesc::Integrator::planes, &PlanesIntegrator::k_kind},

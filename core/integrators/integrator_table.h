@@ -4,8 +4,8 @@
 
 namespace uw {
 
-/// The needs, refusals and factory of an integrator, which users know by its name in
-/// k_integrator_names.
+/// The requirements, checks and factory of an integrator; k_integrator_names holds the names that
+/// users write.
 const IntegratorKind& integrator_kind(RenderDesc::Integrator integrator);
 
 }  // namespace uw

@@ -7,7 +7,7 @@
 
 namespace uw {
 
-/// How the light of a scene's lamps comes to the camera: scattered once by the water, and reflected
+/// The two ways in which lamp light reaches the camera: scattered once by the water, or reflected
 /// by surfaces.
 struct LightTransport {
     std::unique_ptr<const Integrator> integrator;

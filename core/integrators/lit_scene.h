@@ -9,7 +9,7 @@
 
 namespace uw {
 
-/// Everything that integrators work on; all of it outlives them.
+/// Everything that integrators operate on; all of it must outlive them.
 struct LitScene {
     const Medium* medium = nullptr;
     const ConcentrationField* field = nullptr;

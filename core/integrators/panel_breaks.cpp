@@ -18,7 +18,7 @@ const std::vector<double>& PanelBreaks::kept() {
     for (const Candidate& candidate : candidates_) {
         const double since_last = candidate.s - kept_.back();
         if (since_last < candidate.spacing) continue;
-        // An edge takes the place of a mark just before it.
+        // An edge replaces a mark just before it.
         if (candidate.spacing == 0 && since_last < spacing_of_last) kept_.pop_back();
         kept_.push_back(candidate.s);
         spacing_of_last = candidate.spacing;

@@ -37,8 +37,8 @@ constinit const IntegratorKind PlanesIntegrator::k_kind{
 
 struct PlanesIntegrator::Workspace {
     std::vector<Sample> samples;
-    std::vector<Spectrum> radiance;  // of each sample
-    // Of the samples that the lamp lights:
+    std::vector<Spectrum> radiance;  // per sample
+    // For the samples that the lamp illuminates:
     std::vector<std::size_t> lit;
     std::vector<double> path;    // lamp to sample to camera [m]
     std::vector<double> weight;  // relative intensity / R^2 * length [1/m]
@@ -71,9 +71,10 @@ void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
         light_samples(ray, lamps[j], w);
         Spectrum whole;
         std::size_t next = 0;
-        const auto finish = [&](std::size_t until) {  // all whole slabs before these are summed
-            for (; next < until; ++next) result.at(next, j) += whole;
-        };
+        const auto finish =
+            [&](std::size_t until) {  // all whole slabs before these have been summed
+                for (; next < until; ++next) result.at(next, j) += whole;
+            };
         for (std::size_t i = 0; i < w.samples.size(); ++i) {
             const Sample& sample = w.samples[i];
             if (!sample.cut) finish(sample.distance);
@@ -121,7 +122,8 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
         w.lit.push_back(i);
         w.path.push_back(radius + sample.s);
         w.weight.push_back(relative / (radius * radius) * sample.length);
-        // Between the directions of travel, lamp to X and X to camera; atan2 is exact near pi.
+        // Angle between the directions of travel, lamp to X and X to camera; atan2 is accurate near
+        // pi.
         w.psi.push_back(std::atan2(glm::length(glm::cross(ray.direction, from_lamp)),
                                    -glm::dot(ray.direction, from_lamp)));
     }

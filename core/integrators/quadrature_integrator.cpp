@@ -8,8 +8,8 @@ namespace uw {
 
 namespace {
 
-// Panels that the quadrature starts from: finer than a phase function's forward peak is wide where
-// it matters, so that no feature hides between the first nodes.
+// Initial panels of the quadrature: narrower than a phase function's forward peak where it matters,
+// so that no feature is missed between the first nodes.
 constexpr int k_first_panels = 48;
 constexpr int k_deepest_halving = 18;  // 2^-18 of a first panel at a shadow's edge
 
@@ -32,8 +32,8 @@ class QuadratureIntegrator::RayIntegral {
         : owner_(owner), ray_(ray), lamp_(lamp) {
         const Vector3 to_lamp = lamp.position() - ray.origin;
         foot_ = glm::dot(to_lamp, ray.direction);
-        // A ray straight through the lamp has no angle to integrate over; one that just misses it
-        // has.
+        // A ray straight through the lamp has no angle to integrate over, but one that narrowly
+        // misses it does.
         distance_ = std::max(1e-9, glm::length(to_lamp - foot_ * ray.direction));
     }
 
@@ -95,7 +95,7 @@ class QuadratureIntegrator::RayIntegral {
 
     bool is_small(const Spectrum& change, int depth) const {
         for (std::size_t i = 0; i < k_max_bands; ++i) {
-            // The tolerance is shared out evenly over the panels there would be at this depth.
+            // The tolerance is divided evenly among the panels that there would be at this depth.
             if (!(std::abs(change[i]) <=
                   15 * owner_.tolerance_ * scale_[i] / (k_first_panels * std::exp2(0.5 * depth))))
                 return false;

@@ -9,10 +9,10 @@ namespace uw {
 
 namespace {
 
-// Light that has passed this optical depth more than the nearest path adds less than 1e-6.
+// Light whose path exceeds the least optical depth by this much adds less than 1e-6.
 constexpr double k_negligible_optical_depth = 15;
 
-// The stretch of `ray` inside `bounds`; empty (begin > end) where it misses them.
+// The interval of `ray` inside `bounds`; empty (begin > end) if it misses them.
 Interval inside(const Ray& ray, const Bounds& bounds) {
     Interval stretch{0, k_far};
     if (bounds.empty()) return {1, 0};
@@ -79,7 +79,7 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
     const double relative = lamp.relative_intensity(from_lamp);
     if (radius < k_lamp_radius || relative <= 0 || scene_.surfaces->occluded(lamp.position(), x))
         return {};
-    // psi between the directions of travel: w_in = from_lamp, w_out = -ray.direction.
+    // psi is the angle between the directions of travel: w_in = from_lamp, w_out = -ray.direction.
     const double psi = std::atan2(glm::length(glm::cross(from_lamp, ray.direction)),
                                   -glm::dot(from_lamp, ray.direction));
     const std::size_t constituents = medium.constituents.size();

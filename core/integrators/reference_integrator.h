@@ -5,17 +5,17 @@
 
 namespace uw {
 
-/// The slow, obvious integrator that the fast one is judged by: marches each ray in small steps
-/// and, at every sample, traces a shadow ray and integrates exact columns to lamp and camera.
-/// No caches, no deep shadow maps. Physics section 5.
+/// The slow, straightforward integrator against which the fast one is judged: it marches each ray
+/// in small steps and, at every sample, traces a shadow ray and integrates exact columns to the
+/// lamp and the camera. No caches, no deep shadow maps. Physics section 5.
 class ReferenceIntegrator final : public Integrator {
   public:
-    /// For every scene, and for comparison: every pixel by itself.
+    /// For any scene; meant for comparison, so every pixel is integrated by itself.
     static const IntegratorKind k_kind;
 
-    /// `step`: length of a sample relative to its distance from the lamp; samples are never longer
-    /// than a quarter of the finest voxel inside the field's bounds. The error falls as step^2,
-    /// and as step at shadow edges.
+    /// `step`: step length relative to the distance from the lamp; inside the field's bounds, steps
+    /// are never longer than a quarter of the finest voxel. The error falls as step^2, but only as
+    /// step at shadow edges.
     explicit ReferenceIntegrator(const LitScene& scene, double step = 0.005);
 
     void in_scatter(const Ray& ray, std::span<const double> distances,

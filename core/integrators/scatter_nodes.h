@@ -16,7 +16,7 @@ struct ScatterNodes {
     std::vector<double> weight;         // ds * relative intensity / R^2 [1/m]
     std::vector<double> radius;         // distance from the lamp R [m]
     std::vector<double> half_tangent;   // tan(psi / 2) of the scattering angle
-    std::vector<std::size_t> distance;  // index of the first distance asked for beyond the node
+    std::vector<std::size_t> distance;  // index of the first requested distance beyond the node
     std::vector<Point3> position;       // world
     std::vector<double> lamp_column;    // lamp to node, [node * constituents + k]
     // Filled by look_up and evaluate_phases:
@@ -28,24 +28,24 @@ struct ScatterNodes {
     void clear();
     /// Fills column and concentration from the ray's profile and lamp_column.
     void look_up(const ConcentrationProfile& profile);
-    /// Fills phase from half_tangent; `phases` is how many the table has.
+    /// Fills phase from half_tangent; `phases` is the number of phase functions in the table.
     void evaluate_phases(const PhaseTable& table, std::size_t phases);
 };
 
-/// Coefficients of a medium laid out for summing nodes.
+/// Coefficients of a medium, laid out for summation over nodes.
 class ScatterSum {
   public:
     explicit ScatterSum(const Medium& medium);
 
     const AttenuationTable& attenuation() const { return attenuation_; }
 
-    /// Adds intensity * weight * e^-tau * beta(psi) of every node to radiance[node.distance]: the
-    /// in-scatter between the distances before and after it [W m^-2 sr^-1].
+    /// Adds intensity * weight * e^-tau * beta(psi) of every node to radiance[node.distance], which
+    /// collects the in-scatter between the distances before and after the node [W m^-2 sr^-1].
     void add(const ScatterNodes& nodes, const Spectrum& intensity,
              std::span<Spectrum> radiance) const;
 
   private:
-    // Scattering into phase function m by constituent k, or by the uniform water.
+    // Scattering by constituent k, or by the uniform water, with phase function m.
     struct Term {
         std::size_t m;
         std::size_t k;
@@ -57,7 +57,7 @@ class ScatterSum {
 
     AttenuationTable attenuation_;
     std::vector<Spectrum> uniform_;  // b_m [m]
-    std::vector<Term> terms_;        // b*_{k,m} other than 0
+    std::vector<Term> terms_;        // non-zero b*_{k,m}
 };
 
 }  // namespace uw

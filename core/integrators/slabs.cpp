@@ -13,19 +13,19 @@ namespace uw {
 
 namespace {
 
-// Beyond the farthest lamp by so many optical depths, on the way to the camera and as many on the
-// way from the lamp: e^-10 = 5e-5 of the light is left.
+// Optical depths beyond the farthest lamp, both on the way from the lamp and on the way to the
+// camera: e^-10 = 5e-5 of the light is left.
 constexpr double k_reach_optical_depth = 5;
-// The view is surveyed by at most so many rays along each side of the image, edges included.
+// Maximum number of survey rays along each side of the image, edges included.
 constexpr int k_survey_rays = 256;
-// Slabs behind `far` are not more than this in all, whatever their thickness.
+// Upper bound on the number of slabs including those behind `far`, whatever their thickness.
 constexpr double k_most_slabs = 1 << 20;
 
-// What a coarse lattice of rays sees of the water, in camera z [m].
+// The extent of the water seen by a coarse lattice of rays, in camera z [m].
 struct View {
     double near = k_far;  // where it begins
     double deepest = 0;   // of the surfaces
-    bool open = false;    // some ray meets no surface
+    bool open = false;    // some ray hits no surface
 };
 
 View survey(const RaySource& rays, const Surfaces& surfaces) {
@@ -50,13 +50,14 @@ View survey(const RaySource& rays, const Surfaces& surfaces) {
             if (surface <= k_far) view.deepest = std::max(view.deepest, depth.z(surface));
         }
     }
-    // The least z of a flat port is at the image's border, if all of that looks through it.
+    // The least z of a flat port is at the image's border, provided that all border rays pass
+    // through it.
     if (!all_enter) view.near = 0;
-    if (!any_enters) view.open = true;  // a black image all the same
+    if (!any_enters) view.open = true;  // the image is black anyway
     return view;
 }
 
-// Camera z beyond which no lamp's light comes back.
+// Camera z beyond which no significant lamp light returns.
 double reach(const RaySource& rays, const LitScene& scene, double near) {
     const AttenuationTable attenuation(*scene.medium);
     const double least_c =
@@ -81,8 +82,8 @@ Slabs place_slabs(const PlanesDesc& desc, const RaySource& rays, const LitScene&
     slabs.count = desc.count;
     if (slabs.far <= view.near || slabs.near >= seen)
         throw InputError(fmt::format(
-            "{}: the slabs from z = {:.6g} m to {:.6g} m hold no water that is seen: it lies from "
-            "{:.6g} m to {:.6g} m; give near and far around it, or leave them out",
+            "{}: the slabs from z = {:.6g} m to {:.6g} m contain no visible water: it lies from "
+            "{:.6g} m to {:.6g} m; choose near and far around it, or omit them",
             desc.where, slabs.near, slabs.far, view.near, seen));
     if (!desc.far) {
         const double count = std::ceil((last - slabs.near) / slabs.thickness());

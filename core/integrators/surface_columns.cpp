@@ -11,9 +11,10 @@ namespace uw {
 
 namespace {
 
-// Nodes farther than this many voxels from a sample are of no use for it.
+// Nodes farther than this many voxels from a sample are not used for it.
 constexpr double k_near_voxels = 4;
-// A surface may lie this many voxels before or behind what is interpolated between its nodes.
+// A surface may lie this many voxels in front of or behind the position interpolated between its
+// nodes.
 constexpr double k_step_voxels = 0.5;
 
 int pixel(double position) {
@@ -46,7 +47,7 @@ void SurfaceColumns::place_nodes() {
         y1_ = std::max(y1_, pixel(sample->y));
         positions_.push_back(sample->hit.position);
     }
-    // The last pixels have nodes too, however near the ones before are.
+    // The last pixels have nodes too, however close the preceding ones are.
     const int columns = (x1_ - x0_ + k_spacing - 1) / k_spacing + 1;
     const int rows = (y1_ - y0_ + k_spacing - 1) / k_spacing + 1;
     nodes_.assign(columns, rows);

@@ -13,28 +13,28 @@
 
 namespace uw {
 
-/// How the columns of surfaces side by side are interpolated instead of integrated one by one.
+/// How columns of neighbouring surface samples are interpolated rather than integrated one by one.
 struct ColumnMixing {
     const std::vector<std::shared_ptr<const DeepShadow>>* deep_shadows = nullptr;  // by lamp
-    /// Largest error of a path's transmittance (0..1) allowed, of an interpolated column against
-    /// the exact one halfway between the samples around; 0 integrates every column.
+    /// Largest permitted error in a path's transmittance (0..1), measured between the interpolated
+    /// and the exact column halfway between the surrounding samples; 0 integrates every column.
     double tolerance = 0;
 };
 
-/// Column concentrations between the surfaces of a tile and the camera or a lamp. Every fourth
-/// sample across and down has exact ones (a node). Between four nodes columns are interpolated
-/// where the sample in the middle confirms that; elsewhere all are exact. Towards a lamp it is the
-/// error of its deep shadow map that is interpolated, since that has the shape already; towards the
-/// camera the columns themselves, corrected by the concentration at the surface for how much nearer
-/// or farther it is. Reused between tiles.
+/// Column concentrations between the surfaces of a tile and the camera or a lamp. They are exact at
+/// every fourth sample across and down (a node). Between four nodes they are interpolated if the
+/// sample at the centre confirms the interpolation; otherwise all are exact. Towards a lamp, the
+/// error of its deep shadow map is interpolated, since the map already captures the shape; towards
+/// the camera, the columns themselves, corrected to first order for differences in distance with
+/// the concentration at the surface. Reused between tiles.
 class SurfaceColumns {
   public:
-    /// All of it outlives the columns until the next call. The samples' image positions lie in one
+    /// All arguments must stay valid until the next call. The samples' image positions lie in one
     /// tile.
     void begin(const LitScene& scene, const AttenuationTable& attenuation,
                const ColumnMixing& mixing, std::span<const SurfaceSample* const> samples);
 
-    /// Chooses the other end of the paths.
+    /// Selects the other end of the paths.
     void take_camera() { take(k_camera); }
     void take_lamp(std::size_t lamp) { take(static_cast<int>(lamp)); }
 
@@ -48,7 +48,7 @@ class SurfaceColumns {
 
     struct Node {
         std::size_t sample = k_none;
-        bool known = false;  // for the path in question
+        bool known = false;  // for the current path
     };
     struct Cell {
         std::size_t middle = k_none;  // sample
@@ -61,7 +61,7 @@ class SurfaceColumns {
     const double* node_column(std::size_t node);
     std::size_t cell_of(const SurfaceSample& sample) const;
     bool confirmed(std::size_t cell);
-    // False where the nodes around see something else.
+    // False if the surrounding nodes see something else.
     bool mix(std::size_t sample, std::size_t cell, std::span<double> column);
 
     const LitScene* scene_ = nullptr;
@@ -75,9 +75,9 @@ class SurfaceColumns {
     bool mixed_ = false;
     int x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;  // first and last pixels of the tile
     Grid2D<Node> nodes_;
-    Grid2D<Cell> cells_;                 // each at the place of its first node
-    std::vector<double> node_columns_;   // exact, from a lamp less the deep shadow map's
-    std::vector<double> field_columns_;  // the deep shadow map's, of all samples
+    Grid2D<Cell> cells_;                 // indexed by their first node
+    std::vector<double> node_columns_;   // exact; for a lamp, minus those of its deep shadow map
+    std::vector<double> field_columns_;  // from the deep shadow map, for all samples
     std::vector<Point3> positions_;
     std::vector<double> mixture_, exact_;
 };

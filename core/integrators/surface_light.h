@@ -9,11 +9,11 @@
 
 namespace uw {
 
-/// Light of every lamp on surface points, and the transmittance of the water on its way there and
-/// from there to the camera.
+/// Light of every lamp on surface points, and the transmittance of the water from the lamps to the
+/// points and from there to the camera.
 class SurfaceLight {
   public:
-    /// Makes all of it dark. `lamps` outlive the light.
+    /// Resets everything to dark. `lamps` must outlive this object.
     void reset(std::size_t samples, const std::vector<Lamp>& lamps, std::size_t bands) {
         lamps_ = &lamps;
         bands_ = bands;
@@ -26,7 +26,7 @@ class SurfaceLight {
     bool visible(std::size_t sample, std::size_t lamp) const {
         return geometry_term(sample, lamp) > 0;
     }
-    /// Irradiance as it would be without water [W/m^2].
+    /// Irradiance in the absence of water [W/m^2].
     double clean(std::size_t sample, std::size_t lamp, std::size_t band) const {
         return (*lamps_)[lamp].axis_intensity()[band] * geometry_term(sample, lamp);
     }
@@ -37,10 +37,10 @@ class SurfaceLight {
     /// e^-tau per band from the sample to its ray's origin.
     std::span<const double> to_camera(std::size_t sample) const { return row(sample, 0); }
 
-    // For SurfaceLighting, which fills it in:
+    // For SurfaceLighting, which fills in the values:
 
     /// Irradiance without water for 1 W/sr on the lamp's axis [1/m^2]: relative intensity times
-    /// cosine over squared distance, 0 where the lamp is hidden or behind the surface.
+    /// cosine over squared distance; 0 where the lamp is occluded or behind the surface.
     double& geometry_term(std::size_t sample, std::size_t lamp) {
         return geometry_terms_[sample * lamp_count() + lamp];
     }
@@ -48,14 +48,14 @@ class SurfaceLight {
         return geometry_terms_[sample * lamp_count() + lamp];
     }
     std::span<double> to_camera(std::size_t sample) { return row(sample, 0); }
-    /// e^-tau per band from the lamp to the sample; meaningless where it is not visible.
+    /// e^-tau per band from the lamp to the sample; undefined where the lamp is not visible.
     std::span<double> from_lamp(std::size_t sample, std::size_t lamp) {
         return row(sample, 1 + lamp);
     }
     std::span<const double> from_lamp(std::size_t sample, std::size_t lamp) const {
         return row(sample, 1 + lamp);
     }
-    /// All transmittances, to be worked on at once.
+    /// All transmittances, for processing in bulk.
     std::span<double> transmittances() { return transmittances_; }
 
   private:

@@ -9,7 +9,7 @@ namespace uw {
 
 namespace {
 
-/// The samples that one lamp may reach: they face it, within its beam.
+/// The samples that one lamp may illuminate: they face it and lie within its beam.
 struct Facing {
     std::vector<std::size_t> samples;
     std::vector<Point3> positions;
@@ -24,7 +24,8 @@ struct Facing {
         for (std::size_t i = 0; i < all.size(); ++i) {
             const SurfaceHit& hit = all[i]->hit;
             const Vector3 to_lamp = lamp.position() - hit.position;
-            // The true surface decides what a lamp can reach; the shading normal only shades.
+            // The geometric normal decides what a lamp can illuminate; the shading normal only
+            // affects shading.
             const double towards = glm::dot(hit.normal, to_lamp);
             if (towards <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
             const double relative = lamp.relative_intensity(-to_lamp);
@@ -57,7 +58,7 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
     thread_local SurfaceColumns columns;
     column.resize(attenuation_.constituents.size());
     light.reset(samples.size(), *scene_.lamps, bands);
-    // Optical depths first; all become transmittances at once.
+    // Compute optical depths first; all are converted to transmittances at once.
     const auto set_depths = [&](std::size_t sample, double length, std::span<double> depths) {
         columns.column(sample, column);
         for (std::size_t b = 0; b < bands; ++b)

@@ -11,16 +11,16 @@
 
 namespace uw {
 
-/// Finds the light of every lamp that falls on surfaces, and what the water leaves of it (physics
+/// Computes the light of every lamp incident on surfaces and its attenuation by the water (physics
 /// section 5, `direct`). Thread safe.
 class SurfaceLighting {
   public:
     virtual ~SurfaceLighting() = default;
 
-    /// Light on each of `samples`; faster for many at once that are seen side by side.
+    /// Light on each of `samples`; faster for batches of neighbouring samples.
     virtual void evaluate(std::span<const SurfaceSample* const> samples,
                           SurfaceLight& light) const = 0;
-    /// Light on one.
+    /// Light on a single sample.
     void evaluate_one(const SurfaceSample& sample, SurfaceLight& light) const {
         const SurfaceSample* const one = &sample;
         evaluate(std::span(&one, 1), light);
@@ -28,14 +28,14 @@ class SurfaceLighting {
 };
 
 /// One exact shadow ray for each lamp that a surface faces. Columns are exact too, or interpolated
-/// between those of neighbours (SurfaceColumns). The columns of the deep shadow maps alone would
-/// not do: each point of a surface shows a single column, and so the error of its interpolation.
+/// between neighbours (SurfaceColumns). The deep shadow maps' columns alone would not suffice: each
+/// surface point depends on a single column, so its interpolation error would be visible.
 class DirectLighting final : public SurfaceLighting {
   public:
     /// With exact columns.
     explicit DirectLighting(const LitScene& scene) : DirectLighting(scene, {}, 0) {}
-    /// With columns interpolated to `column_tolerance` (ColumnMixing). `deep_shadows`: one per lamp
-    /// unless the tolerance is 0.
+    /// With columns interpolated to within `column_tolerance` (ColumnMixing). `deep_shadows`: one
+    /// per lamp unless the tolerance is 0.
     DirectLighting(const LitScene& scene,
                    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                    double column_tolerance);

@@ -9,18 +9,19 @@ namespace uw {
 
 namespace {
 
-// A Gauss panel may change the optical depth of the whole light path by this much: with three
-// nodes e^-x over [0, 1.5] is then exact to 1e-5.
+// Greatest change in the optical depth of the whole light path across a Gauss panel: three nodes
+// integrate e^-x over [0, 1.5] to 1e-5.
 constexpr double k_panel_optical_depth = 1.5;
-// What lies this many optical depths behind the nearest light path adds less than 1e-6 of it.
+// Light whose path exceeds the least optical depth by this much adds less than 1e-6 of the total.
 constexpr double k_negligible_optical_depth = 15;
 
-// A break that only marks a change of scale is left out where the one before it is nearer than
-// this, relative to the distance from the lamp.
+// A break that only marks a change of scale is dropped if its predecessor is closer than this,
+// relative to the distance from the lamp.
 constexpr double k_least_relative_panel = 0.35;
 
-// By quality: drafts have more voxels to a panel than the usual two, and the error of a surface's
-// transmittance by interpolated columns is far below what an eye or a camera of 12 bits can see.
+// Parameters by quality: drafts have more than the usual two voxels per panel, and the
+// transmittance error of surfaces due to interpolated columns is far below what the eye or a 12-bit
+// camera can resolve.
 constexpr int k_draft_voxels_per_panel = 6;
 constexpr double k_column_tolerance = 1e-3;
 constexpr double k_draft_column_tolerance = 0.01;
@@ -37,18 +38,18 @@ std::vector<double> cotangents_of_breakpoints(const Medium& medium) {
     return all;
 }
 
-// How many Gauss nodes a panel needs: by how much R changes across it, relative to itself.
+// Number of Gauss nodes for a panel, from the relative change of R across it.
 int node_count(double length, double nearest_radius) {
     if (length < 0.12 * nearest_radius) return 2;
     return length < 0.35 * nearest_radius ? 3 : 4;
 }
 
-// One stretch between two breaks, and what holds all over it.
+// One segment between two breaks, and its properties.
 struct Panel {
     Interval stretch;
     int pieces = 1;            // equal parts, each with its own nodes
-    bool evenly = false;       // the lamp shines as on its axis
-    std::size_t distance = 0;  // index of the first distance asked for that lies beyond it
+    bool evenly = false;       // the relative intensity is 1 throughout
+    std::size_t distance = 0;  // index of the first requested distance beyond it
 };
 
 void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, const Panel& panel,
@@ -73,8 +74,8 @@ void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, con
     }
 }
 
-// Adds the knots of a profile, which follow each other from voxel to voxel: every `voxels` one, and
-// where particles begin and end.
+// Adds a profile's knots, which are spaced by voxels: every `voxels`-th one, and those where
+// particles begin and end.
 void add_knots(const ConcentrationProfile& profile, int voxels, PanelBreaks& breaks) {
     const auto pace = static_cast<std::size_t>(voxels);
     const double least_knots = voxels - 0.1;
@@ -213,7 +214,8 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         const double middle = 0.5 * (panel.begin + panel.end);
         if (panel.length() <= 1e-12 * (1 + middle)) continue;
         if (passage.radius(middle) < k_lamp_radius) continue;
-        // A panel lies between the edges of the lamp's cone: dark in the middle is dark all over.
+        // A panel lies between the edges of the lamp's cone: dark at the midpoint means dark
+        // throughout.
         const double relative = source.relative_intensity(ray.at(middle) - source.position());
         if (relative == 0) continue;
         while (next + 1 < distances.size() && distances[next] < middle) ++next;

@@ -10,16 +10,16 @@
 
 namespace uw {
 
-/// Deterministic quadrature of single scattering (physics section 5) on light splatted ahead of
-/// time: Gauss rules on panels that follow the lamp's octaves, the phase functions' breakpoints,
-/// lit intervals, voxels and the lamp's columns.
+/// Deterministic quadrature of single scattering (physics section 5) over precomputed (splatted)
+/// light: Gauss rules on panels that follow octaves of the distance to the lamp, the phase
+/// functions' breakpoints, lit intervals, voxels and the lamp's columns.
 class VolumeIntegrator final : public Integrator {
   public:
     /// For every scene whose lamps have been splatted.
     static const IntegratorKind k_kind;
 
-    /// `deep_shadows`: one per lamp of `scene`. `voxels_per_panel`: how finely what varies from
-    /// voxel to voxel is followed, each panel having two nodes at least; many are for drafts.
+    /// `deep_shadows`: one per lamp of `scene`. `voxels_per_panel`: how finely variation between
+    /// voxels is resolved, with at least two nodes per panel; large values are for drafts.
     VolumeIntegrator(const LitScene& scene,
                      std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                      int voxels_per_panel = 2);

@@ -10,7 +10,7 @@ namespace uw {
 CosineProfile::CosineProfile(const CosineProfileDesc& desc, const LampPlacement& placement)
     : axis_(placement.axis()),
       exponent_(std::log(0.5) / std::log(std::cos(glm::radians(0.5 * desc.fwhm)))) {
-    // A cosine beam is smooth but may be narrow: cones of equal intensity follow it.
+    // A cosine beam is smooth but may be narrow: break at cones of equal intensity.
     for (const double level : {0.95, 0.75, 0.5, 0.25, 0.1, 0.03, 0.003, 1e-4})
         cones_.push_back(std::pow(level, 1 / exponent_));
 }

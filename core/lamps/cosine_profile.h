@@ -24,14 +24,14 @@ class CosineProfile {
     double solid_angle() const;
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return false; }
-    /// All directions: a half space is no cone worth a search of its own.
+    /// All directions: a half-space is too wide to be worth restricting the search.
     DirectionCone cone() const { return {axis_, -1}; }
     void append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const;
 
   private:
     Vector3 axis_;
     double exponent_;            // m
-    std::vector<double> cones_;  // cosines of the cones that break the profile
+    std::vector<double> cones_;  // cosines of the cones at which the profile has breaks
 };
 
 inline CosineProfile make_profile(const CosineProfileDesc& desc, const LampPlacement& placement,

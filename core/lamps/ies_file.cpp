@@ -17,7 +17,7 @@ namespace uw {
 namespace {
 
 constexpr std::size_t k_largest_file = std::size_t{4} << 20;
-constexpr std::size_t k_most_candelas = 1'100'000;  // a quarter of a degree both ways
+constexpr std::size_t k_most_candelas = 1'100'000;  // a quarter of a degree in both angles
 
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view k_blank = " \t\r";
@@ -33,7 +33,7 @@ std::string upper_case(std::string_view text) {
     return upper;
 }
 
-/// The lines and numbers of the text, one after the other.
+/// Reads the lines and numbers of the text in sequence.
 class IesText {
   public:
     IesText(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {}
@@ -53,9 +53,9 @@ class IesText {
         return trimmed(whole);
     }
 
-    /// Whether another number follows; numbers stand between blanks, commas and line ends.
+    /// Whether another number follows; numbers are separated by blanks, commas and line ends.
     bool has_number() {
-        constexpr std::string_view k_between = " \t\r\n,\x1A";  // ^Z ends files of DOS
+        constexpr std::string_view k_between = " \t\r\n,\x1A";  // ^Z ends DOS files
         while (!rest_.empty() && k_between.find(rest_.front()) != std::string_view::npos) {
             if (rest_.front() == '\n') ++line_;
             rest_.remove_prefix(1);
@@ -81,7 +81,7 @@ class IesText {
         return value;
     }
 
-    /// A count of numbers that follow: no more than the rest of the text can hold.
+    /// A count of numbers to follow: at most what the rest of the text can hold.
     std::size_t count(std::string_view what) {
         const double value = number(what);
         const double most = 0.5 * static_cast<double>(rest_.size()) + 1;
@@ -122,7 +122,7 @@ int year_of(std::string_view first_line) {
     return 2002;
 }
 
-/// What stands behind TILT=, in upper case; reads up to and with its line.
+/// The text after TILT=, in upper case; reads up to and including its line.
 std::string read_header(IesText& text, IesFile& file) {
     const std::string_view first = text.line();
     file.year = year_of(first);
@@ -133,7 +133,7 @@ std::string read_header(IesText& text, IesFile& file) {
         if (text.at_end())
             text.fail(
                 "there is no line 'TILT=': this is no IES file (LM-63); EULUMDAT (.ldt) and "
-                "others must be converted first");
+                "other formats must be converted first");
         line = text.line();
     }
 }
@@ -141,7 +141,7 @@ std::string read_header(IesText& text, IesFile& file) {
 void read_tilt(IesText& text, std::string_view tilt, IesFile& file) {
     if (trimmed(tilt) == "NONE") return;
     file.warnings.push_back(fmt::format(
-        "{}: its TILT factors, by which a lamp is dimmer in another attitude, are not applied",
+        "{}: its TILT factors, by which a lamp dims in other orientations, are not applied",
         text.name()));
     if (trimmed(tilt) != "INCLUDE") return;
     text.number("the lamp's orientation");
@@ -150,7 +150,8 @@ void read_tilt(IesText& text, std::string_view tilt, IesFile& file) {
     for (std::size_t i = 0; i < pairs; ++i) text.non_negative("a TILT factor");
 }
 
-/// The ten numbers of the first line and three of the second; the factor on all candelas.
+/// Reads the ten numbers of the first line and three of the second; returns the factor on all
+/// candelas.
 double read_factors(IesText& text, IesFile& file, std::size_t& polar, std::size_t& planes) {
     const double lamps = text.non_negative("the number of lamps");
     const double lumens = text.number("the lumens per lamp");
@@ -170,8 +171,8 @@ double read_factors(IesText& text, IesFile& file, std::size_t& polar, std::size_
     for (const char* const what : {"the type of units", "the width", "the length", "the height"})
         text.number(what);
     factor *= text.non_negative("the ballast factor");
-    const double second = text.non_negative("the number behind the ballast factor");
-    // The ballast-lamp factor of the older standards; later ones keep the place for future use.
+    const double second = text.non_negative("the number after the ballast factor");
+    // The ballast-lamp factor of the older standards; reserved for future use in later ones.
     if (file.year <= 1991) factor *= second;
     text.number("the input watts");
     return factor;
@@ -190,7 +191,7 @@ void check_ranges(const IesText& text, IesFile& file) {
     const double widest_gap = 2 * (file.planes[1] - begin);
     const bool known =
         (begin == 0 && (end == 90 || end == 180 || end == 360)) || (begin == 90 && end == 270);
-    // Some files leave out 360 degrees, which are 0 degrees again.
+    // Some files omit 360 degrees, which equals 0 degrees.
     if (!known && (begin != 0 || end <= 180 || 360 - end > widest_gap))
         text.fail(
             fmt::format("its horizontal angles go from {} to {}; of type C they go from 0 to 0, "
@@ -223,7 +224,7 @@ IesFile parse_ies(std::string_view content, const std::string& name) {
         text.fail("all candelas are 0: this luminaire is dark; check the file and its multiplier");
     if (text.has_number())
         file.warnings.push_back(
-            text.name() + ": goes on behind the candelas it announces; what follows is not read");
+            text.name() + ": continues after the candelas it announces; the rest is not read");
     return file;
 }
 

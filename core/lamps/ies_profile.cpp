@@ -12,7 +12,7 @@ namespace uw {
 
 namespace {
 
-// Lumens in a file are of the bare lamps: the luminaire may keep much for itself, but gives no
+// Lumens in a file are those of the bare lamps: the luminaire may absorb much of them, but emits no
 // more.
 constexpr double k_flux_tolerance = 0.01;
 constexpr double k_least_efficiency = 0.1;
@@ -47,7 +47,7 @@ IesProfile::IesProfile(const IesProfileDesc& desc, const LampPlacement& placemen
     const Vector3 x(1, 0, 0), y(0, 1, 0);
     const Vector3& reference = glm::length(glm::cross(direction, x)) > 1e-6 ? x : y;
     const Vector3 towards = glm::normalize(reference - glm::dot(reference, direction) * direction);
-    // Zenith, the other end of the luminaire's axis, is z of a right-handed system.
+    // The zenith, the opposite end of the luminaire's axis, is z of a right-handed system.
     const Vector3 across = glm::cross(-direction, towards);
     const double turn = glm::radians(desc.rotate), tilt = glm::radians(desc.tilt);
     const Vector3 turned = std::cos(turn) * towards + std::sin(turn) * across;
@@ -57,7 +57,7 @@ IesProfile::IesProfile(const IesProfileDesc& desc, const LampPlacement& placemen
     axis_ = in_world(std::cos(tilt) * direction + std::sin(tilt) * turned);
     zero_ = in_world(std::cos(tilt) * turned - std::sin(tilt) * direction);
     quarter_ = glm::cross(-axis_, zero_);
-    constexpr double k_flat = 1e-6;  // a cone this near to 90 degrees is a plane
+    constexpr double k_flat = 1e-6;  // a cone this close to 90 degrees is treated as a plane
     if (std::abs(cos_dark_) < k_flat) cos_dark_ = -1e-3;
     for (const double azimuth : web_->azimuth_breaks())
         half_planes_.push_back(std::cos(azimuth) * zero_ + std::sin(azimuth) * quarter_);

@@ -14,13 +14,13 @@
 
 namespace uw {
 
-/// The profile of a luminaire whose photometry is known, relative to its brightest direction
+/// The profile of a luminaire given by its photometry, relative to its brightest direction
 /// (IsALampProfile).
 ///
-/// Azimuth 0 lies towards the frame's x (its y, where the lamp shines along x), seen along the
-/// lamp's direction; `rotate` turns it about that direction, `tilt` then takes the luminaire's axis
-/// from there towards it. 90 degrees lie anticlockwise of 0 seen from behind the lamp, as LM-63 has
-/// it.
+/// Azimuth 0 points towards the frame's x axis (its y axis if the lamp shines along x), projected
+/// along the lamp's direction; `rotate` turns it about that direction, then `tilt` tilts the
+/// luminaire's axis from that direction towards it. Azimuth 90 degrees lies anticlockwise of 0 seen
+/// from behind the lamp, as in LM-63.
 class IesProfile {
   public:
     static constexpr std::string_view k_name = "IES luminaire";
@@ -38,15 +38,15 @@ class IesProfile {
 
   private:
     std::shared_ptr<const PhotometricWeb> web_;
-    Vector3 axis_, zero_, quarter_;     // its axis and its azimuths 0 and 90 degrees, across it
-    double cos_dark_;                   // dark outside this angle from the axis
-    std::vector<double> cones_;         // cosines of the cones that break the profile
-    bool breaks_at_equator_ = false;    // the plane across the axis breaks it, too
-    std::vector<Vector3> half_planes_;  // directions across the axis that break the profile
+    Vector3 axis_, zero_, quarter_;   // its axis, and azimuths 0 and 90 degrees perpendicular to it
+    double cos_dark_;                 // dark outside this angle from the axis
+    std::vector<double> cones_;       // cosines of the cones at which the profile has breaks
+    bool breaks_at_equator_ = false;  // whether it also has one at the plane normal to the axis
+    std::vector<Vector3> half_planes_;  // azimuthal directions at which the profile has breaks
 };
 
-/// Reads the file. One whose candelas do not go with its lumens is warned of, one line each. Throws
-/// InputError for a file that is no LM-63, IoError for one that cannot be read.
+/// Reads the file. Adds a one-line warning if its candelas are inconsistent with its lumens. Throws
+/// InputError for a file that is not LM-63, IoError for one that cannot be read.
 IesProfile make_profile(const IesProfileDesc& desc, const LampPlacement& placement,
                         std::vector<std::string>& warnings);
 

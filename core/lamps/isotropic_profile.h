@@ -13,7 +13,7 @@
 
 namespace uw {
 
-/// The profile of a lamp that is as bright in all directions (IsALampProfile).
+/// The profile of a lamp that is equally bright in all directions (IsALampProfile).
 class IsotropicProfile {
   public:
     static constexpr std::string_view k_name = "isotropic";

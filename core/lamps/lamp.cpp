@@ -41,7 +41,7 @@ Interval Lamp::beam(const Ray& ray, const Interval& stretch) const {
     cuts.push_back(stretch.begin);
     cuts.push_back(stretch.end);
     std::sort(cuts.begin(), cuts.end());
-    // No more than the cone is crossed between two cuts: all of it is inside, or none.
+    // The cone is not crossed between two cuts: a segment lies entirely inside or outside.
     Interval lit{stretch.begin, stretch.begin};
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
         const Vector3 middle = ray.at(0.5 * (cuts[i] + cuts[i + 1])) - position_;

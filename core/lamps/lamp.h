@@ -11,8 +11,8 @@
 
 namespace uw {
 
-/// A lamp counts as a sphere this large: no in-scatter is gathered inside, where 1/r^2 of a point
-/// would grow without bound [m].
+/// Radius of the sphere that represents a lamp: no in-scatter is gathered inside, where the 1/r^2
+/// of a point source would grow without bound [m].
 inline constexpr double k_lamp_radius = 1e-3;
 
 /// A point-like lamp in the world: radiant intensity I(w, lambda) = intensity * profile(w) [W/sr].
@@ -24,27 +24,28 @@ class Lamp {
 
     const std::string& name() const { return name_; }
     const Point3& position() const { return position_; }
-    /// Radiant intensity on the axis per band [W/sr]; of an IES profile, where it is brightest.
+    /// Radiant intensity on the axis per band [W/sr]; for an IES profile, in the brightest
+    /// direction.
     const Spectrum& axis_intensity() const { return axis_intensity_; }
-    /// What reports call its profile: "spot".
+    /// The name of its profile in reports: "spot".
     std::string_view profile_name() const;
 
     /// Intensity in the direction of `v` (from the lamp, any length), relative to axis_intensity:
     /// 0..1.
     double relative_intensity(const Vector3& v) const;
-    /// Whether a relative intensity of 1 somewhere means 1 all around, up to a break of the profile
-    /// (append_profile_breaks): the core of a spot.
+    /// Whether a relative intensity of 1 at a point implies 1 everywhere around it, up to the next
+    /// break of the profile (append_profile_breaks): the core of a spot.
     bool has_even_core() const;
 
-    /// Directions beyond which the lamp shines nothing.
+    /// A cone outside which the lamp emits no light.
     DirectionCone cone() const;
 
-    /// The part of a stretch of `ray` outside which the lamp shines nothing; of length 0 where it
-    /// misses the beam. What is left may have dark parts.
+    /// The part of the interval `stretch` of `ray` outside which the lamp emits no light; of length
+    /// 0 where it misses the beam. It may still contain dark parts.
     Interval beam(const Ray& ray, const Interval& stretch) const;
 
-    /// Appends the distances along `ray` where the profile is not smooth or changes much: the edges
-    /// of its beam and cones of equal intensity within.
+    /// Appends the distances along `ray` where the profile is not smooth or changes considerably:
+    /// the edges of its beam and the cones of equal intensity inside.
     void append_profile_breaks(const Ray& ray, std::vector<double>& s) const;
 
   private:

@@ -33,8 +33,7 @@ double peak_candelas(const LampProfile& profile) {
     return *candelas;
 }
 
-// Sets watts per band where the lamp is given by its spectrum, by lumens or by the candelas of its
-// profile.
+// Sets watts per band if the lamp is given by its spectrum, by lumens or by its profile's candelas.
 void resolve_output(LampDesc& desc, const LampProfile& profile, std::span<const double> bands_nm,
                     std::vector<std::string>& warnings) {
     const bool candelas = !desc.intensity && !desc.power && !desc.lumens;
@@ -42,7 +41,7 @@ void resolve_output(LampDesc& desc, const LampProfile& profile, std::span<const 
     const SourceLocation& where = desc.spectrum ? desc.spectrum->where : desc.where;
     if (bands_nm.size() < 2)
         throw InputError(
-            fmt::format("{}: how much of a spectrum falls into the only band is not known, for it "
+            fmt::format("{}: how much of a spectrum falls into a single band is undefined, as it "
                         "has no neighbours; give the lamp's intensity or power in that band",
                         where));
     const LampSpectrum spectrum = spectrum_of(desc, warnings);
@@ -53,7 +52,7 @@ void resolve_output(LampDesc& desc, const LampProfile& profile, std::span<const 
         if (!(efficacy > 0))
             throw InputError(fmt::format(
                 "{}: nothing of this spectrum is visible (360 to 830 nm), so that lumens and "
-                "candelas say nothing of it; give intensity or power in W",
+                "candelas do not determine it; give intensity or power in W",
                 where));
         return lumens / efficacy;
     };

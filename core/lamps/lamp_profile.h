@@ -18,30 +18,30 @@
 
 namespace uw {
 
-/// Every profile there is, placed in the world: how a lamp's radiant intensity depends on
-/// direction. One for each alternative of LampProfileDesc, with a function `make_profile` beside it
-/// that makes it of its description.
+/// All profiles, placed in the world: how a lamp's radiant intensity depends on direction. There is
+/// one for each alternative of LampProfileDesc, and beside it a function `make_profile` that
+/// constructs it from its description.
 using LampProfile = std::variant<IsotropicProfile, SpotProfile, CosineProfile, IesProfile>;
 
-/// Makes the profile that `desc` describes. Reads the files it needs; adds lines to `warnings` and
-/// throws as make_profile of that profile does.
+/// Makes the profile that `desc` describes. Reads the files it needs; adds warnings and throws as
+/// that profile's make_profile does.
 LampProfile make_lamp_profile(const LampProfileDesc& desc, const LampPlacement& placement,
                               std::vector<std::string>& warnings);
 
-/// What a profile has to know of itself.
+/// The requirements on a profile.
 ///
-/// - k_name: what reports call it ("spot").
+/// - k_name: its name in reports ("spot").
 /// - relative_intensity(v): intensity in the direction of `v` (from the lamp, of any length),
 ///   relative to that where the lamp is brightest: 0..1.
 /// - solid_angle(): the relative intensity integrated over the sphere [sr], the power of the lamp
 ///   for 1 W/sr where it is brightest.
 /// - peak_candelas(): luminous intensity where it is brightest [cd], if the profile is absolute.
-/// - has_even_core(): whether a relative intensity of 1 somewhere means 1 all around, up to a
-/// break.
-/// - cone(): directions beyond which it is dark.
+/// - has_even_core(): whether a relative intensity of 1 at a point implies 1 around it, up to a
+///   break.
+/// - cone(): a cone outside which it is dark.
 /// - append_breaks(ray, apex, s): appends the distances along `ray` where the profile of a lamp at
-///   `apex` is not smooth or changes much: the edges of its beam and cones of equal intensity
-///   within.
+///   `apex` is not smooth or changes considerably: the edges of its beam and the cones of equal
+///   intensity inside.
 template <class P>
 concept IsALampProfile = requires(const P& profile, const Vector3& v, const Ray& ray,
                                   const Point3& apex, std::vector<double>& s) {

@@ -12,14 +12,14 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 constexpr double k_radians = k_pi / 180;
 
-// How far the intensity between two breaks may be from a parabola, relative to the most it is
-// between them; what is darker than the second part of the peak may be further off.
+// Permitted deviation of the intensity between two breaks from a parabola, relative to its maximum
+// there; intensities below the second fraction of the peak may deviate further.
 constexpr double k_follow = 1e-3;
 constexpr double k_dim = 1e-4;
 constexpr double k_widest = 15 * k_radians;
 constexpr std::size_t k_most_at_once = 64;
 
-// A place between two of a table's angles.
+// A position between two of a table's angles.
 struct Place {
     std::size_t i = 0;  // the one before it
     double t = 0;       // 0..1 to the next
@@ -35,7 +35,7 @@ Place find_place(const std::vector<double>& angles, double angle) {
 // One row or column of the table: intensities over `angles`.
 using Line = std::function<double(std::size_t)>;
 
-// Whether a parabola through both ends and the middle of [first, last] follows `line` there.
+// Whether a parabola through both ends and the midpoint of [first, last] approximates `line` there.
 bool follows(const std::vector<double>& angles, const Line& line, std::size_t first,
              std::size_t last, double dim) {
     const auto at = [&](double angle) {
@@ -47,7 +47,7 @@ bool follows(const std::vector<double>& angles, const Line& line, std::size_t fi
     double most = dim;
     for (std::size_t i = first; i <= last; ++i) most = std::max(most, line(i));
     for (std::size_t i = first + 1; i < last; ++i) {
-        // A parabola would step over where the light begins or ends.
+        // A parabola would miss where the light begins or ends.
         if ((line(i) > 0) != (line(i - 1) > 0) || (line(i) > 0) != (line(i + 1) > 0)) return false;
         const double t = (angles[i] - begin) / length;
         const double parabola =
@@ -57,7 +57,7 @@ bool follows(const std::vector<double>& angles, const Line& line, std::size_t fi
     return true;
 }
 
-// The fewest of `angles` between which all lines are followed, walking from the first.
+// A greedy minimal subset of `angles` between which all lines are approximated.
 std::vector<double> breaks_of(const std::vector<double>& angles, const std::vector<Line>& lines,
                               double dim) {
     std::vector<double> breaks{angles.front()};
@@ -76,7 +76,7 @@ std::vector<double> breaks_of(const std::vector<double>& angles, const std::vect
     return breaks;
 }
 
-// A plane of the full circle and that of the file which shows the same.
+// A plane of the full circle and the file's plane with the same intensities.
 struct UnfoldedPlane {
     double degrees = 0;
     std::size_t source = 0;
@@ -148,7 +148,7 @@ void PhotometricWeb::find_breaks() {
     for (std::size_t i = 0; i < polar_.size(); ++i)
         over_azimuth.emplace_back([this, i](std::size_t p) { return value(p, i); });
     azimuth_breaks_ = breaks_of(azimuth_, over_azimuth, dim);
-    azimuth_breaks_.pop_back();  // the first again
+    azimuth_breaks_.pop_back();  // equals the first
 }
 
 double PhotometricWeb::candelas(double polar, double azimuth) const {
@@ -163,8 +163,8 @@ double PhotometricWeb::candelas(double polar, double azimuth) const {
 }
 
 double PhotometricWeb::flux() const {
-    // Between two polar angles the intensity is m + n theta: its integral with sin(theta) in closed
-    // form. Between planes it is linear: their mean.
+    // Between two polar angles the intensity is m + n theta, integrated with sin(theta) in closed
+    // form. Between planes it is linear, so their mean is used.
     const auto zone = [&](std::size_t plane) {
         double sum = 0;
         for (std::size_t i = 0; i + 1 < polar_.size(); ++i) {

@@ -7,10 +7,10 @@
 
 namespace uw {
 
-/// The luminous intensity of a luminaire in every direction, from an IES file: linear in both
-/// angles between the file's, each symmetry unfolded to the full circle, 0 outside its vertical
-/// angles. Polar angles are counted from the luminaire's axis (0..pi), azimuths around it (0..2 pi)
-/// [rad].
+/// The luminous intensity of a luminaire in every direction, from an IES file: interpolated
+/// linearly in both angles, symmetries unfolded to the full circle, 0 outside the file's vertical
+/// angles. Polar angles are measured from the luminaire's axis (0..pi), azimuths around it (0..2
+/// pi) [rad].
 class PhotometricWeb {
   public:
     /// `file` as parse_ies returns it.
@@ -25,10 +25,10 @@ class PhotometricWeb {
     /// Whether the intensity is the same all around the axis.
     bool is_rotational() const { return azimuth_.empty(); }
 
-    /// The polar angle outside which the luminaire is dark; pi if there is none.
+    /// The polar angle beyond which the luminaire is dark; pi if there is none.
     double dark_angle() const { return dark_angle_; }
-    /// Polar angles and azimuths at which a quadrature should begin anew: where the intensity jumps
-    /// or becomes 0, and so many of the file's that a parabola follows it between two of them to
+    /// Polar angles and azimuths at which a quadrature should be split: where the intensity jumps
+    /// or becomes 0, and as many of the file's angles as a piecewise parabola needs to follow it to
     /// 1e-3. Ascending.
     std::span<const double> polar_breaks() const { return polar_breaks_; }
     std::span<const double> azimuth_breaks() const { return azimuth_breaks_; }
@@ -42,7 +42,7 @@ class PhotometricWeb {
 
     std::vector<double> polar_;
     std::vector<double>
-        azimuth_;  // from 0 to 2 pi, the last plane the first again; empty: one plane
+        azimuth_;  // from 0 to 2 pi, the last plane repeats the first; empty: one plane
     std::vector<double> candelas_;  // [plane][polar]
     std::vector<double> polar_breaks_, azimuth_breaks_;
     double peak_ = 0;

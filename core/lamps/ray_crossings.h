@@ -4,24 +4,25 @@
 
 #include "core/base/ray.h"
 
-/// Where a ray crosses what a lamp's profile may break at, all of it with its apex at the lamp.
-/// Each appends distances > 0 along `ray`, in no order, none where it never does.
+/// Crossings of a ray with the surfaces at which a lamp's profile may have breaks, all through the
+/// lamp (`apex`). Each function appends distances > 0 along `ray`, in no particular order, and none
+/// where there is no crossing.
 namespace uw {
 
 /// The cone of half-angle acos(`cos_angle`) about `axis` (unit).
 void append_cone_crossings(const Ray& ray, const Point3& apex, const Vector3& axis,
                            double cos_angle, std::vector<double>& s);
 
-/// The plane across `normal`.
+/// The plane perpendicular to `normal`.
 void append_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& normal,
                            std::vector<double>& s);
 
-/// The half of the plane across `normal` that lies on the side of `side`.
+/// The half of the plane perpendicular to `normal` that lies towards `side`.
 void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& side,
                                 const Vector3& normal, std::vector<double>& s);
 
 /// Where the angle to `axis` (unit), seen from `apex`, is least or greatest: the azimuth changes
-/// fastest there, and a profile with a tip on its axis bends.
+/// fastest there, and a profile peaked on its axis has a kink.
 void append_nearest_to_axis(const Ray& ray, const Point3& apex, const Vector3& axis,
                             std::vector<double>& s);
 

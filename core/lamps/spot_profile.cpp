@@ -16,7 +16,7 @@ double smoothstep(double x) {
 
 // 2 pi int smoothstep sin(theta) over the edge of a spot, from full (inner) to dark (outer).
 double edge_solid_angle(double inner, double outer) {
-    constexpr int k_steps = 256;  // Simpson on a cubic times a sine: exact to 1e-9
+    constexpr int k_steps = 256;  // Simpson on a cubic times a sine: accurate to 1e-9
     const double h = (outer - inner) / k_steps;
     double sum = 0;
     for (int i = 0; i <= k_steps; ++i) {
@@ -37,7 +37,7 @@ SpotProfile::SpotProfile(const SpotProfileDesc& desc, const LampPlacement& place
       dark_angle_(glm::radians(std::min(180.0, 0.5 * (desc.beam + desc.edge)))),
       cos_dark_(std::cos(dark_angle_)) {
     cones_.push_back(cos_full_);
-    // Within the edge as well: a ray that grazes the beam sees a narrow bump of it.
+    // Also within the edge: a ray that grazes the beam sees only a narrow peak.
     if (cos_dark_ != cos_full_)
         for (const double part : {0.25, 0.5, 0.75, 1.0})
             cones_.push_back(std::cos(full_angle_ + part * (dark_angle_ - full_angle_)));
@@ -57,7 +57,7 @@ double SpotProfile::relative_intensity(const Vector3& v) const {
 
 double SpotProfile::solid_angle() const {
     const double full = 2.0 * std::numbers::pi * (1.0 - cos_full_);
-    if (falloff_ == SpotProfileDesc::Falloff::gltf)  // a square of the cosine's way
+    if (falloff_ == SpotProfileDesc::Falloff::gltf)  // square of a linear ramp in the cosine
         return full + 2.0 * std::numbers::pi * (cos_full_ - cos_dark_) / 3.0;
     return full + edge_solid_angle(full_angle_, dark_angle_);
 }

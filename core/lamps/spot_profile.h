@@ -32,7 +32,7 @@ class SpotProfile {
     SpotProfileDesc::Falloff falloff_;
     double full_angle_, cos_full_;  // the spot shines fully inside this angle [rad]
     double dark_angle_, cos_dark_;  // and is dark outside this one
-    std::vector<double> cones_;     // cosines of the cones that break the profile
+    std::vector<double> cones_;     // cosines of the cones at which the profile has breaks
 };
 
 inline SpotProfile make_profile(const SpotProfileDesc& desc, const LampPlacement& placement,

@@ -10,12 +10,13 @@
 
 namespace uw {
 
-/// What a mesh file says of a surface's look. Colours are linear; a factor and its map multiply.
+/// A surface's material as given by a mesh file. Colours are linear; factors multiply their maps.
 struct MeshMaterial {
-    Rgb base_color{0.5, 0.5, 0.5};  // 0..1; multiplied by vertex colours, too
+    Rgb base_color{0.5, 0.5, 0.5};  // 0..1; also multiplied by vertex colours
     TextureUse base_map;
-    bool double_sided = true;  // as the file has it; surfaces are opaque from both sides
-    /// Where alpha (times that of base map and vertices) is less, there is a hole; 0: nowhere.
+    bool double_sided = true;  // as in the file; surfaces are opaque from both sides
+    /// There is a hole where alpha (times that of base map and vertices) is below the cutoff; 0:
+    /// nowhere.
     double alpha = 1, alpha_cutoff = 0;
     Rgb emission{0, 0, 0};  // radiance [W m^-2 sr^-1], on both sides
     TextureUse emission_map;
@@ -24,20 +25,21 @@ struct MeshMaterial {
     // Metallic-roughness (glTF 2.0, appendix B); read for GltfUse::pbr only.
     double metallic = 0, roughness = 1;  // 0..1
     TextureUse metallic_roughness_map;   // linear; green roughness, blue metallic
-    double ior = 1.5;                    // of the dielectric; 0: reflects all
+    double ior = 1.5;                    // of the dielectric; 0: reflects everything
 };
 
 /// The triangles of one mesh file, in the file's own space [m], node hierarchy applied. Inert.
 struct TriangleMesh {
     std::vector<float> positions;          // x, y, z per vertex
     std::vector<std::uint32_t> triangles;  // three vertices each; all in range
-    // Per vertex, and empty when the file has none at all. A zero normal stands for "flat".
+    // Per vertex; empty if the file has none at all. A zero normal means "flat".
     std::vector<float> normals;             // x, y, z, unit
     std::array<std::vector<float>, 2> uvs;  // u, v; origin at the texture's top left, v down
     std::vector<float> colors;              // linear r, g, b, 0..1
     std::vector<float> alphas;              // 0..1
-    /// x, y, z of where the normal map's u grows, unit, and the sign of cross(normal, tangent)
-    /// along its v's shrinking; all zero where there is none.
+    /// x, y, z of the unit direction in which the normal map's u increases, and the sign of
+    /// cross(normal, tangent) relative to the direction in which its v decreases; all zero if there
+    /// is none.
     std::vector<float> tangents;
     std::vector<std::uint32_t> triangle_materials;  // per triangle; empty: all have material 0
     std::vector<MeshMaterial> materials{MeshMaterial{}};  // at least one

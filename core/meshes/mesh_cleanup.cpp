@@ -20,7 +20,7 @@ bool usable(const Vector3& p) {
            std::abs(p.z) <= k_max_coordinate;
 }
 
-/// The counter of the fault of one triangle, or null if it is sound.
+/// The counter for a triangle's defect, or null if it has none.
 std::uint64_t* fault_of(const TriangleMesh& mesh, std::size_t triangle, DroppedTriangles& dropped) {
     const std::uint32_t* corner = &mesh.triangles[3 * triangle];
     const std::size_t vertices = mesh.vertex_count();

@@ -8,10 +8,10 @@
 
 namespace uw {
 
-/// Largest coordinate a surface may have [m]; beyond it squares and products leave float's range.
+/// Largest coordinate a surface may have [m]; beyond it squares and products overflow float.
 inline constexpr double k_max_coordinate = 1e15;
 
-/// Why triangles of a file were left out.
+/// How many triangles of a file were dropped, and why.
 struct DroppedTriangles {
     std::uint64_t missing_corner = 0;  // an index past the last vertex
     std::uint64_t not_finite = 0;      // a corner is NaN, infinite or beyond k_max_coordinate
@@ -22,7 +22,7 @@ struct DroppedTriangles {
 };
 
 /// Removes the triangles that cannot be traced, in place and in order, and adds to `dropped`.
-/// Normals that are no directions become zero ("flat").
+/// Normals that are not valid directions become zero ("flat").
 void drop_bad_triangles(TriangleMesh& mesh, DroppedTriangles& dropped);
 
 }  // namespace uw

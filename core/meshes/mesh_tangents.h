@@ -7,15 +7,15 @@
 
 namespace uw {
 
-/// Makes the tangents that a mesh with normal maps lacks (all zero), from the coordinates of each
-/// triangle's normal map: at every vertex the mean over the triangles that meet there, weighted by
-/// their angles and laid into the plane of the normal, as MikkTSpace does, but for vertices that
-/// mirrored halves of a texture share, which get the side of most. Triangles without vertex
-/// normals or with broken coordinates keep zeros. Precondition: corners are in range.
+/// Computes the tangents that a mesh with normal maps lacks (all zero) from the texture coordinates
+/// of each triangle's normal map: at every vertex the mean over its triangles, weighted by their
+/// angles and projected into the plane perpendicular to the normal, as MikkTSpace does, except that
+/// vertices shared by mirrored halves of a texture take the side of the majority. Triangles without
+/// vertex normals or with invalid coordinates keep zeros. Precondition: corners are in range.
 void compute_tangents(TriangleMesh& mesh);
 
-/// Where the u of a triangle's normal map grows and where its v shrinks [any length]; false if the
-/// coordinates are degenerate. `use` is the map.
+/// The directions in which the u of a triangle's normal map increases and its v decreases [any
+/// length]; false if the coordinates are degenerate. `use` is the map.
 struct UvAxes {
     Vector3 u_axis{0.0}, up_axis{0.0};
 };

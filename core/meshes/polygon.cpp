@@ -11,7 +11,7 @@ constexpr std::size_t k_max_ear_corners = 1000;
 
 struct Corner {
     std::uint32_t vertex = 0;
-    glm::dvec2 at{0.0};  // in the polygon's dominant plane, turning counter-clockwise
+    glm::dvec2 at{0.0};  // in the polygon's dominant plane, counter-clockwise
 };
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
@@ -77,7 +77,8 @@ void triangulate_polygon(std::span<const std::uint32_t> corners, std::span<const
             ++tip;
             ++tried;
         }
-        // A polygon that crosses itself or has no area has no ear; a fan is as good as any cut.
+        // A polygon that intersects itself or has no area may have no ear; a fan is as good as
+        // anything.
         if (tried == polygon.size()) break;
         const std::size_t n = polygon.size(), cut = tip % n;
         triangles.insert(triangles.end(), {polygon[(cut + n - 1) % n].vertex, polygon[cut].vertex,

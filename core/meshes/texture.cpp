@@ -9,7 +9,7 @@
 namespace uw {
 namespace {
 
-/// The texel that `index`, which may lie outside the image, stands for.
+/// The texel to which `index`, which may lie outside the image, is wrapped.
 int wrapped(double index, int size, TextureWrap wrap) {
     const double n = size;
     if (wrap == TextureWrap::clamp) return static_cast<int>(std::clamp(index, 0.0, n - 1));

@@ -14,23 +14,22 @@ struct PixelImage;
 enum class TextureFilter { nearest, linear };
 enum class TextureWrap { repeat, clamp, mirror };
 
-/// How a material looks a texture up.
+/// How a material samples a texture.
 struct TextureLookup {
     TextureFilter filter = TextureFilter::linear;
     TextureWrap wrap_u = TextureWrap::repeat;
     TextureWrap wrap_v = TextureWrap::repeat;
 };
 
-/// How a picture holds its numbers.
+/// How an image encodes its values.
 enum class TextureEncoding { srgb, linear };
 
-/// A picture in linear RGB; immutable, shared by materials, thread safe.
+/// A linear RGB image; immutable, shared by materials, thread safe.
 class Texture {
   public:
-    /// Decodes sRGB code values of colours (glTF 2.0, 3.9.2); `linear` ones, of normal maps and
-    /// such, are taken as they are. Grey images fill all three colours; alpha, which is linear in
-    /// either, is dropped unless asked for. Throws std::invalid_argument for an image without
-    /// pixels.
+    /// Decodes sRGB code values of colours (glTF 2.0, 3.9.2); `linear` values, as in normal maps,
+    /// are used as they are. Grey images fill all three channels; alpha, which is always linear, is
+    /// dropped unless `keep_alpha`. Throws std::invalid_argument for an image without pixels.
     explicit Texture(const PixelImage& image, TextureEncoding encoding = TextureEncoding::srgb,
                      bool keep_alpha = false);
 
@@ -41,11 +40,11 @@ class Texture {
     /// bottom right one (glTF 2.0, 3.6.2). `linear` interpolates between texel centres in linear
     /// light.
     Rgb sample(double u, double v, const TextureLookup& lookup) const;
-    /// Likewise the alpha kept; 1 if there is none.
+    /// The same for alpha, if kept; else 1.
     double sample_alpha(double u, double v, const TextureLookup& lookup) const;
 
   private:
-    /// The texels around a place, and how much of each; for `nearest`, one.
+    /// The texels around a point and their weights; for `nearest`, one.
     struct Footprint {
         std::array<std::size_t, 4> texels{};
         std::array<double, 4> weights{};

@@ -2,7 +2,7 @@
 
 namespace uw {
 
-/// What one unit of a grid's value adds to a constituent of the water.
+/// The concentration that one unit of a grid's value adds to a constituent of the water.
 struct GridLoad {
     int constituent = 0;
     double per_unit = 0;  // in the constituent's unit, e.g. ppm

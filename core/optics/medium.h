@@ -9,26 +9,26 @@
 
 namespace uw {
 
-/// Inherent optical properties per unit of something: a(lambda) and, for each phase function m of
-/// the medium, the scattering coefficient b_m(lambda) that goes with it.
-/// [1/m], or [1/m per ppm], or [1/m per unit of grid value].
+/// Inherent optical properties, absolute or per unit of concentration: a(lambda) and, for each
+/// phase function m of the medium, its scattering coefficient b_m(lambda). [1/m], or [1/m per ppm],
+/// or [1/m per unit of grid value].
 struct OpticalCoefficients {
     Spectrum absorption{};
     std::vector<Spectrum> scattering;  // one per Medium::phase_functions
 
-    /// c = a + sum_m b_m of band `band`.
+    /// c = a + sum_m b_m in band `band`.
     double attenuation(std::size_t band) const {
         double c = absorption[band];
         for (const Spectrum& b : scattering) c += b[band];
         return c;
     }
-    /// Likewise of every band.
+    /// The same for every band.
     Spectrum attenuation() const {
         Spectrum c = absorption;
         for (const Spectrum& b : scattering) c += b;
         return c;
     }
-    /// sum_m b_m of every band.
+    /// sum_m b_m for every band.
     Spectrum total_scattering() const {
         Spectrum sum;
         for (const Spectrum& b : scattering) sum += b;
@@ -36,7 +36,7 @@ struct OpticalCoefficients {
     }
 };
 
-/// Something dissolved or suspended whose concentration varies in space.
+/// A dissolved or suspended constituent whose concentration varies in space.
 struct Constituent {
     std::string name;              // "small", "large", or the name of a grid with its own optics
     std::string unit;              // "ppm" by volume, or "1" for a bare grid value
@@ -48,8 +48,8 @@ struct Constituent {
 struct Medium {
     std::vector<double> wavelengths_nm;  // the bands
     std::vector<std::shared_ptr<const PhaseFunction>> phase_functions;
-    OpticalCoefficients uniform;            // water and everything that is the same everywhere
-    std::vector<Constituent> constituents;  // what the grids add
+    OpticalCoefficients uniform;            // water and everything else that is homogeneous
+    std::vector<Constituent> constituents;  // contributed by the grids
 
     int band_count() const { return static_cast<int>(wavelengths_nm.size()); }
     int constituent_count() const { return static_cast<int>(constituents.size()); }

@@ -7,7 +7,7 @@
 
 namespace uw {
 
-/// Attenuation coefficients of a medium laid out for the integrators' inner loops.
+/// Attenuation coefficients of a medium, laid out for the integrators' inner loops.
 struct AttenuationTable {
     Spectrum uniform{};                  // c_0 [1/m]
     std::vector<Spectrum> constituents;  // c* per constituent [1/m per unit]

@@ -6,9 +6,9 @@
 
 namespace uw {
 
-/// Angular distribution of scattered light, p(psi) in 1/sr, with 2 pi int p sin(psi) dpsi = 1.
-/// psi is the angle between the light's directions of travel before and after scattering: 0 is
-/// straight on, pi is back to the source (physics: cos psi = w_in . w_out).
+/// Angular distribution of scattered light, p(psi) in 1/sr, with 2 pi int p sin(psi) dpsi = 1. psi
+/// is the angle between the light's directions of travel before and after scattering: 0 is forward,
+/// pi is back towards the source (physics: cos psi = w_in . w_out).
 class PhaseFunction {
   public:
     virtual ~PhaseFunction() = default;
@@ -16,7 +16,8 @@ class PhaseFunction {
     /// p at each angle `psi` [rad, 0..pi], into `p` of the same length.
     virtual void evaluate(std::span<const double> psi, std::span<double> p) const = 0;
 
-    /// Angles [rad], ascending and inside (0, pi), where p is not smooth: quadrature splits there.
+    /// Angles [rad], ascending and inside (0, pi), where p is not smooth: quadrature should be
+    /// split there.
     virtual std::vector<double> breakpoints() const { return {}; }
 
     /// Name and parameters for reports, e.g. "henyey-greenstein g=0.9".

@@ -11,9 +11,9 @@ namespace uw {
 
 namespace {
 
-// From psi = 1e-6, below which no phase function of ours changes, to 1e-4 before pi.
+// From psi = 1e-6, below which none of our phase functions varies, to pi - 1e-4.
 constexpr double k_least = 0x1p-21, k_most = 0x1p14;
-constexpr int k_cell_bits = 6;  // of the mantissa: 64 cells to an octave
+constexpr int k_cell_bits = 6;  // of the mantissa: 64 cells per octave
 constexpr int k_offset_bits = 52 - k_cell_bits;
 constexpr std::uint64_t k_first = std::bit_cast<std::uint64_t>(k_least) >> k_offset_bits;
 constexpr std::size_t k_cells = (std::bit_cast<std::uint64_t>(k_most) >> k_offset_bits) - k_first;
@@ -46,7 +46,7 @@ PhaseTable::PhaseTable(const Medium& medium)
 
 UWVDB_VECTOR_CLONES void PhaseTable::evaluate(std::span<const double> half_tangent,
                                               std::span<double> p) const {
-    if (phases_ == 0) return;  // water that scatters nothing has no table
+    if (phases_ == 0) return;  // non-scattering water has no table
     constexpr std::uint64_t k_offset_mask = (std::uint64_t{1} << k_offset_bits) - 1;
     constexpr double k_offset_unit = 1.0 / (std::uint64_t{1} << k_offset_bits);
     const double largest = std::nextafter(k_most, 0);

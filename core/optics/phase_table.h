@@ -8,10 +8,10 @@
 
 namespace uw {
 
-/// All phase functions of a medium, tabulated for the integrators' inner loop over
-/// h = tan(psi / 2), which a point on a ray has without trigonometry and whose logarithm resolves
-/// the forward and the backward peak alike. A parabola on each 64th of an octave: exact to 1e-6
-/// but where a tabulated phase function bends, there to 2e-3 within one cell.
+/// All phase functions of a medium, tabulated for the integrators' inner loop over h = tan(psi /
+/// 2), which needs no trigonometry for points on a ray and whose logarithm resolves forward and
+/// backward peaks equally well. Uses a parabola on each 64th of an octave: accurate to 1e-6, except
+/// at the kinks of a tabulated phase function, where it is 2e-3 within one cell.
 class PhaseTable {
   public:
     explicit PhaseTable(const Medium& medium);

@@ -21,7 +21,7 @@ struct IntrinsicsDesc {
     friend bool operator==(const IntrinsicsDesc&, const IntrinsicsDesc&) = default;
 };
 
-/// How a lens departs from a pinhole, with OpenCV's coefficients.
+/// A lens's deviation from a pinhole, with OpenCV's coefficients.
 struct DistortionDesc {
     enum class Model { brown_conrady, fisheye };
     /// brown_conrady: k1..k6, rational when k4..k6 are not 0; fisheye (equidistant): k1..k4.
@@ -56,20 +56,20 @@ struct DomePortDesc {
     friend bool operator==(const DomePortDesc&, const DomePortDesc&) = default;
 };
 
-/// What parts the camera from the water.
+/// The port that separates the camera from the water.
 using PortDesc = std::variant<FlatPortDesc, DomePortDesc>;
 
-/// A lens as far as it matters to the light on the sensor.
+/// The properties of a lens that affect the light on the sensor.
 struct LensDesc {
     double f_number = 0;      ///< > 0
     double focal_length = 0;  ///< > 0 [m]
-    double transmission = 1;  ///< share of the light that it lets through, 0..1
+    double transmission = 1;  ///< fraction of the light transmitted, 0..1
 };
 
 /// A file that holds a camera's resolution, intrinsics, distortion and, perhaps, port.
 struct CalibrationDesc {
     std::filesystem::path file;
-    std::string camera;  ///< which of several in it; empty: the only one
+    std::string camera;  ///< which of several cameras in it; empty: the only one
     SourceLocation where;
 };
 
@@ -81,11 +81,11 @@ struct CameraDesc {
     std::optional<PortDesc> port;
     std::optional<LensDesc> lens;
     Affine world_from_camera;  ///< rigid; x right, y down, z forward
-    /// Where what is above the lens comes from, if it is not in the scene
+    /// The source of resolution, intrinsics, distortion and port, if they are not in the scene
     /// (camera/calibration/calibration.h).
     std::optional<CalibrationDesc> calibration;
-    /// Whether the scene file itself or a calibration says so; else they are those of a glTF
-    /// camera, once import_gltf has been there.
+    /// Whether they are given by the scene file itself or by a calibration; else they are those of
+    /// a glTF camera, once import_gltf has run.
     bool has_intrinsics = true, has_pose = true;
     SourceLocation where;
 };

@@ -4,12 +4,12 @@
 
 namespace uw {
 
-/// Light that comes back blurred after scattering by small angles (docs/physics.md, section 6).
+/// Light that is blurred by scattering through small angles (docs/physics.md, section 6).
 struct ForwardScatterDesc {
-    /// Of the blur's spectrum.
+    /// The shape of the blur's spectrum.
     enum class Shape { gaussian, exponential };
     double K = 0;  ///< strength, >= 0; 0: no forward scatter
-    double G = 0;  ///< attenuation of what is scattered forward [1/m], |G| <= c
+    double G = 0;  ///< attenuation of the forward-scattered light [1/m], |G| <= c
     double B = 0;  ///< width >= 0: the spectrum falls as e^{-B R f}, f in cycles/rad [rad/m]
     Shape shape = Shape::gaussian;
     SourceLocation where = "water.forward_scatter";

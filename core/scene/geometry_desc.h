@@ -12,14 +12,14 @@
 
 namespace uw {
 
-/// What a glTF file's light intensities are (Blender's exporter offers these three).
+/// The unit of a glTF file's light intensities (Blender's exporter offers these three).
 enum class LightUnits {
-    standard,  ///< candela, as the format has it: W/sr times 683
+    standard,  ///< candela, as the format defines: W/sr times 683
     compat,    ///< W/sr
     raw,       ///< W in all directions
 };
 
-/// What to take from a glTF file beside its meshes (core/meshes/gltf/gltf_import.h).
+/// What to take from a glTF file besides its meshes (core/meshes/gltf/gltf_import.h).
 struct GltfImportDesc {
     bool camera = false;
     std::string camera_name;  ///< empty: the file's only one
@@ -38,14 +38,14 @@ struct GeometryDesc {
     enum class Type { file, plane, box, sphere };
     Type type = Type::file;
     std::filesystem::path file;
-    bool is_sequence = false;            ///< `file` has a place for the frame's number
+    bool is_sequence = false;            ///< `file` has a pattern for the frame number
     Affine world_from_object;            ///< of a file's meshes, in metres
     Point3 point;                        ///< of a plane, world [m]
     Vector3 normal{0, 0, 1};             ///< of a plane, world, unit
     Point3 min, max;                     ///< of a box, world [m]
     Point3 center;                       ///< of a sphere, world [m]
     double radius = 0;                   ///< of a sphere [m]
-    std::optional<PerBand> reflectance;  ///< 0..1; replaces the file's colours; without either, 0.5
+    std::optional<PerBand> reflectance;  ///< 0..1; replaces the file's colours; 0.5 without either
     GltfImportDesc import;
     bool is_pbr = false;  ///< a glTF file's metallic-roughness materials; else all is diffuse
     SourceLocation where;

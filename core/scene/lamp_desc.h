@@ -14,16 +14,16 @@
 
 namespace uw {
 
-/// A lamp, small enough to count as a point.
+/// A lamp, small enough to be treated as a point source.
 struct LampDesc {
-    std::string name;            ///< of its layers; no other lamp of the scene has it
+    std::string name;            ///< of its layers; unique in the scene
     Point3 position;             ///< in its frame [m]
     Vector3 direction{0, 0, 1};  ///< in its frame, unit
     LampProfileDesc profile;
-    // At most one of the next three is set; none is for a profile that is absolute.
-    std::optional<PerBand> intensity;  ///< on the axis [W/sr]; with a spectrum one value for all
-    std::optional<PerBand> power;      ///< [W]; with a spectrum one value for all of it
-    std::optional<double> lumens;      ///< luminous flux [lm]; with a spectrum only
+    // At most one of the next three is set; none for a profile that is absolute.
+    std::optional<PerBand> intensity;  ///< on the axis [W/sr]; with a spectrum, a single total
+    std::optional<PerBand> power;      ///< [W]; with a spectrum, a single total
+    std::optional<double> lumens;      ///< luminous flux [lm]; only with a spectrum
     std::optional<LampSpectrumDesc> spectrum;
     bool fixed_to_camera = true;  ///< its frame is the camera's, else world_from_mount
     Affine world_from_mount;      ///< rigid

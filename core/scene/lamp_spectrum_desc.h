@@ -7,7 +7,7 @@
 
 namespace uw {
 
-/// The light of a lamp over wavelength, up to a factor.
+/// A lamp's relative spectral distribution.
 struct LampSpectrumDesc {
     enum class Type { flat, d65, blackbody, led, file };
     Type type = Type::flat;

@@ -7,14 +7,14 @@
 
 namespace uw {
 
-/// Henyey and Greenstein's phase function.
+/// The Henyey-Greenstein phase function.
 struct HenyeyGreensteinDesc {
     double g = 0;  ///< mean cosine of the scattering angle, -1 < g < 1; 0: isotropic
 
     friend bool operator==(const HenyeyGreensteinDesc&, const HenyeyGreensteinDesc&) = default;
 };
 
-/// Fournier and Forand's phase function of particles.
+/// The Fournier-Forand phase function of particles.
 struct FournierForandDesc {
     double n = 1.10;     ///< refractive index of the particles relative to water, > 1
     double mu = 3.5835;  ///< slope of their hyperbolic (Junge) size distribution, 3 < mu < 5
@@ -31,7 +31,7 @@ struct PetzoldDesc {
 struct TabulatedPhaseDesc {
     std::filesystem::path file;  ///< CSV with columns angle_deg,phase
 
-    /// Two spellings of one file are the same phase function.
+    /// Two spellings of the same path are the same phase function.
     friend bool operator==(const TabulatedPhaseDesc& a, const TabulatedPhaseDesc& b) {
         return a.file.lexically_normal() == b.file.lexically_normal();
     }
@@ -43,12 +43,12 @@ struct MolecularPhaseDesc {
 };
 
 /// Every phase function that a scene can name. Equal descriptions are the same phase function.
-/// media/phase/phase_factory.h builds what each describes, core/scene/yaml/phase_reader.h reads it;
-/// neither compiles before it knows all of them.
+/// media/phase/phase_factory.h constructs them, core/scene/yaml/phase_reader.h reads the
+/// descriptions; neither compiles unless it handles all of them.
 using PhaseFunctionDesc = std::variant<HenyeyGreensteinDesc, FournierForandDesc, PetzoldDesc,
                                        TabulatedPhaseDesc, MolecularPhaseDesc>;
 
-/// The phase function of one thing that scatters.
+/// The phase function of one scatterer.
 struct PhaseDesc {
     PhaseFunctionDesc function;  ///< isotropic by default
     SourceLocation where;

@@ -11,22 +11,22 @@
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
 
-/// The scene file as inert data (docs/scene-file.md), a header per section. Lengths in metres,
+/// The scene file as inert data (docs/scene-file.md), one header per section. Lengths in metres,
 /// angles in degrees, wavelengths in nm, coefficients in 1/m, concentrations in ppm by volume. File
 /// names are already resolved against the scene file's folder. Per-band lists hold exactly one
-/// value per band. `where` is the place in the file, for messages.
+/// value per band. `where` is the location in the file, for messages.
 namespace uw {
 
 /// One camera of a rig.
 struct RigCameraDesc {
-    std::string name;  ///< of its files; no other camera of the rig has it
+    std::string name;  ///< of its files; unique in the rig
     CameraDesc camera;
 };
 
 /// All of a scene file.
 struct SceneDesc {
     std::filesystem::path file;          ///< the scene file itself
-    CameraDesc camera;                   ///< of a rig the one that is rendered: at first its first
+    CameraDesc camera;                   ///< of a rig, the one rendered: initially its first
     std::string camera_name;             ///< empty: the scene has one camera, no rig
     std::vector<RigCameraDesc> cameras;  ///< of a rig; else none
     WaterDesc water;

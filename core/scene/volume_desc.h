@@ -12,14 +12,15 @@
 
 namespace uw {
 
-/// What one unit of a grid's value means: particles in ppm by volume, or optics of its own.
+/// The meaning of one unit of a grid's value: particles in ppm by volume, or its own optical
+/// properties.
 struct GridMappingDesc {
-    std::string grid;                     ///< name in the file; name[i] where several share one
+    std::string grid;                     ///< name in the file; name[i] if several share it
     double small_ppm = 0, large_ppm = 0;  ///< particles per unit of grid value [ppm]
     /// Coefficients per unit of grid value.
     struct Optics {
         PerBand absorption, scattering;  ///< [1/m], >= 0
-        std::optional<PhaseDesc> phase;  ///< the water's if left out
+        std::optional<PhaseDesc> phase;  ///< the water's if omitted
 
         friend bool operator==(const Optics&, const Optics&) = default;
     };
@@ -31,31 +32,31 @@ struct GridMappingDesc {
 
 /// How a volume moves while the shutter is open.
 struct MotionDesc {
-    std::vector<std::string> grids;  ///< one of vectors, or three of numbers: x, y, z
+    std::vector<std::string> grids;  ///< one vector grid, or three scalar grids: x, y, z
     std::filesystem::path file;      ///< that holds these grids
     bool is_sequence = false;        ///< as VolumeDesc::is_sequence
-    std::optional<double> scale;     ///< m/s per unit, in the file's axes; automatic if left out
-    double shutter = 0;              ///< how long it is open, around the frame's moment [s]
+    std::optional<double> scale;     ///< m/s per unit, in the file's axes; automatic if omitted
+    double shutter = 0;              ///< exposure time, centred on the frame's time [s]
     SourceLocation where;
 
     friend bool operator==(const MotionDesc&, const MotionDesc&) = default;
 };
 
-/// Whether a grid's values are those of its voxels' centres or of their corners. Automatic is
-/// decided from the file (media/vdb/placement.h).
+/// Whether a grid's values lie at its voxels' centres or at their corners. Automatic is decided
+/// from the file (media/vdb/placement.h).
 enum class Centering { automatic, cell, node };
 
-/// Which of a file's axes points up; automatic as with Centering.
+/// Which of a file's axes points up; automatic as for Centering.
 enum class UpAxis { automatic, y, z };
 
 /// A VDB or NanoVDB file whose grids add to the water.
 struct VolumeDesc {
     std::filesystem::path file;
-    bool is_sequence = false;  ///< `file` has a place for the frame's number (frame_pattern.h)
+    bool is_sequence = false;  ///< `file` has a pattern for the frame number (frame_pattern.h)
     std::vector<GridMappingDesc> grids;
     Centering centering = Centering::automatic;
     UpAxis up = UpAxis::automatic;
-    Affine world_from_upright;  ///< `transform`, applied after `up` has been brought to y
+    Affine world_from_upright;  ///< `transform`, applied after `up` has been rotated to y
     std::optional<MotionDesc> motion;
     SourceLocation where;
 

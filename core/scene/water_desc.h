@@ -11,7 +11,7 @@
 
 namespace uw {
 
-/// Scattering that is given as numbers.
+/// Scattering given as explicit coefficients.
 struct ScatteringDesc {
     PerBand b;  ///< scattering coefficient [1/m], >= 0
     PhaseDesc phase;
@@ -19,16 +19,16 @@ struct ScatteringDesc {
     friend bool operator==(const ScatteringDesc&, const ScatteringDesc&) = default;
 };
 
-/// The water between the volumes: the same everywhere.
+/// The homogeneous background water.
 struct WaterDesc {
     std::vector<double> bands_nm{620, 540, 450};  ///< wavelengths of the scene's bands [nm]
     std::string preset;                           ///< a Jerlov water type, "jerlov-II"; empty: none
     double salinity = 35;                         ///< [PSU], 0..100
     double temperature = 20;                      ///< [degrees Celsius], -3..50
-    std::optional<PerBand> absorption;            ///< of all but particles [1/m]; else computed
-    double cdom = 0;         ///< absorption by dissolved matter at 440 nm [1/m]
-    double chlorophyll = 0;  ///< [mg/m^3]
-    /// Background particles [ppm by volume]; where left out, the preset's, or none.
+    std::optional<PerBand> absorption;  ///< of everything but particles [1/m]; else computed
+    double cdom = 0;                    ///< absorption by dissolved matter at 440 nm [1/m]
+    double chlorophyll = 0;             ///< [mg/m^3]
+    /// Background particles [ppm by volume]; if omitted, the preset's, or none.
     std::optional<double> small_ppm, large_ppm;
     bool mineral_absorption = false;           ///< particles absorb as mineral sediment does
     std::optional<ScatteringDesc> scattering;  ///< instead of that of molecules and particles

@@ -1,8 +1,8 @@
 #pragma once
 
 /// Embree 3 and 4 behind one set of calls; for embree_*.h and embree_*.cpp only. Embree 4 moved the
-/// flags of a query out of its context into arguments of their own; all else that is used here has
-/// kept its name and meaning. cmake/ThirdParty.cmake prefers Embree 4 in the same way.
+/// flags of a query from its context into a separate arguments struct; everything else used here
+/// has kept its name and meaning. cmake/ThirdParty.cmake prefers Embree 4 in the same way.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -13,10 +13,10 @@ namespace uw::embree {
 
 #if RTC_VERSION_MAJOR >= 4
 
-/// What a query hands to its callbacks. Objects begin with one to hand over more.
+/// Passed by a query to its callbacks. A struct that begins with one can pass more data.
 using Context = RTCRayQueryContext;
 
-/// A context with nothing in it yet.
+/// An initialised context.
 inline Context make_context() {
     Context context{};
     rtcInitRayQueryContext(&context);

@@ -5,9 +5,9 @@
 namespace uw {
 namespace {
 
-/// How far behind the nearest candidate Embree goes on looking, as a share of the distance: farther
-/// than its boxes round, so that it finds all candidates of a tie, whatever their order and however
-/// many rays it follows at once.
+/// How far behind the nearest candidate Embree continues to search, as a fraction of the distance:
+/// more than the rounding of its boxes, so that it finds all candidates of a tie, whatever their
+/// order and however many rays it traces at once.
 constexpr float k_tie_margin = 4e-6F;
 
 float search_end(float nearest) {
@@ -22,12 +22,12 @@ Query& query_of(const embree::Context* context, RTCRayN* rays, unsigned count, u
     return context_of(context).queries[RTCRayN_id(rays, count, i)];
 }
 
-/// Whether the ray of `query` passes a hole of the mesh where Embree saw it meet a triangle.
+/// Whether the ray of `query` passes through a hole of the mesh where Embree found a triangle hit.
 bool passes_hole(const MeshObject& object, const RTCFilterFunctionNArguments* args, unsigned i,
                  const Query& query) {
     const unsigned count = args->N;
     const unsigned triangle = RTCHitN_primID(args->hit, count, i);
-    // In double, as the crossing is told later.
+    // In double precision, like the crossing reported later.
     const auto crossing = cross_triangle(object, triangle, query.origin, query.direction);
     return object.is_hole(triangle, crossing ? *crossing
                                              : TriangleCrossing{0, RTCHitN_u(args->hit, count, i),
@@ -103,7 +103,7 @@ void sphere_bounds(const RTCBoundsFunctionArguments* args) {
     float* lower = &args->bounds_o->lower_x;
     float* upper = &args->bounds_o->upper_x;
     for (int axis = 0; axis < 3; ++axis) {
-        // Outwards by more than the rounding of the box and of the ray that is tried on it.
+        // Enlarged by more than the rounding of the box and of the ray tested against it.
         const double margin =
             1e-6 * (std::abs(bounds.min[axis]) + std::abs(bounds.max[axis])) + 1e-30;
         lower[axis] = static_cast<float>(bounds.min[axis] - margin);

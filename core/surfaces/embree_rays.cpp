@@ -5,7 +5,7 @@
 namespace uw {
 namespace {
 
-/// A little far, so that nothing is lost to rounding; the double distance decides.
+/// Slightly too far, so that nothing is lost to rounding; the double-precision distance decides.
 float embree_end(double end) {
     return end < 1e30 ? static_cast<float>(end * (1 + 1e-6)) : 1e30F;
 }
@@ -24,7 +24,7 @@ RTCRay embree_ray(const Query& query, float begin, double end) {
     return ray;
 }
 
-/// Which places of a packet are taken, as Embree wants to know it.
+/// Which lanes of a packet are active, in Embree's format.
 struct alignas(32) Places {
     int taken[k_packet_size] = {};
 };

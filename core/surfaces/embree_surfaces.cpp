@@ -17,7 +17,7 @@ namespace uw {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-/// A closest hit at or behind the origin is passed over this often: a camera in a surface's plane.
+/// How often a closest hit at or behind the origin is skipped: a camera in a surface's plane.
 constexpr int k_max_restarts = 16;
 
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, decltype(&rtcReleaseDevice)>;
@@ -124,7 +124,7 @@ class EmbreeSurfaces final : public Surfaces {
   private:
     struct Candidate {
         double distance = k_infinity;
-        const PlaneObject* plane = nullptr;  // if set, the rest means nothing
+        const PlaneObject* plane = nullptr;  // if set, the rest is unused
         unsigned geometry = 0, primitive = 0;
         TriangleCrossing crossing;  // of meshes
         bool near_edge = false;     // of a triangle, where rounding decides (embree_rays.h)
@@ -171,7 +171,7 @@ class EmbreeSurfaces final : public Surfaces {
         check("taking over the spheres");
     }
 
-    /// Fills `hit` unless `nearest` is none or beyond `s_end`.
+    /// Fills `hit` unless `nearest` is empty or beyond `s_end`.
     bool shade(const Candidate& nearest, const Ray& ray, double s_end, SurfaceHit& hit) const {
         if (!(nearest.distance <= s_end) || nearest.distance == k_infinity) return false;
         hit.distance = nearest.distance;
@@ -208,7 +208,7 @@ class EmbreeSurfaces final : public Surfaces {
         return {};
     }
 
-    /// Embree's candidate, measured in double.
+    /// Embree's candidate, recomputed in double precision.
     Candidate refine(const Query& query) const {
         Candidate candidate;
         candidate.geometry = query.geometry;
@@ -225,7 +225,7 @@ class EmbreeSurfaces final : public Surfaces {
         }
         const auto roots =
             cross_sphere(objects_.spheres[candidate.primitive], query.origin, query.direction);
-        // The callback found these roots; the one it took is the nearer to what it wrote.
+        // The callback computed these roots; the one it chose is the closer to the value it wrote.
         const bool near = std::abs(roots->near - coarse) <= std::abs(roots->far - coarse);
         candidate.distance = near ? roots->near : roots->far;
         return candidate;
@@ -271,7 +271,7 @@ class EmbreeSurfaces final : public Surfaces {
     }
 
     static Query shadow_query(const Point3& from, const Point3& to) {
-        // One order of the ends for both directions, so that light and view rays agree exactly.
+        // A fixed order of the ends for both directions, so that light and view rays agree exactly.
         const bool forward = std::tie(from.x, from.y, from.z) < std::tie(to.x, to.y, to.z);
         const Point3& begin = forward ? from : to;
         return {begin, (forward ? to : from) - begin};

@@ -40,7 +40,7 @@ bool is_identity(const Affine& map) {
     return map.linear() == Matrix3(1.0) && map.offset() == Vector3(0.0);
 }
 
-/// Brings a mesh to world space, in place: it may have tens of millions of vertices.
+/// Transforms a mesh to world space, in place: it may have tens of millions of vertices.
 void transform(TriangleMesh& mesh, const Affine& world_from_object) {
     for (std::size_t at = 0; at + 2 < mesh.positions.size(); at += 3) {
         float* p = &mesh.positions[at];
@@ -52,11 +52,11 @@ void transform(TriangleMesh& mesh, const Affine& world_from_object) {
         float* n = &mesh.normals[at];
         const Vector3 world = normal_map * Vector3(n[0], n[1], n[2]);
         const double length = glm::length(world);
-        if (!(length > 0)) continue;  // zero stands for "flat"
+        if (!(length > 0)) continue;  // zero means "flat"
         for (int axis = 0; axis < 3; ++axis) n[axis] = static_cast<float>(world[axis] / length);
     }
     if (mesh.tangents.empty()) return;
-    // A mirror turns corners and cross products round.
+    // A mirroring transform reverses the corner order and cross products.
     const bool is_mirror = world_from_object.determinant() < 0;
     const float side = is_mirror ? -1.0F : 1.0F;
     for (std::size_t at = 0; is_mirror && at + 2 < mesh.triangles.size(); at += 3) {
@@ -73,7 +73,7 @@ void transform(TriangleMesh& mesh, const Affine& world_from_object) {
     }
 }
 
-/// Of the corners in use; a file may have broken vertices that no triangle names.
+/// Bounds of the referenced vertices; a file may have invalid vertices that no triangle uses.
 Bounds bounds_of(const TriangleMesh& mesh) {
     Bounds bounds;
     for (const std::uint32_t vertex : mesh.triangles) {
@@ -83,7 +83,7 @@ Bounds bounds_of(const TriangleMesh& mesh) {
     return bounds;
 }
 
-/// Whether a material says more than the colour that a given reflectance replaces.
+/// Whether a material has more than the colour that a given reflectance replaces.
 bool has_more_than_color(const MeshMaterial& material) {
     return material.alpha_cutoff > 0 || material.normal_map || material.emission != Rgb{0, 0, 0};
 }
@@ -111,7 +111,7 @@ class Builder {
         const double determinant = desc.world_from_object.determinant();
         if (determinant == 0 || !std::isfinite(determinant)) {
             throw InputError(
-                fmt::format("{}: the transform squeezes the object flat; give a scale "
+                fmt::format("{}: the transform flattens the object; give a scale "
                             "other than 0",
                             desc.where));
         }
@@ -145,7 +145,7 @@ class Builder {
         for (int axis = 0; axis < 3; ++axis) {
             if (!(bounds.min[axis] >= -k_max_coordinate && bounds.max[axis] <= k_max_coordinate)) {
                 throw InputError(
-                    fmt::format("{}: reaches beyond 1e15 m; check its transform", desc.where));
+                    fmt::format("{}: extends beyond 1e15 m; check its transform", desc.where));
             }
         }
         objects_.bounds.extend(bounds);

@@ -9,16 +9,16 @@
 
 namespace uw {
 
-/// Reads the mesh files of `geometry` and makes all of it traceable, in world space [m]. Every
-/// shape honours its `world_from_object`. `wavelengths_nm`: one per band of the reflectances; RGB
-/// colours of files become bands as ReflectanceBands says. A given `reflectance` replaces a file's
-/// colours.
+/// Reads the mesh files of `geometry` and prepares everything for ray tracing, in world space [m].
+/// Every shape honours its `world_from_object`. `wavelengths_nm`: one per band of the reflectances;
+/// RGB colours in files are converted to bands by ReflectanceBands. A given `reflectance` replaces
+/// a file's colours.
 ///
-/// Every surface is opaque and diffuse from both sides: a one-sided glTF face seen from behind is
-/// shaded as well, for light does not pass through it either.
+/// Every surface is opaque and diffuse on both sides: a single-sided glTF face is shaded from
+/// behind as well, since light does not pass through it either.
 ///
-/// Appends to `warnings` what read_mesh does. Throws InputError for wrong files, a transform
-/// without inverse, or reflectances of another band count; IoError; std::runtime_error if Embree
+/// Appends the warnings of read_mesh to `warnings`. Throws InputError for invalid files, a singular
+/// transform, or reflectances with a different band count; IoError; std::runtime_error if Embree
 /// fails.
 std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
                                          const std::vector<double>& wavelengths_nm,

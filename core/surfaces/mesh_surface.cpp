@@ -136,9 +136,10 @@ Vector3 MeshPlace::shading_normal(const Vector3& flat) const {
         if (!interpolated) return flat;
         return glm::dot(*interpolated, flat) < 0 ? -*interpolated : *interpolated;
     }
-    // The map is of the front: the side of the file's normals, or that of the triangle's turn.
+    // The map is defined for the front: the side of the file's normals, or that of the winding
+    // order.
     const Vector3 front = interpolated ? *interpolated : turn_side(flat);
-    // Seen from behind, bumps are dents.
+    // Seen from behind, bumps appear as dents.
     Vector3 normal = glm::dot(front, flat) < 0 ? -bent(front) : bent(front);
     const double toward = glm::dot(normal, flat);
     if (toward < 0) normal = glm::normalize(normal - toward * flat);

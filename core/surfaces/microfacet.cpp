@@ -20,13 +20,13 @@ MicrofacetLobe microfacet_lobe(const Vector3& normal, const Vector3& to_camera,
     const Vector3 half = sum / length;
     const double rough = std::max(roughness, k_smallest_roughness);
     const double alpha2 = rough * rough * rough * rough;  // alpha is the roughness squared
-    // A shading normal may lean past the horizon of what is seen.
+    // A shading normal may point away from the viewer.
     constexpr double k_grazing = 1e-4;
     const double nl = glm::dot(normal, to_lamp);
     const double nv = std::max(glm::dot(normal, to_camera), k_grazing);
     const double nh = std::min(glm::dot(normal, half), 1.0);
     if (nl <= 0 || nh <= 0) return {};
-    // (n.h)^2 (alpha^2 - 1) + 1 with the sine where the cosine rounds off.
+    // (n.h)^2 (alpha^2 - 1) + 1, written with the sine, since the cosine loses precision.
     const Vector3 across = glm::cross(normal, half);
     const double spread = alpha2 * nh * nh + glm::dot(across, across);
     const double distribution = alpha2 / (std::numbers::pi * spread * spread);

@@ -64,8 +64,8 @@ std::optional<SphereCrossings> cross_sphere(const SphereObject& sphere, const Po
     const Vector3 unit = along / length;
     const Vector3 to_center = sphere.center - sphere.object_from_world * origin;
     const double middle = glm::dot(to_center, unit);
-    // The distance of the center from the line, from the perpendicular itself: the textbook
-    // difference of squares loses half the digits for small or far spheres.
+    // The distance of the centre from the line, computed from the perpendicular itself: the
+    // textbook difference of squares loses half the digits for small or distant spheres.
     const Vector3 off = to_center - middle * unit;
     const double half_squared = sphere.radius * sphere.radius - glm::dot(off, off);
     if (!(half_squared >= 0)) return std::nullopt;
@@ -120,7 +120,7 @@ SurfaceMaterial material_of_mesh(const MeshObject& object, const ReflectanceBand
 
 void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceHit& hit) {
     const Vector3 outward = sphere.object_from_world * hit.position - sphere.center;
-    // Normals map by the inverse transpose; the inverse is at hand.
+    // Normals are mapped by the inverse transpose; the inverse is available.
     const Vector3 normal =
         glm::normalize(glm::transpose(sphere.object_from_world.linear()) * outward);
     hit.geometric_normal = hit.normal = toward_viewer(normal, direction);

@@ -14,16 +14,16 @@
 
 namespace uw {
 
-/// Where a line meets something, in units of its direction's length.
+/// Where a line crosses a triangle, in units of its direction's length.
 struct TriangleCrossing {
     double t = 0;
     double u = 0, v = 0;  // barycentric: (1 - u - v) a + u b + v c
 
-    /// Whether the crossing lies in the triangle and off its edges by more than floats round.
+    /// Whether the crossing lies inside the triangle, farther from its edges than float rounding.
     bool well_inside() const {
         return u > k_edge_margin && v > k_edge_margin && u + v < 1 - k_edge_margin;
     }
-    /// Share of the triangle's size that single precision may err by.
+    /// Error bound of single precision, as a fraction of the triangle's size.
     static constexpr double k_edge_margin = 1e-3;
 };
 
@@ -32,12 +32,12 @@ struct TriangleCrossing {
 struct MeshObject {
     TriangleMesh mesh;
     std::uint32_t object_id = 0;
-    std::optional<Spectrum> reflectance;  // instead of the mesh's colours
+    std::optional<Spectrum> reflectance;  // overrides the mesh's colours
     std::size_t vertex_count = 0;
     bool has_holes = false;  // some material has an alpha cutoff
-    bool is_pbr = false;     // metallic-roughness counts; else it is diffuse
+    bool is_pbr = false;     // metallic-roughness material; else diffuse
 
-    /// Whether there is a hole where a line crosses a triangle. For meshes with holes.
+    /// Whether a triangle has a hole at the crossing. For meshes with holes.
     bool is_hole(std::uint32_t triangle, const TriangleCrossing& crossing) const;
     /// Corner `k` (0..2) of a triangle.
     Point3 corner(std::uint32_t triangle, int k) const;
@@ -62,7 +62,7 @@ struct PlaneObject {
     Spectrum reflectance{};
 };
 
-/// All surfaces of a scene, before and after Embree has its acceleration structure over them.
+/// All surfaces of a scene, before and after Embree's acceleration structure is built over them.
 struct SceneObjects {
     std::vector<std::unique_ptr<MeshObject>> meshes;
     std::vector<SphereObject> spheres;
@@ -72,27 +72,27 @@ struct SceneObjects {
 };
 
 /// The crossing of a line with the plane of a triangle (Moeller & Trumbore 1997) in double
-/// precision. Nothing if it misses the triangle by more than k_edge_margin, as happens to lines
+/// precision. Empty if it misses the triangle by more than k_edge_margin, as can happen for lines
 /// nearly in its plane.
 std::optional<TriangleCrossing> cross_triangle(const MeshObject& object, std::uint32_t triangle,
                                                const Point3& origin, const Vector3& direction);
 
-/// Both crossings of a line with a sphere, the smaller first, or nothing.
+/// Both crossings of a line with a sphere, the nearer first; empty if it misses.
 struct SphereCrossings {
     double near = 0, far = 0;
 };
 std::optional<SphereCrossings> cross_sphere(const SphereObject& sphere, const Point3& origin,
                                             const Vector3& direction);
 
-/// Where a line crosses a plane; nothing if it runs parallel.
+/// Where a line crosses a plane; empty if it is parallel to it.
 std::optional<double> cross_plane(const PlaneObject& plane, const Point3& origin,
                                   const Vector3& direction);
 
-/// Fill everything of `hit` but `distance` and `position`, which are given; `direction` is the
-/// ray's, whose side the normals are turned to.
+/// Fill all of `hit` except `distance` and `position`, which are given; `direction` is the ray's,
+/// and the normals are turned to face it.
 void shade_mesh(const MeshObject& object, std::uint32_t triangle, const TriangleCrossing& crossing,
                 const ReflectanceBands& bands, const Vector3& direction, SurfaceHit& hit);
-/// What a triangle of `hit` (SurfaceHit::triangle) does beside reflecting diffusely.
+/// The material, beyond diffuse reflection, of the triangle of `hit` (SurfaceHit::triangle).
 SurfaceMaterial material_of_mesh(const MeshObject& object, const ReflectanceBands& bands,
                                  const SurfaceHit& hit);
 void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceHit& hit);

@@ -4,7 +4,7 @@
 
 namespace uw {
 
-/// What a surface does besides reflecting diffusely (SurfaceHit::reflectance).
+/// Material properties beyond diffuse reflection (SurfaceHit::reflectance).
 struct SurfaceMaterial {
     Spectrum emission{};     // emitted radiance, the same in all directions [W m^-2 sr^-1]
     bool is_glossy = false;  // has a specular lobe as well (core/surfaces/microfacet.h)

@@ -7,14 +7,14 @@
 
 namespace uw {
 
-/// How a surface looks to the camera: its BRDF towards it, and the light that it emits.
+/// The light from a surface towards the camera: its BRDF and its emission.
 class SurfaceReflection {
   public:
     /// Refers to `sample`.
     SurfaceReflection(const Surfaces& surfaces, const SurfaceSample& sample, int band_count);
 
-    /// BRDF per band [1/sr] for light from a lamp at `position`: rho/pi of a diffuse surface;
-    /// (1 - F) rho/pi + F D V of a glossy one (glTF 2.0, appendix B).
+    /// BRDF per band [1/sr] for light from a lamp at `position`: rho/pi for a diffuse surface; (1 -
+    /// F) rho/pi + F D V for a glossy one (glTF 2.0, appendix B).
     void brdf(const Point3& position, Spectrum& values) const;
 
     /// Whether the surface emits light of its own.
@@ -25,7 +25,7 @@ class SurfaceReflection {
   private:
     const SurfaceSample* sample_;
     std::size_t bands_;
-    std::optional<SurfaceMaterial> material_;  // none: diffuse and dark
+    std::optional<SurfaceMaterial> material_;  // empty: diffuse, no emission
     bool emits_ = false;
 };
 

@@ -5,7 +5,7 @@
 
 namespace uw {
 
-/// A surface that a camera ray meets.
+/// A surface point hit by a camera ray.
 struct SurfaceSample {
     Ray ray;
     SurfaceHit hit;

@@ -9,7 +9,7 @@
 
 namespace uw {
 
-/// Where a ray meets a surface. World space.
+/// Where a ray hits a surface. World space.
 struct SurfaceHit {
     double distance = 0;  // along the ray [m]
     Point3 position;
@@ -17,13 +17,13 @@ struct SurfaceHit {
     Vector3 geometric_normal{0, 0, 1};  // of the true surface, unit, same side
     Spectrum reflectance{};             // diffuse reflectance rho per band, 0..1
     std::uint32_t object_id = 0;        // index of the entry of `geometry`, from 1
-    bool has_material = false;          // does more than reflect diffusely: see Surfaces::material
-    // For Surfaces::material: the triangle and where on it.
+    bool has_material = false;          // more than diffuse reflection: see Surfaces::material
+    // For Surfaces::material: the triangle and the position on it.
     std::uint32_t geometry = 0, triangle = 0;
     double u = 0, v = 0;
 };
 
-/// The opaque surfaces of a scene: what stops camera rays and casts shadows. Thread safe.
+/// The opaque surfaces of a scene, which stop camera rays and cast shadows. Thread safe.
 class Surfaces {
   public:
     virtual ~Surfaces() = default;
@@ -31,22 +31,22 @@ class Surfaces {
     /// The nearest surface along `ray` within (0, s_end]; false if there is none.
     virtual bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const = 0;
 
-    /// What a surface that was hit does besides reflecting diffusely; nothing unless
-    /// SurfaceHit::has_material, and by default.
+    /// Material properties beyond diffuse reflection at a hit; none unless
+    /// SurfaceHit::has_material, and none by default.
     virtual SurfaceMaterial material(const SurfaceHit& /*hit*/) const { return {}; }
 
     /// Distance to the nearest surface from the ray's origin, infinity if there is none. Cheaper
     /// than closest_hit: no shading.
     virtual double hit_distance(const Ray& ray) const = 0;
 
-    /// Whether a surface lies between `from` and `to`. Surfaces that either point lies on (within
-    /// 1e-5 of the distance) do not count.
+    /// Whether a surface lies between `from` and `to`. Surfaces on which either point lies (within
+    /// 1e-5 of the distance) are ignored.
     virtual bool occluded(const Point3& from, const Point3& to) const = 0;
 
-    /// The three queries above for many rays at once, with the same results to the bit (but for
-    /// triangles as small as 1000 times the rounding of their coordinates to floats, where rounding
-    /// may differ). Faster where rays that follow one another in steps of 8 go much the same way;
-    /// slower where they do not. All spans of a call have the same length.
+    /// The three queries above for many rays at once, with bit-identical results (except for
+    /// triangles as small as 1000 times the float rounding of their coordinates, where rounding may
+    /// differ). Faster if consecutive groups of 8 rays are coherent; slower if they are not. All
+    /// spans of a call have the same length.
     ///
     /// `found[i]` is closest_hit(rays[i], s_end, hits[i]), as 0 or 1.
     virtual void closest_hits(std::span<const Ray> rays, double s_end, std::span<SurfaceHit> hits,
@@ -58,7 +58,7 @@ class Surfaces {
     virtual void occluded_many(const Point3& from, std::span<const Point3> to,
                                std::span<char> blocked) const;
 
-    /// World bounds of everything finite; empty if there is nothing.
+    /// World bounds of all finite surfaces; empty if there are none.
     virtual Bounds bounds() const = 0;
     virtual std::uint64_t triangle_count() const = 0;
     virtual bool empty() const = 0;

@@ -7,8 +7,8 @@
 
 namespace uw {
 
-/// Reads a CSV file of at most 4 MiB; `where` is the entry of the scene that names it. Throws
-/// InputError for a file that is no such table, IoError for one that cannot be read.
+/// Reads a CSV file of at most 4 MiB; `where` is the scene entry that names it. Throws InputError
+/// if the file is not a valid table, IoError if it cannot be read.
 CsvTable read_csv_file(const std::filesystem::path& file, const std::string& where);
 
 }  // namespace uw

@@ -124,8 +124,8 @@ SampledCurve CsvTable::curve(std::string_view x_column, std::string_view y_colum
         const double x = number(row, x_index);
         if (!result.x.empty() && !(x > result.x.back()))
             throw InputError(
-                fmt::format("{}:{}: {} = {} does not ascend; sort the rows and leave "
-                            "each value in once",
+                fmt::format("{}:{}: {} = {} does not ascend; sort the rows and give "
+                            "each value once",
                             name_, row.line, in_quotes(x_column), x));
         result.x.push_back(x);
         result.y.push_back(number(row, y_index));

@@ -9,15 +9,15 @@
 namespace uw {
 
 /// A table of comma-separated values: lines starting with '#' are comments, the first other line
-/// names the columns, each further line is a row with as many cells. Cells are trimmed and may be
-/// blank; quoting is not supported. Numbers use a decimal point whatever the locale.
+/// names the columns, each further line is a row with the same number of cells. Cells are trimmed
+/// and may be blank; quoting is not supported. Numbers use a decimal point whatever the locale.
 ///
 /// Errors are InputError and name the table, the line and the column.
 class CsvTable {
   public:
-    /// Most rows a table may have; a file with more is no spectrum and no phase function.
+    /// Maximum number of rows; a file with more is not a spectrum or phase function.
     static constexpr std::size_t k_max_rows = 20000;
-    /// Most columns, for the same reason.
+    /// Maximum number of columns, for the same reason.
     static constexpr std::size_t k_max_columns = 256;
 
     /// Reads `text`; `name` is what messages call the table (a file name).
@@ -25,7 +25,7 @@ class CsvTable {
 
     const std::string& name() const { return name_; }
     std::size_t row_count() const { return rows_.size(); }
-    /// The names of the columns, in their order.
+    /// The column names, in order.
     const std::vector<std::string>& columns() const { return columns_; }
 
     /// The cells of column `column` as text.
@@ -34,11 +34,11 @@ class CsvTable {
     /// The cells of column `column` as finite numbers; a blank or anything else is an error.
     std::vector<double> numbers(std::string_view column) const;
 
-    /// Column `y_column` over column `x_column`, rows where either is blank left out. The x must
-    /// ascend strictly, and at least one row must remain.
+    /// Column `y_column` as a function of column `x_column`, omitting rows where either is blank. x
+    /// must be strictly ascending, and at least one row must remain.
     SampledCurve curve(std::string_view x_column, std::string_view y_column) const;
 
-    /// The rows whose column `column` reads `value`, as a table with the same columns.
+    /// The rows whose cell in `column` equals `value`, as a table with the same columns.
     CsvTable where(std::string_view column, std::string_view value) const;
 
   private:
@@ -55,8 +55,8 @@ class CsvTable {
     std::vector<Row> rows_;
 };
 
-/// The table compiled in from assets/spectra under the file name `name`. A name that is not there
-/// is a fault of the program: std::logic_error.
+/// The table compiled in from assets/spectra under the file name `name`. An unknown name is a bug
+/// in the program: std::logic_error.
 CsvTable read_embedded_table(std::string_view name);
 
 }  // namespace uw

@@ -13,8 +13,8 @@ struct SampledCurve {
     double last() const { return x.back(); }
     bool covers(double at) const { return at >= first() && at <= last(); }
 
-    /// Linear interpolation; outside the samples the value at the nearer end is held, so callers
-    /// for whom that is wrong ask `covers` first.
+    /// Linear interpolation; outside the samples the value at the nearer end is held; callers for
+    /// whom that is wrong must check `covers` first.
     double value(double at) const;
 };
 

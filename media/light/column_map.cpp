@@ -27,7 +27,7 @@ double farthest_corner(const Bounds& bounds, const Point3& from) {
     return farthest;
 }
 
-// Cuts `part` of the straight line from `a` to `b` to where it lies within [-1, size].
+// Clips `part` of the straight line from `a` to `b` to where it lies within [-1, size].
 void clip(double a, double b, int size, Interval& part) {
     if (a == b) {
         if (a < -1 || a > size) part = {1, 0};
@@ -48,13 +48,14 @@ ColumnMap::ColumnMap(const ConcentrationField& field, const Point3& lamp, double
     const Bounds bounds = field.bounds();
     if (bounds.empty() || constituents_ == 0) return;
     const double voxel = field.finest_voxel();
-    // A lamp inside a volume may be near its centre; the far parts still want voxel-wide texels.
+    // A lamp inside a volume may be close to its centre; the distant parts still need voxel-wide
+    // texels.
     const double typical = std::max(distance(bounds.center(), lamp), 0.25 * bounds.diagonal());
     const double texels = per_voxel_ * 2 * typical / voxel;  // along a face, which is 2 wide
     const double steps = per_voxel_ / voxel;                 // per metre
 
     std::array<FaceRectangle, 6> rectangles;
-    double rays = 0, samples = 0;  // that this would take
+    double rays = 0, samples = 0;  // required at this resolution
     for (int face = 0; face < 6; ++face) {
         FaceRectangle& rectangle = rectangles[static_cast<std::size_t>(face)];
         rectangle = project_box(bounds, lamp, CubeFace(face));
@@ -77,7 +78,7 @@ ColumnMap::ColumnMap(const ConcentrationField& field, const Point3& lamp, double
     }
 }
 
-// Chooses the texels to store: those of the rectangle, and one around it that interpolation reads.
+// Chooses the texels to store: those of the rectangle, and a border of one for interpolation.
 void ColumnMap::crop(const FaceRectangle& rectangle, Face& out) const {
     const auto first = [&](double u) {
         return std::max(-1, static_cast<int>(std::floor(texel_u(u))) - 1);
@@ -220,7 +221,7 @@ void ColumnMap::append_breaks(const Ray& ray, const Interval& interval,
         for (int i = std::max(1, static_cast<int>(stored.begin * steps)); i <= last; ++i) {
             const double t = static_cast<double>(i) / steps;
             if (!any_particles(face, ua + t * (ub - ua), va + t * (vb - va))) continue;
-            // Equal steps on the face are not equal in space: interpolate s / depth.
+            // Equal steps on the face are not equal steps in space: interpolate s / depth.
             s.push_back(
                 (segment.stretch.begin * depth_b * (1 - t) + segment.stretch.end * depth_a * t) /
                 (depth_b * (1 - t) + depth_a * t));

@@ -11,24 +11,24 @@
 
 namespace uw {
 
-/// Column concentrations around one lamp: rays from the lamp over the directions in which there
-/// is a grid, each with its running columns at equal steps of distance. Optical depth of every
+/// Column concentrations around one lamp: rays from the lamp over the directions that contain a
+/// grid, each with its cumulative columns at equal steps of distance. The optical depth in every
 /// band follows from them (physics section 1).
 class ColumnMap {
   public:
-    /// Marches the field once along each texel's ray. There are about `per_voxel` texels across the
-    /// finest voxel at the field's centre, and steps along it; fewer where a field that fills its
-    /// bounds would exceed `memory_budget` [bytes]. `field` is not kept. Columns bend where their
-    /// rays pass from voxel to voxel: two to a voxel keep what interpolation adds below 0.2 % of
-    /// the image for plumes with edges of a voxel or two.
+    /// Marches the field once along each texel's ray. At the field's centre there are about
+    /// `per_voxel` texels across the finest voxel, and as many steps along it; fewer if a field
+    /// that fills its bounds would exceed `memory_budget` [bytes]. `field` is not kept. Columns
+    /// have kinks where their rays pass from voxel to voxel: two texels per voxel keep the
+    /// interpolation error below 0.2 % of the image for plumes with edges of a voxel or two.
     ColumnMap(const ConcentrationField& field, const Point3& lamp, double per_voxel,
               std::size_t memory_budget);
 
-    /// As DeepShadow::columns: bilinear over directions, linear over distance.
+    /// As DeepShadow::columns: bilinear in direction, linear in distance.
     void columns(std::span<const Point3> x, std::span<double> column) const;
 
-    /// As DeepShadow::append_column_breaks: one break in two texels where the ray crosses
-    /// directions whose rays meet particles.
+    /// As DeepShadow::append_column_breaks: one break every two texels where the ray crosses
+    /// directions whose rays hit particles.
     void append_breaks(const Ray& ray, const Interval& interval, std::vector<double>& s) const;
 
     std::size_t bytes() const;
@@ -36,8 +36,8 @@ class ColumnMap {
 
   private:
     struct TexelRay {
-        float begin = 0;           // distance at which columns start to grow [m]
-        std::uint32_t count = 0;   // samples; 0: nothing this way
+        float begin = 0;           // distance at which columns become non-zero [m]
+        std::uint32_t count = 0;   // samples; 0: nothing in this direction
         std::uint32_t offset = 0;  // of the first in its row's samples
     };
     struct Face {

@@ -8,12 +8,12 @@
 
 namespace uw {
 
-/// Directions around a lamp as the six faces of a cube, seen by central projection: a straight
-/// line in space is a straight line on a face. Face 2a + 0 looks along +axis a, 2a + 1 along -a.
+/// Directions around a lamp as the six faces of a cube, by central projection: a straight line in
+/// space is a straight line on a face. Face 2a + 0 faces along +axis a, 2a + 1 along -a.
 struct CubeFace {
     int axis = 0;                // the face's major axis: 0, 1, 2
     int u_axis = 1, v_axis = 2;  // the two after it
-    double sign = 1;             // which way along the major axis
+    double sign = 1;             // direction along the major axis
 
     explicit CubeFace(int index)
         : axis(index / 2),
@@ -26,7 +26,7 @@ struct CubeFace {
     double u(const Vector3& v) const { return v[u_axis] / depth(v); }
     double v(const Vector3& w) const { return w[v_axis] / depth(w); }
 
-    /// The direction (not unit: depth 1) of the face's point (u, v).
+    /// The direction (of depth 1, not unit length) of the face's point (u, v).
     Vector3 direction(double u_on_face, double v_on_face) const {
         Vector3 d(0.0);
         d[axis] = sign;
@@ -36,20 +36,21 @@ struct CubeFace {
     }
 };
 
-/// Index of the face that the direction `v` falls on; |u|, |v| <= 1 there.
+/// Index of the face onto which the direction `v` projects; |u|, |v| <= 1 there.
 inline int cube_face_of(const Vector3& v) {
     const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
     const int axis = x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
     return 2 * axis + (v[axis] < 0 ? 1 : 0);
 }
 
-/// A stretch of a ray that projects onto one face.
+/// A segment of a ray that projects onto one face.
 struct FaceSegment {
     int face = 0;
     Interval stretch;
 };
 
-/// Splits [begin, end] of `ray` where it changes the face around `center`. Ascending, gapless.
+/// Splits [begin, end] of `ray` where it crosses from face to face around `center`. Ascending,
+/// without gaps.
 void split_by_face(const Ray& ray, const Point3& center, const Interval& stretch,
                    std::vector<FaceSegment>& segments);
 

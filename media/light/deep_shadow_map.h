@@ -9,26 +9,26 @@
 
 namespace uw {
 
-/// How finely lamps are splatted.
+/// The resolution at which lamps are splatted.
 struct DeepShadowOptions {
     int shadow_resolution = 512;              // texels along an edge of a cube face
-    double columns_per_voxel = 2;             // texels and steps of columns to a voxel's edge
-    std::size_t column_budget = 80ull << 20;  // bytes of columns, all lamps of a scene together
+    double columns_per_voxel = 2;             // texels and steps of columns per voxel edge
+    std::size_t column_budget = 80ull << 20;  // bytes of columns, for all lamps of a scene together
 };
 
-/// One lamp's light splatted into the scene (docs/design.md): a shadow map and a column map, either
-/// of which may be shared with other deep shadow maps.
+/// One lamp's light, splatted into the scene (docs/design.md): a shadow map and a column map,
+/// either of which may be shared with other deep shadow maps.
 class DeepShadowMap : public DeepShadow {
   public:
-    /// `surfaces` outlives the deep shadow map; `field` is only read here. The lamp has the whole
-    /// of the options' budget to itself.
+    /// `surfaces` must outlive the deep shadow map; `field` is only read here. The lamp has the
+    /// options' whole budget to itself.
     DeepShadowMap(const ConcentrationField& field, const Surfaces& surfaces, const Point3& lamp,
                   const DeepShadowOptions& options)
         : DeepShadowMap(std::make_shared<ShadowMap>(surfaces, lamp, options.shadow_resolution),
                         std::make_shared<ColumnMap>(field, lamp, options.columns_per_voxel,
                                                     options.column_budget)) {}
 
-    /// Of maps made before, both of the same lamp position.
+    /// From existing maps, both for the same lamp position.
     DeepShadowMap(std::shared_ptr<const ShadowMap> shadows,
                   std::shared_ptr<const ColumnMap> columns)
         : shadows_(std::move(shadows)), columns_(std::move(columns)) {}

@@ -27,7 +27,7 @@ Polygon box_side(const Bounds& box, const Point3& center, int axis, int side) {
     return polygon;
 }
 
-// Keeps the part of a polygon on which `distance` is not negative (Sutherland and Hodgman).
+// Clips a polygon to where `distance` is not negative (Sutherland and Hodgman).
 template <class Distance>
 Polygon clip(const Polygon& polygon, const Distance& distance) {
     Polygon kept;
@@ -83,7 +83,8 @@ FaceRectangle project_box(const Bounds& box, const Point3& center, const CubeFac
 
 double integrate_chords(const Bounds& box, const Point3& center, const CubeFace& face,
                         const FaceRectangle& rectangle) {
-    constexpr int k_samples = 32;  // along each side: some per cent, enough for a budget
+    constexpr int k_samples =
+        32;  // along each side: accurate to a few per cent, enough for a budget
     if (rectangle.empty()) return 0;
     const double du = (rectangle.u_max - rectangle.u_min) / k_samples;
     const double dv = (rectangle.v_max - rectangle.v_min) / k_samples;

@@ -14,13 +14,14 @@ namespace {
 
 constexpr float k_nothing = std::numeric_limits<float>::infinity();
 constexpr float k_untraced = -1;
-// A cell reaches this far from a direction in it: its diagonal, and as much again.
+// Margin that contains a whole cell from any direction in it: its diagonal, doubled.
 constexpr double k_beam_margin_texels = 3;
 // The map's depths are float and its texels are compared with points between their centres; a
-// decision needs this relative margin, or the search goes on to exact shadow rays.
+// decision requires this relative margin, otherwise the search falls back to exact shadow rays.
 constexpr double k_margin = 1e-3;
-// A shadow's edge is found to this fraction of its distance from the lamp, half of it off on
-// average: in-scatter over that is less than 1e-4 of that of the ray on its way past the lamp.
+// A shadow's edge is located to this fraction of its distance from the lamp, with an average error
+// of half of it: the in-scatter over that length is less than 1e-4 of that of the ray as it passes
+// the lamp.
 constexpr double k_edge_width = 3e-4;
 
 }  // namespace
@@ -36,7 +37,7 @@ void ShadowMap::trace_face(int face_index) {
     const CubeFace face(face_index);
     const int n = resolution_;
     const int padded = n + 2;  // one texel beyond each edge, so that neighbours always exist
-    // Cells that the beam touches have all their samples within this.
+    // Contains all samples of the cells that the beam touches.
     const DirectionCone wide = beam_.widened(k_beam_margin_texels * 2.0 / n);
     Grid2D<float> depth(padded, padded, k_untraced);
     std::atomic<std::uint64_t> traced = 0;
@@ -70,7 +71,7 @@ void ShadowMap::trace_face(int face_index) {
     while (pyramid.back().width() > 1) pyramid.push_back(halved(pyramid.back()));
 }
 
-// Four samples bound what lies between them: 1 / depth is linear over a plane.
+// Four samples bound the depths between them: 1 / depth is linear over a plane.
 ShadowMap::Level ShadowMap::cell_ranges(const Grid2D<float>& samples) {
     const int n = samples.width() - 1;
     Level level(n, n);
@@ -80,7 +81,7 @@ ShadowMap::Level ShadowMap::cell_ranges(const Grid2D<float>& samples) {
         DepthRange* const cells = level.row(v).data();
         for (int u = 0; u < n; ++u) {
             const float nearest = std::min({above[u], above[u + 1], below[u], below[u + 1]});
-            // Cells outside the beam bound nothing.
+            // Cells outside the beam have no bounds.
             cells[u] = nearest == k_untraced
                            ? DepthRange{k_nothing, 0}
                            : DepthRange{nearest,
@@ -115,7 +116,7 @@ std::size_t ShadowMap::bytes() const {
     return total;
 }
 
-/// The walk along one ray: halves stretches until the pyramid decides or a texel is reached.
+/// The search along one ray: bisects intervals until the pyramid decides or a texel is reached.
 class ShadowMap::Search {
   public:
     Search(const ShadowMap& map, const Ray& ray, std::vector<Interval>& lit)
@@ -165,7 +166,7 @@ class ShadowMap::Search {
                  std::max(a.depth, b.depth) < 2 * std::min(a.depth, b.depth))
             resolve(a.s, b.s);
         else {
-            // Halfway on the face where the stretch is long there, else halfway in depth.
+            // Bisects on the face if the interval is long there, else in depth.
             const bool far_on_face = std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) > 1.0;
             const MapPoint middle =
                 project(far_on_face ? (a.s * b.depth + b.s * a.depth) / (a.depth + b.depth)
@@ -175,7 +176,7 @@ class ShadowMap::Search {
         }
     }
 
-    // Nearest and farthest surface over the texels that the stretch touches.
+    // Nearest and farthest surface over the texels that the interval touches.
     DepthRange bound(const MapPoint& a, const MapPoint& b) const {
         const auto texel = [&](double t) {  // the cell between the samples around t
             return std::clamp(static_cast<int>(std::floor(t + 0.5)), 0, map_.resolution_);
@@ -201,8 +202,9 @@ class ShadowMap::Search {
 
     bool visible(double s) const { return !map_.surfaces_->occluded(map_.lamp_, ray_.at(s)); }
 
-    // At the end of a stretch; a little inside it where the whole stretch ends, which may be on a
-    // surface, that hides nothing within 1e-5 of the distance (Surfaces::occluded).
+    // Visibility at the end of an interval; slightly inside it at the ends of the whole interval,
+    // which may lie on a surface, since a surface occludes nothing within 1e-5 of the distance
+    // (Surfaces::occluded).
     bool visible_at_end(double s, double into) {
         if (s == last_seen_.s) return last_seen_.visible;
         const bool is_end = s == whole_.begin || s == whole_.end;
@@ -212,7 +214,7 @@ class ShadowMap::Search {
         return last_seen_.visible;
     }
 
-    // A stretch of at most a texel that the map cannot decide.
+    // Resolves an interval of at most a texel that the map cannot decide.
     void resolve(double begin, double end) {
         const bool lit_at_begin = visible_at_end(begin, end);
         const bool lit_at_end = visible_at_end(end, begin);
@@ -230,7 +232,7 @@ class ShadowMap::Search {
         append(lit_at_begin ? Interval{begin, edge} : Interval{edge, end});
     }
 
-    // Neighbouring stretches share an end.
+    // Neighbouring intervals share an end.
     struct Seen {
         double s = -1;
         bool visible = false;
@@ -254,7 +256,7 @@ void ShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
         return;
     }
     Search search(*this, ray, lit);
-    // At the lamp's own position no direction is defined; whatever is that near counts as lit.
+    // At the lamp's position no direction is defined; points this close count as lit.
     const double foot = glm::dot(lamp_ - ray.origin, ray.direction);
     const double offset = distance(lamp_, ray.at(foot));
     const double half =

@@ -10,22 +10,22 @@
 
 namespace uw {
 
-/// What one lamp sees: the depth of the nearest surface over all directions, as pyramids of
-/// nearest and farthest depth on the faces of a cube. It finds whole stretches of a ray lit or
-/// dark at once; where the map cannot decide, exact shadow rays find the edge.
+/// Visibility from one lamp: the depth of the nearest surface over all directions, as pyramids of
+/// least and greatest depth on the faces of a cube. It classifies whole intervals of a ray as lit
+/// or shadowed at once; where the map is inconclusive, exact shadow rays locate the edge.
 class ShadowMap {
   public:
-    /// Traces those of the `resolution`^2 rays on each face that go within `beam`. `surfaces`
-    /// outlives the map.
+    /// Traces those of the `resolution`^2 rays on each face that lie within `beam`. `surfaces` must
+    /// outlive the map.
     ShadowMap(const Surfaces& surfaces, const Point3& lamp, int resolution,
               const DirectionCone& beam = {});
 
     /// The directions that the map covers.
     const DirectionCone& beam() const { return beam_; }
 
-    /// The parts of a stretch of `ray` within the beam that the lamp sees, ascending and disjoint.
-    /// Edges lie within 2e-4 of their distance from the lamp. A shadow narrower than a texel may be
-    /// missed.
+    /// The parts of the interval `stretch` of `ray`, within the beam, that the lamp illuminates,
+    /// ascending and disjoint. Edges are accurate to 2e-4 of their distance from the lamp. A shadow
+    /// narrower than a texel may be missed.
     void lit_intervals(const Ray& ray, const Interval& stretch, std::vector<Interval>& lit) const;
 
     std::uint64_t rays_traced() const { return rays_traced_; }

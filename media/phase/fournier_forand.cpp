@@ -11,7 +11,7 @@ namespace uw {
 
 namespace {
 
-/// (x^q - 1) / (x - 1), q at x = 1: no cancellation anywhere.
+/// (x^q - 1) / (x - 1), q at x = 1, without cancellation.
 double power_quotient(double x, double q) {
     const double e = x - 1;
     return e == 0 ? q : std::expm1(q * std::log1p(e)) / e;
@@ -66,7 +66,7 @@ FournierForand::FournierForand(double n, double mu)
 double FournierForand::value(double sin2_half) const {
     const double delta = delta_180_ * sin2_half;
     const double e = delta - 1;
-    const double power_less_1 = std::expm1(nu_ * std::log(delta));  // exact for small nu too
+    const double power_less_1 = std::expm1(nu_ * std::log(delta));  // accurate for small nu too
     const double power = 1 + power_less_1;
     double a = 0;  // (nu(1-d) - (1-d^nu)) / (1-d)^2
     double b = 0;  // (d(1-d^nu) - nu(1-d)) / (1-d)^2

@@ -9,7 +9,7 @@
 
 namespace uw {
 
-/// Fournier and Forand's phase function of particles with index `n` relative to water and a
+/// The Fournier-Forand phase function of particles with index `n` relative to water and a
 /// hyperbolic (Junge) size distribution of slope `mu`, in the form of Fournier and Jonasz (1999),
 /// Mobley's "Light and Water" web book:
 ///
@@ -17,24 +17,24 @@ namespace uw {
 ///         + (1-d180^nu) (3 cos^2 psi - 1) / (16 pi (d180-1) d180^nu),
 ///     nu = (3-mu)/2,  d = 4 sin^2(psi/2) / (3 (n-1)^2),  d180 = d at psi = pi.
 ///
-/// The first term is 0/0 at d = 1; near it the quotients are summed as their binomial series.
-/// p grows without bound towards psi = 0. Below `k_smallest_angle` it is held at its mean over
-/// that cone (known in closed form), so that it is finite everywhere and the integral is still 1.
+/// The first term is 0/0 at d = 1; near it the quotients are evaluated by their binomial series. p
+/// is unbounded as psi approaches 0. Below `k_smallest_angle` it is held at its mean over that cone
+/// (known in closed form), so that it is finite everywhere and the integral is still 1.
 class FournierForand final : public PhaseFunction {
   public:
     /// 1e-6 rad (0.2 arc seconds): far below any pixel, and below the diffraction angle of a
-    /// particle half a metre in size, so that no real water has more of a peak.
+    /// particle half a metre in size, so that no real water has a sharper peak.
     static constexpr double k_smallest_angle = 1e-6;
 
-    /// `n` in (1, 10]; `mu` in (3, 5), where the size distribution scatters a finite amount.
-    /// Otherwise InputError.
+    /// `n` in (1, 10]; `mu` in (3, 5), where the total scattering of the size distribution is
+    /// finite. Otherwise InputError.
     FournierForand(double n, double mu);
 
     using PhaseFunction::evaluate;
     void evaluate(std::span<const double> psi, std::span<double> p) const override;
 
-    /// The edge of the held cone, then splits in steps of 4: p is nearly a power of psi there and
-    /// no polynomial follows that over decades.
+    /// The edge of the constant cone, then splits at ratios of 4: p is nearly a power of psi there,
+    /// which no polynomial can follow over decades.
     std::vector<double> breakpoints() const override;
 
     std::string description() const override;

@@ -19,7 +19,7 @@ void HenyeyGreenstein::evaluate(std::span<const double> psi, std::span<double> p
     const double scale = (1 - g_) * (1 + g_) / (4 * std::numbers::pi);
     const double nearest = (1 - g_) * (1 - g_);
     for (std::size_t i = 0; i < psi.size(); ++i) {
-        // 1 + g^2 - 2 g cos(psi), without its cancellation at small psi
+        // 1 + g^2 - 2 g cos(psi), without cancellation at small psi
         const double s = std::sin(0.5 * psi[i]);
         const double q = nearest + 4 * g_ * s * s;
         p[i] = scale / (q * std::sqrt(q));

@@ -18,9 +18,9 @@ class HenyeyGreenstein final : public PhaseFunction {
     using PhaseFunction::evaluate;
     void evaluate(std::span<const double> psi, std::span<double> p) const override;
 
-    /// p is smooth, but its poles at psi = +-i ln(1/|g|) (from psi = 0, or pi for g < 0) come so
-    /// near the real axis that one polynomial cannot follow the peak: splits in steps of 3 away
-    /// from it, none for |g| < 0.5.
+    /// p is smooth, but its poles at psi = +-i ln(1/|g|) (from psi = 0, or pi for g < 0) lie so
+    /// close to the real axis that one polynomial cannot follow the peak: splits at ratios of 3
+    /// away from it, none for |g| < 0.5.
     std::vector<double> breakpoints() const override;
 
     std::string description() const override;

@@ -17,7 +17,7 @@ namespace uw {
 
 namespace {
 
-/// A phase table is a few kilobytes; more is some other file.
+/// A phase table is a few kilobytes; anything larger is some other file.
 constexpr std::size_t k_largest_table_file = std::size_t{4} << 20;
 
 std::shared_ptr<const PhaseFunction> table_phase(const TabulatedPhaseDesc& desc,
@@ -43,7 +43,7 @@ std::shared_ptr<const PhaseFunction> table_phase(const TabulatedPhaseDesc& desc,
     return phase;
 }
 
-/// One for each that PhaseFunctionDesc may hold.
+/// One overload for each alternative of PhaseFunctionDesc.
 struct MakePhaseFunction {
     using Made = std::shared_ptr<const PhaseFunction>;
     const SourceLocation& where;

@@ -16,7 +16,7 @@ constexpr std::array<double, 4> k_gauss_node{0.1834346424956498, 0.5255324099163
 constexpr std::array<double, 4> k_gauss_weight{0.3626837833783620, 0.3137066458778873,
                                                0.2223810344533745, 0.1012285362903763};
 
-/// int_a^b f(x) dx over panels of a width that makes the rule exact to rounding for e^(rate x).
+/// int_a^b f(x) dx over panels narrow enough for the rule to be exact to rounding for e^(rate x).
 template <class F>
 double integrate(const F& f, double a, double b, double rate) {
     const double span = b - a;
@@ -69,7 +69,7 @@ std::size_t PiecewiseFunction::segment_of(double psi) const {
     const std::size_t lowest = bucket_[bucket];
     const std::size_t highest =
         bucket + 1 < bucket_.size() ? bucket_[bucket + 1] : segments_.size() - 1;
-    // Knots inside the bucket: none or one but in very dense tables.
+    // Knots inside the bucket: at most one, except in very dense tables.
     const auto begin = psi_.begin() + static_cast<std::ptrdiff_t>(lowest) + 1;
     const auto end = psi_.begin() + static_cast<std::ptrdiff_t>(highest) + 1;
     return lowest + static_cast<std::size_t>(std::upper_bound(begin, end, psi) - begin);
@@ -84,8 +84,9 @@ double PiecewiseFunction::evaluate(const Segment& segment, double psi) {
         case Law::linear:
             break;
     }
-    return std::max(0.0,
-                    segment.y + segment.m * (psi - segment.x));  // an end of 0 may round below it
+    return std::max(
+        0.0,
+        segment.y + segment.m * (psi - segment.x));  // rounding may fall below an end of 0
 }
 
 double PiecewiseFunction::evaluate(double psi) const {

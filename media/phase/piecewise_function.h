@@ -16,11 +16,12 @@ class PiecewiseFunction {
         power,        // ln f linear in ln psi; needs f > 0 and psi > 0 at both ends
     };
 
-    /// `psi` [rad] ascends strictly from exactly 0 to pi; `value` has its length, `laws` one fewer.
+    /// `psi` [rad] ascends strictly from exactly 0 to pi; `value` has the same length, `laws` one
+    /// fewer.
     PiecewiseFunction(std::vector<double> psi, const std::vector<double>& value,
                       const std::vector<Law>& laws);
 
-    /// f at `psi` [rad]; angles outside [0, pi] (rounding) count as the nearer end.
+    /// f at `psi` [rad]; angles outside [0, pi] (rounding) are clamped.
     double evaluate(double psi) const;
 
     /// 2 pi int f sin(psi) dpsi between two knots (indices), to about 1e-13 relative.
@@ -42,8 +43,8 @@ class PiecewiseFunction {
 
     std::vector<double> psi_;
     std::vector<Segment> segments_;
-    // Segment that holds the lower edge of each bucket of angles; 32 buckets to an octave, cut by
-    // the leading bits of the number itself, so that finding the bucket takes no logarithm.
+    // Segment that contains the lower edge of each bucket of angles; 32 buckets per octave, taken
+    // from the number's leading bits, so that finding the bucket needs no logarithm.
     std::uint64_t first_key_ = 0;
     std::vector<std::uint32_t> bucket_;
 };

@@ -33,11 +33,11 @@ void check_phase_table(const SampledCurve& table, const std::string& name) {
                 fmt::format("{}: phase function {} at {} degrees is impossible; give "
                             "values of 0 or more, in 1/sr",
                             name, table.y[i], table.x[i]));
-        // Closer angles would make the slope between them rounding noise.
+        // For closer angles the slope between them would be rounding noise.
         if (i > 0 && !(table.x[i] > table.x[i - 1] * (1 + 1e-9) && table.x[i] > 1e-7))
             throw InputError(
-                fmt::format("{}: angles {} and {} degrees cannot be told apart; leave "
-                            "one out",
+                fmt::format("{}: angles {} and {} degrees are too close to distinguish; "
+                            "remove one",
                             name, table.x[i - 1], table.x[i]));
     }
 }
@@ -46,7 +46,7 @@ Law law_between(double psi_0, double p_0, double p_1) {
     return psi_0 > 0 && p_0 > 0 && p_1 > 0 ? Law::power : Law::linear;
 }
 
-/// Knots of a table with its continuation at both ends.
+/// Knots of a table, extrapolated at both ends.
 struct Knots {
     std::vector<double> psi, p;
     std::vector<Law> laws;
@@ -58,7 +58,7 @@ struct Knots {
     }
 };
 
-/// Knots from 0 up to, not including, the first angle of the table.
+/// Adds knots from 0 up to, but excluding, the first angle of the table.
 void add_low_end(Knots& knots, double psi, double p, double exponent) {
     const double smallest = TabulatedPhase::k_smallest_angle;
     const auto continued = [&](double angle) { return p * std::pow(angle / psi, exponent); };

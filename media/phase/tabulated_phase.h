@@ -15,24 +15,25 @@ namespace uw {
 /// A phase function from a table of angles, renormalised to 2 pi int p sin(psi) dpsi = 1.
 ///
 /// Between angles: ln p linear in ln psi; p linear in psi where an end is 0 (an angle of 0, or a
-/// value of 0). Before the first angle, if it is not 0: the power law of the first segment goes on
-/// (its exponent kept within [-1.9, 0], so that the integral stays finite) down to
-/// `k_smallest_angle` and holds its value from there to 0. After the last angle its value holds.
+/// value of 0). Below the first angle, if it is not 0, the power law of the first segment is
+/// extrapolated (its exponent clamped to [-1.9, 0], so that the integral stays finite) down to
+/// `k_smallest_angle`, and held constant from there to 0. Beyond the last angle its value is held.
 class TabulatedPhase : public PhaseFunction {
   public:
     /// 1e-6 rad: see FournierForand::k_smallest_angle.
     static constexpr double k_smallest_angle = 1e-6;
 
-    /// `table`: degrees, in [0, 180], over values >= 0 of any common scale. `low_exponent`, in
-    /// [-1.9, 0], replaces the one found from the first segment. Fewer than two angles, an angle
-    /// out of range, or values that are negative or all 0: InputError starting with `name`.
+    /// `table`: angles in degrees, in [0, 180], and values >= 0 up to a common factor.
+    /// `low_exponent`, in [-1.9, 0], overrides the one derived from the first segment. Fewer than
+    /// two angles, an angle out of range, or values that are negative or all 0: InputError starting
+    /// with `name`.
     TabulatedPhase(const SampledCurve& table, const std::string& name,
                    std::optional<double> low_exponent = std::nullopt);
 
     using PhaseFunction::evaluate;
     void evaluate(std::span<const double> psi, std::span<double> p) const override;
 
-    /// Every angle of the table, and splits in steps of 4 where the table is continued to 0.
+    /// Every angle of the table, and splits at ratios of 4 where the table is extrapolated to 0.
     std::vector<double> breakpoints() const override;
 
     std::string description() const override { return name_; }
@@ -41,11 +42,11 @@ class TabulatedPhase : public PhaseFunction {
     /// function, b if it was a volume scattering function.
     double table_integral() const { return table_integral_; }
 
-    /// Fraction of the scattering that lies outside the table's own angles.
+    /// Fraction of the scattering that lies outside the table's angles.
     double extrapolated_fraction() const { return extrapolated_fraction_; }
 
   protected:
-    /// For tables with a rule of their own: `f` between its knots, as it stands.
+    /// For tables with their own interpolation: takes `f` as it is.
     TabulatedPhase(PiecewiseFunction f, std::string name);
 
   private:
@@ -62,7 +63,8 @@ class TabulatedPhase : public PhaseFunction {
 TabulatedPhase read_phase_table(std::string_view text, const std::string& name);
 
 /// Petzold's average particle phase function (Mobley, Gentili and Stavn 1993, table 2), continued
-/// below 0.1 degrees as psi^-1.346. Joined log-log its table integrates to 0.9926; here it is 1.
+/// below 0.1 degrees as psi^-1.346. With log-log interpolation its table integrates to 0.9926; here
+/// it is normalised to 1.
 class PetzoldAverage final : public TabulatedPhase {
   public:
     PetzoldAverage();

@@ -60,7 +60,7 @@ void ByteReader::read(char* to, std::size_t bytes) {
 }
 
 std::string ByteReader::text(std::size_t size) {
-    if (size > k_longest_text) fail("is damaged: a name in it is absurdly long");
+    if (size > k_longest_text) fail("is damaged: it contains an absurdly long name");
     std::string value(size, '\0');
     read(value.data(), size);
     return value;

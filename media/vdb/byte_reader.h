@@ -13,8 +13,8 @@ namespace uw {
 
 static_assert(std::endian::native == std::endian::little, "files are read as they lie");
 
-/// Reads a little-endian binary file forwards and never believes a size the file cannot hold.
-/// What is wrong with the file becomes an InputError of one line that starts with `where`.
+/// Reads a little-endian binary file sequentially and never trusts a size that the file cannot
+/// hold. Errors in the file become a one-line InputError that starts with `where`.
 class ByteReader {
   public:
     static constexpr std::size_t k_longest_text = 4096;
@@ -40,13 +40,14 @@ class ByteReader {
     }
     void read(char* to, std::size_t bytes);
     std::string text(std::size_t size);
-    std::string text() { return text(get<std::uint32_t>()); }  // with its length before it
+    std::string text() { return text(get<std::uint32_t>()); }  // prefixed by its length
 
   private:
     const std::filesystem::path& file_;
     const SourceLocation& where_;
     std::ifstream stream_;
-    std::vector<char> window_;  // the file's bytes from window_begin_ on, so that hops are cheap
+    std::vector<char>
+        window_;  // the file's bytes from window_begin_ on, so that short seeks are cheap
     std::int64_t window_begin_ = 0;
     std::int64_t size_ = 0, position_ = 0;
 };

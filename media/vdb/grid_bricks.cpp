@@ -48,7 +48,8 @@ GridIntake sanitize(openvdb::FloatTree& tree) {
         tiles.setActiveState(value > 0);
     }
     openvdb::tree::LeafManager<Tree> leaves(tree);
-    std::vector<GridIntake> parts(leaves.leafCount());  // summed in order: the same for any threads
+    std::vector<GridIntake> parts(
+        leaves.leafCount());  // summed in order, so independent of threads
     leaves.foreach ([&parts](Tree::LeafNodeType& leaf, std::size_t index) {
         float* values = leaf.buffer().data();
         for (openvdb::Index n = 0; n < Tree::LeafNodeType::SIZE; ++n) {
@@ -57,7 +58,7 @@ GridIntake sanitize(openvdb::FloatTree& tree) {
         }
     });
     for (const GridIntake& part : parts) total.add(part);
-    openvdb::tools::prune(tree);  // blocks of one value become tiles, which cost nothing
+    openvdb::tools::prune(tree);  // constant blocks become tiles, which cost nothing
     return total;
 }
 

@@ -20,7 +20,7 @@ std::string did_you_mean(const VdbHeader& header, const std::string& name) {
     }
     const std::string_view near = nearest_word(name, names);
     if (near.empty()) return "";
-    // Of namesakes, which share a base name, the first.
+    // The first of the grids that share a base name.
     const auto grid = std::ranges::find_if(header.grids, [&](const GridSummary& candidate) {
         return candidate.name == near || candidate.base_name == near;
     });

@@ -6,13 +6,14 @@
 
 namespace uw {
 
-/// Why the grid's values are no concentrations, to follow "grid 'x' "; "" if nothing in its header
-/// speaks against them.
+/// Why the grid's values cannot be concentrations, to follow "grid 'x' "; "" if its header gives no
+/// such reason.
 std::string unusable_because(const GridSummary& grid);
 
-/// The grid a scene calls `name`, if its concentrations can be used. Throws InputError, starting
-/// with `where`, for a name that is missing or shared by several grids, and for level sets, points,
-/// vectors, other types, and transforms that are not affine; the message lists what the file has.
+/// The grid that a scene calls `name`, if it can be used as concentrations. Throws InputError,
+/// starting with `where`, for a name that is missing or shared by several grids, and for level
+/// sets, points, vectors, other types, and transforms that are not affine; the message lists the
+/// file's grids.
 const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
                                const SourceLocation& where);
 

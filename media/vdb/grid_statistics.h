@@ -9,22 +9,22 @@
 
 namespace uw {
 
-/// What was found in a grid's active voxels (tiles count with all their voxels). Inactive voxels
-/// are no data by OpenVDB's convention, whatever value a writer left in them.
+/// Statistics of a grid's active voxels (tiles count with all their voxels). By OpenVDB's
+/// convention inactive voxels are not data, whatever value a writer left in them.
 struct GridStatistics {
     std::int64_t active_voxels = 0;
     std::int64_t nan_voxels = 0, infinite_voxels = 0, negative_voxels = 0;  // treated as 0
     double background = 0;                                                  // treated as 0
-    double min = 0, mean = 0, max = 0;  // over active voxels, after the bad ones became 0
+    double min = 0, mean = 0, max = 0;  // over active voxels, with invalid values set to 0
 };
 
-/// Takes in voxel values one by one: makes each fit for use and keeps count.
+/// Takes voxel values one by one, sanitises each and updates the counts.
 struct GridIntake {
     std::int64_t active = 0, nan = 0, infinite = 0, negative = 0;
     double sum = 0;
     float min = std::numeric_limits<float>::infinity(), max = -min;
 
-    /// `value` as it is used, counted for `voxels` voxels.
+    /// The sanitised `value`, counted for `voxels` voxels.
     float take(float value, std::int64_t voxels) {
         active += voxels;
         if (!std::isfinite(value)) {
@@ -39,7 +39,7 @@ struct GridIntake {
         max = std::max(max, value);
         return value;
     }
-    /// Adds what another part of the grid brought.
+    /// Adds the counts of another part of the grid.
     void add(const GridIntake& other) {
         active += other.active;
         nan += other.nan;
@@ -52,7 +52,7 @@ struct GridIntake {
     GridStatistics statistics(double background) const;
 };
 
-/// What a user should know about a grid's values, one line each, all beginning with `prefix`.
+/// Warnings about a grid's values, one line each, all beginning with `prefix`.
 std::vector<std::string> intake_warnings(const GridStatistics& statistics,
                                          const std::string& prefix);
 

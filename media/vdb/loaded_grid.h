@@ -10,8 +10,8 @@
 
 namespace uw {
 
-/// A grid ready to be sampled. Large grids come in several bricks whose values add: each holds a
-/// slab of whole 8^3 blocks, and interpolation with zeros outside is linear.
+/// A grid ready to be sampled. Large grids are split into several bricks whose values add up: each
+/// holds a slab of whole 8^3 blocks, and interpolation with zeros outside is linear.
 struct LoadedGrid {
     std::string name;
     Affine file_from_index;  // the file's transform: metres, index (i, j, k) where OpenVDB puts it
@@ -20,7 +20,7 @@ struct LoadedGrid {
     std::vector<std::string> warnings;  // one line each, starting with `where`
 };
 
-/// Throws InputError starting with `prefix` if what was loaded is a level set in disguise, or if
+/// Throws InputError starting with `prefix` if the loaded grid is an undeclared level set, or if
 /// its voxels have no volume.
 void check_loaded(const VdbHeader& header, const GridSummary& grid, const std::string& prefix,
                   const LoadedGrid& loaded);

@@ -22,12 +22,12 @@ namespace uw {
 namespace {
 
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
-// Furthest way of a voxel from the middle of the shutter's time to its end [voxels].
+// Greatest displacement of a voxel from the middle of the exposure to its end [voxels].
 constexpr double k_furthest = 64;
-// The interpolant is linear within a voxel: the mean of what passes, to 1e-3 of its peak.
+// The interpolant is linear within a voxel: gives the time average to 1e-3 of its peak.
 constexpr double k_samples_per_voxel = 4;
 
-/// A grid's density on its way through the shutter's time.
+/// A grid's density averaged over the exposure.
 class ShutterAverage {
   public:
     ShutterAverage(const openvdb::FloatGrid& density, const VelocityField& velocity, double shutter,
@@ -37,7 +37,7 @@ class ShutterAverage {
           shutter_(shutter),
           shift_(centering == Centering::cell ? 0.5 : 0.0) {}
 
-    /// The average within the block at `origin`; none if it is zero.
+    /// The average within the block at `origin`; null if it is zero.
     std::unique_ptr<FloatLeaf> block(const openvdb::Coord& origin) const {
         const VelocityField::Sampler velocity(velocity_);
         const auto density = density_.getConstAccessor();
@@ -82,7 +82,7 @@ class ShutterAverage {
     double shutter_, shift_;
 };
 
-/// The blocks that something of `density` may reach, `way` voxels away; ascending.
+/// The blocks that `density` may reach within `way` voxels; ascending.
 std::vector<openvdb::Coord> blocks_in_reach(const openvdb::FloatGrid& density,
                                             const openvdb::Vec3d& way) {
     const auto furthest = [&](int axis) { return static_cast<int>(std::ceil(way[axis])) + 1; };
@@ -99,7 +99,7 @@ std::vector<openvdb::Coord> blocks_in_reach(const openvdb::FloatGrid& density,
     return {blocks.begin(), blocks.end()};
 }
 
-/// Reads the density whole, sanitized, its uniform regions as voxels.
+/// Reads the whole density, sanitized, with its uniform regions expanded to voxels.
 openvdb::FloatGrid::Ptr read_density(const VdbHeader& header, const GridSummary& grid,
                                      const SourceLocation& where, LoadedGrid& loaded) {
     openvdb::FloatGrid::Ptr density;
@@ -110,7 +110,7 @@ openvdb::FloatGrid::Ptr read_density(const VdbHeader& header, const GridSummary&
                    density = to_float(slab);
                });
     loaded.statistics = sanitize(density->tree()).statistics(loaded.statistics.background);
-    constexpr std::uint64_t k_bytes_per_voxel = 2 * sizeof(float);  // it and its average
+    constexpr std::uint64_t k_bytes_per_voxel = 2 * sizeof(float);  // the grid and its average
     if (density->baseTree().activeVoxelCount() > available_memory_bytes() / k_bytes_per_voxel)
         throw std::bad_alloc();
     density->tree().voxelizeActiveTiles();
@@ -162,7 +162,7 @@ LoadedGrid load_moving_grid(const VdbHeader& header, const std::string& name,
         const GridIntake moved =
             take_slab(average(*density, velocity, way, motion.shutter, centering), loaded.bricks);
         loaded.warnings = intake_warnings(loaded.statistics, prefix);
-        // What is rendered has other values than the file, and more voxels.
+        // The rendered grid has other values than the file, and more voxels.
         const GridStatistics rendered = moved.statistics(loaded.statistics.background);
         loaded.statistics.active_voxels = rendered.active_voxels;
         loaded.statistics.min = rendered.min;

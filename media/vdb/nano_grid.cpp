@@ -65,14 +65,14 @@ bool contains(const Bounds& box, const Point3& p) {
            p.z >= box.min.z && p.z <= box.max.z;
 }
 
-/// Samples points that follow each other: neighbours in the same cell share its corners.
+/// Samples consecutive points: neighbours in the same cell share its corners.
 class Sampler {
   public:
     Sampler(const void* grid, const Bounds& support)
         : accessor_(*static_cast<const Grid*>(grid)), support_(support) {}
 
     double operator()(const Point3& p) {
-        if (!contains(support_, p)) return 0;  // also where p is not a number
+        if (!contains(support_, p)) return 0;  // also if p is NaN
         const Coord cell = floor_of(p);
         if (cell != cell_) {
             corners_ = corners_of(accessor_, accessor_.probeLeaf(cell), cell);
@@ -88,7 +88,7 @@ class Sampler {
     Corners corners_{};
 };
 
-/// What the grid holds around a cell, and the box of cells for which that is all there is to say.
+/// The grid's contents around a cell, and the box of cells that share them.
 struct Region {
     enum class Kind { constant, leaf, cell };
     Kind kind = Kind::cell;
@@ -121,8 +121,8 @@ Region region_at(const Accessor& accessor, const Coord& cell) {
     return region;
 }
 
-/// Walks a line through the cells of the interpolation lattice. The cell only ever moves on, along
-/// each axis in the line's direction, so the walk ends.
+/// Walks a line through the cells of the interpolation lattice. The cell only ever advances along
+/// each axis in the line's direction, so the walk terminates.
 class Walk {
   public:
     Walk(const LatticeLine& line, double begin, double end, const Bounds& support) : line_(line) {
@@ -156,7 +156,8 @@ class Walk {
     double t() const { return t_; }
     const Coord& cell() const { return cell_; }
 
-    /// Where the line leaves the cells [low, high), or ends; moves there.
+    /// Advances to where the line leaves the cells [low, high), or ends, and returns that
+    /// parameter.
     double leave(const Coord& low, const Coord& high) {
         double exit = k_infinity;
         int exit_axis = 0;

@@ -10,10 +10,10 @@
 
 namespace uw {
 
-/// A stretch of a line within which a grid may differ from zero.
+/// An interval of a line within which a grid may be non-zero.
 struct GridStretch {
     double begin = 0, end = 0;  // line parameter
-    bool constant = false;      // one value all along
+    bool constant = false;      // one value throughout
 };
 
 /// A straight line in lattice space: p(t) = origin + t * direction.
@@ -27,27 +27,28 @@ struct LatticeLine {
 /// in lattice space, where the value of voxel (i, j, k) sits at (i, j, k). Thread safe.
 class NanoGrid {
   public:
-    /// `grid` points to the NanoVDB grid inside what `storage` owns (media/vdb/vdb_file.cpp makes
-    /// it). `min` and `max` bound its nonzero voxels, both included, |coordinates| < 2^30.
+    /// `grid` points to the NanoVDB grid inside the memory owned by `storage` (see
+    /// media/vdb/vdb_file.cpp). `min` and `max` (inclusive) bound its nonzero voxels, |coordinates|
+    /// < 2^30.
     NanoGrid(std::shared_ptr<const void> storage, const void* grid, std::size_t bytes,
              const std::array<int, 3>& min, const std::array<int, 3>& max);
 
-    /// Lattice box outside which the interpolated value is zero.
+    /// Bounding box in lattice space outside which the interpolated value is zero.
     const Bounds& support() const { return support_; }
     std::size_t bytes() const { return bytes_; }
 
     double sample(const Point3& p) const;
-    /// values[n] += p(t[n])'s value. `t` must be ascending.
+    /// Adds the value at p(t[n]) to values[n]. `t` must be ascending.
     void add_samples(const LatticeLine& line, std::span<const double> t,
                      std::span<double> values) const;
     /// The exact integral of the interpolated value over t in [0, 1], in units of t.
     double integrate(const LatticeLine& line) const;
-    /// Appends the stretches of [begin, end] outside which the value is exactly zero; ascending,
-    /// disjoint, touching ones of a kind joined.
+    /// Appends the intervals of [begin, end] outside which the value is exactly zero; ascending,
+    /// disjoint, with adjacent ones of the same kind merged.
     void append_stretches(const LatticeLine& line, double begin, double end,
                           std::vector<GridStretch>& stretches) const;
-    /// The sum of all values but those of regions that are one value throughout (tiles): the least
-    /// that touching every voxel in memory takes, on all threads allowed.
+    /// The sum of all values except those of constant regions (tiles): the minimal work that
+    /// touches every voxel in memory, on all permitted threads.
     double stored_sum() const;
 
   private:

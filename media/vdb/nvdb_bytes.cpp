@@ -15,11 +15,11 @@
 namespace uw {
 namespace {
 
-using Buffer = nanovdb::HostBuffer;  // aligned as nodes have to be
+using Buffer = nanovdb::HostBuffer;  // aligned as nodes require
 
-constexpr std::uint64_t k_chunk_bytes = std::uint64_t{1} << 30;  // packed one by one
+constexpr std::uint64_t k_chunk_bytes = std::uint64_t{1} << 30;  // compressed one by one
 
-/// Unpacks what follows at `in`'s position. Lengths in front of packed chunks are not believed.
+/// Decompresses the data at `in`'s position. Lengths preceding compressed chunks are not trusted.
 void unpack(ByteReader& in, const std::filesystem::path& file, bool zip, Buffer& to) {
     std::ifstream stream(file, std::ios::binary);
     stream.exceptions(std::ios::failbit | std::ios::badbit);
@@ -28,7 +28,7 @@ void unpack(ByteReader& in, const std::filesystem::path& file, bool zip, Buffer&
         const std::int64_t begin = in.position();
         const auto packed = in.get<std::int64_t>();
         if (packed < 1 || packed > in.size() - in.position()) in.fail_damaged();
-        if (!zip) {  // blosc's own header: flags, bytes unpacked, block size, bytes packed
+        if (!zip) {  // blosc's own header: flags, uncompressed bytes, block size, compressed bytes
             const auto head = in.get<std::array<std::uint32_t, 4>>();
             if (head[1] != chunk || head[3] != static_cast<std::uint64_t>(packed))
                 in.fail_damaged();

@@ -7,15 +7,15 @@
 
 namespace uw {
 
-/// A grid of a NanoVDB file, unpacked, at an address that its nodes may have.
+/// A decompressed grid of a NanoVDB file, suitably aligned for its nodes.
 struct NvdbBytes {
     std::shared_ptr<const std::uint8_t> data;
     std::uint64_t size = 0;
 };
 
-/// Reads and unpacks the bytes of `grid`. Of what they hold nothing is checked but that they begin
-/// as a grid does and claim no more than they are. Throws InputError starting with `where`;
-/// std::bad_alloc if they are more than the memory there is.
+/// Reads and decompresses the bytes of `grid`. Of their contents, only the grid header's magic
+/// number and its claimed size are checked. Throws InputError starting with `where`; std::bad_alloc
+/// if memory does not suffice.
 NvdbBytes read_nvdb_bytes(const VdbHeader& header, const GridSummary& grid,
                           const SourceLocation& where);
 

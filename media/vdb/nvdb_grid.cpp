@@ -12,8 +12,8 @@
 #include "media/vdb/nvdb_bytes.h"
 #include "media/vdb/openvdb_grids.h"
 
-// A NanoVDB file is a copy of memory: nodes that point at each other by offsets. Nothing of it is
-// followed before it is known to lead to a node of the right kind that nothing else leads to.
+// A NanoVDB file is a memory image: nodes refer to each other by offsets. No offset is followed
+// before it is known to lead to a node of the right kind to which no other offset leads.
 namespace uw {
 namespace {
 
@@ -46,10 +46,10 @@ openvdb::math::Vec3<T> convert(const nanovdb::Vec3<T>& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// The nodes of one level: where they may lie, and which have been met.
+/// The nodes of one level: their valid positions, and which have been visited.
 class Level {
   public:
-    /// `offset`: from the tree, as the file has it. Nodes of one size.
+    /// `offset`: from the tree, as in the file. All nodes have the same size.
     Level(const std::uint8_t* begin, std::uint64_t available, std::uint64_t offset,
           std::uint64_t count, std::uint64_t size)
         : begin_(begin + (offset <= available ? offset : 0)), size_(size) {
@@ -58,7 +58,7 @@ class Level {
         if (valid_) met_.resize(count);
     }
     bool valid() const { return valid_; }
-    /// Marks the node at `at` as met; false if there is none, or it has been met before.
+    /// Marks the node at `at` as visited; false if there is none, or it was visited before.
     bool take(std::uint64_t at, const std::uint8_t* origin) {
         const auto first = static_cast<std::uint64_t>(begin_ - origin);
         if (at < first || (at - first) % size_ != 0) return false;
@@ -119,9 +119,10 @@ class Conversion {
     std::uint64_t offset_of(const Node& node, std::int64_t child) const {
         const auto at =
             static_cast<std::uint64_t>(reinterpret_cast<const std::uint8_t*>(&node) - tree_);
-        return at + static_cast<std::uint64_t>(child);  // a wild one wraps to what is no node
+        return at + static_cast<std::uint64_t>(
+                        child);  // an invalid one wraps to a position without a node
     }
-    /// Leaves of different sizes lie one behind the other; each says how large it is.
+    /// Leaves of different sizes are stored consecutively; each states its size.
     void find_varying_leaves() {
         std::uint64_t at = head_.mNodeOffset[0];
         require(head_.mNodeCount[0] == 0 || (at <= available_ && at % k_alignment == 0));
@@ -186,7 +187,7 @@ class Conversion {
             if (leaf.data()->mValueMask.isOn(n)) made->setValueOn(n, convert(leaf.getValue(n)));
         grid_->tree().addLeaf(made.release());  // the tree owns it
     }
-    /// Where this library made the checksum. Others count it differently.
+    /// Checks the checksum if this library version computed it. Others compute it differently.
     void check_sum() const {
         const std::uint64_t stated = data_.mChecksum;
         if (data_.mVersion.getMinor() != NANOVDB_MINOR_VERSION_NUMBER || stated == 0 ||

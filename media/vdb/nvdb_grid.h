@@ -6,9 +6,9 @@
 
 namespace uw {
 
-/// A grid of a NanoVDB file, checked and unpacked: its active values, as the grid that
-/// `grid.value_type` names (one of ReadableGrids). Throws InputError starting with `where` for
-/// damage.
+/// A validated and decompressed grid of a NanoVDB file: its active values, as a grid of type
+/// `grid.value_type` (one of ReadableGrids). Throws InputError starting with `where` if it is
+/// damaged.
 openvdb::GridBase::Ptr read_nvdb_grid(const VdbHeader& header, const GridSummary& grid,
                                       const SourceLocation& where);
 

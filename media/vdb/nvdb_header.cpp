@@ -12,10 +12,11 @@ namespace {
 // "NanoVDB0" up to library 32.5, then "NanoVDB1" for grids and "NanoVDB2" for files.
 constexpr std::int64_t k_magic_0 = 0x304244566f6e614e, k_magic_1 = 0x314244566f6e614e,
                        k_magic_2 = 0x324244566f6e614e;
-constexpr std::uint32_t k_major_version = 32;  // of the layout in memory, which is that in files
-constexpr std::uint16_t k_last_codec = 2;      // 0 none, 1 zip, 2 blosc
+constexpr std::uint32_t k_major_version =
+    32;                                    // of the memory layout, which is also the file layout
+constexpr std::uint16_t k_last_codec = 2;  // 0 none, 1 zip, 2 blosc
 
-/// What a segment says of one grid, as it lies in the file.
+/// A segment's metadata for one grid, in the file's layout.
 struct NanoMetadata {
     std::uint64_t grid_bytes = 0, stored_bytes = 0, name_key = 0, active_voxels = 0;
     std::uint32_t type = 0, grid_class = 0;
@@ -62,7 +63,7 @@ GridSummary read_metadata(ByteReader& in, std::uint16_t codec) {
     const auto fits = [&](std::uint64_t bytes) {
         return bytes <= static_cast<std::uint64_t>(in.size());
     };
-    constexpr std::uint64_t k_most_packing = 4096;  // no codec packs better than that
+    constexpr std::uint64_t k_most_packing = 4096;  // no codec compresses better than that
     if (!fits(metadata.stored_bytes) ||
         metadata.grid_bytes / k_most_packing > metadata.stored_bytes)
         in.fail("is cut short or damaged; copy or export it again");
@@ -71,7 +72,7 @@ GridSummary read_metadata(ByteReader& in, std::uint16_t codec) {
     grid.base_name = name_of(in, metadata.name_bytes);
     grid.name = grid.unique_name = grid.base_name;
     set_type(grid, metadata.type, metadata.grid_class);
-    grid.compression = codec == 2 ? 4U : codec;  // as VDB counts them
+    grid.compression = codec == 2 ? 4U : codec;  // as in VDB files
     grid.map_type = "AffineMap";
     grid.active_voxels = static_cast<std::int64_t>(metadata.active_voxels & ~(1ULL << 63U));
     const auto& box = metadata.index_box;
@@ -81,7 +82,7 @@ GridSummary read_metadata(ByteReader& in, std::uint16_t codec) {
     return grid;
 }
 
-/// Namesakes get numbers, as VDB files have them.
+/// Numbers grids that share a name, as in VDB files.
 void number_namesakes(std::vector<GridSummary>& grids) {
     std::map<std::string, int> count, next;
     for (const GridSummary& grid : grids) ++count[grid.base_name];

@@ -6,7 +6,7 @@
 
 namespace uw {
 
-/// How a file's grids are placed once `automatic` is decided.
+/// How a file's grids are placed, with `automatic` resolved.
 struct Placement {
     Centering centering = Centering::node;  // cell: value (i, j, k) sits at index i + 1/2; node: i
     UpAxis up = UpAxis::y;                  // z: the file's (x, y, z) is the scene's (x, z, -y)
@@ -16,7 +16,7 @@ struct Placement {
 /// Automatic means cell and z for caches of Blender's fluid solver, node and y for all others.
 Placement decide_placement(const VdbHeader& header, const VolumeDesc& desc);
 
-/// Brings the file's up axis to y.
+/// Rotates the file's up axis to y.
 Affine upright_from_file(UpAxis up);
 
 /// World from the file's index space: transform * up * the file's own transform.

@@ -16,7 +16,7 @@ bool VdbHeader::from_blender_fluid() const {
     static constexpr std::array<std::string_view, 13> names{
         "velocity", "density", "shadow", "temperature", "heat",  "flame",   "color_r",
         "color_g",  "color_b", "fuel",   "react",       "flags", "pressure"};
-    bool telling = false;  // a name that no other program uses beside "density"
+    bool telling = false;  // a name that no other program uses besides "density"
     for (const GridSummary& grid : grids) {
         std::string_view name = grid.base_name;
         const bool noise = name.ends_with(k_noise);

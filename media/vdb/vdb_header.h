@@ -16,31 +16,31 @@ struct IndexBox {
     std::array<std::int32_t, 3> min{}, max{};
 };
 
-/// What a VDB file says about one of its grids, read without its voxels. Names are made printable.
+/// A VDB file's metadata for one of its grids, read without its voxels. Names are made printable.
 struct GridSummary {
-    std::string name;        // as scenes address it: "density", or "density[1]" among namesakes
+    std::string name;        // as used in scenes: "density", or "density[1]" if several share it
     std::string base_name;   // "density" in both cases
     std::string value_type;  // "float", "double", "vec3s", "ptdataidx32", ...
     bool half = false;       // saved with 16 bits per number
     std::string quantised;   // NanoVDB: "fp4", "fp8", "fp16" or "fpN" if saved so, else ""
     std::string grid_class = "unknown";         // "fog volume", "level set", "staggered", "unknown"
-    std::optional<std::int64_t> active_voxels;  // if the file says so
+    std::optional<std::int64_t> active_voxels;  // if the file states it
     std::string map_type;                       // e.g. "UniformScaleMap", "NonlinearFrustumMap"
-    bool has_base_resolution = false;           // Blender's fluid solver notes it with each grid
-    std::optional<IndexBox> active_box;         // of the active voxels, if the file says so
+    bool has_base_resolution = false;           // stored with each grid by Blender's fluid solver
+    std::optional<IndexBox> active_box;         // of the active voxels, if the file states it
 
-    // For the reader: where in the file things are.
+    // For the reader: positions in the file.
     std::string tree_type;    // "Tree_float_5_4_3"
     std::string unique_name;  // raw
     std::string instance_of;  // raw unique name of the grid whose voxels this one shares, or ""
     std::uint32_t compression = 0;
     std::int64_t transform_offset = 0;
-    std::int64_t blocks_offset = 0;  // NanoVDB: where the grid's bytes begin
+    std::int64_t blocks_offset = 0;  // NanoVDB: start of the grid's bytes
     std::int64_t stored_bytes = 0;   // NanoVDB: their number in the file,
-    std::int64_t grid_bytes = 0;     // and once unpacked
+    std::int64_t grid_bytes = 0;     // and once decompressed
 };
 
-/// What a VDB file says about itself.
+/// A VDB file's metadata.
 struct VdbHeader {
     std::filesystem::path file;
     bool is_nano = false;       // NanoVDB's own format (.nvdb); it has no version of its own
@@ -56,7 +56,7 @@ struct VdbHeader {
     std::string describe_grids() const;
 };
 
-/// Voxels along an edge of a leaf of VDB trees, OpenVDB's and NanoVDB's alike.
+/// Voxels along the edge of a leaf node, in both OpenVDB and NanoVDB trees.
 inline constexpr int k_leaf_edge = 8;
 
 }  // namespace uw

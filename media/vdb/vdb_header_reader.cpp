@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::int64_t k_magic = 0x56444220;
 
-/// Names come from the file and go into one-line messages.
+/// Names come from the file and appear in one-line messages.
 std::string replace_controls(std::string text) {
     std::ranges::replace_if(
         text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
     return text;
 }
 
-/// A metadata map: strings, 64-bit integers and vectors of three by name; of others the name alone.
+/// A metadata map: strings, 64-bit integers and 3-vectors by name; for other types only the name.
 struct Metadata {
     std::map<std::string, std::string> strings;
     std::map<std::string, std::int64_t> integers;
@@ -56,7 +56,8 @@ bool take_suffix(std::string& text, const std::string& suffix) {
     return true;
 }
 
-/// Namesakes are told apart in the file by a number after the character "record separator".
+/// Grids that share a name are distinguished in the file by a number after the character "record
+/// separator".
 void set_names(GridSummary& grid, const std::string& unique_name) {
     grid.unique_name = unique_name;
     const auto separator = unique_name.rfind('\x1e');
@@ -135,7 +136,7 @@ VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocatio
     const bool has_offsets = in.get<char>() != 0;
     std::uint32_t compression = 0;
     if (header.version < 222) compression = in.get<char>() != 0 ? 1 : 0;
-    in.skip(36);  // UUID in text
+    in.skip(36);  // UUID as text
     Metadata metadata = read_metadata(in);
     header.creator = replace_controls(metadata.strings["creator"]);
     if (!has_offsets)

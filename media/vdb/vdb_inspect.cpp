@@ -91,7 +91,7 @@ bool is_readable(const std::string& value_type) {
 
 void read_values(const VdbHeader& header, const SourceLocation& where, GridInspection& grid) {
     if (!is_readable(grid.summary.value_type)) {
-        grid.unread = fmt::format("values of type {} are not looked at", grid.summary.value_type);
+        grid.unread = fmt::format("values of type {} are not inspected", grid.summary.value_type);
         return;
     }
     ValueSummary summary;
@@ -188,7 +188,7 @@ void inspect_transform(const VdbHeader& header, const Placement& placement,
     }
 }
 
-/// What `read` fails with, without the place in front; "" if it does not.
+/// The error with which `read` fails, without its location prefix; "" if it succeeds.
 template <class Read>
 std::string failure_of(const std::string& place, const Read& read) {
     try {
@@ -200,7 +200,7 @@ std::string failure_of(const std::string& place, const Read& read) {
     }
 }
 
-/// What the header says of the active voxels, unless it is that there are none.
+/// The box of active voxels stated in the header, unless it is empty.
 std::optional<IndexBox> stated_box(const GridSummary& grid) {
     if (!grid.active_box || grid.active_voxels.value_or(1) <= 0) return std::nullopt;
     for (std::size_t a = 0; a < 3; ++a)

@@ -51,8 +51,8 @@ class LayoutWalk {
         in_.skip(value_bytes_);                                // background
         const auto tiles = in_.get<std::uint32_t>();
         const auto children = in_.get<std::uint32_t>();
-        // Leaves are stored in the order of a sorted table of tiles and children: a key out of
-        // order, or there twice, would pair masks with other leaves' values.
+        // Leaves are stored in the order of a sorted table of tiles and children: an out-of-order
+        // or duplicate key would pair masks with other leaves' values.
         std::set<Key> tile_keys;
         for (std::uint32_t n = 0; n < tiles; ++n) {
             tile_keys.insert(in_.get<Key>());
@@ -90,7 +90,7 @@ class LayoutWalk {
             in_.skip(bytes);
             return;
         }
-        const auto packed = in_.get<std::int64_t>();  // negative: stored as it is
+        const auto packed = in_.get<std::int64_t>();  // negative: stored uncompressed
         if (packed <= 0 && packed != -bytes) in_.fail_damaged();
         in_.skip(packed > 0 ? packed : bytes);
     }
@@ -113,7 +113,7 @@ class LayoutWalk {
             leaf_counts_.push_back(count_on(read_mask(k_leaf_values)));
     }
     void walk_leaf(std::int64_t active) {
-        in_.skip(k_leaf_values / 8);  // its mask again
+        in_.skip(k_leaf_values / 8);  // its mask, repeated
         if (old_) {
             in_.skip(sizeof(Key));
             if (in_.get<std::int8_t>() != 1) in_.fail_damaged();

@@ -33,7 +33,7 @@ std::size_t bytes_of_leaf(const openvdb::GridBase& grid) {
     return bytes;
 }
 
-/// The boxes that a grid (topology only) is cut into for read_slabs; empty: no need to cut.
+/// The boxes into which a grid (topology only) is split for read_slabs; empty: no need to split.
 std::vector<openvdb::CoordBBox> cut_into_slabs(const openvdb::GridBase& grid,
                                                std::size_t slab_bytes) {
     const std::size_t leaf_bytes = bytes_of_leaf(grid);

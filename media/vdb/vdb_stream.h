@@ -13,14 +13,14 @@
 #include "media/vdb/openvdb_grids.h"
 #include "media/vdb/vdb_header.h"
 
-/// Grids of a VDB file as OpenVDB has them, for the files that look at voxels.
+/// Grids of a VDB file as OpenVDB objects, for the files that access voxels.
 namespace uw {
 
-/// One grid's part of the file, as a stream set up the way openvdb::io::File does it. File itself
-/// would refuse the whole file for one grid of a type it does not know, and clips in world space.
+/// One grid's part of the file, as a stream set up as openvdb::io::File does it. File itself would
+/// reject the whole file for one grid of an unknown type, and clips in world space.
 class GridStream {
   public:
-    /// `voxels`: the grid that holds the voxels of `grid`, mostly itself (holder_of_voxels).
+    /// `voxels`: the grid that holds the voxels of `grid`, usually itself (holder_of_voxels).
     GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
                const SourceLocation& where);
 
@@ -40,7 +40,7 @@ class GridStream {
     const SourceLocation& where_;
     bool layout_checked_ = false;
     std::ifstream stream_;
-    // The stream keeps a pointer to this very member.
+    // The stream keeps a pointer to this member.
     openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
 };
 
@@ -51,19 +51,19 @@ openvdb::math::Transform::ConstPtr read_transform(const VdbHeader& header, const
 /// The grid whose voxels `grid` shares, or itself. Throws std::runtime_error if it is missing.
 const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& grid);
 
-/// The affine map that a linear transform is.
+/// A linear transform as an affine map.
 Affine to_affine(const openvdb::math::Transform& transform);
 
-/// Reads a grid in slabs of about `slab_bytes` and hands each to `take`; their active voxels are
-/// disjoint. The grid is cut, across its longest axis at block boundaries, so that no slab holds
-/// more than `slab_bytes` of leaf values, or an eighth of all. Of a NanoVDB file all comes at once.
-/// The value type is one of ReadableGrids. Throws InputError starting with `where`, and what
-/// OpenVDB throws.
+/// Reads a grid in slabs of about `slab_bytes` and passes each to `take`; their active voxels are
+/// disjoint. The grid is split along its longest axis at block boundaries, so that no slab holds
+/// more than `slab_bytes` of leaf values, or an eighth of all. A NanoVDB grid comes as a single
+/// slab. The value type is one of ReadableGrids. Throws InputError starting with `where`, and
+/// OpenVDB's exceptions.
 void read_slabs(const VdbHeader& header, const GridSummary& grid, std::size_t slab_bytes,
                 const SourceLocation& where,
                 const std::function<void(const openvdb::GridBase::Ptr&)>& take);
 
-/// What `read` returns; what OpenVDB throws becomes an InputError that starts with `prefix`.
+/// The result of `read`; OpenVDB's exceptions become an InputError that starts with `prefix`.
 template <class Read>
 auto read_guarded(const std::string& prefix, const Read& read) {
     try {
@@ -73,7 +73,7 @@ auto read_guarded(const std::string& prefix, const Read& read) {
     } catch (const std::ios_base::failure&) {
         throw InputError(prefix + "the file is cut short or damaged; copy or export it again");
     } catch (const std::bad_alloc&) {
-        throw InputError(prefix + "it needs more memory than there is");
+        throw InputError(prefix + "it needs more memory than is available");
     } catch (const std::exception& error) {
         throw InputError(prefix + "cannot be read: " + error.what());
     }

@@ -23,9 +23,8 @@ struct VdbOutputGrid {
     std::vector<std::pair<std::string, std::string>> metadata;
 };
 
-/// Writes the grids, compressed, with `metadata` for the file as a whole (a "creator" among them is
-/// what other programs show). The file appears under its name only when it is whole. Throws
-/// IoError.
+/// Writes the grids, compressed, with `metadata` for the whole file (other programs display its
+/// "creator"). The file appears under its name only once it is complete. Throws IoError.
 void write_vdb(const std::filesystem::path& file, const std::vector<VdbOutputGrid>& grids,
                const std::vector<std::pair<std::string, std::string>>& metadata);
 

@@ -55,7 +55,7 @@ openvdb::FloatGrid::Ptr read_numbers(const VdbHeader& header, const GridSummary&
                                  motion.where, grid.name, grid.value_type));
 }
 
-/// Damage does not move anything.
+/// Invalid velocities count as zero.
 template <class T>
 T finite(T value) {
     return std::isfinite(value) ? value : T(0);
@@ -121,7 +121,7 @@ openvdb::Vec3d VelocityField::largest(const Matrix3& linear) const {
         for (int c = 0; c < 3; ++c) bound[c] = std::max(bound[c], std::abs(scale_ * mapped[c]));
     };
     if (vectors_) {
-        // Staggered components of different voxels meet at one place.
+        // Staggered components of different voxels combine at one point.
         Vector3 most(0.0);
         for (auto value = vectors_->cbeginValueAll(); value; ++value) {
             const openvdb::Vec3f v = *value;

@@ -9,15 +9,15 @@
 
 namespace uw {
 
-/// The velocities of a file's grids in the file's own axes [m/s], zero outside of them.
+/// The velocities of a file's grids in the file's own axes [m/s], zero outside the grids.
 class VelocityField {
   public:
-    /// Reads the grids that `motion` names: one of vectors, staggered or not, or three of numbers.
-    /// Without a scale, Blender's fluid caches have 2.5 voxels a second per unit, others m/s.
-    /// Throws InputError starting with `motion.where`.
+    /// Reads the grids that `motion` names: one vector grid, staggered or not, or three scalar
+    /// grids. Without a scale, the unit is 2.5 voxels per second for Blender's fluid caches, else
+    /// m/s. Throws InputError starting with `motion.where`.
     VelocityField(const MotionDesc& motion, Centering centering);
 
-    /// Reads from a thread of its own; holds caches.
+    /// Samples the field; one per thread, since it holds caches.
     class Sampler {
       public:
         explicit Sampler(const VelocityField& field);
@@ -29,11 +29,11 @@ class VelocityField {
         std::vector<openvdb::FloatGrid::ConstAccessor> numbers_;
     };
 
-    /// The largest |component| of linear * v over all v [of linear's unit a second].
+    /// The largest |component| of linear * v over all v [linear's unit per second].
     openvdb::Vec3d largest(const Matrix3& linear) const;
 
   private:
-    double shift_ = 0;  // of a value's place from its index
+    double shift_ = 0;  // from a value's index to its position
     double scale_ = 1;
     bool staggered_ = false;
     openvdb::Vec3SGrid::Ptr vectors_;               // either this

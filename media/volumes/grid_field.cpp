@@ -9,11 +9,11 @@ namespace uw {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-// The interpolant is a cubic in each cell; straight lines between four knots a voxel leave 0.06 %
-// of the in-scatter of a rough plume, two knots 0.2 %.
+// The interpolant is a cubic in each cell; linear interpolation with four knots per voxel has an
+// error of 0.06 % in the in-scatter of a rough plume, with two knots 0.2 %.
 constexpr double k_voxels_per_knot = 0.25;
 
-/// A stretch of the ray with the pace that one brick asks for.
+/// An interval of the ray with the step that one brick requires.
 struct PacedStretch {
     double begin = 0, end = 0;
     double step = 0;  // infinite where the value is constant
@@ -23,10 +23,10 @@ struct PacedStretch {
 struct Scratch {
     std::vector<GridStretch> stretches;
     std::vector<PacedStretch> paced;
-    std::vector<std::size_t> cursor, list_end;  // one list of stretches per brick within `paced`
+    std::vector<std::size_t> cursor, list_end;  // one list of intervals per brick within `paced`
     std::vector<double> boundaries;
     std::vector<double> values;
-    std::vector<char> at_empty;  // knots beside an empty piece, where the concentration is zero
+    std::vector<char> at_empty;  // knots next to an empty piece, where the concentration is zero
 };
 
 Scratch& scratch_of_thread() {
@@ -61,7 +61,7 @@ void gather_stretches(const std::vector<GridVolume>& volumes, const Ray& ray, do
     scratch.boundaries.erase(unique_end, scratch.boundaries.end());
 }
 
-/// The finest step that any brick asks for in the piece that begins at `begin`; 0 if all are empty.
+/// The finest step that any brick requires in the piece that begins at `begin`; 0 if all are empty.
 double step_of_piece(double begin, Scratch& scratch) {
     double step = 0;
     for (std::size_t list = 0; list < scratch.cursor.size(); ++list) {
@@ -110,7 +110,7 @@ void integrate(ConcentrationProfile& profile) {
         const std::size_t knot = i / count;
         const double sum = profile.concentration[i] + profile.concentration[i - count];
         profile.column[i] = profile.column[i - count];
-        // Not 0 * infinity on a ray without end.
+        // Avoids 0 * infinity on an unbounded ray.
         if (sum != 0) profile.column[i] += 0.5 * sum * (profile.s[knot] - profile.s[knot - 1]);
     }
 }
@@ -163,7 +163,7 @@ void GridField::profile(const Ray& ray, double s_end, ConcentrationProfile& prof
             for (const NanoGrid& brick : volume.bricks())
                 brick.add_samples(line, profile.s, scratch.values);
             for (std::size_t knot = 0; knot < profile.s.size(); ++knot) {
-                // The interpolant is continuous: beside an empty stretch it is exactly zero.
+                // The interpolant is continuous: next to an empty interval it is exactly zero.
                 if (scratch.at_empty[knot] != 0 || scratch.values[knot] == 0) continue;
                 for (const GridLoad& load : volume.loads())
                     profile

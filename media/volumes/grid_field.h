@@ -8,9 +8,9 @@
 
 namespace uw {
 
-/// Concentrations from any number of grids; overlapping ones add. sample() is the exact trilinear
-/// sum, column() its exact integral; profile() has knots every quarter voxel of the finest grid
-/// that is active there, and its columns are the integrals of the linear pieces between them.
+/// Concentrations from any number of grids; overlapping ones add up. sample() is the exact
+/// trilinear sum, column() its exact integral; profile() has knots every quarter voxel of the
+/// finest grid active there, and its columns are the integrals of the linear segments between them.
 class GridField final : public ConcentrationField {
   public:
     GridField(std::vector<GridVolume> volumes, int constituent_count);

@@ -5,7 +5,7 @@
 namespace uw {
 namespace {
 
-/// World bounds of a lattice box; an affine map takes its corners to the hull's.
+/// World bounds of a lattice box; an affine map takes its corners to those of its image.
 Bounds bounds_of_image(const Affine& map, const Bounds& box, double shrink) {
     Bounds image;
     for (unsigned corner = 0; corner < 8; ++corner) {

@@ -8,7 +8,7 @@
 
 namespace uw {
 
-/// One grid in the world: values, place, and what they mean.
+/// One grid in the world: its values, their placement and their meaning.
 class GridVolume {
   public:
     GridVolume(std::vector<NanoGrid> bricks, const Affine& world_from_index, Centering centering,
@@ -16,9 +16,10 @@ class GridVolume {
 
     const std::vector<NanoGrid>& bricks() const { return bricks_; }
     const std::vector<GridLoad>& loads() const { return loads_; }
-    /// World box outside which the interpolated value is zero; empty for a grid without values.
+    /// World bounding box outside which the interpolated value is zero; empty for a grid without
+    /// values.
     const Bounds& bounds() const { return bounds_; }
-    /// World box of the nonzero voxels, each taken as a cell around its value's place.
+    /// World bounding box of the nonzero voxels, each a cell around its value's position.
     const Bounds& voxel_bounds() const { return voxel_bounds_; }
     /// Lengths of a voxel's edges along index i, j, k [m].
     const Vector3& voxel_size() const { return voxel_size_; }

@@ -11,7 +11,7 @@
 namespace uw {
 namespace {
 
-/// Integrals along the world's axes through the middle of `bounds`.
+/// Integrals along the world's axes through the centre of `bounds`.
 std::array<double, 3> columns_through_middle(const GridVolume& volume) {
     std::array<double, 3> columns{};
     if (volume.bricks().empty()) return columns;
@@ -67,7 +67,7 @@ LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<G
         const Affine place = world_from_index(loaded, placement, desc.world_from_upright);
         const double determinant = place.determinant();
         if (!std::isfinite(determinant) || determinant == 0)
-            throw InputError(desc.where + ": its transform leaves the volume no extent");
+            throw InputError(desc.where + ": its transform collapses the volume");
         volume.grids.emplace_back(std::move(loaded.bricks), place, placement.centering,
                                   loads.at(g));
         volume.reports.push_back(report_on(desc, loaded, volume.grids.back(), placement));

@@ -15,25 +15,25 @@
 
 namespace uw {
 
-/// What one grid brings to one constituent, in the constituent's unit (ppm).
+/// The contribution of one grid to one constituent, in the constituent's unit (ppm).
 struct ConstituentReport {
     int constituent = 0;
     double min = 0, mean = 0, max = 0;  // over active voxels
     std::array<double, 3> column{};     // as VolumeReport::column, in [unit m]
 };
 
-/// What the user is told about one grid in use.
+/// The report to the user on one grid in use.
 struct VolumeReport {
     std::filesystem::path file;
     std::string grid;
     Vector3 metres_per_voxel{0};  // along index i, j, k, in the scene's scale
-    Bounds bounds;                // world box of the nonzero voxels; empty if there are none
+    Bounds bounds;                // world bounds of the nonzero voxels; empty if there are none
     Placement placement;
     GridStatistics statistics;
-    /// Integral of the value through the middle of `bounds`, along world x, y, z [value m].
+    /// Integral of the value through the centre of `bounds`, along world x, y, z [value m].
     std::array<double, 3> column{};
     std::vector<ConstituentReport> constituents;
-    std::size_t bricks = 0, bytes = 0;  // what it takes in memory
+    std::size_t bricks = 0, bytes = 0;  // memory usage
 };
 
 /// One volume of a scene, read. Copies share the voxels.
@@ -43,13 +43,13 @@ struct LoadedVolume {
     std::vector<std::string> warnings;  // one line each
 };
 
-/// Reads one volume. `loads[g]` says what its grid g means. Throws InputError or IoError (see
+/// Reads one volume. `loads[g]` gives the meaning of its grid g. Throws InputError or IoError (see
 /// vdb_file.h).
 LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
                          std::size_t slab_bytes = k_default_slab_bytes);
 
-/// Reads the volumes. `loads[v][g]` says what grid g of volume v means. Fills one report per grid
-/// in that order, and appends warnings of one line each. Throws as load_volume.
+/// Reads the volumes. `loads[v][g]` gives the meaning of grid g of volume v. Fills one report per
+/// grid in that order, and appends warnings of one line each. Throws as load_volume.
 std::unique_ptr<ConcentrationField> load_volumes(
     const std::vector<VolumeDesc>& volumes,
     const std::vector<std::vector<std::vector<GridLoad>>>& loads, int constituent_count,

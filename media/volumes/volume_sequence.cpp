@@ -14,7 +14,7 @@ namespace uw {
 
 namespace {
 
-// Programs that write frames one by one may round their transforms differently [voxels].
+// Programs may round the transforms of individual frames differently [voxels].
 constexpr double k_tolerance = 1e-4;
 
 bool same_place(const Affine& a, const Affine& b) {

@@ -8,12 +8,12 @@
 
 namespace uw {
 
-/// Finds out, from the headers of the files alone, whether the frames of a volume go together.
+/// Checks, from the files' headers alone, whether the frames of a volume are consistent.
 class VolumeSequenceCheck {
   public:
     /// Takes the next frame. Throws InputError with the file's name if a grid that the scene uses
-    /// is missing or cannot be used (select_grid), or if its transform is not that of the first
-    /// frame taken: then the same voxel means another place; IoError.
+    /// is missing or cannot be used (select_grid), or if its transform differs from that of the
+    /// first frame: the same voxel would then lie elsewhere; IoError.
     void take(const VolumeDesc& frame);
 
   private:

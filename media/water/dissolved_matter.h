@@ -12,8 +12,9 @@ double cdom_absorption(double wavelength_nm, double a_440);
 WavelengthRange chlorophyll_absorption_range();
 
 /// Absorption by phytoplankton [1/m] with `chlorophyll` [mg/m^3]: A(lambda) Chl^(1 - B(lambda))
-/// (Bricaud et al. 1995), A and B linear between their wavelengths 5 nm apart. Outside
-/// `chlorophyll_absorption_range()` the value at its nearer end, which callers should warn of.
+/// (Bricaud et al. 1995), A and B interpolated linearly in 5 nm tables. Outside
+/// `chlorophyll_absorption_range()` the value at the nearer end is used, which callers should warn
+/// about.
 double chlorophyll_absorption(double wavelength_nm, double chlorophyll);
 
 }  // namespace uw

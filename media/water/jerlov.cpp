@@ -13,7 +13,7 @@ namespace uw {
 
 namespace {
 
-// State of the water in which the measurements are taken to have been made.
+// Assumed state of the water in the measurements.
 constexpr double k_reference_temperature = 20;
 constexpr double k_reference_salinity = 35;
 

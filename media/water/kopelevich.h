@@ -16,7 +16,7 @@ inline constexpr double k_small_particle_density = 2;
 inline constexpr double k_large_particle_density = 1;
 
 /// Absorption of mineral sediment [m^2/g]: 0.041 exp(-0.0123 (lambda - 443)) (Babin et al. 2003).
-/// Times a density above it is [1/m per ppm].
+/// Multiplied by a density above, it is in [1/m per ppm].
 double mineral_mass_absorption(double wavelength_nm);
 
 }  // namespace uw

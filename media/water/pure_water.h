@@ -2,7 +2,7 @@
 
 namespace uw {
 
-/// Wavelengths a table covers [nm].
+/// Wavelengths covered by a table [nm].
 struct WavelengthRange {
     double first_nm, last_nm;
 
@@ -16,7 +16,7 @@ WavelengthRange pure_water_absorption_range();
 
 /// Absorption of pure (sea) water [1/m] at `wavelength_nm`, `temperature` [deg C] and `salinity`
 /// [PSU]: the WOPP v3 composite (Roettgers et al. 2016), a(T, S) = a + (T - 20) da/dT + S da/dS,
-/// linear between its wavelengths 2 nm apart and never below 0. Outside
+/// interpolated linearly in its 2 nm table and never below 0. Outside
 /// `pure_water_absorption_range()`: InputError.
 double pure_water_absorption(double wavelength_nm, double temperature, double salinity);
 
@@ -24,8 +24,8 @@ double pure_water_absorption(double wavelength_nm, double temperature, double sa
 /// 1.38e-4 (1 + 0.3 S/37) (500/lambda)^4.32, with `salinity` S in PSU.
 double water_vsf_90(double wavelength_nm, double salinity);
 
-/// Scattering coefficient of water's molecules [1/m]: water_vsf_90 over the full sphere with
-/// MolecularPhase, 4 pi (1 + 0.835/3) = 16.064 times it.
+/// Scattering coefficient of water's molecules [1/m]: water_vsf_90 integrated over the sphere with
+/// MolecularPhase, i.e. times 4 pi (1 + 0.835/3) = 16.064.
 double water_scattering(double wavelength_nm, double salinity);
 
 }  // namespace uw

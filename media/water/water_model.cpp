@@ -33,7 +33,7 @@ constexpr ParticleKind k_large_particles{
     "large", k_large_particle_density, kopelevich_large_scattering,
     [] { return std::shared_ptr<const PhaseFunction>(std::make_shared<KopelevichLarge>()); }};
 
-/// What a phase function of the medium is made of: equal ones share it.
+/// The source of a phase function of the medium: equal sources share one.
 using PhaseSource = std::variant<PhaseFunctionDesc, const ParticleKind*>;
 
 /// Assembles the model step by step: the uniform water first, since grids may refer to it.
@@ -92,7 +92,7 @@ void check_per_band(const PerBand& values, std::size_t bands, const std::string&
                                      what, values.size(), bands));
 }
 
-/// Of the same coefficients and the same phase function, wherever each is written.
+/// Whether coefficients and phase function are equal, regardless of where they are written.
 bool same_optics(const GridMappingDesc::Optics& a, const GridMappingDesc::Optics& b) {
     const auto function = [](const GridMappingDesc::Optics& optics) {
         return optics.phase ? std::optional(optics.phase->function) : std::nullopt;

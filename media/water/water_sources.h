@@ -8,9 +8,9 @@
 
 namespace uw {
 
-/// Where the numbers of a water come from, one line each: "absorption: ...", "scattering: ...",
-/// and one line per grid that adds to it. `small_ppm` and `large_ppm` are the background
-/// particles that build_water_model settled on.
+/// The sources of the water's coefficients, one line each: "absorption: ...", "scattering: ...",
+/// and one line per grid that adds to them. `small_ppm` and `large_ppm` are the background
+/// particles determined by build_water_model.
 std::vector<std::string> water_sources(const WaterDesc& water,
                                        const std::vector<VolumeDesc>& volumes, double small_ppm,
                                        double large_ppm);

@@ -37,7 +37,7 @@ double moment(const PhaseFunction& phase, double from, F f) {
     return 2 * k_pi * sum;
 }
 
-/// The names of figure 4 of the paper for its own components.
+/// The names used in figure 4 of the paper for its own components.
 std::string part_name(const PhaseFunction& phase) {
     if (dynamic_cast<const MolecularPhase*>(&phase)) return "water";
     if (dynamic_cast<const KopelevichSmall*>(&phase)) return "small";
@@ -58,7 +58,7 @@ void append(const OpticalCoefficients& x, const Medium& medium, CoefficientTable
         const std::string name = part_name(*phase);
         auto part = std::find_if(table.parts.begin(), table.parts.end(),
                                  [&](const ScatteringPart& other) { return other.name == name; });
-        // Within one medium phase functions differ, even where their descriptions do not.
+        // Within one medium phase functions differ, even if their descriptions do not.
         if (part == table.parts.end() || part->b.size() > known) {
             table.parts.push_back({name, phase, std::vector<double>(known, 0.0),
                                    backscatter_fraction(*phase), mean_cosine(*phase)});
@@ -79,7 +79,7 @@ double backscatter_fraction(const PhaseFunction& phase) {
 }
 
 double mean_cosine(const PhaseFunction& phase) {
-    // What is left of symmetric scattering is the rounding of the sum, and means 0.
+    // For symmetric scattering the remainder is the rounding of the sum, and means 0.
     constexpr double k_rounding = 1e-13;
     const double mean = moment(phase, 0, [](double psi) { return std::cos(psi); });
     return std::abs(mean) < k_rounding ? 0 : mean;
@@ -139,7 +139,7 @@ WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>&
     const auto most = is_given_per_band(water, volumes)
                           ? std::max<std::size_t>(1, water.bands_nm.size())
                           : static_cast<std::size_t>(k_max_bands);
-    // At least one round, so that water without bands is refused like everywhere.
+    // At least one iteration, so that water without bands is rejected as everywhere else.
     for (std::size_t first = 0; first == 0 || first < water.bands_nm.size(); first += most) {
         WaterDesc piece = water;
         const std::size_t last = std::min(first + most, water.bands_nm.size());

@@ -11,7 +11,7 @@
 
 namespace uw {
 
-/// One additive part of what scatters: b of each wavelength, with one phase function.
+/// One additive component of scattering: b at each wavelength, with one phase function.
 struct ScatteringPart {
     std::string name;  // "water", "small", "large"; else the phase function's description
     std::shared_ptr<const PhaseFunction> phase;
@@ -20,8 +20,8 @@ struct ScatteringPart {
     double mean_cosine = 0;           // 2 pi int p cos(psi) sin(psi)
 };
 
-/// Coefficients over wavelength of the uniform water [1/m], or of a constituent that grids add
-/// [1/m per unit of its concentration]. `i` is an index into WaterTable::wavelengths_nm.
+/// Spectral coefficients of the uniform water [1/m], or of a constituent that grids add [1/m per
+/// unit of its concentration]. `i` is an index into WaterTable::wavelengths_nm.
 struct CoefficientTable {
     std::string name;  // of the constituent; empty for the uniform water
     std::string unit;  // of its concentration: "ppm", or "1" for a bare grid value; else empty
@@ -32,7 +32,7 @@ struct CoefficientTable {
     double scattering(std::size_t i) const;
     /// c = a + b.
     double attenuation(std::size_t i) const;
-    /// b_b, what is scattered by more than 90 degrees.
+    /// b_b, the coefficient of scattering through more than 90 degrees.
     double backscattering(std::size_t i) const;
     /// b_b / b; NaN where nothing scatters.
     double backscatter_fraction(std::size_t i) const;
@@ -46,21 +46,21 @@ struct CoefficientTable {
     double vsf(std::size_t i, std::size_t part, double psi) const;
 };
 
-/// The optical properties of a scene's water, by wavelength and by what they are due to.
+/// The optical properties of a scene's water, by wavelength and component.
 struct WaterTable {
     std::vector<double> wavelengths_nm;
-    CoefficientTable uniform;                    // everything that is the same everywhere
-    std::vector<CoefficientTable> constituents;  // what the grids add, per unit
+    CoefficientTable uniform;                    // everything that is homogeneous
+    std::vector<CoefficientTable> constituents;  // contributed by the grids, per unit
     double small_ppm = 0, large_ppm = 0;         // background particles, part of `uniform`
-    std::vector<std::string> warnings;           // as WaterModel's
+    std::vector<std::string> warnings;           // as in WaterModel
 };
 
-/// Whether coefficients of the water or of a grid are given as numbers per band, and so are
+/// Whether coefficients of the water or of a grid are given as numbers per band, and are therefore
 /// known at the scene's own bands only.
 bool is_given_per_band(const WaterDesc& water, const std::vector<VolumeDesc>& volumes);
 
-/// Tabulates what build_water_model makes of `water` at `water.bands_nm`, of which there may be
-/// more than a medium's most unless numbers are given per band. Throws as build_water_model.
+/// Tabulates the result of build_water_model for `water` at `water.bands_nm`, of which there may be
+/// more than k_max_bands unless numbers are given per band. Throws as build_water_model.
 WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes);
 
 /// 2 pi int p(psi) f(psi) sin(psi) dpsi over [90, 180] degrees with f = 1.

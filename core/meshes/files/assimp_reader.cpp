@@ -17,10 +17,10 @@
 namespace uw {
 namespace {
 
-// A few nodes may repeat a large mesh; this is what fits a large machine, not a format's limit.
+// A few nodes may instance a large mesh; this limit is what fits a large machine, not the format's.
 constexpr std::uint64_t k_max_corners = 1'500'000'000;
 
-/// Lets Assimp open regular files only, and no material library: a mesh could name a pipe.
+/// Lets Assimp open only regular files, and no material library: a mesh could refer to a pipe.
 class RegularFiles : public Assimp::DefaultIOSystem {
   public:
     bool Exists(const char* name) const override { return allowed(name); }
@@ -68,7 +68,7 @@ std::vector<Placement> placements_of(const aiScene& scene) {
     return placements;
 }
 
-/// Builds one mesh out of all placements.
+/// Builds one mesh from all placements.
 class MeshJoiner {
   public:
     explicit MeshJoiner(bool normals) : wants_normals_(normals) {}
@@ -80,7 +80,7 @@ class MeshJoiner {
     }
 
   private:
-    /// Allocates once, and only what some part needs.
+    /// Allocates once, and only what is needed by some part.
     void prepare(const std::vector<Placement>& placements, const std::string& name) {
         std::uint64_t vertices = 0, faces = 0;
         for (const auto& [mesh, transform] : placements) {

@@ -9,16 +9,16 @@
 
 namespace uw {
 
-/// Reads the triangles of a glTF (.gltf, .glb), OBJ, PLY or STL file, as they lie in the file: no
-/// axis or unit is converted. glTF brings its node hierarchy, materials (MeshMaterial), vertex
-/// colours, normals and tangents; the others bring their normals at most (STL none, its normals are
-/// those of the faces anyway), and one material of reflectance 0.5. Polygons are split into
-/// triangles, those that are degenerate or have broken corners are dropped, and no normals are made
-/// up.
+/// Reads the triangles of a glTF (.gltf, .glb), OBJ, PLY or STL file, in the file's coordinates: no
+/// axis or unit is converted. For glTF, the node hierarchy, materials (MeshMaterial), vertex
+/// colours, normals and tangents are read; for the others at most normals (not for STL, whose
+/// normals are those of the faces anyway), with one material of reflectance 0.5. Polygons are split
+/// into triangles, degenerate triangles and those with invalid corners are dropped, and no normals
+/// are generated.
 ///
 /// Appends one line to `warnings` for everything dropped or ignored. Throws IoError if the file
-/// cannot be opened, InputError if it is broken, of another kind, or has no triangles.
-/// `use`: what else is taken from a glTF file, and so is not called ignored.
+/// cannot be opened, InputError if it is damaged, of another format, or has no triangles. `use`:
+/// what else is taken from a glTF file, and is therefore not reported as ignored.
 TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
                        const GltfUse& use = {});
 

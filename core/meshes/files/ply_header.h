@@ -32,7 +32,8 @@ struct PlyHeader {
     std::vector<PlyElement> elements;
 };
 
-/// Reads up to and with the line "end_header". Throws InputError; `name` stands in messages.
+/// Reads up to and including the line "end_header". Throws InputError; messages call the file
+/// `name`.
 PlyHeader read_ply_header(std::istream& in, const std::string& name);
 
 }  // namespace uw

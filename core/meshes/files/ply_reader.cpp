@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t k_no_vertex = std::numeric_limits<std::uint32_t>::max();
 
-/// Fewest bytes one entry of `element` takes in the file.
+/// Minimum size in bytes of one entry of `element` in the file.
 std::uint64_t least_size(const PlyElement& element, PlyEncoding encoding) {
     std::uint64_t size = 0;
     for (const PlyProperty& property : element.properties) {
@@ -31,11 +31,11 @@ std::uint64_t least_size(const PlyElement& element, PlyEncoding encoding) {
     return size;
 }
 
-/// So that no loop or allocation follows a forged count.
+/// Ensures that no loop or allocation follows a forged count.
 void check_counts(const PlyHeader& header, std::uint64_t file_size, const std::string& name) {
     for (const PlyElement& element : header.elements) {
         const std::uint64_t size = least_size(element, header.encoding);
-        // The last number of an ascii file need not end in white space.
+        // The last number of an ascii file need not be followed by white space.
         if (size > 0 && element.count > (file_size + 1) / size) {
             throw InputError(
                 fmt::format("{}: the PLY header promises {} of '{}', more than the "
@@ -60,9 +60,9 @@ void skip_entry(const PlyElement& element, PlySource& source, const std::string&
     }
 }
 
-/// Where the six numbers x, y, z, nx, ny, nz stand among the properties of a vertex.
+/// The positions of x, y, z, nx, ny, nz among the properties of a vertex.
 struct VertexLayout {
-    std::vector<int> slots;  // per property: 0..5, or -1 for one that is passed over
+    std::vector<int> slots;  // per property: 0..5, or -1 if skipped
     bool has_normals = false;
 };
 
@@ -163,7 +163,7 @@ TriangleMesh read_ply(const std::filesystem::path& file, std::vector<std::string
     PlySource source(in, header.encoding, name);
     TriangleMesh mesh;
     for (const PlyElement& element : header.elements) {
-        if (element.properties.empty()) continue;  // nothing stands in the file for it
+        if (element.properties.empty()) continue;  // occupies no bytes in the file
         if (element.name == "vertex") {
             if (has_colors(element)) warnings.push_back(name + ": ignored: vertex colours");
             read_vertices(element, source, name, mesh);

@@ -8,14 +8,14 @@
 
 namespace uw {
 
-/// Reads a PLY file (ascii, binary of either byte order): positions, normals where it has all
-/// three, faces. Colours are passed over with a warning; texture coordinates, and elements other
-/// than vertices and faces, without one. Corners past the last vertex are kept for
-/// drop_bad_triangles to count. Throws IoError, InputError (a header that promises more than the
-/// file holds included).
+/// Reads a PLY file (ascii, binary of either byte order): positions, normals if all three
+/// components are present, faces. Colours are skipped with a warning; texture coordinates, and
+/// elements other than vertices and faces, without one. Corners past the last vertex are kept for
+/// drop_bad_triangles to count. Throws IoError, InputError (also for a header that promises more
+/// than the file holds).
 ///
-/// Assimp reads PLY as well, but its 5.2 hangs or crashes on about one in ten files with a few
-/// garbled bytes, which this reader must not.
+/// Assimp reads PLY as well, but version 5.2 hangs or crashes on about one in ten files with a few
+/// corrupted bytes, which this reader must not.
 TriangleMesh read_ply(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace uw

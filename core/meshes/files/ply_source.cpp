@@ -55,7 +55,7 @@ bool is_space(char c) {
 PlySource::PlySource(std::istream& in, PlyEncoding encoding, std::string name)
     : in_(&in), encoding_(encoding), name_(std::move(name)), buffer_(k_buffer_bytes) {}
 
-/// Keeps what is unread and appends to it; false when the file gave nothing more.
+/// Keeps the unread bytes and appends to them; false at the end of the file.
 bool PlySource::fill() {
     std::memmove(buffer_.data(), buffer_.data() + at_, end_ - at_);
     end_ -= at_;

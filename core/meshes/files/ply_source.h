@@ -9,12 +9,12 @@
 
 namespace uw {
 
-/// Reads the body of a PLY file one number after the other, in any of its encodings.
+/// Reads the body of a PLY file number by number, in any of its encodings.
 class PlySource {
   public:
     PlySource(std::istream& in, PlyEncoding encoding, std::string name);
 
-    /// The next number. Throws InputError at the file's end or on text that is no number.
+    /// The next number. Throws InputError at the end of the file or on text that is not a number.
     double next(PlyType type);
 
   private:

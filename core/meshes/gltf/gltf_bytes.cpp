@@ -24,7 +24,7 @@ double number_at(const std::byte* bytes) {
     return static_cast<double>(value);
 }
 
-/// One number as it is stored, and what it is divided by where it is normalised (glTF 2.0, 3.11).
+/// One stored number, and the divisor if it is normalised (glTF 2.0, 3.11).
 double stored(const std::byte* bytes, std::uint64_t type) {
     switch (type) {
         case k_gltf_byte:
@@ -57,7 +57,7 @@ double largest(std::uint64_t type) {
     }
 }
 
-/// The value of each base64 digit, -1 for what is none.
+/// The value of each base64 digit, -1 for other characters.
 std::array<int, 256> base64_digits() {
     constexpr std::string_view k_digits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -10,7 +10,7 @@
 
 namespace uw {
 
-/// What an accessor's numbers are: its componentType (glTF 2.0, section 3.6.2.2).
+/// The type of an accessor's numbers: its componentType (glTF 2.0, section 3.6.2.2).
 enum : std::uint64_t {
     k_gltf_byte = 5120,
     k_gltf_unsigned_byte = 5121,
@@ -20,22 +20,22 @@ enum : std::uint64_t {
     k_gltf_float = 5126,
 };
 
-/// The bytes of a glTF document: buffers of the .glb itself, of files beside it, or written in its
+/// The bytes of a glTF document: buffers in the .glb itself, in files beside it, or embedded in its
 /// text. For gltf_*.cpp only. The document has passed inspect_gltf, which checks sizes.
 class GltfBytes {
   public:
-    /// Refers to `document`. Buffers are loaded when first asked for.
+    /// Refers to `document`. Buffers are loaded on first use.
     explicit GltfBytes(const GltfDocument& document)
         : document_(document), buffers_(document.list("buffers").size()) {}
 
     /// The bytes of the view that `parent` names under `key`. Throws IoError, InputError.
     std::span<const std::byte> view(const nlohmann::json& parent, const char* key);
 
-    /// An accessor's values as floats, one element after another, each of `width` numbers: those it
-    /// has, then zeros. Whole numbers are normalised as the accessor says.
+    /// An accessor's values as consecutive floats, `width` per element, padded with zeros. Integers
+    /// are normalised if the accessor specifies it.
     std::vector<float> floats(const nlohmann::json& accessor, std::size_t width);
 
-    /// The vertex numbers of an accessor of indices.
+    /// The vertex indices of an index accessor.
     std::vector<std::uint32_t> indices(const nlohmann::json& accessor);
 
   private:
@@ -45,7 +45,7 @@ class GltfBytes {
     std::vector<std::vector<std::byte>> buffers_;  // empty until loaded
 };
 
-/// The bytes that a "data:...;base64," URI stands for. Throws InputError (through `document`).
+/// The bytes encoded in a "data:...;base64," URI. Throws InputError (through `document`).
 std::vector<std::byte> decode_data_uri(const GltfDocument& document, const std::string& uri);
 
 /// Numbers per element of an accessor's type; 0 for an unknown one.

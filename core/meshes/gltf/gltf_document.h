@@ -8,9 +8,9 @@
 
 namespace uw {
 
-/// The description in a glTF file and the ways to read it that distrust it. With nlohmann-json in
-/// it, this header is for gltf_*.cpp and their headers only. What is wrong throws InputError that
-/// names the file; values of the wrong kind throw nlohmann's exceptions.
+/// A glTF file's JSON description, with accessors that do not trust it. Includes nlohmann-json, so
+/// this header is for gltf_*.cpp and their headers only. Errors throw an InputError that names the
+/// file; values of the wrong type throw nlohmann's exceptions.
 class GltfDocument {
   public:
     /// Reads the file's JSON (load_gltf_json).
@@ -30,10 +30,10 @@ class GltfDocument {
     const nlohmann::json& object(const nlohmann::json& parent, const char* key) const;
     /// The extension `key` of `parent`; an empty object if it has none.
     const nlohmann::json& extension(const nlohmann::json& parent, const char* key) const;
-    /// The whole number >= 0 under `key`, or `otherwise`.
+    /// The non-negative integer under `key`, or `otherwise`.
     std::uint64_t whole_number(const nlohmann::json& parent, const char* key,
                                std::uint64_t otherwise) const;
-    /// What `parent[index_key]` is the index of in the root's list `key`.
+    /// The element of the root's list `key` with index `parent[index_key]`.
     const nlohmann::json& element(const char* key, const nlohmann::json& parent,
                                   const char* index_key) const;
 

@@ -74,8 +74,8 @@ void import_camera(const GltfItems& items, const GeometryDesc& object, SceneDesc
     const SourceLocation& where = object.import.camera_where;
     if (!source.perspective) {
         throw InputError(fmt::format(
-            "{}: the camera '{}' is orthographic, which no camera under water is; make it "
-            "perspective",
+            "{}: the camera '{}' is orthographic, but underwater cameras are perspective; "
+            "make it perspective",
             where, printable(source.name)));
     }
     CameraDesc& camera = scene.camera;
@@ -147,7 +147,7 @@ LampDesc lamp_of(const GltfLight& source, const GeometryDesc& object,
     return lamp;
 }
 
-/// The lights asked for, each once, in the file's order; none for those that cannot be.
+/// The requested lights, each once, in the file's order, without unsupported ones.
 std::vector<const GltfLight*> chosen_lights(const GltfItems& items, const GeometryDesc& object,
                                             std::vector<std::string>& warnings) {
     const GltfImportDesc& import = object.import;

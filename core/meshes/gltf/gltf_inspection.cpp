@@ -45,8 +45,8 @@ class Inspection {
     }
 
     void check_extensions() {
-        // Extensions that say how to read the geometry change it when left out; those that only
-        // add lights or looks do not.
+        // Ignoring extensions that define how to read the geometry would change it; ignoring those
+        // that only add lights or materials does not.
         for (const Json& required : document_.list("extensionsRequired")) {
             const std::string extension = required.get<std::string>();
             if (extension != "KHR_lights_punctual" && extension != "KHR_texture_transform" &&
@@ -70,7 +70,7 @@ class Inspection {
         }
     }
 
-    /// Bytes that a buffer can be made of: its own file's, or those of the glTF file.
+    /// Bytes available for a buffer: those of its own file, or of the glTF file.
     std::uint64_t source_size(const Json& buffer, std::uint64_t own_size) const {
         const std::string uri = buffer.value("uri", "");
         if (uri.empty() || uri.starts_with("data:")) return own_size;
@@ -166,7 +166,7 @@ class Inspection {
         }
         const Json& attributes = primitive["attributes"];
         const Json& positions = accessor(attributes["POSITION"]);
-        // Without data an accessor is all zeros, of any count that a forger likes.
+        // Without data an accessor is all zeros, with any forged count.
         if (!positions.contains("bufferView")) document_.fail("a glTF POSITION has no data");
         const std::uint64_t count = document_.whole_number(positions, "count", 0);
         const auto check_set = [&](const Json& set) {

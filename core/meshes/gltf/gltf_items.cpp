@@ -42,7 +42,7 @@ void read_cone(const GltfDocument& document, const Json& json, GltfLight& light)
     const Json& spot = document.object(json, "spot");
     light.inner_cone = spot.value("innerConeAngle", 0.0);
     light.outer_cone = spot.value("outerConeAngle", std::numbers::pi / 4);
-    // Written as floats: half a turn may be a little more than pi/2.
+    // Stored as floats, so pi/2 may be slightly exceeded.
     constexpr double k_widest = std::numbers::pi / 2;
     if (light.outer_cone > k_widest && light.outer_cone < k_widest + 1e-6) {
         light.outer_cone = k_widest;

@@ -11,10 +11,10 @@ namespace uw {
 
 /// A camera of a glTF file. It looks along -z with y up in its own space.
 struct GltfCamera {
-    std::string name;  // of its node, or its own where that has none
+    std::string name;  // of its node, or its own if the node has none
     bool perspective = true;
     double yfov = 0;          // full angle of view, top to bottom [rad], 0 to pi
-    double aspect_ratio = 0;  // width by height; 0: the file does not say
+    double aspect_ratio = 0;  // width over height; 0: not given
     Affine file_from_camera;
 };
 
@@ -24,19 +24,19 @@ struct GltfLight {
     std::string name;  // as a camera's
     Type type = Type::point;
     Rgb color{1, 1, 1};                     // linear
-    double intensity = 1;                   // candela as the extension has it; see LightUnits
+    double intensity = 1;                   // candela by the extension; see LightUnits
     double inner_cone = 0, outer_cone = 0;  // spot: angles to the axis [rad], inner < outer <= pi/2
-    bool has_range = false;                 // a distance beyond which it shines nothing
+    bool has_range = false;                 // a distance beyond which it emits nothing
     Affine file_from_light;
 };
 
-/// What a glTF file has beside its meshes, in the order of its scene's nodes.
+/// What a glTF file has besides its meshes, in the order of its scene's nodes.
 struct GltfItems {
     std::vector<GltfCamera> cameras;
     std::vector<GltfLight> lights;
 };
 
-/// Reads cameras and lights of a glTF file; no mesh or picture is loaded. Throws IoError,
+/// Reads the cameras and lights of a glTF file; no mesh or image is loaded. Throws IoError,
 /// InputError.
 GltfItems read_gltf_items(const std::filesystem::path& file);
 

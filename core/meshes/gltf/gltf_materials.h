@@ -11,15 +11,15 @@
 
 namespace uw {
 
-/// Reads the materials of a glTF document, and each of their pictures once; for gltf_*.cpp only.
+/// Reads the materials of a glTF document, and each of their images once; for gltf_*.cpp only.
 class GltfMaterials {
   public:
     /// Refers to both.
     GltfMaterials(const GltfDocument& document, GltfBytes& bytes, const GltfUse& use)
         : document_(document), bytes_(bytes), use_(use) {}
 
-    /// The material of that index in the file. Throws InputError, IoError for pictures that cannot
-    /// be read, and for texture coordinates beyond the second set.
+    /// The material with that index in the file. Throws InputError or IoError for images that
+    /// cannot be read, and for texture coordinates beyond the second set.
     MeshMaterial read(std::size_t index);
 
   private:

@@ -24,7 +24,7 @@ std::array<double, N> numbers(const GltfDocument& document, const Json& node, co
     return found->get<std::array<double, N>>();
 }
 
-/// The rotation by a quaternion x, y, z, w of any length but 0.
+/// The rotation by a quaternion x, y, z, w of any non-zero length.
 Matrix3 rotation_of(const GltfDocument& document, const std::array<double, 4>& q) {
     const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
     if (!(norm > 0)) document.fail("a glTF node's rotation is zero");

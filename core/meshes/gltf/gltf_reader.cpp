@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A few nodes may repeat a large mesh; this is what fits a large machine, not a format's limit.
+// A few nodes may instance a large mesh; this limit is what fits a large machine, not the format's.
 constexpr std::uint64_t k_max_corners = 1'500'000'000;
 
 constexpr std::uint64_t k_triangles = 4, k_strip = 5, k_fan = 6;
@@ -30,10 +30,10 @@ struct Placement {
     const Json* primitive = nullptr;
     std::string mesh_name;
     Affine file_from_mesh;
-    std::size_t material = 0;  // of the mesh to be
+    std::size_t material = 0;  // index in the resulting mesh
 };
 
-/// Builds one mesh out of all primitives that nodes place.
+/// Builds one mesh from all primitives placed by nodes.
 class MeshJoiner {
   public:
     MeshJoiner(const GltfDocument& document, const GltfUse& use)
@@ -64,7 +64,7 @@ class MeshJoiner {
         for (const Json& primitive : document_.list(mesh, "primitives")) {
             const std::uint64_t mode = document_.whole_number(primitive, "mode", k_triangles);
             if (mode < k_triangles) continue;  // points and lines
-            if (mode > k_fan) document_.fail("a glTF primitive is of no known mode");
+            if (mode > k_fan) document_.fail("a glTF primitive has an unknown mode");
             Placement placement{&primitive, mesh.value("name", ""), node.file_from_node, stand_in};
             if (primitive.contains("material")) {
                 placement.material = document_.whole_number(primitive, "material", 0);
@@ -76,7 +76,7 @@ class MeshJoiner {
         }
     }
 
-    /// Reads the materials in use, and finds out what the mesh needs.
+    /// Reads the materials in use, and determines what the mesh needs.
     void prepare() {
         std::uint64_t corners = 0, vertices = 0;
         std::vector<bool> is_read(mesh_.materials.size(), false);
@@ -144,7 +144,7 @@ class MeshJoiner {
         }
     }
 
-    /// Appends directions, `width` numbers apart in `values`, mapped and of unit length.
+    /// Appends directions, `width` numbers apart in `values`, transformed and normalised.
     static void append_directions(const std::vector<float>& values, std::size_t width,
                                   const Matrix3& map, std::vector<float>& to) {
         for (std::size_t at = 0; at < values.size(); at += width) {
@@ -196,7 +196,7 @@ class MeshJoiner {
         if (colors != nullptr) {
             values = bytes_.floats(*colors, 4);
         } else {
-            // Without a material, vertex colours stand alone; without those too it is neutral grey.
+            // Without a material, vertex colours are used alone; without those too, neutral grey.
             const bool is_stand_in = placement.material + 1 == mesh_.materials.size();
             values.assign(4 * count, is_stand_in ? 0.5F : 1.0F);
         }
@@ -213,7 +213,7 @@ class MeshJoiner {
         }
     }
 
-    /// Of the file, if it has them; else left at zero for compute_tangents.
+    /// From the file, if it has them; else left at zero for compute_tangents.
     void append_tangents(const Placement& placement, std::size_t count) {
         const Json* tangents = attribute(placement, "TANGENT");
         if (tangents == nullptr || attribute(placement, "NORMAL") == nullptr) {
@@ -221,7 +221,7 @@ class MeshJoiner {
             return;
         }
         std::vector<float> values = bytes_.floats(*tangents, 4);
-        if (placement.file_from_mesh.determinant() < 0) {  // cross products turn round
+        if (placement.file_from_mesh.determinant() < 0) {  // cross products are reversed
             for (std::size_t at = 3; at < values.size(); at += 4) values[at] = -values[at];
         }
         append_directions(values, 4, placement.file_from_mesh.linear(), mesh_.tangents);
@@ -239,7 +239,7 @@ class MeshJoiner {
         for (std::uint32_t& corner : corners) corner = corner < count ? first + corner : k_missing;
         const std::uint64_t mode =
             document_.whole_number(*placement.primitive, "mode", k_triangles);
-        // A mirror turns the corners round (glTF 2.0, 3.7.4).
+        // A mirroring transform reverses the corner order (glTF 2.0, 3.7.4).
         const bool is_mirrored = placement.file_from_mesh.determinant() < 0;
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
             if (is_mirrored) std::swap(b, c);

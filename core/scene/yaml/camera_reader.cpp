@@ -16,14 +16,14 @@
 namespace uw {
 namespace {
 
-/// Where a fisheye shows the angle `theta` [rad], in units of the focal length.
+/// Image radius at which a fisheye shows the angle `theta` [rad], in units of the focal length.
 double fisheye_radius(double theta, const DistortionDesc& distortion) {
     double sum = 0;
     for (std::size_t i = 4; i-- > 0;) sum = (sum + distortion.k[i]) * theta * theta;
     return theta * (1 + sum);
 }
 
-/// Whether all angles up to `theta` are shown, each farther out than those before.
+/// Whether the image radius grows monotonically for all angles up to `theta`.
 bool grows_to(double theta, const DistortionDesc& distortion) {
     constexpr int k_steps = 1000;
     double last = 0;
@@ -67,7 +67,7 @@ IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camer
     return intrinsics;
 }
 
-/// Numbers into the first places of `places`.
+/// Reads numbers into the leading elements of `places`.
 void read_coefficients(const ConfigValue& value, std::size_t least, std::string_view mend,
                        std::span<double> places) {
     const std::vector<ConfigValue> numbers = value.list(mend);
@@ -131,7 +131,7 @@ LensDesc read_lens(const ConfigValue& value) {
     return lens;
 }
 
-/// A file's name, or {file, camera}.
+/// A file name, or {file, camera}.
 CalibrationDesc read_calibration_name(const ConfigValue& value, const SceneContext& context) {
     CalibrationDesc calibration;
     calibration.where = value.location();

@@ -8,7 +8,7 @@
 
 namespace uw {
 
-/// Where a piece of a scene came from.
+/// The origin of part of a scene.
 struct ConfigPosition {
     std::shared_ptr<const std::string> origin;  // file name, or "--set key=value"
     int line = 0;                               // from 1; 0: the origin has no lines
@@ -18,24 +18,24 @@ struct ConfigPosition {
     std::string text() const;
 };
 
-/// A piece of a scene file as inert data, with its place in the file. Scalars are still text: what
-/// they mean is decided where they are read (ConfigValue).
+/// Part of a scene file as inert data, with its position in the file. Scalars are still text: they
+/// are interpreted when they are read (ConfigValue).
 struct ConfigNode {
     enum class Kind : std::uint8_t { null, scalar, sequence, map };
     struct Entry;
 
     Kind kind = Kind::null;
-    bool quoted = false;  // scalar: stood in quotes (or a text block), so it is text
+    bool quoted = false;  // scalar: was quoted (or a text block), so it is text
     std::string scalar;
     std::vector<ConfigNode> items;  // sequence
     std::vector<Entry> entries;     // map, in the order of the file; no key twice
     ConfigPosition position;
 
-    /// The value at `key` of a map; nullptr where there is none or this is no map.
+    /// The value at `key` of a map; nullptr if there is none or this is not a map.
     const ConfigNode* find(std::string_view key) const;
     ConfigNode* find(std::string_view key);
 
-    /// What this is, for messages: "a list of 3", "a map", "the text 'abc'", "the number 5".
+    /// A description for messages: "a list of 3", "a map", "the text 'abc'", "the number 5".
     std::string description() const;
 };
 
@@ -46,8 +46,8 @@ struct ConfigNode::Entry {
     ConfigNode value;
 };
 
-/// 64-bit FNV-1a of the tree's meaning, as 16 hex digits: comments, layout, the order of keys and
-/// the spelling of numbers (1, 1.0, 1e0) do not change it.
+/// 64-bit FNV-1a hash of the tree's meaning, as 16 hex digits: comments, layout, the order of keys
+/// and the spelling of numbers (1, 1.0, 1e0) do not affect it.
 std::string config_hash(const ConfigNode& root);
 
 }  // namespace uw

@@ -10,9 +10,9 @@
 namespace uw {
 namespace {
 
-/// Directions shorter than this cannot be told from zero.
+/// Directions shorter than this cannot be distinguished from zero.
 constexpr double k_shortest_direction = 1e-12;
-/// Beyond this no key has a meaning, and squares and products would overflow later on.
+/// No key has meaningful values beyond this, and squares and products would overflow later.
 constexpr double k_largest_number = 1e12;
 
 bool is_digit(char c) {

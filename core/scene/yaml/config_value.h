@@ -15,9 +15,8 @@
 
 namespace uw {
 
-/// A node with the path of keys that leads to it, read as a typed value. Whatever does not fit
-/// throws InputError "file:line:column: key.path: what; mend". Refers to the node: do not outlive
-/// it.
+/// A node with its key path, read as a typed value. Invalid input throws InputError
+/// "file:line:column: key.path: what; mend". Refers to the node, which must outlive it.
 class ConfigValue {
   public:
     ConfigValue(const ConfigNode& node, std::string path) : node_(&node), path_(std::move(path)) {}
@@ -29,7 +28,8 @@ class ConfigValue {
     /// Throws the InputError "<location>: <what>"; `what` includes the mend.
     [[noreturn]] void fail(std::string_view what) const;
 
-    /// A finite number of at most 1e12. `mend` says what to give ("give the distance in metres").
+    /// A finite number of at most 1e12. `mend` tells the user what to give ("give the distance in
+    /// metres").
     double number(std::string_view mend) const;
     double positive(std::string_view mend) const;
     double non_negative(std::string_view mend) const;
@@ -46,7 +46,7 @@ class ConfigValue {
     std::vector<ConfigValue> list(std::string_view mend) const;
     /// A list of exactly `count` entries.
     std::vector<ConfigValue> list_of(std::size_t count, std::string_view mend) const;
-    /// One entry per band: a list of `band_count`, or one scalar that stands for all of them.
+    /// One entry per band: a list of `band_count`, or one scalar for all of them.
     std::vector<ConfigValue> per_band(std::size_t band_count, std::string_view mend) const;
     /// One number >= 0 per band.
     std::vector<double> non_negative_per_band(std::size_t band_count, std::string_view mend) const;
@@ -55,7 +55,7 @@ class ConfigValue {
     /// Three numbers, not all zero, scaled to length 1.
     Vector3 direction(std::string_view mend) const;
 
-    /// One of a few words, as the value that goes with it.
+    /// One of a few words, as its associated value.
     template <class T, std::size_t N>
     T choice(const std::array<std::pair<std::string_view, T>, N>& choices) const {
         std::array<std::string_view, N> words{};

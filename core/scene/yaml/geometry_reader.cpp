@@ -75,7 +75,7 @@ std::vector<std::string> read_lamp_names(const ConfigValue& value, bool& all) {
     return names;
 }
 
-/// What a file brings beside diffuse meshes.
+/// What a file provides besides diffuse meshes.
 void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
     GltfImportDesc& import = object.import;
     const std::string extension = object.file.extension().string();

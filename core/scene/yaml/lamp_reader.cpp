@@ -82,7 +82,7 @@ LampProfileDesc read_profile(const ConfigValue& value, const SceneContext& conte
     return profile;
 }
 
-/// Whether the profile tells how bright the lamp is.
+/// Whether the profile determines the lamp's brightness.
 bool is_absolute(const LampProfileDesc& profile) {
     return std::visit([](const auto& desc) { return desc.k_is_absolute; }, profile);
 }
@@ -96,7 +96,7 @@ void read_lumens(const ConfigValue& value, LampDesc& lamp) {
     }
 }
 
-/// A lamp with a spectrum has one number for all of it, one without a number per band.
+/// A lamp with a spectrum has a single number, one without has a number per band.
 void read_watts(const ConfigValue& value, bool is_intensity, const SceneContext& context,
                 LampDesc& lamp) {
     PerBand values;
@@ -151,7 +151,7 @@ LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneCont
         at_origin_plus(map.require("position", "give the lamp's position in metres")
                            .vector("give the lamp's position, three lengths in metres"));
     if (const auto entry = map.find("direction")) {
-        lamp.direction = entry->direction("give the direction the lamp shines in, not all 0");
+        lamp.direction = entry->direction("give the direction in which the lamp shines, not all 0");
     }
     if (const auto entry = map.find("profile")) lamp.profile = read_profile(*entry, context);
     read_output(map, context, lamp);

@@ -33,13 +33,13 @@ fs::path read_file(const ConfigValue& value, const SceneContext& context, bool* 
                         printable(name, 200), printable(folder.string(), 300)));
     }
     if (error) {
-        value.fail(fmt::format("cannot look at '{}': {}; check the permissions of its folder",
+        value.fail(fmt::format("cannot access '{}': {}; check the permissions of its folder",
                                printable(name, 200), error.message()));
     }
     if (fs::is_directory(status)) {
         value.fail(fmt::format("'{}' is a folder; name a file in it", printable(name, 200)));
     }
-    // A pipe would keep the program waiting, a device might never end.
+    // A pipe would block the program, a device might never end.
     if (!fs::is_regular_file(status)) {
         value.fail(fmt::format("'{}' is a pipe or device; name a file", printable(name, 200)));
     }

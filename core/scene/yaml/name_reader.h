@@ -9,11 +9,11 @@
 
 namespace uw {
 
-/// A file name, resolved against the scene's folder. Throws InputError where no such file exists.
+/// A file name, resolved against the scene's folder. Throws InputError if no such file exists.
 std::filesystem::path read_existing_file(const ConfigValue& value, const SceneContext& context);
 
-/// Likewise, but a name with places for a frame's number that no file has as it is written stands
-/// for a sequence; its files are not looked at.
+/// The same, but a name with patterns for the frame number that is not itself a file denotes a
+/// sequence; its files are not checked.
 std::filesystem::path read_existing_file_or_sequence(const ConfigValue& value,
                                                      const SceneContext& context,
                                                      bool& is_sequence);

@@ -18,7 +18,7 @@ double read_length(const ConfigValue& value, const SceneContext& context) {
     return length;
 }
 
-/// What flat and dome ports share.
+/// The keys that flat and dome ports share.
 template <class PortDescription>
 void read_glass(ConfigMap& map, const SceneContext& context, PortDescription& port) {
     if (const auto entry = map.find("thickness")) port.thickness = read_length(*entry, context);

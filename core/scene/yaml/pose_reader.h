@@ -5,7 +5,7 @@
 
 namespace uw {
 
-/// `pose` of a camera or a rig, which is rigid, as world_from_camera.
+/// The rigid `pose` of a camera or a rig, as world_from_camera.
 Affine read_pose(const ConfigValue& value);
 
 /// `transform: {scale, rotate, translate}` of a volume or mesh as translate * rotate * scale.

@@ -19,7 +19,7 @@ RigCameraDesc read_rig_camera(const ConfigValue& value, const SceneContext& cont
     RigCameraDesc camera;
     camera.name =
         read_short_name(ConfigValue(*name, value.path() + ".name"), "a file's name", k_mend);
-    // What is left is a camera as that of a scene with one.
+    // The rest is a camera like that of a single-camera scene.
     ConfigNode unnamed = value.node();
     std::erase_if(unnamed.entries, [](const auto& entry) { return entry.key == "name"; });
     camera.camera = read_camera(ConfigValue(unnamed, value.path()), context);

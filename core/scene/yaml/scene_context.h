@@ -11,13 +11,13 @@
 
 namespace uw {
 
-/// What the readers of a scene's sections share. Each reads one section and checks all of it: they
-/// throw InputError "file:line:column: key path: what; mend" for what does not fit.
+/// Shared by the readers of a scene's sections. Each reads and fully checks one section, and throws
+/// InputError "file:line:column: key path: what; mend" for invalid input.
 struct SceneContext {
     std::filesystem::path folder;        // of the scene file; file names are relative to it
     std::size_t band_count = 0;          // of water.bands, which is read first
     std::vector<std::string>* warnings;  // one line each
-    /// Of a scene with a rig, which is read before its lamps.
+    /// For a scene with a rig, which is read before its lamps.
     struct RigFrames {
         Affine world_from_rig, world_from_camera;  // the first camera's
     };

@@ -35,7 +35,7 @@ struct Step {
                     origin));
 }
 
-/// Reads the indices of "[0][1]" behind a key.
+/// Reads the indices of "[0][1]" after a key.
 void append_indices(std::string_view text, const std::string& origin, std::vector<Step>& steps) {
     while (!text.empty()) {
         const std::size_t close = text.find(']');
@@ -138,7 +138,7 @@ class Walk {
                                        : "there are: " + names));
     }
 
-    /// The name of an entry; a lamp without one is called after its place.
+    /// The name of an entry; a lamp without one is named after its index.
     std::string item_name(std::size_t i) const {
         const ConfigNode* const name = node_->items[i].find("name");
         if (name != nullptr) return name->scalar;

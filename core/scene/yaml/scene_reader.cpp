@@ -22,7 +22,7 @@
 namespace uw {
 namespace {
 
-/// Comes first: another version may have other keys.
+/// Checked first: another version may have other keys.
 void check_version(const ConfigValue& scene) {
     const ConfigNode* const version = scene.node().find("uwvdb");
     if (version == nullptr) return;
@@ -37,7 +37,8 @@ void check_version(const ConfigValue& scene) {
                           version->description()));
 }
 
-/// What a glTF file is to bring must be missing in the scene, and what is missing be brought.
+/// Whatever a glTF file is to provide must be missing in the scene, and whatever is missing must be
+/// provided.
 void check_gltf_imports(const SceneDesc& desc) {
     const CameraDesc& camera = desc.camera;
     const SourceLocation* source = nullptr;
@@ -101,7 +102,7 @@ void check_lenses(const SceneDesc& desc) {
                          "focal_length: 0.0085}, or write output: radiance");
 }
 
-/// Gives the volumes that move the time they have for it.
+/// Sets the exposure time of the volumes that move.
 void open_shutter(SceneDesc& desc) {
     for (VolumeDesc& volume : desc.volumes) {
         if (!volume.motion) continue;

@@ -15,8 +15,8 @@ namespace uw {
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
 /// The `water` of a scene without a file: the defaults, with `overrides` such as
-/// "water.preset=jerlov-II" applied as read_scene does. Keys of other sections are errors; names of
-/// files are relative to the current folder. Throws as read_scene.
+/// "water.preset=jerlov-II" applied as read_scene does. Keys of other sections are errors; file
+/// names are relative to the current folder. Throws as read_scene.
 WaterDesc read_water_overrides(const std::vector<std::string>& overrides);
 
 }  // namespace uw

@@ -6,7 +6,7 @@
 
 namespace uw {
 
-/// `spectrum` of a lamp, or the light that `white` of `render` shows white.
+/// `spectrum` of a lamp, or `white` of `render`, the light displayed as white.
 LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& context);
 
 }  // namespace uw

@@ -8,7 +8,7 @@
 
 namespace uw {
 
-/// `volumes`. How long their shutter is open is not theirs to say: it stays 0.
+/// `volumes`. Their exposure time is not part of this section and stays 0.
 std::vector<VolumeDesc> read_volumes(const ConfigValue& value, const SceneContext& context);
 
 }  // namespace uw

@@ -98,7 +98,7 @@ ForwardScatterDesc read_forward_scatter(const ConfigValue& value) {
     return forward;
 }
 
-/// Absorption that is given as a number, or measured by a preset, holds what is dissolved already.
+/// Absorption given as a number, or measured for a preset, already includes dissolved matter.
 void read_dissolved(ConfigMap& map, WaterDesc& water) {
     const auto refuse_if_covered = [&](const ConfigValue& value) {
         if (water.absorption) {

@@ -20,7 +20,8 @@
 namespace uw {
 namespace {
 
-/// A node's share of YamlLimits::nodes; long texts count for more, so that aliases of them do too.
+/// A node's contribution to YamlLimits::nodes; long texts count more, so that aliases of them do
+/// too.
 std::size_t weight(const ConfigNode& node) {
     std::size_t sum = 1 + node.scalar.size() / 256;
     for (const ConfigNode& item : node.items) sum += weight(item);
@@ -30,12 +31,12 @@ std::size_t weight(const ConfigNode& node) {
     return sum;
 }
 
-/// What is parsed, for messages.
+/// The document being parsed, for messages.
 struct Source {
     std::shared_ptr<const std::string> origin;
-    bool has_lines = true;  // a file; the value of an override has none to speak of
+    bool has_lines = true;  // true for a file, false for the value of an override
 
-    /// Line and column count from 0, as the parser does.
+    /// Line and column count from 0, as in the parser.
     ConfigPosition position(int line, int column) const {
         return has_lines ? ConfigPosition{origin, std::max(line, 0) + 1, std::max(column, 0) + 1}
                          : ConfigPosition{origin, 0, 0};
@@ -45,7 +46,8 @@ struct Source {
     }
 };
 
-/// Builds the tree from the parser's events, so that a hostile document ends at its first excess.
+/// Builds the tree from the parser's events, so that a hostile document is rejected at its first
+/// excess.
 class TreeBuilder : public YAML::EventHandler {
   public:
     TreeBuilder(Source source, const YamlLimits& limits)
@@ -70,7 +72,7 @@ class TreeBuilder : public YAML::EventHandler {
                   const std::string& value) override {
         check_tag(mark, tag);
         ConfigNode node = make(ConfigNode::Kind::scalar, mark);
-        node.quoted = tag == "!";  // the parser's mark of what is not plain
+        node.quoted = tag == "!";  // the parser's mark of non-plain scalars
         node.scalar = value;
         add(std::move(node), anchor);
     }
@@ -96,7 +98,7 @@ class TreeBuilder : public YAML::EventHandler {
     struct Open {
         ConfigNode node;
         YAML::anchor_t anchor;
-        std::optional<ConfigNode> key;  // map: a key whose value has yet to come
+        std::optional<ConfigNode> key;  // map: a key whose value has not been parsed yet
     };
 
     [[noreturn]] void fail(const YAML::Mark& mark, std::string_view what) const {
@@ -165,7 +167,7 @@ class TreeBuilder : public YAML::EventHandler {
         ConfigNode::Entry entry;
         entry.key = std::move(map.key->scalar);
         entry.position = std::move(map.key->position);
-        // the parser places an empty value at whatever follows it
+        // the parser reports an empty value at the position of the next token
         if (node.kind == ConfigNode::Kind::null) node.position = entry.position;
         entry.value = std::move(node);
         map.key.reset();
@@ -200,7 +202,7 @@ void check_keys_unique(const ConfigNode& node, const std::string& path) {
     }
 }
 
-/// What the parser would need gigabytes or minutes for is turned away before it sees it.
+/// Rejects text for which the parser would need gigabytes or minutes.
 void check_text(std::string_view text, const Source& source, const YamlLimits& limits) {
     if (text.size() > limits.bytes) {
         source.fail(
@@ -225,7 +227,7 @@ void check_text(std::string_view text, const Source& source, const YamlLimits& l
     }
 }
 
-/// The parser's own words, but for those that do not lead to the fault.
+/// The parser's own message, except where it is misleading.
 std::string syntax_error(const YAML::Exception& error) {
     if (error.msg == YAML::ErrorMsg::DOC_IN_SCALAR || error.msg == YAML::ErrorMsg::EOF_IN_SCALAR) {
         return "a text above this line has an opening quote and no closing one; close it";
@@ -237,8 +239,8 @@ std::optional<ConfigNode> parse(std::string_view text, const Source& source,
                                 const YamlLimits& limits) {
     check_text(text, source, limits);
     TreeBuilder builder(source, limits);
-    // yaml-cpp 0.7 takes a quote that is never closed for text up to the end of the file; an
-    // explicit end of the document makes it an error
+    // yaml-cpp 0.7 reads an unclosed quote as text up to the end of the file; an explicit end of
+    // the document makes it an error
     std::istringstream stream{std::string(text) + "\n...\n"};
     try {
         YAML::Parser parser(stream);
