@@ -35,10 +35,11 @@ bool Renderer::needs_light() const {
 }
 
 void Renderer::set_scene(ResolvedScene scene) {
-    if (is_edited_) before_ = {};
+    AssembledScene next, nothing;
+    next.desc = std::move(scene).release();
+    if (is_edited_) before_ = std::move(nothing);
     if (is_assembled_ && !is_edited_) before_ = std::move(scene_);
-    scene_ = {};
-    scene_.desc = std::move(scene).release();
+    scene_ = std::move(next);
     is_assembled_ = is_edited_ = false;
     light_.clear();
     colour_.reset();
