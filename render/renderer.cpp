@@ -47,9 +47,10 @@ void Renderer::set_scene(ResolvedScene scene) {
 
 const AssembledScene& Renderer::assemble() {
     if (is_assembled_) return scene_;
+    AssembledScene before;
+    std::swap(before, before_);
     AssembledScene assembled = assemble_scene(
-        scene_.desc, [this](const std::string& stage) { begin(stage); },
-        std::exchange(before_, {}));
+        scene_.desc, [this](const std::string& stage) { begin(stage); }, std::move(before));
     assembled.desc = std::move(scene_.desc);
     scene_ = std::move(assembled);
     is_assembled_ = true;
