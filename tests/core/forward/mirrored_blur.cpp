@@ -67,8 +67,8 @@ TEST(MirroredBlur, IsTheSumOfThePixelsShares) {
 TEST(MirroredBlur, OfNoWidthLeavesTheImage) {
     const BlurImage image = varied_image();
     expect_same_image(blurred(image, Shape::gaussian, {0, 0}), image, 1e-12);
-    // An exponential kernel's shares are interpolated in a table, to 1e-8 (tests of BlurKernel): that
-    // much of the brightest pixel may land on its neighbours.
+    // An exponential kernel's shares are interpolated in a table, to 1e-8 (tests of BlurKernel):
+    // that much of the brightest pixel may land on its neighbours.
     constexpr double k_share = 1e-8, k_brightest = 32;
     expect_same_image(blurred(image, Shape::exponential, {0, 0}), image, k_share * k_brightest);
 }
