@@ -5,6 +5,8 @@ target_compile_options(uwvdb_options INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion
     # a*b+c is never fused by the compiler: the same scene gives the same bits on every build
     -ffp-contract=off
+    # assertions name files as they lie in the repository, wherever that is
+    -ffile-prefix-map=${PROJECT_SOURCE_DIR}/=
     # Allows inlining in the position-independent code of the library as elsewhere
     -fno-semantic-interposition)
 if(UWVDB_WARNINGS_AS_ERRORS)

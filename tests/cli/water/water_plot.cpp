@@ -31,7 +31,7 @@ TEST(WaterPlot, CurvesAreThoseOfTheTable) {
     for (const PlotPanel& panel : figure.panels)
         for (const PlotCurve& curve : panel.curves) EXPECT_EQ(curve.x.size(), curve.y.size());
     // The fine curve of absorption passes through the table's dots.
-    const PlotCurve& absorption = curve_called(figure.panels[0], "a");
+    const PlotCurve absorption = curve_called(figure.panels[0], "a");
     for (std::size_t band = 0; band < 2; ++band) {
         const auto at = std::ranges::find(absorption.x, report.table.wavelengths_nm[band]);
         ASSERT_NE(at, absorption.x.end());
@@ -45,7 +45,7 @@ TEST(WaterPlot, TheScatteringFunctionIsThatOfTheBandAskedFor) {
     report.plot_band = 1;
     const PlotPanel panel = water_figure(report).panels[2];
     EXPECT_NE(panel.title.find("at 450 nm"), std::string::npos);
-    const PlotCurve& curve = curve_called(panel, "water");
+    const PlotCurve curve = curve_called(panel, "water");
     for (std::size_t i = 0; i < curve.x.size(); ++i)
         EXPECT_NEAR(curve.y[i], report.table.uniform.vsf(1, curve.x[i] * std::numbers::pi / 180),
                     1e-15);
