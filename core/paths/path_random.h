@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+namespace uw {
+
+/// The random numbers of one path: the points of an extensible rank-1 lattice (Cools, Kuo and
+/// Nuyens 2006), shifted at random, in the first dimensions and independent numbers in the others.
+/// Counter-based: a number depends on (seed, index, dimension) alone, so that images depend neither
+/// on the number of threads nor on the order of their pixels.
+///
+/// Paths of one `seed` and indices 0..2^k - 1 cover the unit cube evenly: their mean has less
+/// variance than that of independent paths, but says nothing of its own error. Means for different
+/// seeds are independent.
+class PathRandom {
+  public:
+    PathRandom(std::uint64_t seed, std::uint32_t index) : seed_(seed), index_(index) {}
+
+    /// The number of the next dimension, in [0, 1).
+    double next();
+    /// Continues with dimension `dimension`, so that what precedes may use any number of them.
+    void skip_to(int dimension) { dimension_ = dimension; }
+
+    /// A seed for each combination of the arguments.
+    static std::uint64_t seed_of(std::uint64_t a, std::uint64_t b = 0, std::uint64_t c = 0);
+
+  private:
+    std::uint64_t seed_;
+    std::uint32_t index_;
+    int dimension_ = 0;
+};
+
+}  // namespace uw

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/integrators/deep_shadow.h"
+#include "core/integrators/lit_scene.h"
+#include "core/paths/camera_segment.h"
+#include "core/paths/path_random.h"
+#include "core/paths/path_terms.h"
+
+namespace uw {
+
+/// Where light paths take optical depths between lamps and points from.
+struct PathOptions {
+    /// One per lamp: their columns and no others. Empty: columns are exact.
+    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows{};
+};
+
+/// Unbiased estimates of all light by random paths from the camera (docs/multiple.md). Thread safe.
+class PathTracer {
+  public:
+    explicit PathTracer(const LitScene& scene, PathOptions options = {});
+    ~PathTracer();
+
+    /// Prepares a camera ray: `hit` is the first surface along it, null for none; `surface_light`
+    /// an estimate of that surface's radiance, per band, that guides the paths (may be empty).
+    void begin(const Ray& ray, const SurfaceHit* hit, std::span<const double> surface_light,
+               CameraSegment& segment) const;
+
+    /// The light of lamps that the water scatters once, towards the camera.
+    void trace_single(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+    /// The rest of the light that the water scatters towards the camera: `multiple.volume`.
+    void trace_water(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+    /// The light that the segment's surface reflects, other than direct light of lamps, and not
+    /// what it emits: `multiple.surface`. Nothing without a surface.
+    void trace_surface(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+
+  private:
+    class Walk;
+    struct Tables;
+
+    std::unique_ptr<const Tables> tables_;
+};
+
+}  // namespace uw
