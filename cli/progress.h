@@ -23,11 +23,11 @@ class Progress {
     Progress(Progress&&) = delete;
     Progress& operator=(Progress&&) = delete;
 
-    /// Reports that `fraction` (0..1) of the work is done.
-    void update(double fraction);
+    /// Reports that `fraction` (0..1) of the work is done; `note`, if any, is shown beside it.
+    void update(double fraction, const std::string& note = {});
 
   private:
-    void draw(double fraction, double seconds);
+    void draw(double fraction, double seconds, const std::string& note);
     void draw_bar(double fraction, const std::string& figures);
 
     std::string label_;

@@ -29,6 +29,14 @@ std::string without_frame(std::string warning, const SceneDesc& frame, const Sce
     return warning;
 }
 
+// "64 samples, error 1.83 %"; empty if no light paths have been traced.
+std::string describe(const PathAccuracy& reached) {
+    if (reached.samples == 0) return {};
+    std::string text = fmt::format("{} samples", reached.samples);
+    if (reached.error) text += fmt::format(", error {:.3g} %", 100 * *reached.error);
+    return text;
+}
+
 }  // namespace
 
 FrameRenderer::FrameRenderer(const RenderArguments& arguments, const SceneDesc& scene,
@@ -56,7 +64,8 @@ void FrameRenderer::warn(const Frame& frame, const std::string& line) {
 bool FrameRenderer::proceed(const std::string& stage, double fraction) {
     const std::lock_guard lock(mutex_);
     if (stage != stage_) begin_stage(stage);
-    if (progress_) progress_->update(fraction);
+    const PathAccuracy& paths = renderer_.report().paths;
+    if (progress_) progress_->update(fraction, stage == "render" ? describe(paths) : "");
     return !stop_requested();
 }
 
@@ -94,6 +103,9 @@ void FrameRenderer::count_work(RunStats& stats) const {
     stats.count("triangles", report.triangles);
     stats.count("lamps", report.lamps);
     stats.count("bands", report.bands);
+    if (report.paths.samples == 0) return;
+    stats.count("samples", static_cast<std::uint64_t>(report.paths.samples));
+    if (report.paths.error) stats.measure("error", *report.paths.error);
 }
 
 void FrameRenderer::write_irradiance(const std::filesystem::path& file) {
@@ -109,7 +121,8 @@ void FrameRenderer::write_irradiance(const std::filesystem::path& file) {
 void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& stats) {
     const OutputFiles& files = frame.files;
     const bool with_irradiance = !files.irradiance_vdb.empty();
-    const RenderOptions options{.layers = arguments_.layers, .window = windows_[frame.camera]};
+    const RenderOptions options{
+        .layers = arguments_.layers, .window = windows_[frame.camera], .paths = arguments_.paths()};
     stats_ = &stats;
     stage_.clear();
     renderer_.set_scene(std::move(scene));
@@ -118,8 +131,13 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& st
         check_irradiance_vdb(renderer_.assembled());
         renderer_.splat();
     }
+    const std::size_t warned = renderer_.report().warnings.size();
     const Film& film = renderer_.render(options);
     progress_.reset();
+    const RenderReport& report = renderer_.report();
+    for (std::size_t i = warned; i < report.warnings.size(); ++i) warn(frame, report.warnings[i]);
+    if (report.paths.samples > 0)
+        say(fmt::format("{} of the image's mean", describe(report.paths)));
     count_work(stats);
     if (with_irradiance) {
         stats.begin_stage("irradiance");
@@ -128,7 +146,7 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& st
     }
     stats.begin_stage("write");
     write_images(
-        files, film, metadata_of(renderer_.assembled(), frame.number),
+        files, film, metadata_of(renderer_.assembled(), frame.number, options.paths, report.paths),
         [&](const std::string& line) { say(line); },
         [&](const std::string& line) { warn(frame, line); });
     stats.end_stage();
