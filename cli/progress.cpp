@@ -76,9 +76,10 @@ void Progress::draw(double fraction, double seconds, const std::string& note) {
         time = format_duration(seconds);
     else if (fraction > 0)
         time = format_duration(seconds * (1 - fraction) / fraction) + " left";
-    const std::string figures =
-        fmt::format("{:3.0f} %  {}{}{} {}/s  {}", 100 * fraction, note, note.empty() ? "" : "  ",
-                    format_rate(rate), unit_, time);
+    std::string figures = fmt::format("{:3.0f} %  ", 100 * fraction);
+    if (!note.empty()) figures += note + "  ";
+    if (!unit_.empty()) figures += fmt::format("{} {}/s  ", format_rate(rate), unit_);
+    figures += time;
     if (terminal_)
         draw_bar(fraction, figures);
     else

@@ -12,7 +12,8 @@ namespace uw {
 /// time left; otherwise plain lines every few seconds. Short work shows nothing. Thread-safe.
 class Progress {
   public:
-    /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole. For work that is
+    /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole. Without a unit,
+    /// no rate is shown. For work that is
     /// part of more, `seconds_left` is the time that all of it takes from now on; it is shown
     /// instead of this part's.
     Progress(std::string label, std::string unit, double scale, bool quiet,

@@ -9,6 +9,7 @@
 #include "cli/render/image_output.h"
 #include "cli/render/irradiance_export.h"
 #include "cli/stop_signal.h"
+#include "core/integrators/integrator_table.h"
 
 namespace uw {
 
@@ -77,7 +78,10 @@ void FrameRenderer::begin_stage(const std::string& stage) {
                                                clock_.seconds_left());
     };
     if (stage == "splat") show("lamps", static_cast<double>(renderer_.scene().lamps.size()));
-    if (stage == "render" || stage == "forward scatter")
+    const bool paths = integrator_kind(renderer_.scene().render.integrator).traces_paths;
+    if (stage == "render" && paths)
+        show("", 1);  // of how many paths may not be known yet
+    else if (stage == "render" || stage == "forward scatter")
         show("Mpx", 1e-6 * static_cast<double>(renderer_.report().pixels));
     if (stage == "render") begin_orderly_stop();
     if (stage != "forward scatter") stats_->begin_stage(stage);  // which is part of "render"

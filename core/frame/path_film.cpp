@@ -25,6 +25,9 @@ constexpr double k_margin = 1.05;
 // Paths per pixel that an image is taken to need before anything is known of it.
 constexpr int k_guess = 64;
 
+// Rounds are at least this fraction of the paths before them.
+constexpr double k_least_growth = 0.125;
+
 constexpr int k_batches = PathRound::k_batches;
 
 // Paths per pixel that will reach the error, all in all.
@@ -135,9 +138,13 @@ int samples_of_next_round(const PathGoal& goal, const PathAccuracy& so_far) {
     if (so_far.samples == 0) return k_batches;
     const int possible = k_most_paths - so_far.samples;
     if (possible <= 0 || so_far.error.value_or(0.0) <= *goal.error) return 0;
+    // Batches of 2^k paths cover their dimensions best. The next round may correct a round too few.
     const double missing = samples_needed(*goal.error, so_far) - so_far.samples;
-    const double batches = std::ceil(std::min(missing, 2.0 * so_far.samples) / k_batches);
-    return std::min(possible, std::max(1, static_cast<int>(batches)) * k_batches);
+    const double most = std::min({missing, 2.0 * so_far.samples, static_cast<double>(possible)});
+    const double wanted = std::max(most, k_least_growth * so_far.samples);
+    int samples = k_batches;
+    while (2 * samples <= wanted) samples *= 2;
+    return std::min(samples, possible);
 }
 
 PathAccuracy render_path_film(const PixelRenderer& renderer, const PathGoal& goal,

@@ -144,7 +144,8 @@ class PathLayers : public ::testing::Test {
     static void expect_sums(const LayerPlan& plan, std::vector<float>& channels) {
         for (std::size_t b = 0; b < 3; ++b) {
             const auto of = [&](Layer layer) { return plan.channels(layer, channels)[b]; };
-            EXPECT_EQ(of(Layer::multiple), of(Layer::multiple_volume) + of(Layer::multiple_surface));
+            EXPECT_EQ(of(Layer::multiple),
+                      of(Layer::multiple_volume) + of(Layer::multiple_surface));
             EXPECT_EQ(channels[b],
                       ((of(Layer::direct) + of(Layer::forward)) + of(Layer::backscatter)) +
                           of(Layer::multiple));

@@ -159,8 +159,7 @@ TEST(Layers, WhatCannotBeSuppliedIsLeftOutOrRefused) {
                       "render.scattering=multiple, or --integrator path");
     EXPECT_NE(message_of<UsageError>("error").find("only --integrator path has a standard error"),
               std::string::npos);
-    EXPECT_NE(message_of<UsageError>("order.2").find("written with --orders N"),
-              std::string::npos);
+    EXPECT_NE(message_of<UsageError>("order.2").find("written with --orders N"), std::string::npos);
 }
 
 TEST(Layers, OrdersComeLast) {
