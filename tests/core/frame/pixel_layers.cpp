@@ -139,7 +139,7 @@ class PathLayers : public ::testing::Test {
         return result;
     }
     static std::vector<float> stored(const LayerPlan& plan) {
-        return std::vector<float>(plan.channel_names().size(), -1.0F);
+        return std::vector<float>(plan.channel_names().size(), -7.0F);
     }
     static void expect_sums(const LayerPlan& plan, std::vector<float>& channels) {
         for (std::size_t b = 0; b < 3; ++b) {
@@ -162,7 +162,7 @@ TEST_F(PathLayers, AddUpToTheBitBeforeAndAfterMorePaths) {
     std::vector<float> channels = stored(plan);
     store_pixel(pixel(1), plan, colour_, channels);
     expect_sums(plan, channels);
-    for (const float value : channels) EXPECT_NE(value, -1);
+    for (const float value : channels) EXPECT_NE(value, -7);
     for (int round = 1; round < 20; ++round) {
         merge_paths(pixel(1 + 0.1 * round), 1.0 / (round + 1), plan, colour_, channels);
         expect_sums(plan, channels);
