@@ -157,6 +157,14 @@ TEST_F(PathFilms, GoOnUntilTheErrorIsSmall) {
     EXPECT_GT(rounds.size(), 2U);
 }
 
+TEST_F(PathFilms, SayWhatTheyReachedIfTheErrorIsTooSmall) {
+    render({.window = PixelWindow{2, 3, 3, 4}, .paths = {.error = 1e-6}});
+    EXPECT_EQ(report_.paths.samples, 65536);
+    ASSERT_EQ(report_.warnings.size(), 1U);
+    EXPECT_TRUE(report_.warnings[0].starts_with("--error 1e-06: 65536 samples per pixel, the most"))
+        << report_.warnings[0];
+}
+
 TEST_F(PathFilms, CanBeStopped) {
     Renderer renderer([](const std::string& stage, double fraction) {
         return stage != "render" || fraction == 0;
