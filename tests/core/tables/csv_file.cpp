@@ -39,7 +39,7 @@ TEST(CsvFile, TooLargeForATableIsRefused) {
     const auto file = folder.write("large.csv", comment + "x\n1\n2\n33\n");
     const std::string message = test::message_of<InputError>([&] { read_csv_file(file, k_entry); });
     EXPECT_EQ(message, std::string(k_entry) + ": " + file.string() +
-                           ": is larger than 4 MiB; this is no table");
+                           ": is larger than 4 MiB; this is not a valid table");
 }
 
 TEST(CsvFile, ContentThatIsNoTableIsRefused) {

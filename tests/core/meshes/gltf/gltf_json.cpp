@@ -57,8 +57,8 @@ TEST_F(GltfJson, MayBeNestedAHundredDeep) {
                std::string(depth, ']') + "}";
     };
     EXPECT_NO_THROW(load(nested(99)));
-    expect_refused(nested(100), "the glTF is nested too deep");
-    expect_refused(nested(1000000), "the glTF is nested too deep");
+    expect_refused(nested(100), "the glTF is nested too deeply");
+    expect_refused(nested(1000000), "the glTF is nested too deeply");
     // Brackets in a text are none.
     EXPECT_NO_THROW(
         load(R"({"asset":{"version":"2.0"},"extras":"\")" + std::string(500, '[') + "\"}"));

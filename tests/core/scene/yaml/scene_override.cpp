@@ -87,7 +87,7 @@ TEST(SceneOverride, errorsNameTheOverrideAndTheMend) {
         {"uwvdb.x=3", "uwvdb: is the number 1, so it has no key 'x'; set uwvdb itself"},
         {"render.samples=", "render.samples: has no value"},
         {"render.samples=abc", "--set render.samples=abc: render.samples: expected a number"},
-        {"lamps=[1, 2", "--set lamps=[1, 2: end of sequence flow not found; mend"},
+        {"lamps=[1, 2", "--set lamps=[1, 2: end of sequence flow not found; correct"},
     };
     for (const auto& [text, expected] : cases) {
         EXPECT_NE(error_of({text}).find(expected), std::string::npos)
