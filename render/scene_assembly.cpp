@@ -138,6 +138,9 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
                                           {deep_shadows.begin(), deep_shadows.end()}});
     if (integrator_kind(render.integrator).traces_paths)
         transport.paths = std::make_shared<PathTracer>(scene.lit());
+    else if (scattering_of(render) == RenderDesc::Scattering::multiple)
+        transport.paths = std::make_shared<PathTracer>(
+            scene.lit(), PathOptions{{deep_shadows.begin(), deep_shadows.end()}});
     if (render.output == RenderDesc::Output::paper)
         transport.integrator = std::make_unique<FocusWeightedIntegrator>(
             std::move(transport.integrator), scene.desc.camera.lens.value().focal_length);

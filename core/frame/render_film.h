@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core/colour/colour.h"
+#include "core/frame/multiple_light.h"
 #include "core/frame/pixel_renderer.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
@@ -18,9 +19,10 @@ using PixelCallback =
 
 /// Renders every pixel of the film's window on all permitted threads. The result depends neither on
 /// their number nor on the window. `in_scatter_tolerance`: that of InScatterLattice; 0 integrates
-/// every pixel's own ray. Throws Interrupted if `progress` returned false.
+/// every pixel's own ray. `multiple`: added to every pixel unless null. Throws Interrupted if
+/// `progress` returned false.
 void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, const LayerPlan& plan,
                  const BandColour& colour, Film& film, const ProgressCallback& progress,
-                 const PixelCallback& done = {});
+                 const PixelCallback& done = {}, const MultipleLight* multiple = nullptr);
 
 }  // namespace uw

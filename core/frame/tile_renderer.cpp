@@ -2,8 +2,9 @@
 
 namespace uw {
 
-TileRenderer::TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance)
-    : renderer_(renderer) {
+TileRenderer::TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
+                           const MultipleLight* multiple)
+    : renderer_(renderer), multiple_(multiple) {
     if (in_scatter_tolerance > 0)
         lattice_.emplace(renderer.rays(), renderer.in_scatter(), in_scatter_tolerance);
     else
@@ -29,6 +30,7 @@ const PixelResult& TileRenderer::render(int x, int y) {
     if (!lattice_) renderer_.in_scatter().integrate(*view_, in_scatter_);
     renderer_.shade(*view_, light_, first_samples_[pixel],
                     lattice_ ? lattice_->values(pixel) : in_scatter_, result_);
+    if (multiple_) multiple_->add(*view_, light_, first_samples_[pixel], result_);
     return result_;
 }
 

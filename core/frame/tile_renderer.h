@@ -5,6 +5,7 @@
 
 #include "core/base/grid2d.h"
 #include "core/frame/in_scatter_lattice.h"
+#include "core/frame/multiple_light.h"
 #include "core/frame/pixel_renderer.h"
 
 namespace uw {
@@ -14,7 +15,9 @@ namespace uw {
 class TileRenderer {
   public:
     /// `in_scatter_tolerance`: that of InScatterLattice; 0 integrates every pixel's own ray.
-    TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance);
+    /// `multiple`: added to every pixel, unless null; outlives the renderer.
+    TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
+                 const MultipleLight* multiple = nullptr);
 
     /// Traces the whole tile, even if only part of it is rendered: its lattice depends on all of
     /// it, and its surfaces are lit in one batch.
@@ -27,6 +30,7 @@ class TileRenderer {
 
   private:
     const PixelRenderer& renderer_;
+    const MultipleLight* multiple_;
     std::optional<InScatterLattice> lattice_;  // empty: every pixel by itself
     PixelWindow tile_;
     Grid2D<PixelView> views_;                 // of the tile

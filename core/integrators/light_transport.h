@@ -14,8 +14,8 @@ class PathTracer;
 struct LightTransport {
     std::unique_ptr<const Integrator> integrator;
     std::unique_ptr<const SurfaceLighting> surfaces;
-    /// All light by random paths (IntegratorKind::traces_paths); null: the image is made of the
-    /// other two.
+    /// Random paths: of all light (IntegratorKind::traces_paths), or of what the other two leave
+    /// out (MultipleLight). Null for single scattering.
     std::shared_ptr<const PathTracer> paths{};
 };
 

@@ -1,11 +1,8 @@
 #include "core/integrators/volume_integrator.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error.h"
 #include "core/base/quadrature.h"
 
 namespace uw {
@@ -93,14 +90,6 @@ void add_knots(const ConcentrationProfile& profile, int voxels, PanelBreaks& bre
     }
 }
 
-void check_for_volume(const SceneDesc& scene) {
-    if (scene.render.scattering == RenderDesc::Scattering::multiple)
-        throw InputError(fmt::format(
-            "{}: multiple scattering is not supported yet by integrator volume; use integrator "
-            "path",
-            scene.render.scattering_where));
-}
-
 LightTransport make_volume(const IntegratorInputs& inputs) {
     using Quality = RenderDesc::Quality;
     if (inputs.quality == Quality::draft)
@@ -118,7 +107,6 @@ LightTransport make_volume(const IntegratorInputs& inputs) {
 constinit const IntegratorKind VolumeIntegrator::k_kind{.needs_deep_shadows = true,
                                                         .interpolates_between_pixels = true,
                                                         .multiple_scattering = true,
-                                                        .check = check_for_volume,
                                                         .make = make_volume};
 
 struct VolumeIntegrator::Workspace {

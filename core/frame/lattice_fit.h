@@ -1,0 +1,47 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace uw {
+
+/// A node of a regular lattice near the one that is fitted.
+struct FitNode {
+    int dx = 0, dy = 0;  // from it, in steps of the lattice
+    double value = 0;    // representative of all that is fitted
+    double variance = 0;
+    std::size_t index = 0;  // the caller's
+};
+
+/// A node's share in a fitted value.
+struct FitWeight {
+    std::size_t index = 0;
+    double weight = 0;
+};
+
+/// Smooths noisy estimates at the nodes of a lattice by fitting polynomials to those around each:
+/// a constant, a plane, or a quadric, as far as there are nodes for it. Of the neighbourhoods, the
+/// widest is taken whose fit agrees with those of all narrower ones to within their noise
+/// (Lepski 1991): features of the light are kept, noise is not. Reused storage.
+class LatticeFit {
+  public:
+    /// Of the neighbourhoods, in steps of the lattice; a caller passes the nodes within.
+    static constexpr int k_reach = 4;
+
+    /// The weights with which the nodes make up the fitted value at (0, 0), the sum of which is 1.
+    /// `nodes` need not include that place. `tolerance`: differences that do not matter, in units
+    /// of `value`. Empty without nodes.
+    std::span<const FitWeight> fit(std::span<const FitNode> nodes, double tolerance);
+
+    /// The variance of the last fitted value.
+    double variance() const { return variance_; }
+
+  private:
+    bool fit_within(std::span<const FitNode> nodes, int reach, int terms);
+
+    std::vector<FitWeight> weights_, tried_;
+    double variance_ = 0, value_ = 0;
+    double tried_variance_ = 0, tried_value_ = 0;
+};
+
+}  // namespace uw

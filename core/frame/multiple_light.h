@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "core/base/grid2d.h"
+#include "core/frame/multiple_nodes.h"
+#include "core/frame/pixel_layers.h"
+#include "core/frame/pixel_renderer.h"
+#include "core/image/film.h"
+#include "core/optics/optical_depth.h"
+
+namespace uw {
+
+/// How much is spent on the light that was scattered or reflected more than once.
+struct MultipleLightOptions {
+    int paths = 0;       // in the whole image, of each kind, at its nodes
+    int nodes = 0;       // about as many
+    bool lamps = false;  // each lamp's light by itself
+};
+
+/// Light that was scattered or reflected more than once, for the fast integrator: estimated by
+/// light paths at the nodes of a lattice over the image (MultipleNodes), smoothed between them
+/// (LatticeFit), and interpolated: the water's by image position and distance, that on surfaces by
+/// position among nodes that see the same surface. The reflectance and the water in front of the
+/// surface are the pixel's own.
+///
+/// Nodes and their random numbers depend on the image's size and nothing else, so that crops hold
+/// the same pixels as the whole image, and a still camera does not flicker.
+class MultipleLight {
+  public:
+    /// Receives the share that is done, on any thread; returns false to stop.
+    using Progress = std::function<bool(double share)>;
+
+    /// `pixels` must outlive this object; its transport has paths.
+    MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options);
+
+    /// Estimates the light of the pixels of `window`. Throws Interrupted if `progress` returned
+    /// false.
+    void prepare(const PixelWindow& window, const Progress& progress);
+
+    /// Adds a pixel's light to multiple_volume, multiple_surface and the lamps of `result`. The
+    /// samples of `view` begin at `first_sample` of `light`. Thread safe.
+    void add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
+             PixelResult& result) const;
+
+    /// The standard error of this light: the RMS over the nodes over the mean of all light.
+    double error() const { return error_; }
+
+  private:
+    struct Corner {
+        const MultipleNode* node;
+        double weight;
+    };
+
+    std::vector<double> place_distances() const;
+    void smooth(int i, int j, const Grid2D<MultipleNode>& raw, MultipleNode& node) const;
+    void smooth_water(int i, int j, const Grid2D<MultipleNode>& raw, MultipleNode& node) const;
+    void smooth_surface(int i, int j, const Grid2D<MultipleNode>& raw, MultipleNode& node) const;
+    void find_corners(double x, double y, std::vector<Corner>& corners) const;
+    void find_matches(double x, double y, const SurfaceHit& hit,
+                      std::vector<Corner>& matches) const;
+    void add_water(const PixelView& view, PixelResult& result) const;
+    void add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
+                     PixelResult& result) const;
+    void give(std::size_t group, std::size_t band, double radiance, PixelResult& result) const;
+    double share_of_interval(std::size_t interval, std::size_t band, double distance) const;
+
+    const PixelRenderer& pixels_;
+    std::size_t bands_;
+    int spacing_ = 1;           // of the nodes [pixels]
+    int column_ = 0, row_ = 0;  // of the first node of nodes_
+    MultipleNodes estimator_;
+    AttenuationTable attenuation_;
+    Grid2D<MultipleNode> nodes_;  // smoothed
+    double error_ = 0;
+};
+
+}  // namespace uw
