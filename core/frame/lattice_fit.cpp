@@ -12,7 +12,7 @@ constexpr int k_most_terms = 6;  // 1, x, y, x^2, xy, y^2
 constexpr std::array<int, 4> k_reaches{0, 1, 2, LatticeFit::k_reach};
 // In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
 // light less well.
-constexpr double k_agreement = 1.5;
+constexpr double k_agreement = 2;
 
 using Terms = std::array<double, k_most_terms>;
 using Matrix = std::array<Terms, k_most_terms>;

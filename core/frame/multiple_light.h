@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "core/base/grid2d.h"
+#include "core/frame/distance_intervals.h"
 #include "core/frame/multiple_nodes.h"
+#include "core/frame/node_smoothing.h"
 #include "core/frame/pixel_layers.h"
 #include "core/frame/pixel_renderer.h"
 #include "core/image/film.h"
-#include "core/optics/optical_depth.h"
 
 namespace uw {
 
@@ -50,14 +51,10 @@ class MultipleLight {
 
   private:
     struct Corner {
-        const MultipleNode* node;
+        const SmoothNode* node;
         double weight;
     };
 
-    std::vector<double> place_distances() const;
-    void smooth(int i, int j, const Grid2D<MultipleNode>& raw, MultipleNode& node) const;
-    void smooth_water(int i, int j, const Grid2D<MultipleNode>& raw, MultipleNode& node) const;
-    void smooth_surface(int i, int j, const Grid2D<MultipleNode>& raw, MultipleNode& node) const;
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
                       std::vector<Corner>& matches) const;
@@ -65,15 +62,14 @@ class MultipleLight {
     void add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
                      PixelResult& result) const;
     void give(std::size_t group, std::size_t band, double radiance, PixelResult& result) const;
-    double share_of_interval(std::size_t interval, std::size_t band, double distance) const;
 
     const PixelRenderer& pixels_;
     std::size_t bands_;
     int spacing_ = 1;           // of the nodes [pixels]
     int column_ = 0, row_ = 0;  // of the first node of nodes_
+    DistanceIntervals intervals_;
     MultipleNodes estimator_;
-    AttenuationTable attenuation_;
-    Grid2D<MultipleNode> nodes_;  // smoothed
+    Grid2D<SmoothNode> nodes_;
     double error_ = 0;
 };
 

@@ -1,7 +1,7 @@
 #include "core/frame/multiple_nodes.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "core/surfaces/surface_reflection.h"
 
@@ -9,17 +9,25 @@ namespace uw {
 
 namespace {
 
-// Lattices of paths, each with random numbers of its own: their spread gives the variance.
-constexpr int k_node_batches = 4;
+// Lattices of paths, each with random numbers of its own: two for each half of a node, and their
+// spread gives the variance.
+constexpr int k_node_batches = 4, k_batches_of_half = 2;
 // Least share of a surface's light that is taken to reach the camera.
 constexpr double k_least_seen = 1e-3;
 
 enum NodeStream : std::uint64_t { k_node_water = 1, k_node_diffuse = 2, k_node_glossy = 3 };
 
-// The variance of the mean of k_node_batches values with this sum and sum of squares.
-double variance_of_mean(double sum, double squares) {
+// The variance of the mean over a half's batches, from all batches' sum and sum of squares.
+double variance_of_half(double sum, double squares) {
     const double mean = sum / k_node_batches;
-    return std::max(0.0, squares / k_node_batches - mean * mean) / (k_node_batches - 1);
+    const double of_batch = std::max(0.0, squares / k_node_batches - mean * mean) * k_node_batches /
+                            (k_node_batches - 1);
+    return of_batch / k_batches_of_half;
+}
+
+void store(std::span<const double> sums, double scale, std::vector<float>& values) {
+    values.resize(sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) values[i] = static_cast<float>(sums[i] * scale);
 }
 
 }  // namespace
@@ -36,16 +44,13 @@ struct MultipleNodes::Workspace {
 /// Adds up terms by the interval in which they leave the camera ray.
 class MultipleNodes::WaterSum final : public PathTerms {
   public:
-    WaterSum(const MultipleNodeOptions& options, std::size_t bands, Workspace& w)
-        : options_(options), bands_(bands), w_(w) {}
+    WaterSum(const DistanceIntervals& intervals, const MultipleNodeOptions& options,
+             std::size_t bands, Workspace& w)
+        : intervals_(intervals), options_(options), bands_(bands), w_(w) {}
 
     void add(const PathTerm& term) override {
-        const auto end = std::ranges::lower_bound(options_.distances, term.distance);
-        const auto interval =
-            std::clamp<std::ptrdiff_t>(end - options_.distances.begin() - 1, 0,
-                                       static_cast<std::ptrdiff_t>(options_.distances.size()) - 2);
+        const std::size_t i = intervals_.at(term.distance);
         const std::size_t group = std::min(term.lamp, options_.groups - 1);
-        const auto i = static_cast<std::size_t>(interval);
         double* sum = &w_.water[(i * options_.groups + group) * bands_];
         double mean = 0;
         for (std::size_t b = 0; b < bands_; ++b) {
@@ -56,6 +61,7 @@ class MultipleNodes::WaterSum final : public PathTerms {
     }
 
   private:
+    const DistanceIntervals& intervals_;
     const MultipleNodeOptions& options_;
     std::size_t bands_;
     Workspace& w_;
@@ -68,24 +74,17 @@ class MultipleNodes::SurfaceSum final : public PathTerms {
 
     void add(const PathTerm& term) override {
         const std::size_t group = std::min(term.lamp, options_.groups - 1);
-        for (std::size_t b = 0; b < bands_; ++b) {
-            sum_[group * bands_ + b] += term.radiance[b];
-            batch_ += term.radiance[b];
-        }
+        for (std::size_t b = 0; b < bands_; ++b) sum_[group * bands_ + b] += term.radiance[b];
+        for (const double radiance : term.radiance) batch_ += radiance;
     }
-    void end_batch(double scale) {
-        total_ += batch_ * scale;
-        squares_ += batch_ * batch_ * scale * scale;
-        batch_ = 0;
-    }
-    double mean() const { return total_ / k_node_batches; }
-    double variance() const { return variance_of_mean(total_, squares_); }
+    /// Ends a batch and returns its mean.
+    double end_batch(double scale) { return std::exchange(batch_, 0.0) * scale; }
 
   private:
     const MultipleNodeOptions& options_;
     std::size_t bands_;
     std::vector<double>& sum_;
-    double batch_ = 0, total_ = 0, squares_ = 0;
+    double batch_ = 0;
 };
 
 MultipleNodes::Workspace& MultipleNodes::workspace_of_thread() {
@@ -106,13 +105,19 @@ void MultipleNodes::estimate(double x, double y, std::uint64_t seed, MultipleNod
 }
 
 void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths,
-                                     MultipleNode& node) const {
+                                     NodeLight& light) const {
     Workspace& w = workspace_of_thread();
-    node = {};
+    MultipleNode node;
     begin(sample, true, w, node);
     const auto x = static_cast<std::uint64_t>(64 * sample.x);
     const auto y = static_cast<std::uint64_t>(64 * sample.y);
     trace_surface(PathRandom::seed_of(x, y, 1), paths, w, node);
+    light = std::move(node.halves[0]);
+    const NodeLight& other = node.halves[1];
+    for (std::size_t k = 0; k < light.diffuse.size(); ++k)
+        light.diffuse[k] = 0.5F * (light.diffuse[k] + other.diffuse[k]);
+    for (std::size_t k = 0; k < light.glossy.size(); ++k)
+        light.glossy[k] = 0.5F * (light.glossy[k] + other.glossy[k]);
 }
 
 void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& w,
@@ -141,15 +146,19 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
 
 void MultipleNodes::trace_water(std::uint64_t seed, Workspace& w, MultipleNode& node) const {
     const auto bands = static_cast<std::size_t>(scene_.medium->band_count());
-    const std::size_t intervals = options_.distances.size() - 1;
-    w.water.assign(intervals * options_.groups * bands, 0.0);
+    const std::size_t intervals = intervals_.count();
+    const int in_batch = std::max(1, options_.paths / k_node_batches);
+    const double scale = 1.0 / (in_batch * static_cast<double>(bands));
     w.interval_mean.assign(intervals, 0.0);
     w.interval_squares.assign(intervals, 0.0);
     w.batch_mean.assign(intervals, 0.0);
-    WaterSum sum(options_, bands, w);
-    const int in_batch = std::max(1, options_.paths / k_node_batches);
-    const double scale = 1.0 / (in_batch * static_cast<double>(bands));
+    WaterSum sum(intervals_, options_, bands, w);
     for (int batch = 0; batch < k_node_batches; ++batch) {
+        NodeLight& half = node.halves[static_cast<std::size_t>(batch / k_batches_of_half)];
+        if (batch % k_batches_of_half == 0) {
+            w.water.assign(intervals * options_.groups * bands, 0.0);
+            half.water_mean.assign(intervals, 0.0F);
+        }
         for (int i = 0; i < in_batch; ++i) {
             PathRandom random(
                 PathRandom::seed_of(seed, k_node_water, static_cast<std::uint64_t>(batch)),
@@ -157,20 +166,17 @@ void MultipleNodes::trace_water(std::uint64_t seed, Workspace& w, MultipleNode& 
             transport_.paths->trace_water(w.segment, random, sum);
         }
         for (std::size_t i = 0; i < intervals; ++i) {
-            const double mean = w.batch_mean[i] * scale;
+            const double mean = std::exchange(w.batch_mean[i], 0.0) * scale;
             w.interval_mean[i] += mean;
             w.interval_squares[i] += mean * mean;
-            w.batch_mean[i] = 0;
+            half.water_mean[i] += static_cast<float>(mean / k_batches_of_half);
         }
+        store(w.water, 1.0 / (in_batch * k_batches_of_half), half.water);
     }
-    node.water.resize(w.water.size());
-    for (std::size_t i = 0; i < w.water.size(); ++i)
-        node.water[i] = static_cast<float>(w.water[i] / (in_batch * k_node_batches));
     for (std::size_t i = 0; i < intervals; ++i) {
-        node.water_mean.push_back(static_cast<float>(w.interval_mean[i] / k_node_batches));
         node.water_variance.push_back(
-            static_cast<float>(variance_of_mean(w.interval_mean[i], w.interval_squares[i])));
-        node.mean_light += node.water_mean.back();
+            static_cast<float>(variance_of_half(w.interval_mean[i], w.interval_squares[i])));
+        node.mean_light += w.interval_mean[i] / k_node_batches;
     }
 }
 
@@ -179,44 +185,49 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
                                   MultipleNode& node) const {
     const auto bands = static_cast<std::size_t>(scene_.medium->band_count());
     const int in_batch = std::max(1, paths / k_node_batches);
-    const auto trace = [&](NodeStream stream, std::vector<float>& values) {
-        w.surface.assign(options_.groups * bands, 0.0);
+    const auto trace = [&](NodeStream stream, double share, std::vector<float> NodeLight::*values) {
+        std::array<double, k_node_batches> means{};
         SurfaceSum sum(options_, bands, w.surface);
         for (int batch = 0; batch < k_node_batches; ++batch) {
+            if (batch % k_batches_of_half == 0) w.surface.assign(options_.groups * bands, 0.0);
             for (int i = 0; i < in_batch; ++i) {
                 PathRandom random(
                     PathRandom::seed_of(seed, stream, static_cast<std::uint64_t>(batch)),
                     static_cast<std::uint32_t>(i));
                 transport_.paths->trace_surface(w.surface_segment, random, sum);
             }
-            sum.end_batch(1.0 / (in_batch * static_cast<double>(bands)));
+            const auto half = static_cast<std::size_t>(batch / k_batches_of_half);
+            store(w.surface, 1.0 / (in_batch * k_batches_of_half * share),
+                  node.halves[half].*values);
+            means[static_cast<std::size_t>(batch)] =
+                sum.end_batch(1.0 / (in_batch * static_cast<double>(bands) * share));
         }
-        values.resize(w.surface.size());
-        for (std::size_t i = 0; i < values.size(); ++i)
-            values[i] = static_cast<float>(w.surface[i] / (in_batch * k_node_batches));
-        return sum;
+        return means;
     };
     w.surface_segment = w.segment;
     SurfaceHit& hit = w.surface_segment.water.hit;
-    const Spectrum reflectance = hit.reflectance;
+    for (std::size_t b = 0; b < bands; ++b)
+        node.surface_seen += hit.reflectance[b] * w.segment.transmittance[b];
+    node.surface_seen /= static_cast<double>(bands);
     hit.reflectance = per_band(bands, [](std::size_t) { return 1.0; });
     hit.has_material = false;
-    for (std::size_t b = 0; b < bands; ++b)
-        node.surface_seen +=
-            reflectance[b] * w.segment.transmittance[b] / static_cast<double>(bands);
     // Of what the camera sees, so that paths end as they would in a pixel.
     const double share = std::max(node.surface_seen, k_least_seen);
     std::ranges::fill(w.surface_segment.transmittance, share);
-    const SurfaceSum diffuse = trace(k_node_diffuse, node.diffuse);
-    for (float& value : node.diffuse) value = static_cast<float>(value / share);
-    node.diffuse_mean = diffuse.mean() / share;
-    node.diffuse_variance = diffuse.variance() / (share * share);
-    node.mean_light += node.surface_seen * node.diffuse_mean;
+    double sum = 0, squares = 0;
+    const auto means = trace(k_node_diffuse, share, &NodeLight::diffuse);
+    for (std::size_t batch = 0; batch < means.size(); ++batch) {
+        node.halves[batch / k_batches_of_half].diffuse_mean += means[batch] / k_batches_of_half;
+        sum += means[batch];
+        squares += means[batch] * means[batch];
+    }
+    node.diffuse_variance = variance_of_half(sum, squares);
+    node.mean_light += node.surface_seen * sum / k_node_batches;
     if (!node.surface->is_glossy) return;
     hit.reflectance = {};
     hit.has_material = true;
     std::ranges::fill(w.surface_segment.transmittance, 1.0);
-    trace(k_node_glossy, node.glossy);
+    trace(k_node_glossy, 1, &NodeLight::glossy);
 }
 
 }  // namespace uw

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "core/base/grid2d.h"
 #include "core/base/ray_source.h"
+#include "core/frame/distance_intervals.h"
 #include "core/integrators/light_transport.h"
 #include "core/integrators/lit_scene.h"
 #include "core/paths/path_tracer.h"
@@ -20,28 +22,36 @@ struct NodeSurface {
     bool is_glossy = false;
 };
 
-/// Estimates, at one image position, of the light that was scattered or reflected more than once.
-struct MultipleNode {
-    bool has_ray = false;
-    std::optional<NodeSurface> surface;
-    double reach = 0;       // of the water along its ray [m]
-    double mean_light = 0;  // direct, scattered once and the rest, roughly: mean over the bands
+/// Light that was scattered or reflected more than once, at one image position.
+struct NodeLight {
     /// By interval of distance, group and band: radiance from the water within it, at the camera.
     std::vector<float> water;
     /// By group and band: indirect irradiance / pi, what a white surface would reflect, and then
     /// what the surface's specular lobe reflects [W m^-2 sr^-1].
     std::vector<float> diffuse, glossy;
-    /// Means over bands and groups, and their variances.
-    std::vector<float> water_mean, water_variance;  // by interval
-    double diffuse_mean = 0, diffuse_variance = 0;
+    // The sums over the groups, means over the bands:
+    std::vector<float> water_mean;  // by interval
+    double diffuse_mean = 0;
+};
+
+/// Estimates of that light, and what they belong to.
+struct MultipleNode {
+    bool has_ray = false;
+    std::optional<NodeSurface> surface;
+    double reach = 0;         // of the water along its ray [m]
+    double mean_light = 0;    // roughly that of the ray, mean over the bands
     double surface_seen = 0;  // the camera's radiance per diffuse_mean
+    /// Two independent estimates: what is decided by one is applied to the other.
+    std::array<NodeLight, 2> halves;
+    // The variances of either half's means:
+    std::vector<float> water_variance;
+    double diffuse_variance = 0;
 };
 
 /// How nodes are estimated.
 struct MultipleNodeOptions {
-    std::vector<double> distances;  // the ends of the intervals of the water [m], from 0
-    std::size_t groups = 1;         // one for all light, or one per lamp and one for emission
-    int paths = 512;                // per node, of each kind
+    std::size_t groups = 1;  // one for all light, or one per lamp and one for emission
+    int paths = 512;         // per node, of each kind
 };
 
 /// Estimates nodes by light paths. Thread safe.
@@ -49,15 +59,19 @@ class MultipleNodes {
   public:
     /// All references must outlive this object; `transport` has paths.
     MultipleNodes(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
-                  MultipleNodeOptions options)
-        : rays_(rays), scene_(scene), transport_(transport), options_(std::move(options)) {}
+                  const DistanceIntervals& intervals, const MultipleNodeOptions& options)
+        : rays_(rays),
+          scene_(scene),
+          transport_(transport),
+          intervals_(intervals),
+          options_(options) {}
 
     const MultipleNodeOptions& options() const { return options_; }
 
     /// The node at image position (x, y) [pixels]. `seed`: of its random numbers.
     void estimate(double x, double y, std::uint64_t seed, MultipleNode& node) const;
-    /// `diffuse` and `glossy` alone, of one surface sample by this many paths.
-    void estimate_surface(const SurfaceSample& sample, int paths, MultipleNode& node) const;
+    /// The light on one surface sample alone, by this many paths.
+    void estimate_surface(const SurfaceSample& sample, int paths, NodeLight& light) const;
 
   private:
     class WaterSum;
@@ -72,6 +86,7 @@ class MultipleNodes {
     const RaySource& rays_;
     const LitScene& scene_;
     const LightTransport& transport_;
+    const DistanceIntervals& intervals_;
     MultipleNodeOptions options_;
 };
 

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/base/grid2d.h"
+#include "core/frame/distance_intervals.h"
+#include "core/frame/multiple_nodes.h"
+
+namespace uw {
+
+/// The cosine of the largest angle between the normals at two places whose indirect light is
+/// alike.
+inline constexpr double k_least_node_cosine = 0.7;
+
+/// A node whose light is smoothed over those around it.
+struct SmoothNode {
+    std::optional<NodeSurface> surface;
+    /// The distance up to which the water's light is known [m], which may be beyond the node's own
+    /// surface; 0: nothing is known.
+    double known_to = 0;
+    NodeLight light;
+    double mean_light = 0, variance = 0;  // of the node's ray, and of its smoothed light
+};
+
+/// Smooths the nodes of a lattice (LatticeFit): the water's light interval by interval over the
+/// nodes whose rays reach it, the surfaces' over those that see the same surface. The neighbourhood
+/// for either half of the estimates is chosen by the other one: if a half chose its own, a rare
+/// bright path would stop the smoothing around it and be counted there once more.
+/// `groups`: MultipleNodeOptions::groups.
+Grid2D<SmoothNode> smoothed(const Grid2D<MultipleNode>& raw, const DistanceIntervals& intervals,
+                            std::size_t groups);
+
+}  // namespace uw
