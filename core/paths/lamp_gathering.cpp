@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/fast_exp.h"
 #include "core/integrators/ray_panels.h"
 #include "core/paths/choice.h"
 #include "core/surfaces/surface_reflection.h"
@@ -37,16 +36,6 @@ struct LampGathering::Workspace {
 LampGathering::LampGathering(const WaterOptics& optics, const ScatteringTables& tables,
                              std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
     : optics_(optics), tables_(tables), deep_shadows_(std::move(deep_shadows)) {}
-
-// The sum over bands of throughput, intensity on the axis, and e^-c for the uniform water.
-double LampGathering::mean_of_arriving(const Spectrum& throughput, const Lamp& lamp,
-                                       double length) const {
-    double sum = 0;
-    for (std::size_t b = 0; b < optics_.bands(); ++b)
-        sum += throughput[b] * lamp.axis_intensity()[b] *
-               exp_of_minus(optics_.attenuation().uniform[b] * length);
-    return sum;
-}
 
 void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
                                    std::span<double> column) const {
@@ -115,11 +104,12 @@ void LampGathering::find_water_shares(const WaterSegment& segment, std::span<con
         }
         if (share.part_count == 0) continue;
         // The light path R + s never shortens along the segment.
-        const double weight = lamps.size() == 1
-                                  ? 1
-                                  : own_weight * share.mass / share.distance *
-                                        mean_of_arriving(state.throughput, lamps[j],
-                                                         lit.begin + passage.radius(lit.begin));
+        const double weight =
+            lamps.size() == 1
+                ? 1
+                : own_weight * share.mass / share.distance *
+                      optics_.attenuated_sum(state.throughput, lamps[j].axis_intensity(),
+                                             lit.begin + passage.radius(lit.begin));
         if (!(weight > 0)) continue;
         total += weight;
         w.shares.push_back(share);
@@ -179,7 +169,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
     tables_.phase(h, w.p);
     const std::size_t bands = optics_.bands();
     const std::span<double> radiance = w.radiance.first(bands);
-    optics_.transmittances(s + radius, w.column, radiance);
+    optics_.transmittances(s + radius, w.column, w.radiance);
     const double factor = (weights.empty() ? 1 : weights[share.lamp]) * relative * 2 /
                           ((1 + h * h) * share.distance * density);
     for (std::size_t b = 0; b < bands; ++b) {
@@ -192,8 +182,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
     terms.add(term);
 }
 
-void LampGathering::gather_from_surface(const WaterSegment& segment,
-                                        std::span<const double> transmittance,
+void LampGathering::gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
                                         const PathState& state, PathRandom& random,
                                         PathTerms& terms) const {
     thread_local Workspace w;
@@ -221,7 +210,9 @@ void LampGathering::gather_from_surface(const WaterSegment& segment,
         const double radius = glm::length(to_lamp);
         const double geometry = relative * towards / (radius * radius * radius);
         const double weight =
-            lamps.size() == 1 ? 1 : geometry * mean_of_arriving(state.throughput, lamps[j], radius);
+            lamps.size() == 1 ? 1
+                              : geometry * optics_.attenuated_sum(
+                                               state.throughput, lamps[j].axis_intensity(), radius);
         if (!(weight > 0)) continue;
         total += weight;
         Share share;
@@ -239,7 +230,7 @@ void LampGathering::gather_from_surface(const WaterSegment& segment,
     w.column.resize(optics_.constituents());
     column_to_lamp(share.lamp, hit.position, w.column);
     reflection.brdf(lamp.position(), w.brdf);
-    optics_.transmittances(share.distance, w.column, radiance);
+    optics_.transmittances(share.distance, w.column, w.radiance);
     for (std::size_t b = 0; b < bands; ++b)
         radiance[b] *= share.mass / probability * lamp.axis_intensity()[b] * w.brdf[b] *
                        transmittance[b] * state.throughput[b];
