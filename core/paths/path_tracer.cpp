@@ -91,10 +91,10 @@ void PathTracer::place_intervals(CameraSegment& segment) const {
     }
     // At equal steps of the transmittance, but at most half an optical depth apart: the light of an
     // interval is judged by its middle.
-    const double depth = c * reach;
+    const double depth = c * reach, lost = std::expm1(-depth);
     for (int i = 1; i < k_intervals; ++i) {
         const double share = static_cast<double>(i) / k_intervals;
-        s.push_back(c > 0 ? -std::log1p(share * std::expm1(-depth)) / c : share * reach);
+        s.push_back(c > 0 ? -std::log1p(share * lost) / c : share * reach);
     }
     for (double tau = k_far_begin; tau < depth; tau += k_far_step) s.push_back(tau / c);
     for (const LampPassage& passage : w.passages) {
