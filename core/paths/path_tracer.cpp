@@ -18,7 +18,7 @@ namespace {
 // Paths are not followed beyond this optical depth of the camera ray: e^-20 = 2e-9.
 constexpr double k_reach = 20;
 // Intervals of uniform water in which the first scattering is uniform; most of them in a plume.
-constexpr int k_intervals = 16;
+constexpr int k_intervals = 8;
 constexpr double k_far_begin = 1.5, k_far_step = 0.5;
 constexpr std::size_t k_most_knots = 64;
 constexpr std::size_t k_most_guiding_bands = 4;
