@@ -41,7 +41,7 @@ struct ScatteringTables {
   private:
     void spread(std::span<const double> shares);
 
-    std::vector<double> spread_glow_;  // at h = 2^-12, 2^-11.75, ...
+    std::vector<double> spread_glow_;  // at quarters of the octaves of h from 2^-12 on
 };
 
 }  // namespace uw
