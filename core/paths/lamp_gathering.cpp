@@ -10,6 +10,13 @@
 
 namespace uw {
 
+namespace {
+
+// The share of what a field may scatter, typically, in the choice of a phase function.
+constexpr double k_field_share = 0.25;
+
+}  // namespace
+
 /// One lamp's part in the light along a segment.
 struct LampGathering::Share {
     // An interval of h = tan(psi / 2).
@@ -65,6 +72,7 @@ void LampGathering::find_water_shares(const WaterSegment& segment, std::span<con
         const std::size_t count = optics_.constituents();
         const double c = optics_.attenuation().uniform[0];
         const double length = c > 0 ? std::min(segment.length, 1 / c) : segment.length;
+        double total = 0;
         for (std::size_t m = 0; m < phases; ++m) {
             double sum = 0;
             for (std::size_t b = 0; b < optics_.bands(); ++b) {
@@ -76,7 +84,12 @@ void LampGathering::find_water_shares(const WaterSegment& segment, std::span<con
                 sum += depth * state.throughput[b];
             }
             w.phase_weights[m] = sum;
+            total += sum;
         }
+        // A field may scatter where its profile is not known, or where nothing else does.
+        if (segment.has_field || !(total > 0))
+            for (std::size_t m = 0; m < phases; ++m)
+                w.phase_weights[m] += tables_.shares[m] * (total > 0 ? k_field_share * total : 1);
     }
     w.shares.clear();
     w.cumulative.clear();

@@ -160,6 +160,8 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
     segment.light.own /= static_cast<double>(bands);
     segment.light.ambient *= k_ambient_share / static_cast<double>(bands);
     segment.light.ambient = std::max(segment.light.ambient, k_least_ambient * segment.light.own);
+    // Nothing known of it, as where only emission lights the scene: by throughput alone.
+    if (!(segment.light.own > 0)) segment.light = {1, 1};
     segment.cumulative.clear();
     if (!(sum_plain > 0)) return;
     const double guided_share = sum_guided > 0 ? 1 - k_defensive_share : 0;

@@ -147,7 +147,6 @@ void PathWalk::continuation(const Vector3& direction, Continuation& along) const
 // Russian roulette by what may still arrive, relative to the light of the path's pixel.
 double PathWalk::survival(const Continuation& along, double least) const {
     if (!(along.value > 0)) return 0;
-    if (!(light_.own > 0)) return k_most_survival;
     return std::clamp(along.value / light_.own, least, k_most_survival);
 }
 

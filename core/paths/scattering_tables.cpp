@@ -43,12 +43,12 @@ std::vector<double> typical_shares(const Medium& medium) {
 
 }  // namespace
 
-ScatteringTables::ScatteringTables(const Medium& medium) : phases(medium) {
+ScatteringTables::ScatteringTables(const Medium& medium)
+    : phases(medium), shares(typical_shares(medium)) {
     const std::span<const double> nodes = HalfTangentDensity::nodes();
     const std::size_t count = medium.phase_functions.size();
     std::vector<double> p(count * nodes.size());
     phases.evaluate(nodes, p);
-    const std::vector<double> shares = typical_shares(medium);
     std::vector<double> of_lobe(nodes.size(), 0.0);
     for (std::size_t m = 0; m < count; ++m) {
         std::vector<double> direction, line;
@@ -65,7 +65,7 @@ ScatteringTables::ScatteringTables(const Medium& medium) : phases(medium) {
         }
     }
     lobe = HalfTangentDensity(of_lobe);
-    spread(shares);
+    spread();
 }
 
 double ScatteringTables::spread_glow(double half_tangent) const {
@@ -79,7 +79,7 @@ double ScatteringTables::spread_glow(double half_tangent) const {
 }
 
 // By a few directions drawn evenly from each phase function.
-void ScatteringTables::spread(std::span<const double> shares) {
+void ScatteringTables::spread() {
     constexpr int k_angles = 48, k_azimuths = 12;
     for (std::uint64_t node = k_glow_first; node <= k_glow_last; ++node) {
         const double psi = 2 * std::atan(std::bit_cast<double>(node << k_glow_offset_bits));
