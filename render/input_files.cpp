@@ -31,8 +31,8 @@ class InputCollection {
         for (const VolumeDesc& volume : scene.volumes) add(volume);
         for (const GeometryDesc& geometry : scene.geometry) add(geometry);
         for (const LampDesc& lamp : scene.lamps) {
-            add_named(lamp.profile, "a lamp's profile of the scene");
-            if (lamp.spectrum) add(*lamp.spectrum, "a lamp's spectrum of the scene");
+            add_named(lamp.profile, "a lamp profile of the scene");
+            if (lamp.spectrum) add(*lamp.spectrum, "a lamp spectrum of the scene");
         }
         const ColourDesc& colour = scene.render.colour;
         add(colour.file, "the response of the scene");
@@ -61,7 +61,7 @@ class InputCollection {
     }
     void add(const VolumeDesc& volume) {
         add(volume.file, "a volume of the scene");
-        if (volume.motion) add(volume.motion->file, "a volume's velocity of the scene");
+        if (volume.motion) add(volume.motion->file, "a velocity file of the scene");
         for (const GridMappingDesc& grid : volume.grids)
             if (grid.optics && grid.optics->phase) add(*grid.optics->phase);
     }
@@ -72,7 +72,7 @@ class InputCollection {
         if (!is_gltf(geometry.file)) return;
         const auto [found, is_new] = known_.try_emplace(geometry.file);
         if (is_new) found->second = files_named_by_gltf(geometry.file);
-        for (const fs::path& file : found->second) add(file, "a mesh's texture or buffer");
+        for (const fs::path& file : found->second) add(file, "a texture or buffer of a mesh");
     }
 
     GltfSideFiles& known_;

@@ -16,7 +16,7 @@ namespace {
 void refuse_open_sequences(const SceneDesc& scene) {
     const auto refuse = [](const SourceLocation& where, const std::filesystem::path& file) {
         throw InputError(
-            fmt::format("{}.file: there is no '{}', and as the name of a sequence it wants frames; "
+            fmt::format("{}.file: there is no '{}', and as the name of a sequence it needs frames; "
                         "render it with --frames 1-10, or name one file",
                         where, printable(file.string(), 300)));
     };

@@ -25,15 +25,15 @@ void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
         scene.camera->refracted_ray(0.5 * camera.width, 0.5 * camera.height);
     if (!ray) {
         scene.warnings.push_back(fmt::format(
-            "{}: camera: no ray of the image centre enters the water; check camera.port",
+            "{}: camera: no ray from the image centre enters the water; check camera.port",
             desc.file.filename().string()));
         return;
     }
     for (std::size_t j = 0; j < scene.lamps.size(); ++j) {
         if (distance(scene.lamps[j].position(), ray->origin) < k_lamp_radius)
             scene.warnings.push_back(fmt::format(
-                "{}: the lamp stands where the camera's rays enter the water; its in-scatter "
-                "grows without bound there and is cut at {} m from it; move it aside",
+                "{}: the lamp is where the camera's rays enter the water; its in-scatter grows "
+                "without bound there and is cut off at {} m from it; move it aside",
                 desc.lamps[j].where, k_lamp_radius));
     }
 }

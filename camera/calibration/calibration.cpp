@@ -18,10 +18,9 @@ constexpr std::array<CalibrationFormat, 6> k_formats{
     CalibrationFormat::calibmar, CalibrationFormat::colmap, CalibrationFormat::scene};
 
 constexpr auto k_known =
-    "known are OpenCV and ROS YAML (camera_matrix, distortion_coefficients), Kalibr's "
-    "camchain.yaml "
-    "(cam0: {camera_model, intrinsics, ...}), Calibmar's calibration.yaml (model, parameters, "
-    "non_svp_model) and COLMAP's cameras.txt (1 OPENCV 1920 1080 ...)";
+    "the known formats are OpenCV and ROS YAML (camera_matrix, distortion_coefficients), Kalibr's "
+    "camchain.yaml (cam0: {camera_model, intrinsics, ...}), Calibmar's calibration.yaml (model, "
+    "parameters, non_svp_model) and COLMAP's cameras.txt (1 OPENCV 1920 1080 ...)";
 
 /// OpenCV's dialect turned into YAML without moving any character: "%YAML:1.0" lacks a space, and
 /// values have type tags.
@@ -46,8 +45,8 @@ Calibration read_yaml(const std::string& text, const std::string& origin,
     if (looks_like_calibmar(node)) return read_calibmar(root);
     if (looks_like_opencv(node)) return read_opencv_yaml(root);
     if (node.find("uwvdb") != nullptr)
-        root.fail("is a scene and no calibration; copy its camera instead");
-    root.fail(fmt::format("is no calibration that is known; {}", k_known));
+        root.fail("is a scene, not a calibration; copy its camera instead");
+    root.fail(fmt::format("is not in a known calibration format; {}", k_known));
 }
 
 }  // namespace

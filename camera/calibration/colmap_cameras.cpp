@@ -79,7 +79,7 @@ bool is_model(std::string_view text) {
 Calibration read_line(const Line& line) {
     constexpr auto k_mend = "write ID MODEL WIDTH HEIGHT PARAMS...";
     if (line.tokens.size() < 5 || line.tokens.size() > k_most_tokens)
-        line.value(0, "").fail(fmt::format("is no camera of COLMAP; {}", k_mend));
+        line.value(0, "").fail(fmt::format("is not a COLMAP camera; {}", k_mend));
     Calibration result;
     result.format = CalibrationFormat::colmap;
     result.camera = line.tokens[0].scalar;
@@ -146,7 +146,7 @@ Calibration read_colmap(std::string_view text, const std::string& origin,
         result.cameras = names;
         return result;
     }
-    throw InputError(origin + ": has no camera in it; give another file");
+    throw InputError(origin + ": contains no camera; give another file");
 }
 
 std::string write_colmap(const CameraDesc& camera) {

@@ -42,7 +42,7 @@ std::vector<std::string> words(std::string_view text) {
 }
 
 const ColmapModel& model_called(const ConfigValue& value) {
-    const std::string name = value.text("give a camera model of COLMAP, such as OPENCV");
+    const std::string name = value.text("give a COLMAP camera model, such as OPENCV");
     for (const ColmapModel& model : k_colmap_models)
         if (model.name == name) return model;
     if (std::ranges::find(k_others, name) != k_others.end()) {
@@ -85,7 +85,7 @@ void read_colmap_model(const ConfigValue& name, std::span<const ConfigValue> par
     camera.distortion = {};
     if (model.fisheye) camera.distortion.model = DistortionDesc::Model::fisheye;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const std::string mend = fmt::format("give {} of {}", names[i], model.parameters);
+        const std::string mend = fmt::format("give {} (of {})", names[i], model.parameters);
         const bool focal = names[i][0] == 'f';
         *parameter_of(names[i], camera) =
             focal ? parameters[i].positive(mend) : parameters[i].number(mend);

@@ -32,7 +32,7 @@ std::string some_names(const std::vector<std::string>& names) {
 
 std::string choose_camera(const std::vector<std::string>& names, const std::string& wanted,
                           const std::string& where) {
-    if (names.empty()) throw InputError(where + ": has no camera in it; give another file");
+    if (names.empty()) throw InputError(where + ": contains no camera; give another file");
     if (wanted.empty()) {
         if (names.size() == 1) return names.front();
         throw InputError(fmt::format(

@@ -89,8 +89,8 @@ std::string kalibr_obstacle(const CameraDesc& camera) {
     if (camera.port) return "Kalibr's files have no ports; write calibmar or colmap";
     const DistortionDesc& d = camera.distortion;
     if (d.model == DistortionDesc::Model::brown_conrady && has_radial_above(d, 2))
-        return "Kalibr's radtan has k1, k2, p1, p2 alone, and this camera has more; write opencv, "
-               "ros, calibmar or colmap";
+        return "Kalibr's radtan has only k1, k2, p1 and p2, and this camera has more; write "
+               "opencv, ros, calibmar or colmap";
     return "";
 }
 

@@ -45,7 +45,7 @@ std::vector<ConfigValue> numbers_of(const ConfigValue& value, std::string_view m
     const int count = ConfigValue(*rows, value.path() + ".rows").integer(0, k_most, mend) *
                       ConfigValue(*cols, value.path() + ".cols").integer(0, k_most, mend);
     if (static_cast<std::size_t>(count) != numbers.size())
-        value.fail(fmt::format("rows x cols are {}, but data has {} numbers; {}", count,
+        value.fail(fmt::format("rows x cols is {}, but data has {} numbers; {}", count,
                                numbers.size(), mend));
     return numbers;
 }
@@ -113,16 +113,15 @@ void read_coefficients(const ConfigValue& value, Model model, Calibration& resul
         if (d[i] != 0)
             value.fail(
                 fmt::format("has a {} ({}), which is not supported; calibrate without that model",
-                            i < 12 ? "thin-prism coefficient" : "tilt of the sensor", d[i]));
+                            i < 12 ? "thin-prism coefficient" : "sensor tilt", d[i]));
     distortion.k = {d[0], d[1], d[4], d[5], d[6], d[7]};
     distortion.p = {d[2], d[3]};
     if (count >= 8) result.model = "rational_polynomial";
     if (model == Model::unnamed && count == 4)
-        result.warnings.push_back(
-            value.location() +
-            ": no distortion_model is named; its four numbers were taken as k1 k2 p1 p2, as "
-            "cv::calibrateCamera gives them; for those of cv::fisheye add distortion_model: "
-            "equidistant");
+        result.warnings.push_back(value.location() +
+                                  ": the file names no distortion_model, so the four numbers are "
+                                  "taken as k1 k2 p1 p2, as from cv::calibrateCamera; if they come "
+                                  "from cv::fisheye, add distortion_model: equidistant");
 }
 
 /// OpenCV's order of coefficients.
@@ -177,7 +176,7 @@ Calibration read_opencv_yaml(const ConfigValue& root) {
 }
 
 std::string opencv_obstacle(const CameraDesc& camera) {
-    return camera.port ? "the files of OpenCV and ROS have no ports; write calibmar or colmap" : "";
+    return camera.port ? "OpenCV and ROS files have no ports; write calibmar or colmap" : "";
 }
 
 std::string write_opencv(const CameraDesc& camera) {

@@ -69,7 +69,8 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 void run_calibration(const CalibrationArguments& a, std::ostream& out) {
     if (a.json && a.format && a.output.empty())
         throw UsageError(
-            "--json: --to takes standard output; give -o for the file, or leave one of them out");
+            "--json: --to already writes to standard output; give -o for the file, or leave one of "
+            "them out");
     const Calibration calibration = read_subject(a);
     for (const std::string& warning : calibration.warnings)
         print_message(fmt::format("warning: {}\n", warning));
@@ -89,8 +90,7 @@ void run_calibration(const CalibrationArguments& a, std::ostream& out) {
         for (const auto& path : {a.output, plain ? plain_name(a.output) : a.output})
             if (same_file(path, a.file))
                 throw UsageError(
-                    fmt::format("{}: would replace the calibration that is read; give "
-                                "another name",
+                    fmt::format("{}: would replace the calibration being read; give another name",
                                 path.string()));
         write_file(a.output, text);
         if (plain) {

@@ -50,7 +50,7 @@ SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>
     sequence.pattern = pattern.string();
     sequence.found = frames_found(pattern);
     if (sequence.found.empty() && !frame)
-        throw IoError(fmt::format("{}: there is no file of this sequence; check the name",
+        throw IoError(fmt::format("{}: no file of this sequence exists; check the name",
                                   printable(sequence.pattern, 300)));
     sequence.frame = frame ? *frame : sequence.found.front();
     constexpr std::size_t k_most_missing = 100'000;
@@ -63,13 +63,13 @@ SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>
 }
 
 [[noreturn]] void refuse_frame(const fs::path& subject) {
-    throw UsageError(fmt::format("--frame: there is no sequence in '{}'; leave it out",
+    throw UsageError(fmt::format("--frame: '{}' has no sequence; leave the option out",
                                  printable(subject.string(), 300)));
 }
 
 std::string info_on_vdb(const InfoArguments& a) {
     if (!a.overrides.empty())
-        throw UsageError("--set: is for scenes; a VDB file has nothing to set");
+        throw UsageError("--set: works only on scenes; a VDB file has nothing to set");
     VdbReport report;
     report.file = a.subject.string();
     fs::path file = a.subject;

@@ -22,7 +22,7 @@ void warn_of_grid(const GridSurvey& grid, bool has_lamps, std::vector<std::strin
             "nothing of it is in view of the camera; compare its world bounds with camera.pose, "
             "and give it a transform");
     if (has_lamps && grid.in_reach == 0)
-        warn("no lamp reaches any of it: it will be black; move a lamp nearer, or turn it there");
+        warn("no lamp reaches any of it: it will be black; move a lamp nearer, or aim it there");
     else if (has_lamps && grid.in_view > 0 && grid.in_both == 0)
         warn("no lamp reaches what is in view of it: it will be black");
     double most = 0, least = 1e300;
@@ -47,7 +47,7 @@ void warn_of_surfaces(const SceneSurvey& survey, std::vector<std::string>& warni
     if (view.on_surface == 0) return;
     if (!survey.scene.lamps.empty() && view.lit == 0)
         warnings.emplace_back(
-            "no lamp reaches any surface in view: they will be black; move a lamp nearer, or turn "
+            "no lamp reaches any surface in view: they will be black; move a lamp nearer, or aim "
             "it there");
     if (view.hidden == 1)
         warnings.push_back(fmt::format(

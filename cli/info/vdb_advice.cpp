@@ -67,7 +67,7 @@ void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
     const char* const why = best == 4   ? "the name says density"
                             : best == 3 ? "by its name a concentration"
                             : best == 2 ? "the only likely one; its name says nothing"
-                                        : "no density in this file, and this is the nearest to it: "
+                                        : "no density in this file, and this is the closest to it: "
                                           "check that it is what you mean";
     if (advice.map.size() == 1)
         advice.lines.push_back(fmt::format("Map {}: {}.", list(advice.map), why));
@@ -176,16 +176,16 @@ void say_units(const VdbInspection& inspection, VdbAdvice& advice) {
     if (unit_voxels) {
         advice.scale = fitting;
         advice.lines.push_back(fmt::format(
-            "Units look wrong: a voxel is exactly 1 m, as if no size was set, and the whole "
-            "{}. Give its true size by transform.scale; {:g} makes it {:.3g} m.",
+            "Units look wrong: a voxel is exactly 1 m, as if no size was set, and the whole {}. "
+            "Give its true size with transform.scale; {:g} makes it {:.3g} m.",
             size_of(advice), fitting, fitting * side));
     } else if (side > k_too_large) {
         advice.scale = plausible(0.01) ? 0.01 : fitting;
-        advice.lines.push_back(fmt::format(
-            "Units look wrong: {} is more than lamps light under water; {} scale {:g} makes it "
-            "{:.3g} m.",
-            size_of(advice), plausible(0.01) ? "if these are centimetres," : "", advice.scale,
-            advice.scale * side));
+        advice.lines.push_back(
+            fmt::format("Units look wrong: {} is more than lamps can light under water; {} scale "
+                        "{:g} makes it {:.3g} m.",
+                        size_of(advice), plausible(0.01) ? "if these are centimetres," : "",
+                        advice.scale, advice.scale * side));
     } else if (side < k_too_small) {
         advice.scale = plausible(100) ? 100 : fitting;
         advice.lines.push_back(fmt::format(

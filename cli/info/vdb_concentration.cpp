@@ -102,12 +102,12 @@ void choose_concentrations(const VdbInspection& inspection, VdbAdvice& advice) {
     advice.large_ppm = k_large_per_small * advice.small_ppm;
     advice.bands_nm = water.bands_nm;
     for (const double depth : depths[1]) advice.optical_depth.push_back(depth * advice.small_ppm);
-    advice.lines.push_back(fmt::format(
-        "small: {:g} and large: {:g} ppm per unit give an optical depth of about {:.2g} at {:g} nm "
-        "through the densest part: neither invisible nor black. Your own plume's concentration may "
-        "be another.",
-        advice.small_ppm, advice.large_ppm, advice.optical_depth[k_wanted_band],
-        advice.bands_nm[k_wanted_band]));
+    advice.lines.push_back(
+        fmt::format("small: {:g} and large: {:g} ppm per unit give an optical depth of about "
+                    "{:.2g} at {:g} nm through the densest part: neither invisible nor black. Your "
+                    "own plume's concentration may differ.",
+                    advice.small_ppm, advice.large_ppm, advice.optical_depth[k_wanted_band],
+                    advice.bands_nm[k_wanted_band]));
 }
 
 }  // namespace uw

@@ -27,8 +27,8 @@ bool is_file(const fs::path& file) {
 void require_place(const char* option, const fs::path& name) {
     if (name.empty() || differs_by_frame(name)) return;
     throw UsageError(
-        fmt::format("{} {}: all frames would be written to one file; put the place of the "
-                    "number into its name, such as out.####{}",
+        fmt::format("{} {}: all frames would be written to one file; put a placeholder for the "
+                    "frame number in the name, such as out.####{}",
                     option, printable(name.string(), 300), name.extension().string()));
 }
 
@@ -52,7 +52,7 @@ class MissingFrames {
     }
     void refuse() const {
         if (!text_.empty())
-            throw IoError(text_ + "; give the --frames there are, or add the files");
+            throw IoError(text_ + "; choose --frames that exist, or add the missing files");
     }
 
   private:
@@ -201,12 +201,12 @@ bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
 
 std::optional<std::string> frame_warning(const RenderArguments& a, const SceneDesc& scene) {
     if (a.frames.size() > 1 && !has_sequence(scene))
-        return "--frames: all frames are alike, for no file of the scene has a placeholder for the "
-               "frame's number, such as file: smoke_####.vdb";
+        return "--frames: all frames are alike, because no file of the scene has a placeholder for "
+               "the frame number, such as file: smoke_####.vdb";
     if (!a.frames.empty()) return std::nullopt;
     for (const fs::path* name : {&a.output, &a.stats, &a.irradiance_vdb})
         if (!name->empty() && !is_file(*name) && differs_by_frame(*name))
-            return fmt::format("{}: taken as it is written; give --frames to render a sequence",
+            return fmt::format("{}: used as written; give --frames to render a sequence",
                                printable(name->string(), 300));
     return std::nullopt;
 }

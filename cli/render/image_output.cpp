@@ -54,8 +54,8 @@ void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
         static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
     if (empty > 0)
         warn(
-            fmt::format("{} of {} pixels are empty (alpha 0): their rays do not pass the port, "
-                        "or the lens's distortion has no ray for them",
+            fmt::format("{} of {} pixels are empty (alpha 0): their rays do not pass through the "
+                        "port, or the lens's distortion leaves no ray for them",
                         empty, pixels));
     if (black && empty < pixels)
         warn(

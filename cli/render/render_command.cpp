@@ -144,8 +144,8 @@ class FrameScenes {
         const std::vector<std::string> names = names_of(scene.desc().lamps);
         if (names != lamp_names_)
             throw InputError(fmt::format(
-                "frame {}: its lamps are {}, those of the first frame {}; export the same lights "
-                "in all frames",
+                "frame {}: its lamps are {}, but those of the first frame are {}; export the same "
+                "lights in all frames",
                 frame.number.value_or(0), fmt::join(names, ", "), fmt::join(lamp_names_, ", ")));
         return scene;
     }
@@ -168,7 +168,7 @@ void render_frames(const FrameSequence& sequence, FrameScenes& scenes, const std
         }
     } catch (const Interrupted&) {
         if (done.empty()) throw;
-        throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume goes on",
+        throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume continues",
                                       done.size(), sequence.frames.size()));
     }
 }
@@ -177,7 +177,7 @@ void render_frames(const FrameSequence& sequence, FrameScenes& scenes, const std
 
 void run_render(const RenderArguments& a) {
     if (a.resume && a.frames.empty())
-        throw UsageError("--resume: continues a sequence; give its --frames");
+        throw UsageError("--resume: only continues a sequence; give its --frames");
     RunStats stats;
     const ThreadLimit limit(a.threads);
     FrameSequence sequence = frames_of(a);

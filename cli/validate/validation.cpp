@@ -59,8 +59,8 @@ ResolvedScene small_image(ResolvedScene scene, int longest_side) {
     CameraDesc& camera = small.camera;
     if (camera.distortion.model == DistortionDesc::Model::fisheye)
         throw InputError(
-            "validate: sums over slabs parallel to the image plane are part of it, which a fisheye "
-            "lens looks past; give --set camera.distortion='{k: [0, 0, 0]}'");
+            "validate: it includes sums over slabs parallel to the image plane, but a fisheye lens "
+            "can see past them; give --set camera.distortion='{k: [0, 0, 0]}'");
     const double scale =
         std::min(1.0, static_cast<double>(longest_side) / std::max(camera.width, camera.height));
     const int width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));

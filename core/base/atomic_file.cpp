@@ -28,7 +28,7 @@ fs::path checked(const fs::path& target) {
     fs::path resolved = target;
     constexpr int k_most_links = 40;  // as many as Linux follows
     for (int links = 0; fs::is_symlink(fs::symlink_status(resolved, error)); ++links) {
-        if (links == k_most_links) fail(target, "its symbolic links lead in a circle");
+        if (links == k_most_links) fail(target, "its symbolic links form a loop");
         // Relative to the link's folder; its target need not exist yet.
         resolved = resolved.parent_path() / fs::read_symlink(resolved, error);
         if (error) fail(target, error.message());
@@ -46,15 +46,15 @@ std::string why_not_created(const fs::path& folder, int error) {
         case ENOENT:
             return fmt::format("the folder '{}' does not exist; create it first", folder.string());
         case ENOTDIR:
-            return fmt::format("'{}' is not a folder; choose another place", folder.string());
+            return fmt::format("'{}' is not a folder; choose another folder", folder.string());
         case EACCES:
         case EPERM:
         case EROFS:
-            return fmt::format("no permission to write in the folder '{}'; choose another place",
+            return fmt::format("no permission to write in the folder '{}'; choose another folder",
                                folder.string());
         case ENOSPC:
         case EDQUOT:
-            return "the disk is full; make room or choose another place";
+            return "the disk is full; free some space or choose another folder";
         default:
             return fmt::format("{} in the folder '{}'", std::generic_category().message(error),
                                folder.string());

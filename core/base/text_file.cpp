@@ -26,7 +26,7 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
         throw IoError(fmt::format("{}: cannot be read; check its permissions", subject));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > most_bytes)
-        throw InputError(fmt::format("{}: is larger than {} MiB; this is no {}", subject,
+        throw InputError(fmt::format("{}: is larger than {} MiB; this is not a valid {}", subject,
                                      most_bytes >> 20, noun));
     return text;
 }

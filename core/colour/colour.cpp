@@ -85,8 +85,8 @@ void BandColour::show_cie1931(std::span<const double> bands_nm, std::span<const 
     if (!(*std::ranges::min_element(seen) > k_blind * static_cast<double>(bands_))) {
         show_grey();
         warning_ =
-            "water.bands: these wavelengths do not define a colour; shown grey, the mean "
-            "of the bands (add bands between 400 and 650 nm for colour)";
+            "water.bands: these wavelengths do not define a colour; the image is shown in grey, as "
+            "the mean of the bands (add bands between 400 and 650 nm for colour)";
         return;
     }
     for (std::size_t c = 0; c < 3; ++c) {

@@ -42,7 +42,7 @@ LampSpectrum led(const LampSpectrumDesc& desc) {
     std::vector<std::string> names = table.columns();
     names.erase(names.begin());
     if (std::ranges::find(names, desc.name) == names.end())
-        throw InputError(fmt::format("{}: no LED '{}'; the CIE's are {}", desc.where,
+        throw InputError(fmt::format("{}: no LED '{}'; the CIE's LEDs are {}", desc.where,
                                      printable(desc.name), fmt::join(names, ", ")));
     return whole(table.curve("wavelength_nm", desc.name));
 }
@@ -54,7 +54,7 @@ std::string column_of(const CsvTable& table, const LampSpectrumDesc& desc) {
     std::erase(others, "wavelength_nm");
     if (others.size() != 1)
         throw InputError(
-            fmt::format("{}: {} has {} columns beside wavelength_nm; say which with column: NAME",
+            fmt::format("{}: {} has {} columns besides wavelength_nm; choose one with column: NAME",
                         desc.where, table.name(), others.size()));
     return others.front();
 }
@@ -64,9 +64,10 @@ LampSpectrum from_file(const LampSpectrumDesc& desc) {
     SampledCurve curve = table.curve("wavelength_nm", column_of(table, desc));
     if (curve.x.size() < 2 || *std::ranges::min_element(curve.y) < 0 ||
         *std::ranges::max_element(curve.y) <= 0)
-        throw InputError(fmt::format(
-            "{}: {} is not a spectrum: it needs two or more rows, none negative and not all 0",
-            desc.where, table.name()));
+        throw InputError(
+            fmt::format("{}: {} is not a spectrum: it needs two or more rows, with values that are "
+                        "not negative and not all 0",
+                        desc.where, table.name()));
     if (curve.last() < 100 || curve.first() > 5000)
         throw InputError(fmt::format("{}: the wavelengths of {} go from {} to {}; give them in nm",
                                      desc.where, table.name(), curve.first(), curve.last()));

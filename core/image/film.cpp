@@ -25,8 +25,8 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
         4.0 * window.width() * window.height() * static_cast<double>(channel_names_.size());
     const auto no_memory = [&] {
         return InputError(fmt::format(
-            "camera.resolution: {} x {} pixels of {} channels need {:.3g} GB of memory, and {:.3g} "
-            "GB are free; ask for fewer --layers, a --crop or a smaller --size",
+            "camera.resolution: {} x {} pixels of {} channels need {:.3g} GB of memory, but only "
+            "{:.3g} GB are free; ask for fewer --layers, a --crop or a smaller --size",
             window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9,
             static_cast<double>(available_memory_bytes()) * 1e-9));
     };

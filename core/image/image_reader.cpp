@@ -38,8 +38,9 @@ PixelImage decode(OIIO::ImageInput& input, const std::string& name, std::int64_t
                         name, spec.width, spec.height));
     }
     if (pixels * spec.nchannels / k_max_values_per_byte > encoded_size) {
-        throw InputError(fmt::format("{}: {} bytes cannot hold {} x {} pixels; the file is cut off",
-                                     name, encoded_size, spec.width, spec.height));
+        throw InputError(
+            fmt::format("{}: {} bytes cannot hold {} x {} pixels; the file is truncated", name,
+                        encoded_size, spec.width, spec.height));
     }
     PixelImage image{spec.width, spec.height, spec.nchannels, {}};
     image.pixels.resize(static_cast<std::size_t>(pixels * spec.nchannels));
@@ -90,7 +91,7 @@ PixelImage read_image(const std::filesystem::path& file) {
 PixelImage read_image(std::span<const std::byte> encoded, const std::string& name) {
     const std::string hint = format_hint(encoded);
     if (hint.empty()) {
-        throw InputError(name + ": neither PNG nor JPEG; save the image in one of these");
+        throw InputError(name + ": neither PNG nor JPEG; save the image as one of these");
     }
     OIIO::Filesystem::IOMemReader memory(encoded.data(), encoded.size());
     OIIO::ImageSpec options = reading_options();

@@ -61,9 +61,9 @@ void check_lamp_name(const std::string& name) {
     };
     if (name.empty() || name.size() > k_longest_lamp_name ||
         std::ranges::any_of(name, is_control)) {
-        throw InputError(
-            fmt::format("lamps: a name cannot be that of a layer; use 1 to {} printable characters",
-                        k_longest_lamp_name));
+        throw InputError(fmt::format(
+            "lamps: a name cannot serve as a layer name; use 1 to {} printable characters",
+            k_longest_lamp_name));
     }
 }
 
@@ -133,9 +133,9 @@ LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
         if (!selection.lamps[lamp]) continue;
         check_lamp_name(lamp_names[lamp]);
         if (!named.insert(lamp_names[lamp]).second) {
-            throw InputError(
-                fmt::format("lamps: two are named '{}'; give each its own name to have its layer",
-                            lamp_names[lamp]));
+            throw InputError(fmt::format(
+                "lamps: two are named '{}'; give each its own name, as each has its own layer",
+                lamp_names[lamp]));
         }
         first_of_lamp_[lamp] = static_cast<int>(channel_names_.size());
         add_channels(std::string(k_lamp_prefix) + lamp_names[lamp], bands);

@@ -12,7 +12,7 @@ namespace uw {
 namespace {
 
 constexpr const char* k_uniform_water_only =
-    "the planes integrator is for uniform water: remove `volumes`, or use integrator volume";
+    "the planes integrator handles only uniform water: remove `volumes`, or use integrator volume";
 
 void check_for_planes(const SceneDesc& scene) {
     if (!scene.volumes.empty())
@@ -20,7 +20,7 @@ void check_for_planes(const SceneDesc& scene) {
     if (scene.camera.distortion.model == DistortionDesc::Model::fisheye)
         throw InputError(fmt::format(
             "{}: render.integrator: the planes integrator sums over slabs parallel to the image "
-            "plane, which a fisheye lens looks past; use integrator volume",
+            "plane, but a fisheye lens can see past them; use integrator volume",
             scene.file.filename().string()));
 }
 

@@ -83,7 +83,7 @@ Slabs place_slabs(const PlanesDesc& desc, const RaySource& rays, const LitScene&
     if (slabs.far <= view.near || slabs.near >= seen)
         throw InputError(fmt::format(
             "{}: the slabs from z = {:.6g} m to {:.6g} m contain no visible water: it lies from "
-            "{:.6g} m to {:.6g} m; choose near and far around it, or omit them",
+            "{:.6g} m to {:.6g} m; choose near and far to enclose it, or omit them",
             desc.where, slabs.near, slabs.far, view.near, seen));
     if (!desc.far) {
         const double count = std::ceil((last - slabs.near) / slabs.thickness());

@@ -65,12 +65,13 @@ class IesText {
 
     double number(std::string_view what) {
         if (!has_number())
-            fail(fmt::format("ends before {}; the file is cut short: get it again", what));
+            fail(fmt::format("ends before {}; the file is truncated: download or copy it again",
+                             what));
         const std::string_view token = rest_.substr(0, rest_.find_first_of(" \t\r\n,\x1A"));
         double value = 0;
         if (parse_number(token, value) != NumberText::number || std::abs(value) > k_largest)
-            fail(fmt::format("'{}' is no number for {}; numbers are written like 12.5",
-                             printable(token), what));
+            fail(fmt::format("expected a number for {}, found '{}'; write numbers like 12.5", what,
+                             printable(token)));
         rest_.remove_prefix(token.size());
         return value;
     }
@@ -86,7 +87,7 @@ class IesText {
         const double value = number(what);
         const double most = 0.5 * static_cast<double>(rest_.size()) + 1;
         if (!(value >= 1) || value != std::floor(value) || value > most)
-            fail(fmt::format("{} must be a whole number from 1 to what the file holds, found {}",
+            fail(fmt::format("{} must be a whole number from 1 to what the file can hold, found {}",
                              what, value));
         return static_cast<std::size_t>(value);
     }
@@ -96,7 +97,7 @@ class IesText {
         while (angles.size() < count) {
             const double angle = number(what);
             if (angle < 0 || angle > most)
-                fail(fmt::format("{} lie from 0 to {} degrees, found {}", what, most, angle));
+                fail(fmt::format("{} must be from 0 to {} degrees, found {}", what, most, angle));
             if (!angles.empty() && angle <= angles.back())
                 fail(fmt::format("{} must ascend, found {} after {}", what, angle, angles.back()));
             angles.push_back(angle);
@@ -132,8 +133,8 @@ std::string read_header(IesText& text, IesFile& file) {
         if (upper.starts_with("TILT=")) return upper.substr(5);
         if (text.at_end())
             text.fail(
-                "there is no line 'TILT=': this is no IES file (LM-63); EULUMDAT (.ldt) and "
-                "other formats must be converted first");
+                "there is no line 'TILT=': this is not an IES file (LM-63); convert EULUMDAT "
+                "(.ldt) and other formats first");
         line = text.line();
     }
 }
@@ -163,8 +164,8 @@ double read_factors(IesText& text, IesFile& file, std::size_t& polar, std::size_
     const double type = text.number("the photometric type");
     if (type == 2 || type == 3)
         text.fail(
-            fmt::format("its photometry is of type {}; only type C is read: convert it to type "
-                        "C, or ask the maker for that",
+            fmt::format("its photometry is of type {}; only type C is supported: convert it to "
+                        "type C, or ask the manufacturer for a type C file",
                         type == 2 ? 'B' : 'A'));
     if (type != 1)
         text.fail(fmt::format("the photometric type must be 1 (type C), found {}", type));
@@ -180,11 +181,12 @@ double read_factors(IesText& text, IesFile& file, std::size_t& polar, std::size_
 
 void check_ranges(const IesText& text, IesFile& file) {
     const double first = file.polar.front(), last = file.polar.back();
-    if (file.polar.size() < 2) text.fail("has one vertical angle; a distribution needs more");
+    if (file.polar.size() < 2)
+        text.fail("has only one vertical angle; a distribution needs two or more");
     if ((first > 0 && first != 90) || (last != 90 && last != 180))
         file.warnings.push_back(
-            fmt::format("{}: its vertical angles go from {} to {}, where 0 or 90 to 90 or 180 are "
-                        "usual; it is dark outside them",
+            fmt::format("{}: its vertical angles go from {} to {}, but usually they go from 0 or "
+                        "90 to 90 or 180; the lamp is dark outside them",
                         text.name(), first, last));
     if (file.planes.size() == 1) return;
     const double begin = file.planes.front(), end = file.planes.back();
@@ -194,7 +196,7 @@ void check_ranges(const IesText& text, IesFile& file) {
     // Some files omit 360 degrees, which equals 0 degrees.
     if (!known && (begin != 0 || end <= 180 || 360 - end > widest_gap))
         text.fail(
-            fmt::format("its horizontal angles go from {} to {}; of type C they go from 0 to 0, "
+            fmt::format("its horizontal angles go from {} to {}; in type C they go from 0 to 0, "
                         "90, 180 or 360, or from 90 to 270",
                         begin, end));
 }
@@ -210,10 +212,10 @@ IesFile parse_ies(std::string_view content, const std::string& name) {
     std::size_t polar = 0, planes = 0;
     const double factor = read_factors(text, file, polar, planes);
     if (polar > std::min(k_most_candelas, text.bytes_left() / 2 + 1) / planes)
-        text.fail(fmt::format(
-            "{} x {} angles are more than this file can hold candelas for (at most {}); check both "
-            "counts",
-            polar, planes, k_most_candelas));
+        text.fail(
+            fmt::format("{} x {} angles need more candelas than this file can hold (at most {}); "
+                        "check both counts",
+                        polar, planes, k_most_candelas));
     file.polar = text.ascending(polar, 180, "vertical angles");
     file.planes = text.ascending(planes, 360, "horizontal angles");
     check_ranges(text, file);
@@ -223,8 +225,8 @@ IesFile parse_ies(std::string_view content, const std::string& name) {
     if (*std::ranges::max_element(file.candelas) <= 0)
         text.fail("all candelas are 0: this luminaire is dark; check the file and its multiplier");
     if (text.has_number())
-        file.warnings.push_back(
-            text.name() + ": continues after the candelas it announces; the rest is not read");
+        file.warnings.push_back(text.name() +
+                                ": continues after the candelas it announces; the rest is ignored");
     return file;
 }
 

@@ -50,10 +50,10 @@ void resolve_output(LampDesc& desc, const LampProfile& profile, std::span<const 
     const auto watts = [&](double lumens) {
         const double efficacy = luminous_efficacy(spectrum);
         if (!(efficacy > 0))
-            throw InputError(fmt::format(
-                "{}: nothing of this spectrum is visible (360 to 830 nm), so that lumens and "
-                "candelas do not determine it; give intensity or power in W",
-                where));
+            throw InputError(
+                fmt::format("{}: nothing of this spectrum is visible (360 to 830 nm), so lumens "
+                            "and candelas do not determine it; give intensity or power in W",
+                            where));
         return lumens / efficacy;
     };
     if (desc.intensity)

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <vector>
+
 #include "core/paths/water_segment.h"
-#include "core/surfaces/surfaces.h"
 
 namespace uw {
 
@@ -9,10 +10,11 @@ namespace uw {
 /// Reused storage.
 struct CameraSegment {
     WaterSegment water;
-    /// Where the paths' first scattering lies: cumulative probability at `distances`, linear
-    /// between them; empty where the water scatters no light.
+    std::vector<double> transmittance;  // up to the surface, per band
+    /// Where the paths' first scattering lies: running sums of weights of the intervals between
+    /// `distances`, in each of which it is uniform. Empty where the water scatters no light.
     std::vector<double> distances, cumulative;
-    double own_light = 0;  // rough mean over the bands of the ray's light, for roulette
+    double own_light = 0;  // roughly the ray's radiance, mean over the bands, for roulette
 };
 
 }  // namespace uw

@@ -23,9 +23,13 @@ class PathTracer {
   public:
     explicit PathTracer(const LitScene& scene, PathOptions options = {});
     ~PathTracer();
+    PathTracer(const PathTracer&) = delete;
+    PathTracer& operator=(const PathTracer&) = delete;
+    PathTracer(PathTracer&&) = delete;
+    PathTracer& operator=(PathTracer&&) = delete;
 
     /// Prepares a camera ray: `hit` is the first surface along it, null for none; `surface_light`
-    /// an estimate of that surface's radiance, per band, that guides the paths (may be empty).
+    /// an estimate of that surface's radiance, per band, that guides the paths; may be empty.
     void begin(const Ray& ray, const SurfaceHit* hit, std::span<const double> surface_light,
                CameraSegment& segment) const;
 
@@ -40,6 +44,9 @@ class PathTracer {
   private:
     class Walk;
     struct Tables;
+
+    void place_intervals(CameraSegment& segment) const;
+    void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
 
     std::unique_ptr<const Tables> tables_;
 };

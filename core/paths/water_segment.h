@@ -11,13 +11,60 @@
 
 namespace uw {
 
-/// A straight part of a light path through the water, from a point to the first surface.
+/// A straight part of a light path through the water, from a point to the first surface. Reused
+/// storage.
 struct WaterSegment {
     Ray ray;
     double length = 0;  // [m]; k_far without a surface
     bool has_hit = false;
     SurfaceHit hit;                // at its end
-    ConcentrationProfile profile;  // empty, without knots, where all of the water is uniform
+    ConcentrationProfile profile;  // without knots where all of the water is uniform
+};
+
+/// The state of the water at one point of a segment. Reused storage.
+struct WaterPoint {
+    double distance = 0;                 // along the segment [m]
+    std::vector<double> concentration;   // of the constituents
+    std::vector<double> column;          // up to here [unit m]
+    std::vector<Spectrum> scattering{};  // b_m [1/m]: WaterOptics::find_scattering
+};
+
+/// What WaterSegments need to know of a scene. Thread safe.
+class WaterOptics {
+  public:
+    explicit WaterOptics(const LitScene& scene);
+
+    const LitScene& scene() const { return scene_; }
+    const AttenuationTable& attenuation() const { return attenuation_; }
+    std::size_t bands() const { return bands_; }
+    std::size_t constituents() const { return attenuation_.constituents.size(); }
+
+    /// Finds the end of the segment that begins with `ray`, and the concentrations along it.
+    void trace(const Ray& ray, WaterSegment& segment) const;
+    /// The same for a segment whose end is known: `hit`, or none if null.
+    void set(const Ray& ray, const SurfaceHit* hit, WaterSegment& segment) const;
+
+    /// Concentrations and columns at `distance`, without the scattering.
+    void look_up(const WaterSegment& segment, double distance, WaterPoint& point) const;
+    /// The scattering coefficients at a point.
+    void find_scattering(WaterPoint& point) const;
+    /// c in every band at a point [1/m].
+    void attenuations(const WaterPoint& point, std::span<double> c) const;
+
+    /// e^-tau of every band for a path of `length` [m] with these columns.
+    void transmittances(double length, std::span<const double> columns,
+                        std::span<double> values) const;
+    /// The distance at which the optical depth in `band` is `depth`; the segment's length if it is
+    /// less everywhere.
+    double distance_at_depth(const WaterSegment& segment, std::size_t band, double depth) const;
+
+  private:
+    double depth_at_knot(const WaterSegment& segment, std::size_t band, std::size_t knot) const;
+
+    LitScene scene_;
+    AttenuationTable attenuation_;
+    std::size_t bands_;
+    Bounds bounds_;  // of the field
 };
 
 }  // namespace uw

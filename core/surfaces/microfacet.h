@@ -28,4 +28,12 @@ struct MicrofacetLobe {
 MicrofacetLobe microfacet_lobe(const Vector3& normal, const Vector3& to_camera,
                                const Vector3& to_lamp, double roughness);
 
+/// tan(theta / 2) of the angle theta between the normal and a half vector drawn with the density
+/// D (n.h) over directions; `u` is uniform in [0, 1) (Walter et al. 2007, equation 35).
+double sample_half_vector(double u, double roughness);
+/// The density over directions [1/sr] of `to_light` when `to_camera` is mirrored at such a half
+/// vector: D (n.h) / (4 v.h).
+double half_vector_density(const Vector3& normal, const Vector3& to_camera, const Vector3& to_light,
+                           double roughness);
+
 }  // namespace uw

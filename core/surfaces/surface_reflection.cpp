@@ -16,15 +16,19 @@ SurfaceReflection::SurfaceReflection(const Surfaces& surfaces, const SurfaceSamp
 }
 
 void SurfaceReflection::brdf(const Point3& position, Spectrum& values) const {
+    brdf_towards(is_glossy() ? glm::normalize(position - sample_->hit.position) : Vector3(0),
+                 values);
+}
+
+void SurfaceReflection::brdf_towards(const Vector3& to_light, Spectrum& values) const {
     const SurfaceHit& hit = sample_->hit;
-    if (!material_ || !material_->is_glossy) {
+    if (!is_glossy()) {
         for (std::size_t b = 0; b < bands_; ++b)
             values[b] = hit.reflectance[b] * std::numbers::inv_pi;
         return;
     }
-    const Vector3 to_lamp = glm::normalize(position - hit.position);
     const MicrofacetLobe lobe =
-        microfacet_lobe(hit.normal, -sample_->ray.direction, to_lamp, material_->roughness);
+        microfacet_lobe(hit.normal, -sample_->ray.direction, to_light, material_->roughness);
     for (std::size_t b = 0; b < bands_; ++b) {
         const double fresnel = lobe.fresnel(material_->f0[b]);
         values[b] =

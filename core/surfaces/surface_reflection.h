@@ -16,6 +16,13 @@ class SurfaceReflection {
     /// BRDF per band [1/sr] for light from a lamp at `position`: rho/pi for a diffuse surface; (1 -
     /// F) rho/pi + F D V for a glossy one (glTF 2.0, appendix B).
     void brdf(const Point3& position, Spectrum& values) const;
+    /// The same for light from the unit direction `to_light`.
+    void brdf_towards(const Vector3& to_light, Spectrum& values) const;
+
+    /// Whether it has a specular lobe, and its roughness, 0..1. Precondition of the second: the
+    /// first.
+    bool is_glossy() const { return material_ && material_->is_glossy; }
+    double roughness() const { return material_->roughness; }
 
     /// Whether the surface emits light of its own.
     bool emits() const { return emits_; }

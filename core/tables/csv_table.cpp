@@ -60,7 +60,7 @@ CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(na
             continue;
         }
         if (rows_.size() == k_max_rows)
-            throw InputError(fmt::format("{}:{}: more than {} rows; thin the table out", name_,
+            throw InputError(fmt::format("{}:{}: more than {} rows; thin out the table", name_,
                                          line_number, k_max_rows));
         rows_.push_back({line_number, split(line)});
         if (rows_.back().cells.size() != columns_.size())
@@ -131,8 +131,9 @@ SampledCurve CsvTable::curve(std::string_view x_column, std::string_view y_colum
         result.y.push_back(number(row, y_index));
     }
     if (result.x.empty())
-        throw InputError(fmt::format("{}: columns '{}' and '{}' have no row with both; fill them",
-                                     name_, x_column, y_column));
+        throw InputError(
+            fmt::format("{}: no row has values in both columns '{}' and '{}'; fill them in", name_,
+                        x_column, y_column));
     return result;
 }
 

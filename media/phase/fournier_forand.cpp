@@ -39,14 +39,13 @@ FournierForand::FournierForand(double n, double mu)
     : n_(n), mu_(mu), nu_(0.5 * (3 - mu)), delta_180_(4 / (3 * (n - 1) * (n - 1))) {
     if (!(n > 1 && n <= 10))
         throw InputError(
-            fmt::format("Fournier-Forand n = {} is impossible; give the particles' "
-                        "refractive index relative to water, 1 < n <= 10 (1.02 to 1.2 "
-                        "in nature)",
+            fmt::format("Fournier-Forand n = {} is out of range; give the particles' refractive "
+                        "index relative to water, 1 < n <= 10 (1.02 to 1.2 in nature)",
                         n));
     if (!(mu > 3 && mu < 5))
         throw InputError(
-            fmt::format("Fournier-Forand mu = {} is impossible; give the slope of "
-                        "the size distribution, 3 < mu < 5",
+            fmt::format("Fournier-Forand mu = {} is out of range; give the slope of the size "
+                        "distribution, 3 < mu < 5",
                         mu));
     binomials_from_2(nu_, series_a_);
     binomials_from_2(nu_ + 1, series_b_);

@@ -12,7 +12,8 @@ namespace uw {
 
 HenyeyGreenstein::HenyeyGreenstein(double g) : g_(g) {
     if (!(g > -1 && g < 1))
-        throw InputError(fmt::format("Henyey-Greenstein g = {} is impossible; give -1 < g < 1", g));
+        throw InputError(
+            fmt::format("Henyey-Greenstein g = {} is out of range; give -1 < g < 1", g));
 }
 
 void HenyeyGreenstein::evaluate(std::span<const double> psi, std::span<double> p) const {

@@ -25,13 +25,13 @@ void check_phase_table(const SampledCurve& table, const std::string& name) {
     for (std::size_t i = 0; i < table.x.size(); ++i) {
         if (!(table.x[i] >= 0 && table.x[i] <= 180))
             throw InputError(
-                fmt::format("{}: scattering angle {} is impossible; angles are in "
-                            "degrees, 0 (straight on) to 180",
+                fmt::format("{}: scattering angle {} is out of range; angles are in degrees, 0 "
+                            "(straight on) to 180",
                             name, table.x[i]));
         if (!(table.y[i] >= 0 && table.y[i] <= 1e100))
             throw InputError(
-                fmt::format("{}: phase function {} at {} degrees is impossible; give "
-                            "values of 0 or more, in 1/sr",
+                fmt::format("{}: phase function {} at {} degrees is out of range; give values of 0 "
+                            "or more, in 1/sr",
                             name, table.y[i], table.x[i]));
         // For closer angles the slope between them would be rounding noise.
         if (i > 0 && !(table.x[i] > table.x[i - 1] * (1 + 1e-9) && table.x[i] > 1e-7))

@@ -30,7 +30,7 @@ void ByteReader::fail(const std::string& what) const {
 }
 
 void ByteReader::fail_damaged() const {
-    fail("is cut short or damaged; copy or export it again");
+    fail("is truncated or damaged; copy or export it again");
 }
 
 void ByteReader::seek(std::int64_t position) {

@@ -21,7 +21,7 @@ void append_brick(const openvdb::FloatGrid& grid, std::vector<NanoGrid>& bricks)
     if (!grid.baseTree().evalActiveVoxelBoundingBox(box)) return;
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (box.min()[axis] <= -k_largest_index || box.max()[axis] >= k_largest_index)
-            throw std::range_error("it has voxels further than 2^30 from its origin");
+            throw std::range_error("it has voxels more than 2^30 from its origin");
     nanovdb::OpenToNanoVDB<float, nanovdb::Fp16> converter;
     converter.setStats(nanovdb::StatsMode::Disable);
     converter.setChecksum(nanovdb::ChecksumMode::Disable);

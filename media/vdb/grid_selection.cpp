@@ -38,7 +38,7 @@ std::string unusable_because(const GridSummary& grid) {
     if (grid.tree_type != "Tree_float_5_4_3" && grid.tree_type != "Tree_double_5_4_3")
         return fmt::format(
             "has values of type {}; concentrations are float or double{}", grid.value_type,
-            grid.tree_type.empty() ? ", of NanoVDB also fp4, fp8, fp16 and fpN" : "");
+            grid.tree_type.empty() ? ", or in NanoVDB also fp4, fp8, fp16 and fpN" : "");
     if (grid.grid_class == "level set")
         return "is a level set (distances to a surface), not a concentration; export a fog volume";
     if (grid.map_type == "NonlinearFrustumMap")
@@ -60,7 +60,8 @@ const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
         }
     if (namesakes == 0) refuse(fmt::format("no grid '{}'{}", name, did_you_mean(header, name)));
     if (namesakes > 1)
-        refuse(fmt::format("{} grids are called '{}': say '{}'", namesakes, name, found->name));
+        refuse(fmt::format("{} grids are called '{}'; write '{}' for the first", namesakes, name,
+                           found->name));
     const std::string why = unusable_because(*found);
     if (!why.empty()) refuse(fmt::format("grid '{}' {}", found->name, why));
     return *found;

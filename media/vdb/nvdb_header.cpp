@@ -66,7 +66,7 @@ GridSummary read_metadata(ByteReader& in, std::uint16_t codec) {
     constexpr std::uint64_t k_most_packing = 4096;  // no codec compresses better than that
     if (!fits(metadata.stored_bytes) ||
         metadata.grid_bytes / k_most_packing > metadata.stored_bytes)
-        in.fail("is cut short or damaged; copy or export it again");
+        in.fail("is truncated or damaged; copy or export it again");
     if (codec == 0 && metadata.grid_bytes != metadata.stored_bytes) in.fail_damaged();
     GridSummary grid;
     grid.base_name = name_of(in, metadata.name_bytes);
@@ -97,8 +97,8 @@ void read_segment(ByteReader& in, VdbHeader& header) {
     header.library_minor = (version >> 10U) & 0x7ffU;
     if (header.library_major != k_major_version)
         in.fail(
-            fmt::format("is a NanoVDB file of version {}.{}; this build reads version {}: "
-                        "convert it from the VDB file again, or use that one",
+            fmt::format("is a NanoVDB file of version {}.{}; this build reads version {}: convert "
+                        "it again from the VDB file, or use the VDB file itself",
                         header.library_major, header.library_minor, k_major_version));
     const auto count = in.get<std::uint16_t>();
     const auto codec = in.get<std::uint16_t>();
@@ -126,7 +126,7 @@ VdbHeader read_nvdb_header(ByteReader& in, const std::filesystem::path& file) {
         const auto magic = in.get<std::int64_t>();
         if (magic == k_magic_1)
             in.fail(
-                "holds a bare NanoVDB grid, without a file's header; write it with "
+                "holds a bare NanoVDB grid, without a file header; write it with "
                 "nanovdb::io::writeGrid");
         if (!is_nvdb_magic(magic)) in.fail_damaged();
         read_segment(in, header);

@@ -85,7 +85,7 @@ GridSummary read_grid(ByteReader& in, const VdbHeader& header) {
     const auto end = in.get<std::int64_t>();
     const std::int64_t next_descriptor = end;
     if (end < in.position() || end > in.size() || grid_offset < in.position() || grid_offset > end)
-        in.fail("is cut short or damaged; copy or export it again");
+        in.fail("is truncated or damaged; copy or export it again");
 
     in.seek(grid_offset);
     grid.compression = header.version >= 222 ? in.get<std::uint32_t>() : 0;
@@ -110,8 +110,8 @@ GridSummary read_grid(ByteReader& in, const VdbHeader& header) {
 void check_version(const ByteReader& in, const VdbHeader& header) {
     if (header.version > k_newest_vdb_version)
         in.fail(fmt::format(
-            "is a VDB file of version {}, written by OpenVDB {}.{}; this build reads "
-            "up to version {}: save it with OpenVDB 12 or older, 32-bit floats",
+            "is a VDB file of version {}, written by OpenVDB {}.{}; this build reads up to version "
+            "{}: save it with OpenVDB 12 or older, with 32-bit floats",
             header.version, header.library_major, header.library_minor, k_newest_vdb_version));
     if (header.version < k_oldest_vdb_version)
         in.fail(
@@ -128,7 +128,7 @@ VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocatio
     header.file = file;
     const std::int64_t magic = in.size() < 8 ? 0 : in.get<std::int64_t>();
     if (is_nvdb_magic(magic)) return read_nvdb_header(in, file);
-    if (magic != k_magic) in.fail("is not a VDB file (it does not begin like one)");
+    if (magic != k_magic) in.fail("is not a VDB file (it does not start like one)");
     header.version = in.get<std::uint32_t>();
     header.library_major = in.get<std::uint32_t>();
     header.library_minor = in.get<std::uint32_t>();

@@ -71,7 +71,7 @@ auto read_guarded(const std::string& prefix, const Read& read) {
     } catch (const InputError&) {
         throw;
     } catch (const std::ios_base::failure&) {
-        throw InputError(prefix + "the file is cut short or damaged; copy or export it again");
+        throw InputError(prefix + "the file is truncated or damaged; copy or export it again");
     } catch (const std::bad_alloc&) {
         throw InputError(prefix + "it needs more memory than is available");
     } catch (const std::exception& error) {

@@ -51,8 +51,9 @@ openvdb::FloatGrid::Ptr read_numbers(const VdbHeader& header, const GridSummary&
                                      const MotionDesc& motion) {
     if (grid.value_type == "float" || grid.value_type == "double")
         return to_float(read_whole(header, grid, motion));
-    throw InputError(fmt::format("{}: grid '{}' has values of type {}; each of three is of floats",
-                                 motion.where, grid.name, grid.value_type));
+    throw InputError(fmt::format(
+        "{}: grid '{}' has values of type {}; each of the three must be a grid of floats",
+        motion.where, grid.name, grid.value_type));
 }
 
 /// Invalid velocities count as zero.

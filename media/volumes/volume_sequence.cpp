@@ -47,11 +47,11 @@ void VolumeSequenceCheck::take(const VolumeDesc& frame) {
     }
     for (std::size_t g = 0; g < transforms.size(); ++g) {
         if (same_place(transforms_.at(g), transforms[g])) continue;
-        throw InputError(fmt::format(
-            "{}: grid '{}' of '{}' has {}, that of '{}' {}; export all frames with one transform, "
-            "or render them in separate runs",
-            frame.grids[g].where, frame.grids[g].grid, frame.file.string(), describe(transforms[g]),
-            first_.file.string(), describe(transforms_[g])));
+        throw InputError(
+            fmt::format("{}: grid '{}' of '{}' has {}, but that of '{}' has {}; export all frames "
+                        "with one transform, or render them in separate runs",
+                        frame.grids[g].where, frame.grids[g].grid, frame.file.string(),
+                        describe(transforms[g]), first_.file.string(), describe(transforms_[g])));
     }
 }
 

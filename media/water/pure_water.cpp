@@ -39,8 +39,8 @@ double pure_water_absorption(double wavelength_nm, double temperature, double sa
     const AbsorptionTable& table = absorption_table();
     if (!table.a.covers(wavelength_nm))
         throw InputError(
-            fmt::format("the absorption of pure water is known from {} to {} nm, not "
-                        "at {} nm; choose a band inside or give the absorption",
+            fmt::format("the absorption of pure water is known from {} to {} nm, not at {} nm; "
+                        "choose a band within that range, or give the absorption",
                         table.a.first(), table.a.last(), wavelength_nm));
     return std::max(0.0, table.a.value(wavelength_nm) +
                              (temperature - 20) * table.per_temperature.value(wavelength_nm) +

@@ -30,8 +30,8 @@ Spectrum uniform_absorption(const WaterDesc& water, const JerlovPreset* preset,
         std::copy(water.absorption->begin(), water.absorption->end(), a.begin());
         if (water.cdom > 0 || water.chlorophyll > 0)
             warnings.push_back(
-                fmt::format("{}: absorption is given, so cdom and chlorophyll are "
-                            "not used; leave either out",
+                fmt::format("{}: absorption is given, so cdom and chlorophyll are not used; remove "
+                            "one or the other",
                             water.where));
         return a;
     }
@@ -39,15 +39,15 @@ Spectrum uniform_absorption(const WaterDesc& water, const JerlovPreset* preset,
     const WavelengthRange known = pure_water_absorption_range();
     if (const std::string outside = bands_outside(water, known); !outside.empty())
         throw InputError(
-            fmt::format("{}: bands {} nm: the absorption of pure water is known from "
-                        "{} to {} nm; choose bands inside or give the absorption",
+            fmt::format("{}: bands {} nm: the absorption of pure water is known from {} to {} nm; "
+                        "choose bands within that range, or give the absorption",
                         water.where, outside, known.first_nm, known.last_nm));
     if (preset) {
         const std::string outside = bands_outside(water, preset->measured);
         if (!outside.empty())
             warnings.push_back(
-                fmt::format("{}: bands {} nm: {} was measured from {} to {} nm; "
-                            "beyond, what it absorbs above pure water is held",
+                fmt::format("{}: bands {} nm: {} was measured from {} to {} nm; beyond that, its "
+                            "absorption in excess of pure water's is held constant",
                             water.where, outside, preset->name, preset->measured.first_nm,
                             preset->measured.last_nm));
     }
@@ -56,8 +56,8 @@ Spectrum uniform_absorption(const WaterDesc& water, const JerlovPreset* preset,
         const std::string outside = bands_outside(water, range);
         if (!outside.empty())
             warnings.push_back(
-                fmt::format("{}: bands {} nm: chlorophyll's absorption is known "
-                            "from {} to {} nm; beyond, its end value is held",
+                fmt::format("{}: bands {} nm: chlorophyll's absorption is known from {} to {} nm; "
+                            "beyond that, its end value is held constant",
                             water.where, outside, range.first_nm, range.last_nm));
     }
     for (std::size_t i = 0; i < water.bands_nm.size(); ++i) {

@@ -79,10 +79,9 @@ void check_bands(const WaterDesc& water) {
                                      water.bands_nm.size(), k_max_bands));
     for (const double band : water.bands_nm)
         if (!(band >= 100 && band <= 10000))
-            throw InputError(
-                fmt::format("{}: band {} is no wavelength of light in water; give "
-                            "nanometres, 100 to 10000",
-                            water.where, band));
+            throw InputError(fmt::format(
+                "{}: band {} is not a wavelength of light in water; give nanometres, 100 to 10000",
+                water.where, band));
 }
 
 void check_per_band(const PerBand& values, std::size_t bands, const std::string& what,
@@ -167,10 +166,9 @@ void Builder::add_uniform() {
         Spectrum& b = scattering(uniform, phase_index(water_.scattering->phase));
         std::copy(given.begin(), given.end(), b.begin());
         if (water_.small_ppm.value_or(0) > 0 || water_.large_ppm.value_or(0) > 0)
-            model.warnings.push_back(
-                fmt::format("{}: scattering is given, so particles are not "
-                            "used; leave either out",
-                            water_.where));
+            model.warnings.push_back(fmt::format(
+                "{}: scattering is given, so particles are not used; remove one or the other",
+                water_.where));
         return;
     }
     const PhaseDesc molecules{MolecularPhaseDesc{}, water_.where};

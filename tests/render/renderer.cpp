@@ -115,7 +115,7 @@ TEST_F(Images, ReportWhatTheyWereMadeOf) {
     renderer.set_scene(SceneDesc(desc_));
     renderer.prepare({.window = PixelWindow{0, 0, 5, 4}});
     ASSERT_EQ(renderer.report().warnings.size(), 1U);
-    EXPECT_NE(renderer.report().warnings[0].find("the lamp stands where"), std::string::npos);
+    EXPECT_NE(renderer.report().warnings[0].find("the lamp is where"), std::string::npos);
     renderer.render({.window = PixelWindow{0, 0, 5, 4}});
     const RenderReport& report = renderer.report();
     EXPECT_EQ(report.warnings.size(), 1U);

@@ -38,8 +38,7 @@ void check_file(const std::filesystem::path& file) {
                        extension == ".ply" || extension == ".stl";
     if (!known) {
         throw InputError(
-            fmt::format("{}: unknown kind of mesh '{}'; supported are .gltf, .glb, "
-                        ".obj, .ply and .stl",
+            fmt::format("{}: unknown mesh format '{}'; use .gltf, .glb, .obj, .ply or .stl",
                         file.string(), extension));
     }
     std::error_code status;

@@ -19,7 +19,7 @@ std::string next_line(std::istream& in, const std::string& name) {
     for (int c = in.get(); c != '\n'; c = in.get()) {
         if (c == std::istream::traits_type::eof() || line.size() > k_max_line) {
             throw InputError(name +
-                             ": the PLY header is cut off or garbled; export the mesh again");
+                             ": the PLY header is truncated or garbled; export the mesh again");
         }
         line.push_back(static_cast<char>(c));
     }

@@ -38,8 +38,8 @@ void check_counts(const PlyHeader& header, std::uint64_t file_size, const std::s
         // The last number of an ascii file need not be followed by white space.
         if (size > 0 && element.count > (file_size + 1) / size) {
             throw InputError(
-                fmt::format("{}: the PLY header promises {} of '{}', more than the "
-                            "file can hold; it is cut off",
+                fmt::format("{}: the PLY header promises {} of '{}', more than the file can hold; "
+                            "the file is truncated",
                             name, element.count, element.name));
         }
     }
@@ -47,7 +47,7 @@ void check_counts(const PlyHeader& header, std::uint64_t file_size, const std::s
 
 std::uint64_t list_length(double count, const std::string& name) {
     if (!(count >= 0) || count > 4294967295.0 || count != std::floor(count)) {
-        throw InputError(name + ": a list in the PLY file has an impossible length");
+        throw InputError(name + ": a list in the PLY file has an invalid length");
     }
     return static_cast<std::uint64_t>(count);
 }

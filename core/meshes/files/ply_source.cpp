@@ -70,7 +70,7 @@ double PlySource::next(PlyType type) {
     if (encoding_ == PlyEncoding::ascii) return next_text();
     const std::size_t size = size_of(type);
     while (end_ - at_ < size) {
-        if (!fill()) throw InputError(name_ + ": the PLY file is cut off; export the mesh again");
+        if (!fill()) throw InputError(name_ + ": the PLY file is truncated; export the mesh again");
     }
     const bool file_is_little = encoding_ == PlyEncoding::little_endian;
     const bool swap = file_is_little != (std::endian::native == std::endian::little);
@@ -83,7 +83,7 @@ double PlySource::next_text() {
     for (;;) {
         while (at_ < end_ && is_space(buffer_[at_])) ++at_;
         if (at_ < end_) break;
-        if (!fill()) throw InputError(name_ + ": the PLY file is cut off; export the mesh again");
+        if (!fill()) throw InputError(name_ + ": the PLY file is truncated; export the mesh again");
     }
     if (end_ - at_ < k_max_number_length) fill();
     const char* begin = buffer_.data() + at_;

@@ -76,7 +76,7 @@ std::vector<std::byte> read_range(const std::filesystem::path& file, std::uint64
     in.seekg(static_cast<std::streamoff>(offset));
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
     if (!in || static_cast<std::uint64_t>(in.gcount()) != size) {
-        throw IoError(fmt::format("{}: cannot read {} bytes at {}; the file is cut off",
+        throw IoError(fmt::format("{}: cannot read {} bytes at {}; the file is truncated",
                                   file.string(), size, offset));
     }
     return bytes;
@@ -157,7 +157,7 @@ const std::vector<std::byte>& GltfBytes::buffer(std::size_t index) {
         bytes = read_binary_chunk(document_, size);
     } else if (uri.starts_with("data:")) {
         bytes = decode_data_uri(document_, uri);
-        if (bytes.size() < size) document_.fail("a glTF buffer is cut off");
+        if (bytes.size() < size) document_.fail("a glTF buffer is truncated");
     } else {
         bytes = read_range(gltf_uri_path(document_.file(), uri), 0, size);
     }
@@ -167,12 +167,13 @@ const std::vector<std::byte>& GltfBytes::buffer(std::size_t index) {
 std::span<const std::byte> GltfBytes::view(const Json& parent, const char* key) {
     const Json& view = document_.element("bufferViews", parent, key);
     const auto index = document_.whole_number(view, "buffer", UINT64_MAX);
-    if (index >= buffers_.size()) document_.fail("glTF 'buffer' names what is not there");
+    if (index >= buffers_.size())
+        document_.fail("glTF 'buffer' refers to an item that does not exist");
     const std::span<const std::byte> all = buffer(index);
     const std::uint64_t offset = document_.whole_number(view, "byteOffset", 0);
     const std::uint64_t length = document_.whole_number(view, "byteLength", 0);
     if (offset > all.size() || length > all.size() - offset) {
-        document_.fail("a glTF bufferView reaches past its buffer; the file is cut off");
+        document_.fail("a glTF bufferView reaches past its buffer; the file is truncated");
     }
     return all.subspan(offset, length);
 }
@@ -211,7 +212,7 @@ std::vector<float> GltfBytes::floats(const Json& accessor, std::size_t width) {
     for (std::size_t i = 0; i < patches; ++i) {
         const auto at = static_cast<std::uint64_t>(
             stored(offset(places) + i * gltf_component_size(place_type), place_type));
-        if (at >= count) document_.fail("a sparse glTF accessor patches what is not there");
+        if (at >= count) document_.fail("a sparse glTF accessor changes values that do not exist");
         put(at, offset(sparse.at("values")) + i * element);
     }
     return values;
@@ -220,7 +221,8 @@ std::vector<float> GltfBytes::floats(const Json& accessor, std::size_t width) {
 std::vector<std::uint32_t> GltfBytes::indices(const Json& accessor) {
     const std::uint64_t count = document_.whole_number(accessor, "count", 0);
     const std::uint64_t type = document_.whole_number(accessor, "componentType", 0);
-    if (accessor.contains("sparse")) document_.fail("glTF indices are sparse; export them whole");
+    if (accessor.contains("sparse"))
+        document_.fail("glTF indices are sparse; export them without sparse accessors");
     std::vector<std::uint32_t> values(count, 0);
     if (!accessor.contains("bufferView") || count == 0) return values;
     const std::span<const std::byte> bytes =

@@ -47,7 +47,8 @@ const Json& GltfDocument::element(const char* key, const Json& parent,
                                   const char* index_key) const {
     const Json& all = list(key);
     const std::uint64_t index = whole_number(parent, index_key, UINT64_MAX);
-    if (index >= all.size()) fail(fmt::format("glTF '{}' names what is not there", index_key));
+    if (index >= all.size())
+        fail(fmt::format("glTF '{}' refers to an item that does not exist", index_key));
     return all[index];
 }
 

@@ -42,7 +42,7 @@ Affine pose_of(const Affine& world_from_camera, const SourceLocation& where) {
     const Vector3 up = direction(world_from_camera, {0, 1, 0}, where);
     const Vector3 side = glm::cross(forward, up);
     if (!(glm::length(side) > 1e-9)) {
-        throw InputError(fmt::format("{}: its node or transform is sheared flat", where));
+        throw InputError(fmt::format("{}: its node or transform shears it flat", where));
     }
     const Vector3 right = glm::normalize(side);
     return {Matrix3(right, glm::cross(forward, right), forward), world_from_camera.offset()};
@@ -88,11 +88,11 @@ void import_camera(const GltfItems& items, const GeometryDesc& object, SceneDesc
     camera.intrinsics = {focal, focal, camera.width / 2.0, camera.height / 2.0};
     const double aspect = static_cast<double>(camera.width) / camera.height;
     if (source.aspect_ratio > 0 && std::abs(aspect / source.aspect_ratio - 1) > 0.01) {
-        scene.warnings.push_back(fmt::format(
-            "{}: the camera '{}' is for pictures of {:.3f} x their height, this is one of {:.3f}: "
-            "it shows {} at its sides",
-            where, printable(source.name), source.aspect_ratio, aspect,
-            aspect > source.aspect_ratio ? "more" : "less"));
+        scene.warnings.push_back(
+            fmt::format("{}: the camera '{}' was made for an aspect ratio of {:.3f}, but the image "
+                        "has one of {:.3f}: it shows {} at the sides",
+                        where, printable(source.name), source.aspect_ratio, aspect,
+                        aspect > source.aspect_ratio ? "more" : "less"));
     }
 }
 
@@ -188,7 +188,7 @@ std::vector<const GltfLight*> chosen_lights(const GltfItems& items, const Geomet
         }
     };
     warn(directional, "directional lights (suns) are left out");
-    warn(ranged, "the range of lights is not used, they shine on by 1/r^2");
+    warn(ranged, "the range of lights is ignored; they go on falling off as 1/r^2");
     return chosen;
 }
 
@@ -202,7 +202,7 @@ void import_lamps(const GltfItems& items, const GeometryDesc& object, SceneDesc&
     }
     if (lights.empty()) {
         scene.warnings.push_back(
-            fmt::format("{}: '{}' has no light to take; export it with its lights (Blender leaves "
+            fmt::format("{}: '{}' has no usable light; export it with its lights (Blender leaves "
                         "area lights out)",
                         object.import.lamps_where, printable(object.file.string(), 300)));
     }

@@ -39,7 +39,7 @@ class Inspection {
     const Json& accessor(const Json& index) const {
         const Json& accessors = document_.list("accessors");
         if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size()) {
-            document_.fail("glTF names an accessor that is not there");
+            document_.fail("glTF refers to an accessor that does not exist");
         }
         return accessors[index.get<std::size_t>()];
     }
@@ -89,7 +89,7 @@ class Inspection {
         for (const Json& buffer : document_.list("buffers")) {
             const std::uint64_t size = source_size(buffer, own_size);
             if (document_.whole_number(buffer, "byteLength", 0) > size) {
-                document_.fail("a glTF buffer is longer than its file; the file is cut off");
+                document_.fail("a glTF buffer is longer than its file; the file is truncated");
             }
             total += size;
         }
@@ -102,7 +102,7 @@ class Inspection {
         const std::uint64_t size = document_.whole_number(buffer, "byteLength", 0);
         const std::uint64_t length = document_.whole_number(view, "byteLength", 0);
         if (length > size || document_.whole_number(view, "byteOffset", 0) > size - length) {
-            document_.fail("a glTF bufferView reaches past its buffer; the file is cut off");
+            document_.fail("a glTF bufferView reaches past its buffer; the file is truncated");
         }
     }
 
@@ -117,16 +117,17 @@ class Inspection {
         const bool sane = count == 0 || (offset <= length && stride <= 252 &&
                                          stride >= element_size && element_size <= length - offset);
         if (!sane || (count > 0 && (count - 1) * stride > length - offset - element_size)) {
-            document_.fail("a glTF accessor reaches past its bufferView; the file is cut off");
+            document_.fail("a glTF accessor reaches past its bufferView; the file is truncated");
         }
     }
 
     void check_accessor(const Json& entry, std::uint64_t total) const {
         const std::uint64_t count = document_.whole_number(entry, "count", 0);
-        if (count > total) document_.fail("a glTF accessor counts more than its file can hold");
+        if (count > total)
+            document_.fail("a glTF accessor has a larger count than its file can hold");
         const std::uint64_t size =
             gltf_component_count(entry.value("type", "")) * component_size(entry);
-        if (size == 0) document_.fail("a glTF accessor has an impossible type");
+        if (size == 0) document_.fail("a glTF accessor has an invalid type");
         if (entry.contains("bufferView")) check_range(entry, count, size);
         if (!entry.contains("sparse")) return;
         const Json& sparse = entry.at("sparse");
@@ -156,7 +157,7 @@ class Inspection {
             (is_color && type != "VEC3" && type != "VEC4") ||
             (semantic.starts_with("JOINTS_") && type != "VEC4") ||
             (semantic.starts_with("WEIGHTS_") && type != "VEC4")) {
-            document_.fail(fmt::format("glTF {} has the impossible type '{}'", semantic, type));
+            document_.fail(fmt::format("glTF {} has the invalid type '{}'", semantic, type));
         }
     }
 
@@ -175,7 +176,7 @@ class Inspection {
                 check_attribute(semantic, entry);
                 if (document_.whole_number(entry, "count", 0) != count) {
                     document_.fail(
-                        fmt::format("glTF {} has another count than POSITION", semantic));
+                        fmt::format("glTF {} does not have the same count as POSITION", semantic));
                 }
             }
         };

@@ -33,7 +33,7 @@ GltfCamera read_camera(const GltfDocument& document, const Json& json) {
     camera.yfov = lens.value("yfov", 0.0);
     camera.aspect_ratio = lens.value("aspectRatio", 0.0);
     if (!(camera.yfov > 0 && camera.yfov < std::numbers::pi) || camera.aspect_ratio < 0) {
-        document.fail("a glTF camera has an impossible yfov or aspectRatio");
+        document.fail("a glTF camera has an invalid yfov or aspectRatio");
     }
     return camera;
 }
@@ -52,7 +52,7 @@ void read_cone(const GltfDocument& document, const Json& json, GltfLight& light)
     }
     if (!(light.outer_cone > 0 && light.outer_cone <= k_widest && light.inner_cone >= 0 &&
           light.inner_cone <= light.outer_cone)) {
-        document.fail("a glTF spot light has impossible cone angles");
+        document.fail("a glTF spot light has invalid cone angles");
     }
 }
 
@@ -91,7 +91,7 @@ GltfItems read_items(const GltfDocument& document) {
         const Json& use = document.extension(*node.json, k_lights);
         if (use.empty()) continue;
         const std::uint64_t index = document.whole_number(use, "light", UINT64_MAX);
-        if (index >= lights.size()) document.fail("glTF names a light that is not there");
+        if (index >= lights.size()) document.fail("glTF refers to a light that does not exist");
         GltfLight light = read_light(document, lights[index]);
         light.name = name_of(*node.json, lights[index], "light", items.lights.size() + 1);
         light.file_from_light = node.file_from_node;

@@ -49,7 +49,7 @@ std::string json_text(const std::filesystem::path& file) {
     }
     const std::uint64_t length = little_endian(header, 12);
     if (header.substr(16, 4) != "JSON" || length > size - k_glb_header) {
-        throw InputError(name + ": the GLB file is cut off; export the mesh again");
+        throw InputError(name + ": the GLB file is truncated; export the mesh again");
     }
     return read_bytes(in, length);
 }
@@ -65,7 +65,7 @@ void check_nesting(const std::string& json, const std::string& name) {
         } else if (c == '"') {
             in_string = true;
         } else if (c == '{' || c == '[') {
-            if (++depth > k_max_nesting) throw InputError(name + ": the glTF is nested too deep");
+            if (++depth > k_max_nesting) throw InputError(name + ": the glTF is nested too deeply");
         } else if (c == '}' || c == ']') {
             --depth;
         }

@@ -52,7 +52,7 @@ Affine parent_from_node(const GltfDocument& document, const Json& node) {
 
 std::size_t index_of(const GltfDocument& document, const Json& index, std::size_t count) {
     if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= count) {
-        document.fail("glTF names a node that is not there");
+        document.fail("glTF refers to a node that does not exist");
     }
     return index.get<std::size_t>();
 }
@@ -71,7 +71,7 @@ std::vector<std::size_t> parents_of(const GltfDocument& document) {
         std::size_t depth = 0;
         for (std::size_t at = node; parent[at] != k_no_parent; at = parent[at]) {
             if (++depth > k_max_depth) {
-                document.fail("the glTF nodes are in a circle or nested more than 256 deep");
+                document.fail("the glTF nodes form a cycle or are nested more than 256 deep");
             }
         }
     }
@@ -89,12 +89,12 @@ std::vector<std::size_t> roots_of(const GltfDocument& document,
         return roots;
     }
     const std::uint64_t shown = document.whole_number(document.root(), "scene", 0);
-    if (shown >= scenes.size()) document.fail("glTF 'scene' names what is not there");
+    if (shown >= scenes.size()) document.fail("glTF 'scene' refers to an item that does not exist");
     std::vector<bool> taken(parent.size(), false);
     for (const Json& root : document.list(scenes[shown], "nodes")) {
         const std::size_t index = index_of(document, root, parent.size());
         if (parent[index] != k_no_parent || taken[index]) {
-            document.fail("a glTF scene names a node that is not a root, or one twice");
+            document.fail("a glTF scene lists a node that is not a root, or lists one twice");
         }
         taken[index] = true;
         roots.push_back(index);

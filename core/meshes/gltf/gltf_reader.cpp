@@ -69,7 +69,7 @@ class MeshJoiner {
             if (primitive.contains("material")) {
                 placement.material = document_.whole_number(primitive, "material", 0);
                 if (placement.material >= stand_in) {
-                    document_.fail("glTF names a material that is not there");
+                    document_.fail("glTF refers to a material that does not exist");
                 }
             }
             placements_.push_back(std::move(placement));
@@ -177,8 +177,8 @@ class MeshJoiner {
         const Json* uvs = attribute(placement, k_uv_names[set]);
         if (is_needed && uvs == nullptr) {
             document_.fail(
-                fmt::format("mesh '{}' has a texture but not its coordinates {}; unwrap "
-                            "it or remove the texture",
+                fmt::format("mesh '{}' has a texture but not the coordinates {} for it; unwrap it "
+                            "or remove the texture",
                             placement.mesh_name, k_uv_names[set]));
         }
         std::vector<float>& to = mesh_.uvs[set];

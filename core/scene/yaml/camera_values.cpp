@@ -39,8 +39,8 @@ void check_dome(const ConfigValue& at, const DomePortDesc& dome) {
     const double offset = glm::length(from_origin(dome.center));
     if (offset < dome.radius) return;
     at.fail(
-        fmt::format("the camera stands outside of its dome: {} m from its centre, which has an "
-                    "inner radius of {} m; lengths are in metres, and the centre in camera axes",
+        fmt::format("the camera is outside its dome: it is {} m from the centre, but the inner "
+                    "radius is {} m; give lengths in metres and the centre in camera axes",
                     offset, dome.radius));
 }
 

@@ -120,8 +120,8 @@ int ConfigValue::integer(int low, int high, std::string_view mend) const {
 }
 
 std::string ConfigValue::text(std::string_view mend) const {
-    if (node_->kind != ConfigNode::Kind::scalar) fail_expected("a text", mend);
-    if (node_->scalar.empty()) fail(fmt::format("is an empty text; {}", mend));
+    if (node_->kind != ConfigNode::Kind::scalar) fail_expected("text", mend);
+    if (node_->scalar.empty()) fail(fmt::format("is empty; {}", mend));
     return node_->scalar;
 }
 

@@ -38,8 +38,8 @@ void read_box(ConfigMap& map, GeometryDesc& object) {
     for (int axis = 0; axis < 3; ++axis) {
         if (object.min[axis] < object.max[axis]) continue;
         high.fail(fmt::format(
-            "max must be greater than min on every axis, found {} against {} on "
-            "{}; swap or mend them",
+            "max must be greater than min on every axis, found {} against {} on {}; swap or "
+            "correct them",
             object.max[axis], object.min[axis], k_axes[static_cast<std::size_t>(axis)]));
     }
 }
@@ -53,7 +53,7 @@ void read_shape(ConfigMap& map, const ConfigValue& type, GeometryDesc& object) {
         object.point =
             at_origin_plus(map.require("point", "give a point of the plane").vector(k_lengths));
         object.normal = map.require("normal", "give the plane's normal")
-                            .direction("give the plane's normal, of any length but 0");
+                            .direction("give the plane's normal, of any length except 0");
     } else if (object.type == Type::box) {
         read_box(map, object);
     } else {
@@ -71,7 +71,7 @@ std::vector<std::string> read_lamp_names(const ConfigValue& value, bool& all) {
     std::vector<std::string> names;
     if (all) return names;
     for (const ConfigValue& name : value.list(k_mend)) names.push_back(name.text(k_mend));
-    if (names.empty()) value.fail("names no light; write all, a list of names, or leave it out");
+    if (names.empty()) value.fail("lists no light; write all, a list of names, or leave it out");
     return names;
 }
 
@@ -82,8 +82,8 @@ void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
     const auto check_file = [&](const ConfigValue& value) {
         if (extension == ".gltf" || extension == ".glb") return;
         value.fail(
-            fmt::format("only glTF files (.gltf, .glb) bring it, not '{}'; remove it, or "
-                        "export the scene as glTF",
+            fmt::format("only glTF files (.gltf, .glb) provide it, not '{}'; remove it, or export "
+                        "the scene as glTF",
                         extension));
     };
     if (const auto camera = map.find("camera")) {
@@ -94,7 +94,7 @@ void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
         const bool is_true = node.kind == ConfigNode::Kind::scalar && !node.quoted &&
                              (node.scalar == "true" || node.scalar == "True");
         if (!is_true) {
-            import.camera_name = camera->text("give the name of a camera of the file, or true");
+            import.camera_name = camera->text("give the name of a camera in the file, or true");
         }
     }
     const auto lamps = map.find("lamps");
@@ -105,7 +105,7 @@ void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
     }
     if (const auto units = map.find("light_units")) {
         check_file(*units);
-        if (!lamps) units->fail("is of use with lamps only; add lamps: all, or remove it");
+        if (!lamps) units->fail("has an effect only with lamps; add lamps: all, or remove it");
         constexpr std::array<std::pair<std::string_view, LightUnits>, 3> k_units{
             {{"standard", LightUnits::standard},
              {"compat", LightUnits::compat},

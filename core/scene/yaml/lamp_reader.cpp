@@ -91,8 +91,8 @@ void read_lumens(const ConfigValue& value, LampDesc& lamp) {
     lamp.lumens = value.positive("give the luminous flux in lm");
     if (!lamp.spectrum) {
         value.fail(
-            "lumens become watts by the lamp's spectrum only; give it, such as spectrum: {type: "
-            "led, name: LED-B4}");
+            "only the lamp's spectrum can convert lumens to watts; give it, such as spectrum: "
+            "{type: led, name: LED-B4}");
     }
 }
 
@@ -102,8 +102,8 @@ void read_watts(const ConfigValue& value, bool is_intensity, const SceneContext&
     PerBand values;
     if (lamp.spectrum) {
         values = {value.non_negative(is_intensity
-                                         ? "with a spectrum give the W/sr of all of it, one number"
-                                         : "with a spectrum give the W of all of it, one number")};
+                                         ? "with a spectrum, give its total W/sr as one number"
+                                         : "with a spectrum, give its total W as one number")};
     } else {
         values = value.non_negative_per_band(
             context.band_count,
@@ -132,8 +132,8 @@ void read_output(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
         read_watts(intensity ? *intensity : *power, intensity.has_value(), context, lamp);
     } else if (!is_absolute(lamp.profile)) {
         map.value().fail(
-            "says not how bright it is; give intensity in W/sr or power in W, or its spectrum and "
-            "lumens");
+            "does not say how bright it is; give intensity in W/sr or power in W, or its spectrum "
+            "and lumens");
     }
 }
 

@@ -13,7 +13,8 @@ namespace {
 double read_length(const ConfigValue& value, const SceneContext& context) {
     const double length = value.non_negative("give a length in metres");
     if (length > 1) {
-        context.warn(value, fmt::format("{} m is a lot for a port; lengths are in metres", length));
+        context.warn(value,
+                     fmt::format("{} m is very large for a port; lengths are in metres", length));
     }
     return length;
 }

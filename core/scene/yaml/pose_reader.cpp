@@ -70,7 +70,7 @@ Affine read_matrix(const ConfigValue& value) {
             // written so that a NaN from overflowing products fails too
             if (!(std::abs(product[i][j] - (i == j ? 1.0 : 0.0)) <= k_rigid_tolerance)) {
                 value.fail(
-                    "is not rigid: its 3x3 part is no rotation to 1e-6; remove scale and "
+                    "is not rigid: its 3x3 part is not a rotation to within 1e-6; remove scale and "
                     "shear, and give more digits");
             }
         }
@@ -104,8 +104,7 @@ Affine read_transform(const ConfigValue& value) {
                                                                  : Vector3(entry->number(k_mend));
         // smaller factors would make the map's determinant vanish
         if (glm::any(glm::lessThan(glm::abs(scale), Vector3(k_smallest_scale)))) {
-            entry->fail(
-                "must not be 0, nor nearer to it than 1e-9; give one factor, or one per axis");
+            entry->fail("must not be 0 or closer to 0 than 1e-9; give one factor, or one per axis");
         }
     }
     Vector3 degrees(0.0);

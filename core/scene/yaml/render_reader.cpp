@@ -58,7 +58,7 @@ ColourDesc read_colour(ConfigMap& map, const SceneContext& context) {
         colour.response == Response::bands ||
         (colour.response == Response::automatic && context.band_count == 3);
     if (bands_themselves)
-        white->fail("R, G and B are the three bands themselves; write response: cie beside it");
+        white->fail("R, G and B are the three bands themselves; add response: cie");
     if (white->node().kind == ConfigNode::Kind::scalar) {
         constexpr std::array<std::pair<std::string_view, bool>, 1> k_words{{{"none", true}}};
         colour.raw = white->choice(k_words);
@@ -94,7 +94,7 @@ RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
         constexpr double k_longest = 60;
         render.shutter = entry->non_negative("give the exposure time in seconds, such as 0.02");
         if (render.shutter > k_longest)
-            entry->fail("more than a minute is no exposure; give seconds, such as 0.02");
+            entry->fail("must not be more than a minute; give seconds, such as 0.02");
     }
     render.colour = read_colour(map, context);
     return render;

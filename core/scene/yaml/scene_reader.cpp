@@ -33,7 +33,7 @@ void check_version(const ConfigValue& scene) {
     }
     ConfigValue(*version, "uwvdb")
         .fail(fmt::format("this program reads scene version 1, found {}; write 'uwvdb: 1', or use "
-                          "the program that goes with that version",
+                          "the program for that version",
                           version->description()));
 }
 
@@ -46,20 +46,20 @@ void check_gltf_imports(const SceneDesc& desc) {
         if (!object.import.camera) continue;
         const SourceLocation& where = object.import.camera_where;
         if (!desc.cameras.empty()) {
-            throw InputError(fmt::format(
-                "{}: the scene has a rig of its own cameras; remove this, or give camera instead "
-                "of cameras",
-                where));
+            throw InputError(
+                fmt::format("{}: the scene has its own rig of cameras; remove this, or give camera "
+                            "instead of cameras",
+                            where));
         }
         if (source != nullptr) {
             throw InputError(
-                fmt::format("{}: the camera is taken from {} already; remove one", where, *source));
+                fmt::format("{}: the camera is already taken from {}; remove one", where, *source));
         }
         if (camera.has_intrinsics && camera.has_pose) {
-            throw InputError(fmt::format(
-                "{}: the scene's own camera has intrinsics and pose, which leaves nothing to take "
-                "from the file; remove them, or one of them, or this",
-                where));
+            throw InputError(
+                fmt::format("{}: the scene's own camera has intrinsics and pose, which leaves "
+                            "nothing to take from the file; remove one or both of them, or this",
+                            where));
         }
         source = &where;
     }
@@ -80,7 +80,7 @@ void read_camera_or_rig(ConfigMap& map, SceneContext& context, SceneDesc& desc) 
     const auto cameras = map.find("cameras");
     const auto rig = map.find("rig");
     if (!cameras) {
-        if (rig) rig->fail("a rig has named cameras; give them as a list, cameras, not camera");
+        if (rig) rig->fail("a rig has named cameras; list them under cameras, not camera");
         desc.camera = read_camera(map.require("camera", k_mend), context);
         return;
     }

@@ -47,8 +47,8 @@ GridMappingDesc read_mapping(const ConfigValue& value, const std::string& grid,
     }
     if (!map.has("small") && !map.has("large")) {
         value.fail(
-            "says nothing of what the grid means; give small and large in ppm per unit of "
-            "grid value, or absorption and scattering in 1/m");
+            "does not say what the grid means; give small and large in ppm per unit of grid value, "
+            "or absorption and scattering in 1/m");
     }
     constexpr auto k_mend = "give ppm per unit of grid value";
     if (const auto entry = map.find("small")) mapping.small_ppm = entry->non_negative(k_mend);
@@ -63,8 +63,8 @@ GridMappingDesc read_mapping(const ConfigValue& value, const std::string& grid,
 std::vector<GridMappingDesc> read_grids(const ConfigValue& value, const SceneContext& context) {
     const ConfigNode& node = value.node();
     if (node.kind != ConfigNode::Kind::map || node.entries.empty()) {
-        value.fail("expected the grids' names with their meaning, found " + node.description() +
-                   "; " + k_grids_example);
+        value.fail("expected grid names with their meanings, found " + node.description() + "; " +
+                   k_grids_example);
     }
     std::vector<GridMappingDesc> grids;
     grids.reserve(node.entries.size());

@@ -102,10 +102,11 @@ ForwardScatterDesc read_forward_scatter(const ConfigValue& value) {
 void read_dissolved(ConfigMap& map, WaterDesc& water) {
     const auto refuse_if_covered = [&](const ConfigValue& value) {
         if (water.absorption) {
-            value.fail("'absorption' holds what is dissolved already; remove this or 'absorption'");
+            value.fail(
+                "'absorption' already includes dissolved matter; remove this or 'absorption'");
         }
         if (!water.preset.empty()) {
-            value.fail("the preset holds what is dissolved already; remove this or 'preset'");
+            value.fail("the preset already includes dissolved matter; remove this or 'preset'");
         }
     };
     if (const auto entry = map.find("cdom")) {

@@ -78,7 +78,8 @@ class TreeBuilder : public YAML::EventHandler {
     }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
         const auto found = anchors_.find(anchor);
-        if (found == anchors_.end()) fail(mark, "an alias inside what it names; write it out");
+        if (found == anchors_.end())
+            fail(mark, "an alias inside the value it refers to; write the value out");
         count(mark, weight(found->second));
         ConfigNode copy = found->second;
         add(std::move(copy), YAML::NullAnchor);
@@ -112,8 +113,9 @@ class TreeBuilder : public YAML::EventHandler {
     void count(const YAML::Mark& mark, std::size_t nodes) {
         nodes_ += nodes;
         if (nodes_ <= limits_.nodes) return;
-        fail(mark, fmt::format("more than {} values (aliases count each time); this is no {}",
-                               limits_.nodes, limits_.subject));
+        fail(mark,
+             fmt::format("more than {} values (aliases count each time); this is not a valid {}",
+                         limits_.nodes, limits_.subject));
     }
     ConfigNode make(ConfigNode::Kind kind, const YAML::Mark& mark) {
         count(mark, 1);
@@ -126,8 +128,8 @@ class TreeBuilder : public YAML::EventHandler {
               YAML::anchor_t anchor) {
         check_tag(mark, tag);
         if (open_.size() >= limits_.depth) {
-            fail(mark, fmt::format("nested more than {} deep; this is no {}", limits_.depth,
-                                   limits_.subject));
+            fail(mark, fmt::format("nested more than {} deep; this is not a valid {}",
+                                   limits_.depth, limits_.subject));
         }
         open_.push_back({make(kind, mark), anchor, std::nullopt});
     }
@@ -141,9 +143,9 @@ class TreeBuilder : public YAML::EventHandler {
         if (anchor != YAML::NullAnchor) {
             nodes_ += weight(node);
             if (nodes_ > limits_.nodes) {
-                throw InputError(
-                    fmt::format("{}: more than {} values (anchors count twice); this is no {}",
-                                node.position.text(), limits_.nodes, limits_.subject));
+                throw InputError(fmt::format(
+                    "{}: more than {} values (anchors count twice); this is not a valid {}",
+                    node.position.text(), limits_.nodes, limits_.subject));
             }
             anchors_.insert_or_assign(anchor, node);
         }
@@ -191,8 +193,7 @@ void check_keys_unique(const ConfigNode& node, const std::string& path) {
         const auto [first, is_new] = first_lines.emplace(entry.key, entry.position.line);
         if (!is_new) {
             throw InputError(
-                fmt::format("{}: {}: the key is given twice (first in line {}); "
-                            "remove one",
+                fmt::format("{}: {}: the key is given twice (first on line {}); remove one",
                             entry.position.text(), key_path, first->second));
         }
         check_keys_unique(entry.value, key_path);
@@ -205,8 +206,9 @@ void check_keys_unique(const ConfigNode& node, const std::string& path) {
 /// Rejects text for which the parser would need gigabytes or minutes.
 void check_text(std::string_view text, const Source& source, const YamlLimits& limits) {
     if (text.size() > limits.bytes) {
-        source.fail(
-            0, 0, fmt::format("larger than {} bytes; this is no {}", limits.bytes, limits.subject));
+        source.fail(0, 0,
+                    fmt::format("larger than {} bytes; this is not a valid {}", limits.bytes,
+                                limits.subject));
     }
     const std::size_t bad = first_non_text(text);
     if (bad != text.size()) {
@@ -221,18 +223,19 @@ void check_text(std::string_view text, const Source& source, const YamlLimits& l
         return k_indicators.find(c) != std::string_view::npos;
     });
     if (static_cast<std::size_t>(indicators) > limits.indicators) {
-        source.fail(0, 0,
-                    fmt::format("more than {} brackets, commas, colons and quotes; this is no {}",
-                                limits.indicators, limits.subject));
+        source.fail(
+            0, 0,
+            fmt::format("more than {} brackets, commas, colons and quotes; this is not a valid {}",
+                        limits.indicators, limits.subject));
     }
 }
 
 /// The parser's own message, except where it is misleading.
 std::string syntax_error(const YAML::Exception& error) {
     if (error.msg == YAML::ErrorMsg::DOC_IN_SCALAR || error.msg == YAML::ErrorMsg::EOF_IN_SCALAR) {
-        return "a text above this line has an opening quote and no closing one; close it";
+        return "text above this line has an opening quote but no closing one; close it";
     }
-    return printable(error.msg, 200) + "; mend the YAML here or just above";
+    return printable(error.msg, 200) + "; correct the YAML here or just above";
 }
 
 std::optional<ConfigNode> parse(std::string_view text, const Source& source,

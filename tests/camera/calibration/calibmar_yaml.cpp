@@ -30,9 +30,9 @@ TEST_F(CalibmarYaml, RefusesInOneLine) {
                    "must point away from the camera");
     expect_refused(replaced(flat, "0.02531637365", "-0.1"), "must not be negative, found -0.1");
     const std::string& dome = test::k_calibmar_dome;
-    expect_refused(replaced(dome, "0.0087,", "0.0587,"), "the camera stands outside of its dome");
+    expect_refused(replaced(dome, "0.0087,", "0.0587,"), "the camera is outside its dome");
     expect_refused(replaced(dome, "0.05, ", "0, "), "must be greater than 0, found 0");
-    expect_refused(replaced(dome, "DOMEPORT", "[DOMEPORT]"), "expected a text, found a list of 1");
+    expect_refused(replaced(dome, "DOMEPORT", "[DOMEPORT]"), "expected text, found a list of 1");
 }
 
 TEST_F(CalibmarYaml, HasAModelAndAPort) {

@@ -148,10 +148,10 @@ TEST_F(Calibrations, CameraOfASceneTakesItsCalibration) {
 
 TEST_F(Calibrations, UnknownFilesListWhatIsKnown) {
     for (const char* text : {"", " \n", "a: 1\n", "[1, 2]\n", "hello\n", "a: {b: c}\n"})
-        expect_refused(text, "known are OpenCV and ROS YAML");
-    expect_refused("uwvdb: 1\ncamera: {}\n", "is a scene and no calibration");
+        expect_refused(text, "known formats are OpenCV and ROS YAML");
+    expect_refused("uwvdb: 1\ncamera: {}\n", "is a scene, not a calibration");
     expect_refused(std::string("\0\1\2", 3), "not UTF-8 text");
-    expect_refused("a: [1\n", "mend the YAML");
+    expect_refused("a: [1\n", "correct the YAML");
     expect_refused("model: !!python/object x\nparameters: []\n", "has no meaning in a calibration");
 }
 

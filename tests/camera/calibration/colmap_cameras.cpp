@@ -32,7 +32,7 @@ TEST_F(ColmapCameras, RefusesInOneLine) {
                    "PINHOLE has 4 parameters");
     std::string endless = "1 PINHOLE 640 480";
     for (int i = 0; i < 100000; ++i) endless += " 1";
-    expect_refused(endless, "is no camera of COLMAP");
+    expect_refused(endless, "is not a COLMAP camera");
     std::string many;
     for (int i = 0; i < 100000; ++i)
         many += std::to_string(i) + " PINHOLE 640 480 500 500 320 240\n";

@@ -40,7 +40,7 @@ TEST(CalibrationFormats, OneCameraIsChosen) {
     const auto refused = [](const CameraNames& names, const std::string& wanted) {
         return test::message_of<InputError>([&] { choose_camera(names, wanted, "c.yaml"); });
     };
-    EXPECT_EQ(refused({}, ""), "c.yaml: has no camera in it; give another file");
+    EXPECT_EQ(refused({}, ""), "c.yaml: contains no camera; give another file");
     EXPECT_NE(refused({"a", "b"}, "").find("c.yaml: has 2 cameras (a, b); choose one"),
               std::string::npos);
     EXPECT_EQ(refused({"a", "b"}, "c"), "c.yaml: has no camera 'c'; it has a, b");

@@ -67,7 +67,7 @@ TEST_F(KalibrCamchain, SaysWhatItHasNoWordFor) {
     CameraDesc camera = read(test::k_kalibr, "cam0").desc;
     EXPECT_EQ(kalibr_obstacle(camera), "");
     camera.distortion.k[2] = 0.01;
-    EXPECT_NE(kalibr_obstacle(camera).find("radtan has k1, k2, p1, p2 alone"), std::string::npos);
+    EXPECT_NE(kalibr_obstacle(camera).find("radtan has only k1, k2, p1 and p2"), std::string::npos);
     camera.distortion.model = DistortionDesc::Model::fisheye;
     EXPECT_EQ(kalibr_obstacle(camera), "");
     camera.port = DomePortDesc();

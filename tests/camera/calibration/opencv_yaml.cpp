@@ -28,7 +28,7 @@ TEST_F(OpencvYaml, RefusesInOneLine) {
                    "camera_matrix.data[0]: must be greater than 0");
     expect_refused(replaced(ros, "526.6908296825479", ".nan"), "is not a finite number");
     expect_refused(replaced(ros, "526.6908296825479", "1e300"), "is larger than anything");
-    expect_refused(replaced(ros, "0, 0, 1]", "0, 0]"), "rows x cols are 9, but data has 8 numbers");
+    expect_refused(replaced(ros, "0, 0, 1]", "0, 0]"), "rows x cols is 9, but data has 8 numbers");
     expect_refused(replaced(ros, "cols: 3", "cols: 1000000000"), "must be from 0 to 64");
     expect_refused(replaced(ros, "plumb_bob", "plum_bob"), "did you mean 'plumb_bob'?");
     expect_refused(replaced(ros, "plumb_bob", "equidistant"), "expected 4 numbers, found 5");

@@ -73,7 +73,7 @@ TEST_F(CalibrationCommand, SaysWhatWasUnderstood) {
     expect_part(text, "in the housing");
     expect_part(text, "in the water");
     expect_part(text, "calibmar, colmap, scene\n");
-    expect_part(text, "not opencv, ros: the files of OpenCV and ROS have no ports");
+    expect_part(text, "not opencv, ros: OpenCV and ROS files have no ports");
     write("rig.txt", test::k_colmap);
     expect_part(output_of({"calibration", "rig.txt", "--camera", "12"}), "camera 12 of 5");
     const std::string json = output_of({"calibration", "calibration.yaml", "--json"});
@@ -124,9 +124,9 @@ TEST_F(CalibrationCommand, RefusesInOneLine) {
     expect_failure({"calibration", "scene.yaml", "--camera", "cam0"}, 2, "a scene has one camera");
     expect_failure({"calibration", "none.yaml"}, 4, "no such file");
     write("bad.yaml", "a: b\n");
-    expect_failure({"calibration", "bad.yaml"}, 3, "known are OpenCV and ROS YAML");
+    expect_failure({"calibration", "bad.yaml"}, 3, "known formats are OpenCV and ROS YAML");
     write("use.yaml", std::string("uwvdb: 1\ncamera: {calibration: bad.yaml}") + k_rest);
-    expect_failure({"render", "use.yaml"}, 3, "bad.yaml:1:1: is no calibration that is known");
+    expect_failure({"render", "use.yaml"}, 3, "bad.yaml:1:1: is not in a known calibration format");
     write("two.yaml", std::string("uwvdb: 1\ncamera: {calibration: calibration.yaml, port: "
                                   "{distance: 0.02}}") +
                           k_rest);

@@ -94,7 +94,7 @@ TEST_F(Info, NamesTheMissingFramesOfASequence) {
     EXPECT_EQ(json.at("sequence").at("frame"), 3);
     EXPECT_EQ(json_of({"p_%04d.vdb", "--frame", "7"}).at("sequence").at("frame"), 7);
     expect_failure({"info", "p_####.vdb", "--frame", "5"}, 4, "p_0005.vdb: no such file");
-    expect_failure({"info", "q_####.vdb"}, 4, "there is no file of this sequence");
+    expect_failure({"info", "q_####.vdb"}, 4, "no file of this sequence exists");
     expect_failure({"info", k_plume, "--frame", "5"}, 2, "--frame");
 }
 
@@ -106,7 +106,7 @@ TEST_F(Info, RefusesHostileFilesInOneLine) {
     std::ifstream in(k_plume, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
     write("cut.vdb", bytes.substr(0, 900));
-    expect_failure({"info", "cut.vdb"}, 3, "cut short or damaged");
+    expect_failure({"info", "cut.vdb"}, 3, "truncated or damaged");
     // The last grids of the file are lost, the first ones can still be read or are told of.
     write("half.vdb", bytes.substr(0, bytes.size() / 2));
     const test::ProgramResult result = run({"info", "half.vdb"});

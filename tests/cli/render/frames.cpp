@@ -121,7 +121,7 @@ TEST_F(Frames, ThatAreMissingAreNamedBeforeAnythingIsRendered) {
     write_smoke(7);
     expect_failure({"render", "smoke.yaml", "--frames", "1-9,20"}, 4,
                    "smoke.yaml:15:11: volumes[0].file: 'smoke_####.vdb' has no file for frames "
-                   "4-6,8-9,20; give the --frames there are");
+                   "4-6,8-9,20; choose --frames that exist");
     expect_failure({"render", "smoke.yaml", "--frames", "5"}, 4, "has no file for frame 5; ");
     std::filesystem::create_directory(folder_ / "smoke_0004.vdb");
     expect_failure({"render", "smoke.yaml", "--frames", "1-4"}, 4, "has no file for frame 4; ");
@@ -147,11 +147,11 @@ TEST_F(Frames, ThatDoNotGoTogetherAreNamedBeforeAnythingIsRendered) {
 TEST_F(Frames, NamesWithoutThemAreRefused) {
     expect_failure({"render", "smoke.yaml"}, 3,
                    "volumes[0].file: there is no 'smoke_####.vdb', and as the name of a sequence "
-                   "it wants frames; render it with --frames 1-10, or name one file");
-    expect_failure({"validate", "smoke.yaml"}, 3, "wants frames");
+                   "it needs frames; render it with --frames 1-10, or name one file");
+    expect_failure({"validate", "smoke.yaml"}, 3, "needs frames");
     expect_failure({"render", "smoke.yaml", "--frames", "1-2", "-o", "out.exr"}, 2,
-                   "-o out.exr: all frames would be written to one file; put the place of the "
-                   "number into its name, such as out.####.exr");
+                   "-o out.exr: all frames would be written to one file; put a placeholder for the "
+                   "frame number in the name, such as out.####.exr");
     expect_failure({"render", "smoke.yaml", "--frames", "1-2", "--irradiance-vdb", "l.vdb"}, 2,
                    "--irradiance-vdb l.vdb: all frames would be");
     expect_failure({"render", "smoke.yaml", "--frames", "2-1"}, 2, "write 1-2");
@@ -175,7 +175,7 @@ TEST_F(Frames, NamesThatAreThereAreTakenAsTheyAreWritten) {
     const test::ProgramResult literal = sequence({"-o", "C#.exr", "--size", "8x4"});
     expect_done(literal);
     EXPECT_TRUE(exists("C#.exr"));
-    EXPECT_NE(literal.err.find("C#.exr: taken as it is written"), std::string::npos);
+    EXPECT_NE(literal.err.find("C#.exr: used as written"), std::string::npos);
 }
 
 TEST_F(Frames, WarningsAreGivenOnceAndProgressEachTime) {
@@ -258,7 +258,7 @@ TEST_F(Frames, ThatAreDoneStayWhenInterrupted) {
     const test::ProgramResult result = program.wait();
     EXPECT_EQ(result.exit_code, 130);
     EXPECT_TRUE(
-        result.err.ends_with("uwvdb: interrupted; 1 of 3 frames are done; --resume goes on\n"))
+        result.err.ends_with("uwvdb: interrupted; 1 of 3 frames are done; --resume continues\n"))
         << result.err;
     EXPECT_TRUE(exists("smoke.0001.exr"));
     EXPECT_FALSE(exists("smoke.0002.exr"));

@@ -102,7 +102,7 @@ TEST_F(OutputFiles, NeverReplaceATableOrATexture) {
             "a phase function of the scene");
     refused("render={response: cie, white: {file: white.csv}}", "white.csv",
             "the white light of the scene");
-    refused("geometry=[{file: wall.gltf}]", "wall.png", "a mesh's texture or buffer");
+    refused("geometry=[{file: wall.gltf}]", "wall.png", "a texture or buffer of a mesh");
     EXPECT_EQ(file_count(), 5U);
 }
 

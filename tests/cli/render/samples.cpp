@@ -83,7 +83,8 @@ const std::vector<Refusal> k_refusals{
     {"openvdb_sphere_houdini.vdb", "ls_sphere", "is a level set"},
     {"arnold_pointgrid.vdb", "points", "holds points"},
     {"oiio_sphereCd.vdb", "Cd", "holds vectors (vec3s)"},
-    {"arnold_grids.vdb", "density", "3 grids are called 'density': say 'density[0]'"},
+    {"arnold_grids.vdb", "density",
+     "3 grids are called 'density'; write 'density[0]' for the first"},
     {"openvdb_smoke_houdini.vdb", "vel", "no grid 'vel'"},
     {"fire64_blosc_half_0020.vdb", "heat", "no grid 'heat'"}};
 

@@ -155,7 +155,7 @@ TEST_F(WideCameras, WhatAFisheyeCannotDoIsRefused) {
     expect_failure({"render", "scene.yaml", "--set", camera, "--integrator", "planes"}, 3,
                    "the planes integrator sums over slabs parallel to the image plane");
     expect_failure({"validate", "scene.yaml", "--set", camera, "--quiet"}, 3,
-                   "which a fisheye lens looks past");
+                   "but a fisheye lens can see past them");
 }
 
 TEST_F(WideCameras, FullCircleFisheyeIsBlackOutside) {

@@ -38,8 +38,9 @@ TEST(TextFile, MayBeAsLargeAsTheLimitAndNoLarger) {
     std::ofstream(folder / "full.txt", std::ios::binary) << std::string(k_limit, 'x');
     EXPECT_EQ(read_text_file(folder / "full.txt", "full.txt", k_limit, "text").size(), k_limit);
     std::ofstream(folder / "over.txt", std::ios::binary) << std::string(k_limit + 1, 'x');
-    EXPECT_EQ(text_file_failure(folder / "over.txt"),
-              "InputError scene.yaml: lamps[0].file: is larger than 1 MiB; this is no IES file");
+    EXPECT_EQ(
+        text_file_failure(folder / "over.txt"),
+        "InputError scene.yaml: lamps[0].file: is larger than 1 MiB; this is not a valid IES file");
 }
 
 TEST(TextFile, SaysWhatIsWrong) {

@@ -83,8 +83,8 @@ TEST(IesFile, OtherTypesOfPhotometryAreNamed) {
     test::IesWriter writer = narrow();
     writer.type = 2;
     EXPECT_EQ(error_of(writer.text()),
-              "lamp.ies:4: its photometry is of type B; only type C is read: convert it to type C, "
-              "or ask the maker for that");
+              "lamp.ies:4: its photometry is of type B; only type C is supported: convert it to "
+              "type C, or ask the manufacturer for a type C file");
     writer.type = 3;
     EXPECT_NE(error_of(writer.text()).find("type A"), std::string::npos);
     writer.type = 7;
@@ -102,19 +102,22 @@ TEST(IesFile, HostileFilesAreOneLine) {
         {"# a YAML file\nlamps: []\n", "no line 'TILT='"},
         {"IESNA91\nTILT=NONE\n", "ends before the number of lamps"},
         {head + "999999999 1" + tail, "the number of vertical angles must be a whole number"},
-        {head + "3 1e300" + tail, "is no number for the number of horizontal angles"},
+        {head + "3 1e300" + tail,
+         "expected a number for the number of horizontal angles, found '1e300'"},
         {head + "-2 1" + tail, "the number of vertical angles must be"},
         {head + "2.5 1" + tail, "the number of vertical angles must be"},
-        {head + "nan 1" + tail, "'nan' is no number"},
-        {head + "6 6" + tail, "more than this file can hold"},
+        {head + "nan 1" + tail, "expected a number for the number of vertical angles, found 'nan'"},
+        {head + "6 6" + tail, "more candelas than this file can hold"},
         {head + "2 1" + tail + "0 90 0 5", "ends before a candela value"},
-        {head + "2 1" + tail + "0 90 0 5 inf", "'inf' is no number for a candela value"},
-        {head + "2 1" + tail + "0 90 0 5 five", "'five' is no number for a candela value"},
+        {head + "2 1" + tail + "0 90 0 5 inf",
+         "expected a number for a candela value, found 'inf'"},
+        {head + "2 1" + tail + "0 90 0 5 five",
+         "expected a number for a candela value, found 'five'"},
         {head + "2 1" + tail + "0 90 0 5 -1", "a candela value must not be negative, found -1"},
         {head + "2 1" + tail + "0 90 0 0 0", "this luminaire is dark"},
         {head + "2 1" + tail + "90 0 0 5 5", "vertical angles must ascend, found 0 after 90"},
-        {head + "2 1" + tail + "0 270 0 5 5", "vertical angles lie from 0 to 180 degrees"},
-        {head + "1 1" + tail + "0 0 5 5 5 5 5 5 5", "has one vertical angle"},
+        {head + "2 1" + tail + "0 270 0 5 5", "vertical angles must be from 0 to 180 degrees"},
+        {head + "1 1" + tail + "0 0 5 5 5 5 5 5 5", "has only one vertical angle"},
         {head + "2 2" + tail + "0 90 0 45 5 5 5 5", "its horizontal angles go from 0 to 45"},
         {head + "2 2" + tail + "0 90 10 10 5 5 5 5", "horizontal angles must ascend"},
     };

@@ -74,7 +74,7 @@ TEST(MeshCleanup, ReportsOneLinePerKind) {
     DroppedTriangles{2, 0, 5}.report("a.ply", warnings);
     EXPECT_EQ(warnings,
               (std::vector<std::string>{
-                  "before", "a.ply: 2 triangles name vertices that the file does not have; dropped",
+                  "before", "a.ply: 2 triangles refer to vertices that do not exist; dropped",
                   "a.ply: 5 triangles have no area; dropped"}));
 }
 

@@ -83,7 +83,7 @@ TEST(CsvTable, CurvesAscend) {
     }
     const CsvTable blank("x,y\n1,\n,2\n", "t.csv");
     EXPECT_EQ(test::message_of<InputError>([&] { blank.curve("x", "y"); }),
-              "t.csv: columns 'x' and 'y' have no row with both; fill them");
+              "t.csv: no row has values in both columns 'x' and 'y'; fill them in");
 }
 
 TEST(CsvTable, QuotesGarbageBriefly) {

@@ -15,7 +15,7 @@ const SourceLocation k_volume_entry = "scene.yaml:3:5: volumes[0]";
 
 std::string damage_of(const std::filesystem::path& file) {
     return k_volume_entry + ": '" + file.string() +
-           "' is cut short or damaged; copy or export it again";
+           "' is truncated or damaged; copy or export it again";
 }
 
 TEST(ByteReader, ReadsNumbersAndTextsAsTheyLie) {

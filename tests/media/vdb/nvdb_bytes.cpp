@@ -55,7 +55,7 @@ TEST(NvdbBytes, BelieveNoForgedLengths) {
         test::write_file_bytes(dir / "forged.nvdb", bytes);
         const std::string message =
             test::message_of<InputError>([&] { only_grid_of(dir / "forged.nvdb"); });
-        EXPECT_NE(message.find("cut short or damaged"), std::string::npos) << message;
+        EXPECT_NE(message.find("truncated or damaged"), std::string::npos) << message;
     }
 }
 

@@ -77,16 +77,16 @@ TEST_F(NvdbHeader, FilesMayFollowOneAnother) {
 TEST_F(NvdbHeader, RefusesWhatItCannotRead) {
     const std::string bytes = bytes_with("density");
     for (std::size_t size = 9; size < bytes.size(); size += 61)
-        expect_refused(bytes.substr(0, size), "cut short or damaged");
+        expect_refused(bytes.substr(0, size), "truncated or damaged");
     expect_refused("NanoVDB1" + bytes.substr(8), "holds a bare NanoVDB grid");
-    expect_refused(bytes + "NanoVDBx", "cut short or damaged");
+    expect_refused(bytes + "NanoVDBx", "truncated or damaged");
     std::string other = bytes;
     const std::uint32_t version = 31U << 21U | 5U << 10U;
     std::memcpy(&other[8], &version, sizeof version);
     expect_refused(other, "is a NanoVDB file of version 31.5; this build reads version 32");
     std::string codec = bytes;
     codec[14] = 3;
-    expect_refused(codec, "cut short or damaged");
+    expect_refused(codec, "truncated or damaged");
 }
 
 }  // namespace

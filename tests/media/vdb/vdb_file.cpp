@@ -59,7 +59,7 @@ TEST(VdbFile, MissingAndAmbiguousNames) {
 
     test::write_fixture(dir / "same.vdb", {single_voxel("density", 1), single_voxel("density", 2)});
     expect_contains(refusal(dir / "same.vdb", "density"),
-                    "2 grids are called 'density': say 'density[0]'");
+                    "2 grids are called 'density'; write 'density[0]' for the first");
     expect_contains(refusal(dir / "same.vdb", "density[2]"), "no grid 'density[2]'");
     EXPECT_EQ(load(dir / "same.vdb", "density[0]").statistics.max, 1);
     EXPECT_EQ(load(dir / "same.vdb", "density[1]").statistics.max, 2);

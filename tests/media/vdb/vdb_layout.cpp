@@ -32,7 +32,7 @@ TEST(VdbLayout, EveryTruncationIsRefused) {
     const std::string bytes = file_bytes(dir / "a.vdb");
     for (std::size_t size = 9; size < bytes.size(); size += 97) {
         write_file_bytes(dir / "cut.vdb", bytes.substr(0, size));
-        expect_contains(refusal(dir / "cut.vdb", "density"), "cut short or damaged");
+        expect_contains(refusal(dir / "cut.vdb", "density"), "truncated or damaged");
     }
 }
 

@@ -46,9 +46,9 @@ TEST_F(VolumeSequence, ThatMovesIsRefused) {
     EXPECT_EQ(test::message_of<InputError>([&] { check.take(moved); }),
               "scene.yaml:3:5: volumes[0].grids.density: grid 'density' of '" +
                   (dir_ / "2.vdb").string() +
-                  "' has voxels of 0.05 x 0.05 x 0.05 from (1, 2, 3.01), that of '" +
+                  "' has voxels of 0.05 x 0.05 x 0.05 from (1, 2, 3.01), but that of '" +
                   (dir_ / "1.vdb").string() +
-                  "' voxels of 0.05 x 0.05 x 0.05 from (1, 2, 3); export all frames with one "
+                  "' has voxels of 0.05 x 0.05 x 0.05 from (1, 2, 3); export all frames with one "
                   "transform, or render them in separate runs");
     EXPECT_THROW(check.take(frame("3.vdb", Affine(Matrix3(0.051), {1, 2, 3}))), InputError);
 }

@@ -54,9 +54,9 @@ TEST_F(UniformAbsorption, AsGivenStandsAlone) {
     EXPECT_TRUE(warnings_.empty());
     water.cdom = 0.1;
     EXPECT_EQ(absorption(water)[0], 0.5);
-    EXPECT_EQ(warnings_, (std::vector<std::string>{
-                             water.where + ": absorption is given, so cdom and chlorophyll are not "
-                                           "used; leave either out"}));
+    EXPECT_EQ(warnings_, (std::vector<std::string>{water.where +
+                                                   ": absorption is given, so cdom and chlorophyll "
+                                                   "are not used; remove one or the other"}));
 }
 
 TEST_F(UniformAbsorption, OfAPresetIsItsOwn) {
@@ -83,7 +83,7 @@ TEST_F(UniformAbsorption, SaysWhereItsTablesEnd) {
     EXPECT_EQ(test::message_of<InputError>([&] { absorption(water); }),
               water.where +
                   ": bands 1064, 200 nm: the absorption of pure water is known from 300 to 900 nm; "
-                  "choose bands inside or give the absorption");
+                  "choose bands within that range, or give the absorption");
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ TEST_F(MeshReader, DropsAndCountsBrokenTriangles) {
              "3 0 1 2\n3 0 1 3\n3 0 1 4\n3 0 1 1\n3 0 1 99\n3 0 1 -1\n");
     EXPECT_EQ(mesh.triangle_count(), 1U);
     ASSERT_EQ(warnings_.size(), 3U);
-    EXPECT_NE(warnings_[0].find("2 triangles name vertices"), std::string::npos) << warnings_[0];
+    EXPECT_NE(warnings_[0].find("2 triangles refer to vertices"), std::string::npos)
+        << warnings_[0];
     EXPECT_NE(warnings_[1].find("2 triangles have corners"), std::string::npos) << warnings_[1];
     EXPECT_NE(warnings_[2].find("1 triangles have no area"), std::string::npos) << warnings_[2];
 }
@@ -36,8 +37,7 @@ TEST_F(MeshReader, RefusesBrokenFilesInOneLine) {
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
         "property float z\n";
     EXPECT_NE(error_of("empty.ply", "").find("empty"), std::string::npos);
-    EXPECT_NE(error_of("mesh.fbx", "x").find(".gltf, .glb, .obj, .ply and .stl"),
-              std::string::npos);
+    EXPECT_NE(error_of("mesh.fbx", "x").find(".gltf, .glb, .obj, .ply or .stl"), std::string::npos);
     EXPECT_NE(error_of("text.ply", "what is this"), "");
     EXPECT_NE(error_of("word.ply", ply + "end_header\n0 0 zero\n").find("zero"), std::string::npos);
     // A forged count is refused before anything is allocated for it.

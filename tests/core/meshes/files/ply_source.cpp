@@ -87,7 +87,7 @@ TEST(PlySource, NoticesEachMissingByte) {
         std::istringstream in(whole.substr(0, length));
         PlySource source(in, PlyEncoding::little_endian, "m.ply");
         EXPECT_EQ(test::message_of<InputError>([&] { source.next(PlyType::float64); }),
-                  "m.ply: the PLY file is cut off; export the mesh again");
+                  "m.ply: the PLY file is truncated; export the mesh again");
     }
 }
 

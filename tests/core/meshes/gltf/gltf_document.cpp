@@ -65,7 +65,7 @@ TEST_F(GltfDocumentTest, ElementsAreThere) {
     EXPECT_EQ(document_.element("meshes", node(0), "mesh").at("name"), "b");
     for (const std::size_t i : {1U, 4U})
         expect_refused([&] { document_.element("meshes", node(i), "mesh"); },
-                       "glTF 'mesh' names what is not there");
+                       "glTF 'mesh' refers to an item that does not exist");
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ TEST_F(GltfImport, AnotherAspectIsSaid) {
     const SceneDesc desc = scene(", camera: true, lamps: ['Bulb 1']", "", {{"cameras", R"(
         [{"type":"perspective","perspective":{"yfov":1,"aspectRatio":1,"znear":1}}])"}});
     ASSERT_GE(desc.warnings.size(), 1U);
-    EXPECT_NE(desc.warnings[0].find("it shows more at its sides"), std::string::npos);
+    EXPECT_NE(desc.warnings[0].find("it shows more at the sides"), std::string::npos);
 }
 
 TEST_F(GltfImport, AllLampsButTheDirectionalWithNamesOfTheirOwn) {
@@ -162,7 +162,8 @@ TEST_F(GltfImport, AllLampsButTheDirectionalWithNamesOfTheirOwn) {
     ASSERT_EQ(desc.warnings.size(), 2U);
     EXPECT_NE(desc.warnings[0].find("directional lights (suns) are left out: Sun"),
               std::string::npos);
-    EXPECT_NE(desc.warnings[1].find("range of lights is not used, they shine on by 1/r^2: Bulb 1"),
+    EXPECT_NE(desc.warnings[1].find(
+                  "range of lights is ignored; they go on falling off as 1/r^2: Bulb 1"),
               std::string::npos);
     // The defaults of a spot: from the axis to 45 degrees, intensity 1.
     EXPECT_NEAR(std::get<SpotProfileDesc>(desc.lamps[1].profile).beam, 45, 1e-12);
@@ -183,12 +184,12 @@ TEST_F(GltfImport, RefusesInOneLine) {
                  {{"nodes", R"([{"camera":1}])"}, {"scenes", R"([{"nodes":[0]}])"}});
     expect_error("the light 'Sun' is directional (a sun)", ", lamps: [Sun]", own);
     expect_error("has no light 'Bob'; it has Sun, Bulb 1, Bulb.1", ", lamps: [Bob]", own);
-    expect_error("light_units: is of use with lamps only", ", light_units: raw", own);
+    expect_error("light_units: has an effect only with lamps", ", light_units: raw", own);
     expect_error("light_units: unknown value 'rae'; did you mean 'raw'?",
                  ", lamps: all, light_units: rae", own);
     expect_error("material: unknown value 'metal'; use one of: diffuse, pbr", ", material: metal",
                  own);
-    expect_error("lamps: names no light", ", lamps: []", own);
+    expect_error("lamps: lists no light", ", lamps: []", own);
     expect_error(
         "scale of 0", ", camera: true", "",
         {{"nodes", R"([{"camera":0,"scale":[1,1,0]}])"}, {"scenes", R"([{"nodes":[0]}])"}});
@@ -206,7 +207,7 @@ TEST_F(GltfImport, RefusesInOneLine) {
           {R"({"type":"spot","spot":{"outerConeAngle":2}})", "cone angles"}}) {
         expect_error(part, ", lamps: all", own, lights(light));
     }
-    expect_error("names a light that is not there", ", lamps: all", own, lights(""));
+    expect_error("refers to a light that does not exist", ", lamps: all", own, lights(""));
 }
 
 TEST_F(GltfImport, OnlyGltfBringsThem) {

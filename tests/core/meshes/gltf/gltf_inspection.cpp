@@ -77,13 +77,13 @@ TEST_F(GltfInspection, AccessorsLieInTheirViews) {
     EXPECT_EQ(inspect(vec3(R"("count":3)")), IgnoredNames{});
     expect_refused(vec3(R"("count":4)"), "reaches past its bufferView");
     expect_refused(vec3(R"("count":3,"byteOffset":4)"), "reaches past its bufferView");
-    expect_refused(vec3(R"("count":4000000000)"), "counts more than its file can hold");
+    expect_refused(vec3(R"("count":4000000000)"), "larger count than its file can hold");
     expect_refused(vec3(R"("count":3,"sparse":{"count":4,"indices":{},"values":{}})"),
                    "more sparse values than values");
     expect_refused(positions(R"({"bufferView":9,"componentType":5126,"count":3,"type":"VEC3"})"),
-                   "'bufferView' names what is not there");
+                   "'bufferView' refers to an item that does not exist");
     expect_refused(positions(R"({"bufferView":0,"componentType":5124,"count":3,"type":"VEC3"})"),
-                   "impossible type");
+                   "invalid type");
 }
 
 TEST_F(GltfInspection, ViewsLieInTheirBuffers) {
@@ -112,13 +112,13 @@ TEST_F(GltfInspection, BuffersAreFilesOfTheirLength) {
 
 TEST_F(GltfInspection, AttributesAreOfTheirKind) {
     expect_refused(attributes(R"("NORMAL":0)"), "has no POSITION");
-    expect_refused(attributes(R"("POSITION":9)"), "names an accessor that is not there");
-    expect_refused(attributes(R"("POSITION":3)"), "POSITION has the impossible type 'VEC4'");
+    expect_refused(attributes(R"("POSITION":9)"), "refers to an accessor that does not exist");
+    expect_refused(attributes(R"("POSITION":3)"), "POSITION has the invalid type 'VEC4'");
     expect_refused(attributes(R"("POSITION":1)"), "POSITION is quantised");
-    expect_refused(attributes(R"("POSITION":0,"NORMAL":2)"), "NORMAL has the impossible type");
-    expect_refused(attributes(R"("POSITION":0,"TEXCOORD_0":0)"), "TEXCOORD_0 has the impossible");
-    expect_refused(attributes(R"("POSITION":0,"COLOR_0":2)"), "COLOR_0 has the impossible type");
-    expect_refused(attributes(R"("POSITION":0,"TANGENT":0)"), "TANGENT has the impossible type");
+    expect_refused(attributes(R"("POSITION":0,"NORMAL":2)"), "NORMAL has the invalid type");
+    expect_refused(attributes(R"("POSITION":0,"TEXCOORD_0":0)"), "TEXCOORD_0 has the invalid");
+    expect_refused(attributes(R"("POSITION":0,"COLOR_0":2)"), "COLOR_0 has the invalid type");
+    expect_refused(attributes(R"("POSITION":0,"TANGENT":0)"), "TANGENT has the invalid type");
     EXPECT_EQ(inspect(attributes(R"("POSITION":0,"NORMAL":0,"TEXCOORD_0":2,"TANGENT":3)")),
               IgnoredNames{});
 }
@@ -127,7 +127,7 @@ TEST_F(GltfInspection, VerticesHaveAllOfTheirAttributes) {
     GltfChanges changes = attributes(R"("POSITION":0,"TEXCOORD_0":1)");
     changes["accessors"] = R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
                                {"bufferView":2,"componentType":5126,"count":2,"type":"VEC2"}])";
-    expect_refused(changes, "TEXCOORD_0 has another count than POSITION");
+    expect_refused(changes, "TEXCOORD_0 does not have the same count as POSITION");
     expect_refused(positions(R"({"componentType":5126,"count":3,"type":"VEC3"})"),
                    "POSITION has no data");
 }

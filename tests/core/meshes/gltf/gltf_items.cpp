@@ -100,17 +100,17 @@ TEST_F(GltfItemsTest, ImpossibleOnesAreRefused) {
     for (const char* cone : {R"("outerConeAngle":1.6)", R"("outerConeAngle":0)",
                              R"("innerConeAngle":-0.1)", R"("innerConeAngle":0.8)"})
         expect_light_refused(R"({"type":"spot","spot":{)" + std::string(cone) + "}}",
-                             "impossible cone angles");
+                             "invalid cone angles");
     expect_light_refused(R"({"type":"point","intensity":-1})", "negative intensity or colour");
     expect_light_refused(R"({"type":"point","color":[1,1,-1]})", "negative intensity or colour");
     expect_light_refused(R"({"type":"point","color":"red"})", "the glTF description is broken");
-    expect_light_refused("", "names a light that is not there");
+    expect_light_refused("", "refers to a light that does not exist");
     for (const char* lens :
          {R"({"yfov":0})", R"({"yfov":3.2})", "{}", R"({"yfov":1,"aspectRatio":-1})"}) {
         const std::string message = test::message_of<InputError>([&] {
             with_camera(R"({"type":"perspective","perspective":)" + std::string(lens) + "}");
         });
-        EXPECT_NE(message.find("impossible yfov or aspectRatio"), std::string::npos) << message;
+        EXPECT_NE(message.find("invalid yfov or aspectRatio"), std::string::npos) << message;
     }
     EXPECT_THROW(read_gltf_items(folder_.path("none.gltf")), IoError);
 }

@@ -43,10 +43,11 @@ TEST_F(GltfJson, OfOtherVersionsIsRefused) {
 
 TEST_F(GltfJson, ThatIsCutOffIsRefused) {
     const std::string glb = test::glb_bytes(k_least_gltf);
-    expect_refused(glb.substr(0, glb.size() - 1), "the GLB file is cut off; export the mesh again");
+    expect_refused(glb.substr(0, glb.size() - 1),
+                   "the GLB file is truncated; export the mesh again");
     std::string forged = glb;
     forged[15] = '\x7f';  // the chunk's length
-    expect_refused(forged, "the GLB file is cut off; export the mesh again");
+    expect_refused(forged, "the GLB file is truncated; export the mesh again");
     EXPECT_THROW(load(std::string(k_least_gltf).substr(0, 20)), nlohmann::json::exception);
 }
 

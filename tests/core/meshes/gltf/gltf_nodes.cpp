@@ -83,17 +83,18 @@ TEST_F(GltfNodes, ChildrenMoveWithTheirParents) {
 }
 
 TEST_F(GltfNodes, AreAStrictTree) {
-    expect_refused(R"([{"children":[0]}])", "in a circle");
-    expect_refused(R"([{"children":[1]},{"children":[0]}])", "in a circle");
+    expect_refused(R"([{"children":[0]}])", "form a cycle");
+    expect_refused(R"([{"children":[1]},{"children":[0]}])", "form a cycle");
     expect_refused(R"([{"children":[2]},{"children":[2]},{}])", "two parents");
     expect_refused(R"([{"children":[1,1]},{}])", "two parents");
-    expect_refused(R"([{"children":[5]}])", "names a node that is not there");
-    expect_refused(R"([{"children":[-1]}])", "names a node that is not there");
+    expect_refused(R"([{"children":[5]}])", "refers to a node that does not exist");
+    expect_refused(R"([{"children":[-1]}])", "refers to a node that does not exist");
     const std::string pair = R"([{"children":[1]},{}])";
-    expect_refused(pair, "not a root, or one twice", R"("scenes":[{"nodes":[1]}])");
-    expect_refused(pair, "not a root, or one twice", R"("scenes":[{"nodes":[0,0]}])");
-    expect_refused(pair, "names a node that is not there", R"("scenes":[{"nodes":[2]}])");
-    expect_refused(pair, "'scene' names what is not there", R"("scene":1,"scenes":[{}])");
+    expect_refused(pair, "not a root, or lists one twice", R"("scenes":[{"nodes":[1]}])");
+    expect_refused(pair, "not a root, or lists one twice", R"("scenes":[{"nodes":[0,0]}])");
+    expect_refused(pair, "refers to a node that does not exist", R"("scenes":[{"nodes":[2]}])");
+    expect_refused(pair, "'scene' refers to an item that does not exist",
+                   R"("scene":1,"scenes":[{}])");
 }
 
 TEST_F(GltfNodes, MayBeNested256Deep) {

@@ -70,7 +70,7 @@ TEST(CameraValues, TheCameraStandsInItsDome) {
     dome.center = {0, 0.03, 0.04};  // on the glass
     EXPECT_NE(test::message_of<InputError>([&] {
                   check_dome(at, dome);
-              }).find("port: the camera stands outside of its dome: 0.05 m from its centre"),
+              }).find("port: the camera is outside its dome: it is 0.05 m from the centre"),
               std::string::npos);
 }
 

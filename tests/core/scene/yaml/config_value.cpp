@@ -83,8 +83,8 @@ TEST(ConfigValue, Texts) {
     const auto text = [](const ConfigValue& value) { return value.text(k_give); };
     EXPECT_EQ(OneValue("a b").get().text(k_give), "a b");
     EXPECT_EQ(OneValue("5").get().text(k_give), "5");
-    expect_value_refused("''", text, "is an empty text; give it");
-    expect_value_refused("[a]", text, "expected a text, found a list of 1; give it");
+    expect_value_refused("''", text, "is empty; give it");
+    expect_value_refused("[a]", text, "expected text, found a list of 1; give it");
 }
 
 TEST(ConfigValue, EntriesOfListsKnowTheirPaths) {
@@ -135,7 +135,7 @@ TEST(ConfigValue, ChoicesAreWords) {
     expect_value_refused("cel", choose, "unknown value 'cel'; did you mean 'cell'?");
     expect_value_refused("middle", choose, "unknown value 'middle'; use one of: node, cell");
     expect_value_refused("[node]", choose,
-                         "expected a text, found a list of 1; use one of: node, cell");
+                         "expected text, found a list of 1; use one of: node, cell");
 }
 
 }  // namespace

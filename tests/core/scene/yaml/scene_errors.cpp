@@ -26,7 +26,7 @@ TEST_F(SceneErrors, wholeScene) {
             {"just text\n", "scene.yaml:1:1: expected a map, found the text 'just text'; a scene"},
             {"- 1\n", "scene.yaml:1:1: expected a map, found a list of 1"},
             {"uwvdb: 1\nuwvdb: 1\n",
-             "scene.yaml:2:1: uwvdb: the key is given twice (first in line 1)"},
+             "scene.yaml:2:1: uwvdb: the key is given twice (first on line 1)"},
         });
 }
 
@@ -104,8 +104,8 @@ TEST_F(SceneErrors, cameraParts) {
             {"  port: {type: dome, radius: 0.05, distance: 0.1}\n",
              "camera.port.distance: is not used by type 'dome'; remove it"},
             {"  port: {type: dome, radius: 0.05, center: [0, 0.04, 0.03]}\n",
-             "scene.yaml:5:9: camera.port: the camera stands outside of its dome: 0.05 m from its "
-             "centre, which has an inner radius of 0.05 m"},
+             "scene.yaml:5:9: camera.port: the camera is outside its dome: it is 0.05 m from the "
+             "centre, but the inner radius is 0.05 m"},
             {"  port: {normal: [0, 0, 0]}\n", "camera.port.normal: [0, 0, 0] has no direction"},
             {"  port: {normal: [0, 0, -1]}\n",
              "camera.port.normal: must point away from the camera"},
@@ -178,9 +178,9 @@ TEST_F(SceneErrors, water) {
              "scene.yaml:4:15: water.absorption: has 2 values, but "
              "water.bands has 3; give one value per band"},
             {"  {absorption: 1, cdom: 1}\n",
-             "water.cdom: 'absorption' holds what is dissolved already"},
+             "water.cdom: 'absorption' already includes dissolved matter"},
             {"  {preset: jerlov-II, chlorophyll: 1}\n",
-             "water.chlorophyll: the preset holds what is"},
+             "water.chlorophyll: the preset already includes dissolved"},
             {"  particles: {small: -1}\n", "water.particles.small: must be from 0 to 1000000"},
             {"  particles: {absorption: minral}\n",
              "unknown value 'minral'; did you mean 'mineral'?"},

@@ -19,17 +19,17 @@ TEST_F(SceneObjectErrors, volumes) {
                "scene.yaml:4:10: volumes[0].file: no such file 'b.vdb' (looked in "},
               {"- {file: 'b_%4d.vdb'}\n", "volumes[0].file: no such file 'b_%4d.vdb'"},
               {"- {file: sub}\n", "volumes[0].file: 'sub' is a folder; name a file in it"},
-              {"- {file: ''}\n", "volumes[0].file: is an empty text; give the name of a file"},
-              {"- {file: [a.vdb]}\n", "volumes[0].file: expected a text, found a list of 1"},
+              {"- {file: ''}\n", "volumes[0].file: is empty; give the name of a file"},
+              {"- {file: [a.vdb]}\n", "volumes[0].file: expected text, found a list of 1"},
               {"- {file: a.vdb, grids: density}\n",
-               "volumes[0].grids: expected the grids' names with "
-               "their meaning, found the text 'density'"},
-              {"- {file: a.vdb, grids: {}}\n", "volumes[0].grids: expected the grids' names"},
+               "volumes[0].grids: expected grid names with their "
+               "meanings, found the text 'density'"},
+              {"- {file: a.vdb, grids: {}}\n", "volumes[0].grids: expected grid names"},
               {"- {file: a.vdb, grids: {d: 5}}\n",
                "volumes[0].grids.d: expected a map, found the number "
                "5; write {small: 2, large: 10} in ppm"},
               {"- {file: a.vdb, grids: {d: {}}}\n",
-               "volumes[0].grids.d: says nothing of what the grid"},
+               "volumes[0].grids.d: does not say what the grid means"},
               {"- {file: a.vdb, grids: {d: {small: 1, phase: {type: water}}}}\n",
                "volumes[0].grids.d.phase: is not used by a grid given in ppm; remove it"},
               {"- {file: a.vdb, grids: {d: {small: 1, scattering: 1}}}\n",
@@ -94,7 +94,7 @@ TEST_F(SceneObjectErrors, lamps) {
                "scene.yaml:4:34: lamps[0].intensty: unknown key; did you mean "
                "'intensity'?"},
               {start + "}\n",
-               "scene.yaml:4:3: lamps[0]: says not how bright it is; give intensity in"},
+               "scene.yaml:4:3: lamps[0]: does not say how bright it is; give intensity in"},
               {start + "intensity: 5, power: 3}\n",
                "lamps[0].power: a lamp has either intensity or "},
               {start + "intensity: [5, -5, 5]}\n", "lamps[0].intensity[1]: must not be negative"},
@@ -136,10 +136,10 @@ TEST_F(SceneObjectErrors, spectraOfLamps) {
         std::string(k_base) + "lamps:\n",
         {
             {start + "spectrum: {type: led, name: LED-B4}}\n",
-             "lamps[0]: says not how bright it is; give intensity in W/sr or power in W, or its "
-             "spectrum and lumens"},
+             "lamps[0]: does not say how bright it is; give intensity in W/sr or power in W, or "
+             "its spectrum and lumens"},
             {start + "lumens: 100}\n",
-             "lamps[0].lumens: lumens become watts by the lamp's spectrum only; give it"},
+             "lamps[0].lumens: only the lamp's spectrum can convert lumens to watts; give it"},
             {start + "spectrum: {type: flat}, lumens: 0}\n", "lamps[0].lumens: must be greater"},
             {start + "spectrum: {type: flat}, lumens: 1, power: 3}\n",
              "lamps[0].lumens: a lamp has either lumens or watts; remove one"},

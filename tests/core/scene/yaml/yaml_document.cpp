@@ -64,20 +64,20 @@ TEST(YamlDocument, refusesWhatIsNoSceneText) {
 TEST(YamlDocument, refusesWhatHasNoOneMeaning) {
     expect_error("a: 1\n---\nb: 2\n", "s.yaml:2:1: a second document starts here");
     expect_error("a: {b: 1,\n  b: 2}\n",
-                 "s.yaml:2:3: a.b: the key is given twice (first in line 1); remove one");
+                 "s.yaml:2:3: a.b: the key is given twice (first on line 1); remove one");
     expect_error("x:\n - {k: 1, k: 2}\n", "s.yaml:2:11: x[0].k: the key is given twice");
     expect_error("[1, 2]: 3\n", "s.yaml:1:1: a key must be a word, found a list of 2");
     expect_error("a: !!float 3\n", "the tag 'tag:yaml.org,2002:float' has no meaning");
     expect_error("a: *none\n", "s.yaml:1:4: the referenced anchor is not defined");
-    expect_error("a: &x [*x]\n", "s.yaml:1:8: an alias inside what it names");
+    expect_error("a: &x [*x]\n", "s.yaml:1:8: an alias inside the value it refers to");
 }
 
 TEST(YamlDocument, syntaxErrorsHaveAPlace) {
     expect_error("a: [1, 2\nb: 3\n", "s.yaml:2:2: ");
     expect_error("a:\n\t- 1\n", "s.yaml:2:2: illegal block entry");
-    expect_error("a: b: c\n", "s.yaml:1:5: illegal map value; mend the YAML here");
+    expect_error("a: b: c\n", "s.yaml:1:5: illegal map value; correct the YAML here");
     for (const char* const open : {"a: 'x\nb: 1\n", "a: 'x", "a: \"x\nb: 1\n", "{a: &b 'x\n}"}) {
-        expect_error(open, "a text above this line has an opening quote and no closing one");
+        expect_error(open, "text above this line has an opening quote but no closing one");
     }
 }
 

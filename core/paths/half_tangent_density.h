@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace uw {
+
+/// A density over scattering angles psi that can be sampled, in h = tan(psi / 2): linear in h
+/// between nodes, 16 to an octave, from h = 2^-24 (psi = 1.2e-7) to 2^24, and down to h = 0. What
+/// is drawn from it has exactly the density that `density` returns, so that estimates are unbiased
+/// whatever it was made to follow. Not normalised: `mass` is its integral.
+class HalfTangentDensity {
+  public:
+    /// The nodes, ascending from 0.
+    static std::span<const double> nodes();
+
+    HalfTangentDensity() = default;
+    /// `at_nodes`: the density per unit of h at each node, >= 0.
+    explicit HalfTangentDensity(std::vector<double> at_nodes);
+
+    /// The integral over all h.
+    double mass() const { return cumulative_.back(); }
+    /// The integral from 0 to `h` >= 0; infinity is allowed.
+    double mass_to(double h) const;
+    /// The density per unit of h at `h` >= 0; 0 beyond the last node.
+    double density(double h) const;
+    /// The h up to which the integral is `mass`, 0 <= mass <= mass().
+    double invert(double mass) const;
+
+  private:
+    std::vector<double> values_;      // at the nodes
+    std::vector<double> cumulative_;  // up to each node
+};
+
+}  // namespace uw

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/integrators/deep_shadow.h"
+#include "core/paths/path_random.h"
+#include "core/paths/path_state.h"
+#include "core/paths/scattering_tables.h"
+#include "core/paths/water_segment.h"
+
+namespace uw {
+
+/// Estimates the light of lamps that arrives along a segment after a single event: scattered by
+/// the water on it, or reflected by the surface at its end. Thread safe.
+class LampGathering {
+  public:
+    /// `deep_shadows`: columns to the lamps, one per lamp; empty: they are exact. The other
+    /// references must outlive this object.
+    LampGathering(const WaterOptics& optics, const ScatteringTables& tables,
+                  std::vector<std::shared_ptr<const DeepShadow>> deep_shadows);
+
+    /// The water's: int I b p e^-tau / R^2 ds for a lamp chosen by its share, at a point chosen by
+    /// its scattering angle psi, in which 1/R^2 and the forward peak are flat: ds / R^2 = dpsi / D
+    /// with D the lamp's distance from the line. Uses three random numbers.
+    void gather_from_water(const WaterSegment& segment, const PathState& state, PathRandom& random,
+                           PathTerms& terms) const;
+    /// The surface's, for a lamp chosen by its share; `transmittance` is that of the segment. Uses
+    /// one random number. Precondition: segment.has_hit.
+    void gather_from_surface(const WaterSegment& segment, std::span<const double> transmittance,
+                             const PathState& state, PathRandom& random, PathTerms& terms) const;
+
+  private:
+    struct Share;
+    struct Workspace;
+
+    void find_water_shares(const WaterSegment& segment, const PathState& state, Workspace& w) const;
+    double mean_of_arriving(const Spectrum& throughput, const Lamp& lamp, double length) const;
+    void column_to_lamp(std::size_t lamp, const Point3& x, std::span<double> column) const;
+
+    const WaterOptics& optics_;
+    const ScatteringTables& tables_;
+    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;
+};
+
+}  // namespace uw

@@ -1,0 +1,50 @@
+#include "core/paths/path_random.h"
+
+#include <array>
+
+namespace uw {
+
+namespace {
+
+// Cools, Kuo and Nuyens: "lattice-32001-1024-1048576.3600", an extensible rank-1 lattice for up to
+// 2^20 points; the rule's first components.
+constexpr std::array<std::uint32_t, 24> k_generator{
+    1,      182667, 469891, 498753, 110745, 446247, 250185, 118627, 245333, 283199, 408519, 391023,
+    246327, 126539, 399185, 461527, 300343, 69681,  516695, 436179, 106383, 238523, 413283, 70841};
+
+std::uint64_t mixed(std::uint64_t x) {  // Steele, Lea and Flood 2014: splitmix64
+    x += 0x9e3779b97f4a7c15U;
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
+    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
+    return x ^ (x >> 31U);
+}
+
+std::uint32_t reversed(std::uint32_t x) {
+    x = (x << 16U) | (x >> 16U);
+    x = ((x & 0x00ff00ffU) << 8U) | ((x & 0xff00ff00U) >> 8U);
+    x = ((x & 0x0f0f0f0fU) << 4U) | ((x & 0xf0f0f0f0U) >> 4U);
+    x = ((x & 0x33333333U) << 2U) | ((x & 0xccccccccU) >> 2U);
+    return ((x & 0x55555555U) << 1U) | ((x & 0xaaaaaaaaU) >> 1U);
+}
+
+}  // namespace
+
+double PathRandom::next() {
+    const auto dimension = static_cast<std::uint64_t>(dimension_++);
+    const std::uint64_t shift = mixed(seed_ + 0x632be59bd9b4e019U * (dimension + 1));
+    std::uint64_t bits = 0;
+    if (dimension < k_generator.size()) {
+        // The van der Corput sequence times the generator, modulo 1, in units of 2^-32.
+        const std::uint32_t point = reversed(index_) * k_generator[dimension];
+        bits = (std::uint64_t{point} << 32U) + shift;
+    } else {
+        bits = mixed(shift ^ mixed(index_));
+    }
+    return static_cast<double>(bits >> 11U) * 0x1p-53;
+}
+
+std::uint64_t PathRandom::seed_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
+    return mixed(mixed(mixed(a) ^ b) ^ c);
+}
+
+}  // namespace uw

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/optics/medium.h"
+#include "core/optics/phase_table.h"
+#include "core/paths/half_tangent_density.h"
+
+namespace uw {
+
+/// The phase functions of a medium and the densities that random paths are drawn from.
+struct ScatteringTables {
+    PhaseTable phases;
+
+    // One per phase function m of the medium:
+    /// p_m(psi) over directions: the angle of a scattering.
+    std::vector<HalfTangentDensity> directions;
+    /// p_m(psi) over angles: where on a line the light of a lamp is scattered along it, since
+    /// ds / R^2 = dpsi / D with D the lamp's distance from the line.
+    std::vector<HalfTangentDensity> lines;
+    /// int_psi^pi p_m over angles: the radiance of single-scattered light around a point lamp, as a
+    /// function of the angle to it, times the sine of that angle.
+    HalfTangentDensity lobe;
+
+    explicit ScatteringTables(const Medium& medium);
+
+    std::size_t phase_count() const { return lines.size(); }
+    /// All p_m at `half_tangent` [1/sr].
+    void phase(double half_tangent, std::span<double> p) const {
+        phases.evaluate(std::span(&half_tangent, 1), p);
+    }
+};
+
+}  // namespace uw
