@@ -55,7 +55,7 @@ Progress::~Progress() {
     if (drawn_ && terminal_) print_message("\n");
 }
 
-void Progress::update(double fraction) {
+void Progress::update(double fraction, const std::string& note) {
     if (quiet_) return;
     const std::lock_guard lock(mutex_);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
@@ -64,10 +64,10 @@ void Progress::update(double fraction) {
     if (!last && elapsed.count() - last_drawn_ < interval) return;
     if (last && !drawn_) return;  // finished before anything was due
     last_drawn_ = elapsed.count();
-    draw(fraction, elapsed.count());
+    draw(fraction, elapsed.count(), note);
 }
 
-void Progress::draw(double fraction, double seconds) {
+void Progress::draw(double fraction, double seconds, const std::string& note) {
     const double rate = seconds > 0 ? fraction * scale_ / seconds : 0;
     std::string time;
     if (seconds_left_)
@@ -76,8 +76,10 @@ void Progress::draw(double fraction, double seconds) {
         time = format_duration(seconds);
     else if (fraction > 0)
         time = format_duration(seconds * (1 - fraction) / fraction) + " left";
-    const std::string figures =
-        fmt::format("{:3.0f} %  {} {}/s  {}", 100 * fraction, format_rate(rate), unit_, time);
+    std::string figures = fmt::format("{:3.0f} %  ", 100 * fraction);
+    if (!note.empty()) figures += note + "  ";
+    if (!unit_.empty()) figures += fmt::format("{} {}/s  ", format_rate(rate), unit_);
+    figures += time;
     if (terminal_)
         draw_bar(fraction, figures);
     else

@@ -12,7 +12,8 @@ namespace uw {
 /// time left; otherwise plain lines every few seconds. Short work shows nothing. Thread-safe.
 class Progress {
   public:
-    /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole. For work that is
+    /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole. Without a unit,
+    /// no rate is shown. For work that is
     /// part of more, `seconds_left` is the time that all of it takes from now on; it is shown
     /// instead of this part's.
     Progress(std::string label, std::string unit, double scale, bool quiet,
@@ -23,11 +24,11 @@ class Progress {
     Progress(Progress&&) = delete;
     Progress& operator=(Progress&&) = delete;
 
-    /// Reports that `fraction` (0..1) of the work is done.
-    void update(double fraction);
+    /// Reports that `fraction` (0..1) of the work is done; `note`, if any, is shown beside it.
+    void update(double fraction, const std::string& note = {});
 
   private:
-    void draw(double fraction, double seconds);
+    void draw(double fraction, double seconds, const std::string& note);
     void draw_bar(double fraction, const std::string& figures);
 
     std::string label_;

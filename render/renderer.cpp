@@ -110,7 +110,7 @@ void Renderer::fit_film(const RenderOptions& options) {
 
 void Renderer::prepare(const RenderOptions& options) {
     report_ = {};
-    plan_ = layer_plan(scene_.desc, options.layers);
+    plan_ = layer_plan(scene_.desc, options.layers, options.paths);
     if (!colour_) colour_ = make_band_colour(scene_.desc.render.colour, scene_.desc.water.bands_nm);
     fit_film(options);
     report_.pixels = static_cast<std::uint64_t>(film_->window().width()) *
@@ -121,10 +121,12 @@ void Renderer::prepare(const RenderOptions& options) {
 }
 
 void Renderer::count_work() {
-    const auto samples = static_cast<std::uint64_t>(scene_.desc.render.samples);
+    const auto samples = static_cast<std::uint64_t>(samples_of(scene_.desc.render));
     // One ray per sample, and one more for the pixel's centre unless that is the sample: its water
     // and ground truth.
     report_.camera_rays = report_.pixels * (samples == 1 ? 1 : samples + 1);
+    if (report_.paths.samples > 0)
+        report_.camera_rays = report_.pixels * static_cast<std::uint64_t>(report_.paths.samples);
     report_.splat_rays = std::exchange(splat_rays_, 0);
     for (const auto& field : light_) report_.light_bytes += field->bytes();
     for (const VolumeReport& volume : scene_.volume_reports) {
@@ -134,6 +136,14 @@ void Renderer::count_work() {
     report_.triangles = scene_.surfaces->triangle_count();
     report_.lamps = scene_.lamps.size();
     report_.bands = static_cast<std::uint64_t>(scene_.water.medium.band_count());
+}
+
+void Renderer::warn_of_error(const PathRequest& request) {
+    if (!request.error || !(report_.paths.error > *request.error)) return;
+    report_.warnings.push_back(fmt::format(
+        "--error {:g}: {} samples per pixel, the most there are, leave a standard error of {:.3g} "
+        "of the image's mean; this is the image written",
+        *request.error, report_.paths.samples, *report_.paths.error));
 }
 
 const Film& Renderer::render(const RenderOptions& options) {
@@ -146,10 +156,14 @@ const Film& Renderer::render(const RenderOptions& options) {
     if (!options.transport) own = make_light_transport(scene_, light_);
     begin("render");
     is_film_clear_ = false;
-    render_scene(scene_, light_, options.transport ? *options.transport : own, *plan_, *colour_,
-                 *film_, [this](const std::string& stage, double fraction) {
-                     return !progress_ || progress_(stage, fraction);
-                 });
+    render_scene(
+        scene_, light_, options.transport ? *options.transport : own, *plan_, *colour_, *film_,
+        [this](const std::string& stage, double fraction) {
+            return !progress_ || progress_(stage, fraction);
+        },
+        {samples_of(scene_.desc.render), options.paths.error},
+        [this](const PathAccuracy& so_far) { report_.paths = so_far; });
+    warn_of_error(options.paths);
     count_work();
     if (film_->window() == window_) return *film_;
     cropped_ = cropped(*film_, window_);

@@ -19,19 +19,24 @@ namespace uw {
 struct RenderOptions {
     std::string layers{};                       // as LayerPlan takes them; empty: the default set
     std::optional<PixelWindow> window{};        // the pixels wanted; none: the whole image
+    PathRequest paths{};                        // of integrators that trace paths
     const LightTransport* transport = nullptr;  // instead of the scene's, for tests; not owned
 };
 
 /// What an image was made of, and the warnings about it.
 struct RenderReport {
-    std::vector<std::string> warnings;  // about the scene: one line each, in the order met
-    std::uint64_t pixels = 0;           // rendered: with forward scatter always the whole image
+    /// About the scene, then about the image: one line each, in the order met.
+    std::vector<std::string> warnings;
+    std::uint64_t pixels = 0;  // rendered: with forward scatter always the whole image
     std::uint64_t camera_rays = 0;
     std::uint64_t splat_rays = 0;     // traced for light not kept from the last image
     std::uint64_t light_bytes = 0;    // of all lamps' light
     std::uint64_t active_voxels = 0;  // of all grids
     std::uint64_t grid_bytes = 0;
     std::uint64_t triangles = 0, lamps = 0, bands = 0;
+    /// Of an image of light paths: so far, while it is rendered; it changes only between two calls
+    /// of the progress callback.
+    PathAccuracy paths;
 };
 
 /// Renders images of scenes: the only path from a scene description to pixels.
@@ -64,7 +69,7 @@ class Renderer {
 
     /// Renders the image. The film belongs to the renderer and stays as it is until the next image
     /// is prepared, which reuses its memory. Throws InputError if there is not enough memory;
-    /// UsageError for a window that is not within the image, and as LayerPlan.
+    /// UsageError for a window that is not within the image, and as layer_plan.
     const Film& render(const RenderOptions& options = {});
 
     /// About the image that was prepared or rendered last.
@@ -103,6 +108,7 @@ class Renderer {
     bool needs_light() const;
     void fit_film(const RenderOptions& options);
     void count_work();
+    void warn_of_error(const PathRequest& request);
 
     RenderProgress progress_;
     AssembledScene scene_;  // its `desc` alone until it is assembled

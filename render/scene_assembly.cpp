@@ -7,6 +7,7 @@
 #include "core/integrators/focus_weighted_integrator.h"
 #include "core/integrators/integrator_table.h"
 #include "core/lamps/lamp_factory.h"
+#include "core/paths/path_tracer.h"
 #include "core/surfaces/geometry_scene.h"
 #include "media/volumes/grid_field.h"
 
@@ -101,7 +102,7 @@ void take_over_surfaces(const SceneDesc& desc, AssembledScene& scene, AssembledS
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
                               AssembledScene before) {
     AssembledScene scene;
-    integrator_kind(desc.render.integrator).check(desc);
+    check_integrator(desc);
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
     scene.water = before.camera && same_water(before.desc, desc)
@@ -135,6 +136,8 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
                                           scene.slabs,
                                           render.quality,
                                           {deep_shadows.begin(), deep_shadows.end()}});
+    if (integrator_kind(render.integrator).traces_paths)
+        transport.paths = std::make_shared<PathTracer>(scene.lit());
     if (render.output == RenderDesc::Output::paper)
         transport.integrator = std::make_unique<FocusWeightedIntegrator>(
             std::move(transport.integrator), scene.desc.camera.lens.value().focal_length);

@@ -1,8 +1,12 @@
 #include "render/scene_rendering.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/base/error.h"
 #include "core/frame/render_film.h"
 #include "core/integrators/integrator_table.h"
 #include "core/integrators/sensor.h"
@@ -24,6 +28,8 @@ constexpr double k_offset_depth = 0.6;  // optical depth
 // closer nodes and has a quarter of that error.
 constexpr double k_in_scatter_tolerance = 2e-3;
 constexpr double k_draft_tolerance = 0.05;
+// Rays per pixel for what is not a mean over light paths, in images that are.
+constexpr int k_most_samples_beside_paths = 16;
 
 std::vector<double> growing_slabs(double near, double far, double attenuation) {
     double offset = k_offset;
@@ -126,27 +132,44 @@ double in_scatter_tolerance(const RenderDesc& render) {
                                                         : k_in_scatter_tolerance;
 }
 
-LayerPlan layer_plan(const SceneDesc& scene, std::string_view request) {
+LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const PathRequest& paths) {
+    const bool traces_paths = integrator_kind(scene.render.integrator).traces_paths;
+    for (const auto& [requested, option] :
+         {std::pair{paths.error.has_value(), "--error"}, std::pair{paths.orders > 0, "--orders"}})
+        if (requested && !traces_paths)
+            throw UsageError(fmt::format(
+                "{}: is for --integrator path only; write that, or leave this out", option));
     std::vector<std::string> names;
     names.reserve(scene.lamps.size());
     for (const LampDesc& lamp : scene.lamps) names.push_back(lamp.name);
-    return {request, scene.water.bands_nm, names};
+    const bool several = paths.error || samples_of(scene.render) > 1;
+    return {request, scene.water.bands_nm, names,
+            LayerSupply{.multiple = scattering_of(scene.render) == RenderDesc::Scattering::multiple,
+                        .error = traces_paths && several,
+                        .orders = paths.orders}};
 }
 
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts) {
-    return {*scene.camera,           scene.lit(), transport, scene.desc.render.samples, scene.slabs,
+    int samples = samples_of(scene.desc.render);
+    if (transport.paths) samples = std::min(samples, k_most_samples_beside_paths);
+    return {*scene.camera,           scene.lit(), transport, samples, scene.slabs,
             SensorModel(scene.desc), parts};
 }
 
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
-                  Film& film, const RenderProgress& progress) {
+                  Film& film, const RenderProgress& progress, const PathGoal& goal,
+                  const AccuracyCallback& reached) {
     const PixelRenderer renderer = pixel_renderer(scene, transport, in_scatter_parts(plan));
     const double tolerance = in_scatter_tolerance(scene.desc.render);
     const auto told = [&progress](const std::string& stage) {
         return [&progress, stage](double fraction) { return progress(stage, fraction); };
     };
+    if (transport.paths) {
+        render_path_film(renderer, goal, plan, colour, film, told("render"), reached);
+        return;
+    }
     if (scene.desc.water.forward_scatter.K == 0) {
         render_film(renderer, tolerance, plan, colour, film, told("render"));
         return;

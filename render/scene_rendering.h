@@ -9,6 +9,7 @@
 
 #include "core/colour/colour.h"
 #include "core/forward/forward_pass.h"
+#include "core/frame/path_film.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
 #include "render/scene_assembly.h"
@@ -18,8 +19,18 @@ namespace uw {
 /// Receives the progress of a stage (0..1), on any thread; returns false to stop.
 using RenderProgress = std::function<bool(const std::string& stage, double fraction)>;
 
-/// The layers of an image of `scene`, resolved: `request` is what LayerPlan takes.
-LayerPlan layer_plan(const SceneDesc& scene, std::string_view request);
+/// What is requested of an image that is rendered by light paths (IntegratorKind::traces_paths).
+struct PathRequest {
+    std::optional<double> error{};  // PathGoal::error, instead of the scene's samples
+    int orders = 0;                 // LayerSupply::orders
+
+    friend bool operator==(const PathRequest&, const PathRequest&) = default;
+};
+
+/// The layers of an image of `scene`, resolved: `request` is what LayerPlan takes. Throws as it
+/// does, and UsageError if `paths` is requested of an integrator that traces none.
+LayerPlan layer_plan(const SceneDesc& scene, std::string_view request,
+                     const PathRequest& paths = {});
 
 /// The resolution at which lamps are splatted for an image of this quality.
 DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality);
@@ -34,10 +45,12 @@ PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& 
 
 /// Renders `scene` into `film` by `transport`: the stage "render", and, with forward scatter on,
 /// the stage "forward scatter", for which the film's window must be the whole image.
-/// Throws Interrupted if `progress` returned false; InputError if there is not enough memory.
+/// A transport that has paths is rendered by them until `goal` is reached. Throws Interrupted if
+/// `progress` returned false; InputError if there is not enough memory.
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
-                  Film& film, const RenderProgress& progress);
+                  Film& film, const RenderProgress& progress, const PathGoal& goal = {},
+                  const AccuracyCallback& reached = {});
 
 /// How the light of `scene` is scattered forward. If the integrator sums slabs the water is split
 /// into them, else into slabs that grow with the distance. `deep_shadows` and `scene` outlive the

@@ -9,6 +9,7 @@
 #include "cli/render/image_output.h"
 #include "cli/render/irradiance_export.h"
 #include "cli/stop_signal.h"
+#include "core/integrators/integrator_table.h"
 
 namespace uw {
 
@@ -27,6 +28,14 @@ std::string without_frame(std::string warning, const SceneDesc& frame, const Sce
     for (std::size_t g = 0; g < frame.geometry.size(); ++g)
         replace(frame.geometry[g], all.geometry[g]);
     return warning;
+}
+
+// "64 samples, error 1.83 %"; empty if no light paths have been traced.
+std::string describe(const PathAccuracy& reached) {
+    if (reached.samples == 0) return {};
+    std::string text = fmt::format("{} samples", reached.samples);
+    if (reached.error) text += fmt::format(", error {:.3g} %", 100 * *reached.error);
+    return text;
 }
 
 }  // namespace
@@ -56,7 +65,8 @@ void FrameRenderer::warn(const Frame& frame, const std::string& line) {
 bool FrameRenderer::proceed(const std::string& stage, double fraction) {
     const std::lock_guard lock(mutex_);
     if (stage != stage_) begin_stage(stage);
-    if (progress_) progress_->update(fraction);
+    const PathAccuracy& paths = renderer_.report().paths;
+    if (progress_) progress_->update(fraction, stage == "render" ? describe(paths) : "");
     return !stop_requested();
 }
 
@@ -68,7 +78,10 @@ void FrameRenderer::begin_stage(const std::string& stage) {
                                                clock_.seconds_left());
     };
     if (stage == "splat") show("lamps", static_cast<double>(renderer_.scene().lamps.size()));
-    if (stage == "render" || stage == "forward scatter")
+    const bool paths = integrator_kind(renderer_.scene().render.integrator).traces_paths;
+    if (stage == "render" && paths)
+        show("", 1);  // of how many paths may not be known yet
+    else if (stage == "render" || stage == "forward scatter")
         show("Mpx", 1e-6 * static_cast<double>(renderer_.report().pixels));
     if (stage == "render") begin_orderly_stop();
     if (stage != "forward scatter") stats_->begin_stage(stage);  // which is part of "render"
@@ -94,6 +107,9 @@ void FrameRenderer::count_work(RunStats& stats) const {
     stats.count("triangles", report.triangles);
     stats.count("lamps", report.lamps);
     stats.count("bands", report.bands);
+    if (report.paths.samples == 0) return;
+    stats.count("samples", static_cast<std::uint64_t>(report.paths.samples));
+    if (report.paths.error) stats.measure("error", *report.paths.error);
 }
 
 void FrameRenderer::write_irradiance(const std::filesystem::path& file) {
@@ -109,7 +125,8 @@ void FrameRenderer::write_irradiance(const std::filesystem::path& file) {
 void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& stats) {
     const OutputFiles& files = frame.files;
     const bool with_irradiance = !files.irradiance_vdb.empty();
-    const RenderOptions options{.layers = arguments_.layers, .window = windows_[frame.camera]};
+    const RenderOptions options{
+        .layers = arguments_.layers, .window = windows_[frame.camera], .paths = arguments_.paths()};
     stats_ = &stats;
     stage_.clear();
     renderer_.set_scene(std::move(scene));
@@ -118,8 +135,13 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& st
         check_irradiance_vdb(renderer_.assembled());
         renderer_.splat();
     }
+    const std::size_t warned = renderer_.report().warnings.size();
     const Film& film = renderer_.render(options);
     progress_.reset();
+    const RenderReport& report = renderer_.report();
+    for (std::size_t i = warned; i < report.warnings.size(); ++i) warn(frame, report.warnings[i]);
+    if (report.paths.samples > 0)
+        say(fmt::format("{} of the image's mean", describe(report.paths)));
     count_work(stats);
     if (with_irradiance) {
         stats.begin_stage("irradiance");
@@ -128,7 +150,7 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& st
     }
     stats.begin_stage("write");
     write_images(
-        files, film, metadata_of(renderer_.assembled(), frame.number),
+        files, film, metadata_of(renderer_.assembled(), frame.number, options.paths, report.paths),
         [&](const std::string& line) { say(line); },
         [&](const std::string& line) { warn(frame, line); });
     stats.end_stage();

@@ -3,28 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/version.h"
 #include "core/image/preview.h"
+#include "core/integrators/integrator_table.h"
 #include "core/integrators/sensor.h"
 
 namespace uw {
 
 namespace {
 
-std::string name_of(RenderDesc::Integrator integrator) {
+// The name of one of the words that scenes and options accept.
+template <class T, std::size_t N>
+std::string name_of(T value, const std::array<std::pair<std::string_view, T>, N>& names) {
     return std::string(
-        std::ranges::find(k_integrator_names, integrator,
-                          &std::pair<std::string_view, RenderDesc::Integrator>::second)
-            ->first);
-}
-
-std::string name_of(RenderDesc::Quality quality) {
-    return std::string(std::ranges::find(k_quality_names, quality,
-                                         &std::pair<std::string_view, RenderDesc::Quality>::second)
-                           ->first);
+        std::ranges::find(names, value, &std::pair<std::string_view, T>::second)->first);
 }
 
 std::string band_list(std::span<const double> values) {
@@ -66,18 +64,28 @@ void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
 
 }  // namespace
 
-ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame) {
+ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
+                          const PathRequest& paths) {
     const std::string quantity = SensorModel(scene).description();
     ImageMetadata m{{"software", "uwvdb " + program_version()},
                     {"uwvdb/scene", scene.file.filename().string()},
                     {"uwvdb/scene_hash", scene.hash},
-                    {"uwvdb/integrator", name_of(scene.render.integrator)},
-                    {"uwvdb/quality", name_of(scene.render.quality)},
-                    {"uwvdb/samples", static_cast<double>(scene.render.samples)},
+                    {"uwvdb/integrator", name_of(scene.render.integrator, k_integrator_names)},
+                    {"uwvdb/quality", name_of(scene.render.quality, k_quality_names)},
+                    {"uwvdb/samples", static_cast<double>(samples_of(scene.render))},
                     {"uwvdb/seed", std::string("none: deterministic")},
                     {"uwvdb/rgb_quantity", quantity},
                     {"uwvdb/units", quantity + ", irradiance and exitance W m^-2, metres"},
                     {"uwvdb/bands_nm", band_list(scene.water.bands_nm)}};
+    if (const auto scattering = scattering_of(scene.render);
+        scattering == RenderDesc::Scattering::multiple)
+        m["uwvdb/scattering"] = name_of(scattering, k_scattering_names);
+    if (integrator_kind(scene.render.integrator).traces_paths)
+        m["uwvdb/seed"] = std::string("0: the same paths every time");
+    if (paths.error) {
+        m.erase("uwvdb/samples");  // follows from the error
+        m["uwvdb/error_requested"] = *paths.error;
+    }
     if (frame) m["uwvdb/frame"] = fmt::format("{}", *frame);
     if (!scene.camera_name.empty()) m["uwvdb/camera"] = scene.camera_name;
     const IntrinsicsDesc& k = scene.camera.intrinsics;
@@ -106,8 +114,11 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame) {
     return m;
 }
 
-ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame) {
-    ImageMetadata m = metadata_of(scene.desc, frame);
+ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
+                          const PathRequest& paths, const PathAccuracy& reached) {
+    ImageMetadata m = metadata_of(scene.desc, frame, paths);
+    if (reached.samples > 0) m["uwvdb/samples"] = static_cast<double>(reached.samples);
+    if (reached.error) m["uwvdb/error"] = *reached.error;
     const Medium& medium = scene.water.medium;
     std::vector<double> a, b, c;
     for (int band = 0; band < medium.band_count(); ++band) {

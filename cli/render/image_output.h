@@ -7,16 +7,19 @@
 #include "cli/render/output_files.h"
 #include "core/image/film.h"
 #include "core/image/image_writer.h"
-#include "render/scene_assembly.h"
+#include "render/scene_rendering.h"
 
 namespace uw {
 
 /// The part of an image's header that follows from the scene's description alone: images of the
-/// same scene, frame and program have the same.
-ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame);
+/// same scene, frame, request and program have the
+/// same.
+ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
+                          const PathRequest& paths = {});
 
 /// The whole header of an image.
-ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame);
+ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
+                          const PathRequest& paths = {}, const PathAccuracy& reached = {});
 
 /// Prints one line.
 using SayCallback = std::function<void(const std::string& line)>;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "render/scene_rendering.h"
+
 namespace uw {
 
 /// `uwvdb render` as typed.
@@ -21,11 +23,15 @@ struct RenderArguments {
     std::string integrator;                  // empty: the scene's
     std::string layers;                      // empty: the default set
     std::optional<int> samples;
-    std::string quality;  // draft or final; empty: final
-    int threads = 0;      // 0: all
+    std::optional<double> error;  // --error: instead of a number of samples
+    std::optional<int> orders;    // --orders: layers by order of scattering
+    std::string quality;          // draft or final; empty: final
+    int threads = 0;              // 0: all
     std::filesystem::path stats;
     std::filesystem::path irradiance_vdb;
     bool quiet = false;
+
+    PathRequest paths() const { return {.error = error, .orders = orders.value_or(0)}; }
 };
 
 }  // namespace uw

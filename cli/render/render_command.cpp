@@ -21,6 +21,7 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/image/image_reader.h"
+#include "core/integrators/integrator_table.h"
 #include "render/scene_loading.h"
 
 namespace uw {
@@ -42,10 +43,19 @@ RenderDesc::Quality quality_named(const std::string& name) {
 }
 
 void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
-    if (!a.quality.empty()) desc.render.quality = quality_named(a.quality);
-    if (desc.render.quality == RenderDesc::Quality::draft) desc.render.samples = 1;
-    if (a.samples) desc.render.samples = *a.samples;
-    if (!a.integrator.empty()) desc.render.integrator = integrator_named(a.integrator);
+    RenderDesc& render = desc.render;
+    if (!a.quality.empty()) render.quality = quality_named(a.quality);
+    if (!a.integrator.empty()) render.integrator = integrator_named(a.integrator);
+    const IntegratorKind& kind = integrator_kind(render.integrator);
+    if (render.quality == RenderDesc::Quality::draft) render.samples = kind.draft_samples;
+    if (a.samples && a.error)
+        throw UsageError("--samples and --error: each says how long to go on; give one of them");
+    if (a.samples) render.samples = *a.samples;
+    const int most = kind.traces_paths ? k_most_paths : k_most_samples;
+    if (samples_of(render) > most)
+        throw UsageError(
+            fmt::format("{}: expected 1 to {}, found {}; only integrator path takes more",
+                        a.samples ? "--samples" : "render.samples", most, samples_of(render)));
     if (!a.size) return;
     const auto [width, height] = *a.size;
     if (width < 1 || height < 1 || width > 32768 || height > 32768)
@@ -99,7 +109,8 @@ void append_warnings(const RenderArguments& a, const Frame& first,
 
 // Removes the images that already exist.
 void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const LayerPlan& layers,
-                        const std::vector<PixelWindow>& windows, bool quiet) {
+                        const PathRequest& paths, const std::vector<PixelWindow>& windows,
+                        bool quiet) {
     std::vector<int> there;
     std::vector<Frame> left;
     GltfSideFiles known;
@@ -110,7 +121,7 @@ void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const La
         // Headers describe the camera that was rendered, possibly a glTF file's.
         const auto is_image_of = [&](const std::filesystem::path& file) {
             const ResolvedScene resolved{SceneDesc(scene)};
-            return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number));
+            return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number, paths));
         };
         const bool rendered = is_rendered(frame, input_files(scene, known), is_image_of);
         if (rendered && (there.empty() || there.back() != *frame.number))
@@ -189,8 +200,8 @@ void run_render(const RenderArguments& a) {
     const std::vector<PixelWindow> windows = windows_of(a, desc);
     append_warnings(a, sequence.frames.front(), windows, desc);
     FrameScenes scenes(desc, sequence.frames.front());
-    const LayerPlan layers = layer_plan(scenes.first(), a.layers);
-    if (a.resume) leave_out_rendered(sequence, desc, layers, windows, a.quiet);
+    const LayerPlan layers = layer_plan(scenes.first(), a.layers, a.paths());
+    if (a.resume) leave_out_rendered(sequence, desc, layers, a.paths(), windows, a.quiet);
     if (sequence.frames.empty()) return;
     check_frames(sequence, desc);
     FrameRenderer renderer(a, desc, windows, sequence.frames.size());

@@ -19,7 +19,11 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render plume.yaml --integrator reference --crop 100,80,140,120 --stats stats.json
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.exr --resume
   uwvdb render stereo.yaml -o 'out/{camera}.exr'
+  uwvdb render plume.yaml --integrator path --error 0.02 --size 320x180
   uwvdb render houdini.yaml --set 'volumes[0].file=/data/my.vdb' --irradiance-vdb light.vdb
+
+render.scattering: single, the default, is light that the water scatters once or a surface reflects
+once; multiple is all light, however often it was scattered and reflected (--integrator path).
 
 Writes OUT.exr (32-bit float, layers by name) and OUT.png beside it, a preview. With --frames, a
 volume's file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of
@@ -45,6 +49,9 @@ std::array<int, N> parse_integers(const std::string& text, char separator, const
     }
     return values;
 }
+
+// The most layers of --orders, of either kind.
+constexpr int k_most_orders = 64;
 
 /// Restricts `option` to the words of `names`, a table of words and their meanings.
 void accept_words(Option& option, const auto& names) {
@@ -83,7 +90,16 @@ Options render_options(RenderArguments& a) {
                  k_integrator_names);
     options.text("--layers", "NAMES", a.layers,
                  "all, or names separated by commas, among them default and lamps");
-    options.integer("--samples", "N", a.samples, 1, 4096, "surface samples per pixel, 1 to 4096");
+    options.integer("--samples", "N", a.samples, 1, k_most_paths,
+                    fmt::format("surface samples per pixel, 1 to {}; with --integrator path light "
+                                "paths, up to {}",
+                                k_most_samples, k_most_paths));
+    options.number("--error", "R", a.error, 0, 1,
+                   "with --integrator path, instead of --samples: until the standard error is "
+                   "below this fraction of the image's mean");
+    options.integer("--orders", "N", a.orders, 1, k_most_orders,
+                    "with --integrator path: write layers of the light scattered, and reflected, "
+                    "0 to N times");
     accept_words(options.text("--quality", "NAME", a.quality,
                               "draft: within 3 %, one sample, for previews; final; or exact: water "
                               "integrated for every pixel"),

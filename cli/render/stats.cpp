@@ -30,6 +30,10 @@ void RunStats::count(const std::string& name, std::uint64_t value) {
     counts_.emplace_back(name, value);
 }
 
+void RunStats::measure(const std::string& name, double value) {
+    measures_.emplace_back(name, value);
+}
+
 double RunStats::total_seconds() const {
     double total = 0;
     for (const auto& [name, seconds] : stages_) total += seconds;
@@ -64,6 +68,7 @@ struct StatsJson {
         for (const auto& [name, seconds] : stats.stages_) json["seconds"][name] = seconds;
         json["seconds"]["total"] = stats.total_seconds();
         for (const auto& [name, value] : stats.counts_) json[name] = value;
+        for (const auto& [name, value] : stats.measures_) json[name] = value;
     }
 
     static void write(const std::filesystem::path& file, Json json) {

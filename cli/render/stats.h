@@ -21,6 +21,8 @@ class RunStats {
     void end_stage();
     /// Adds a figure, e.g. count("camera_rays", 1e6).
     void count(const std::string& name, std::uint64_t value);
+    /// Adds a number that is no count.
+    void measure(const std::string& name, double value);
 
     double total_seconds() const;
     /// Largest resident memory of the process so far [bytes].
@@ -40,6 +42,7 @@ class RunStats {
 
     std::vector<std::pair<std::string, double>> stages_;
     std::vector<std::pair<std::string, std::uint64_t>> counts_;
+    std::vector<std::pair<std::string, double>> measures_;
     std::string output_;
     std::optional<int> frame_;
     std::string stage_;

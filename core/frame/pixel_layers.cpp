@@ -15,17 +15,62 @@ void store_vector(double x, double y, double z, std::span<float> channels) {
     channels[2] = static_cast<float>(z);
 }
 
+void store_colour(std::span<const float> total, const BandColour& colour,
+                  std::span<float> channels) {
+    const LinearRgb rgb = colour(
+        per_band(total.size(), [&](std::size_t b) { return static_cast<double>(total[b]); }));
+    for (std::size_t i = 0; i < 3; ++i) channels[i] = static_cast<float>(rgb[i]);
+}
+
 void store_colour(const PixelResult& pixel, std::size_t bands, const BandColour& colour,
                   std::span<float> channels) {
     std::array<float, k_max_bands> rounded{};
-    layer_channels::total(pixel, std::span(rounded).first(bands));
-    const LinearRgb rgb =
-        colour(per_band(bands, [&](std::size_t b) { return static_cast<double>(rounded[b]); }));
-    for (std::size_t i = 0; i < 3; ++i) channels[i] = static_cast<float>(rgb[i]);
+    const std::span<float> total = std::span(rounded).first(bands);
+    layer_channels::total(pixel, total);
+    store_colour(total, colour, channels);
+}
+
+void store_radiance(const Spectrum& radiance, double factor, std::span<float> channels) {
+    for (std::size_t b = 0; b < channels.size(); ++b)
+        channels[b] = static_cast<float>(factor * radiance[b]);
 }
 
 void add_channels(std::span<float> sum, std::span<const float> more) {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
+}
+
+void mix_channels(std::span<float> mean, std::span<const float> more, double weight) {
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+        const auto before = static_cast<double>(mean[i]);
+        mean[i] = static_cast<float>(before + weight * (static_cast<double>(more[i]) - before));
+    }
+}
+
+/// Makes sums of layers, where the image holds all of their terms, sums to the bit again, in the
+/// order of layer_channels::total.
+void restore_sums(const LayerPlan& plan, const BandColour& colour, std::span<float> channels) {
+    const bool parts = plan.has(Layer::multiple_volume) && plan.has(Layer::multiple_surface);
+    std::array<float, k_max_bands> sums{};
+    const std::span<float> total = std::span(sums).first(plan.band_count());
+    if (parts) {
+        std::ranges::copy(plan.channels(Layer::multiple_volume, channels), total.begin());
+        add_channels(total, plan.channels(Layer::multiple_surface, channels));
+        if (plan.has(Layer::multiple))
+            std::ranges::copy(total, plan.channels(Layer::multiple, channels).begin());
+    } else if (plan.has(Layer::multiple)) {
+        std::ranges::copy(plan.channels(Layer::multiple, channels), total.begin());
+    } else {
+        return;
+    }
+    if (!plan.has(Layer::direct) || !plan.has(Layer::backscatter)) return;
+    const std::span<const float> direct = plan.channels(Layer::direct, channels);
+    const std::span<const float> backscatter = plan.channels(Layer::backscatter, channels);
+    // Nothing is scattered forward by a blur: `forward` is 0.
+    for (std::size_t b = 0; b < total.size(); ++b)
+        total[b] = (direct[b] + backscatter[b]) + total[b];
+    if (plan.has(Layer::total))
+        std::ranges::copy(total, plan.channels(Layer::total, channels).begin());
+    store_colour(total, colour, channels);
 }
 
 }  // namespace
@@ -39,12 +84,20 @@ void PixelResult::reset(std::size_t lamp_count) {
 
 namespace layer_channels {
 
+void multiple(const PixelResult& pixel, std::span<float> channels) {
+    const double factor = pixel.pixel_factor;
+    for (std::size_t b = 0; b < channels.size(); ++b)
+        channels[b] = static_cast<float>(factor * pixel.multiple_volume[b]) +
+                      static_cast<float>(factor * pixel.multiple_surface[b]);
+}
+
 void total(const PixelResult& pixel, std::span<float> channels) {
     const double factor = pixel.pixel_factor;
+    multiple(pixel, channels);
     for (std::size_t b = 0; b < channels.size(); ++b)
         channels[b] = static_cast<float>(factor * pixel.direct[b]) +
                       static_cast<float>(factor * pixel.forward[b]) +
-                      static_cast<float>(factor * pixel.backscatter[b]);
+                      static_cast<float>(factor * pixel.backscatter[b]) + channels[b];
 }
 
 void albedo(const PixelResult& pixel, std::span<float> channels) {
@@ -85,11 +138,35 @@ void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColo
         else
             layer.fill(pixel, own);
     }
-    for (std::size_t j = 0; j < pixel.lamps.size(); ++j) {
-        const std::span<float> own = plan.lamp_channels(j, channels);
-        for (std::size_t b = 0; b < own.size(); ++b)
-            own[b] = static_cast<float>(pixel.pixel_factor * pixel.lamps[j][b]);
+    for (std::size_t j = 0; j < pixel.lamps.size(); ++j)
+        store_radiance(pixel.lamps[j], pixel.pixel_factor, plan.lamp_channels(j, channels));
+    for (std::size_t order = 0; order < plan.order_count(); ++order) {
+        store_radiance(pixel.orders[order], pixel.pixel_factor,
+                       plan.order_channels(order, channels));
+        store_radiance(pixel.reflections[order], pixel.pixel_factor,
+                       plan.reflection_channels(order, channels));
     }
+}
+
+void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
+                 const BandColour& colour, std::span<float> channels) {
+    thread_local std::vector<float> fresh;
+    fresh.resize(channels.size());
+    store_pixel(pixel, plan, colour, fresh);
+    const auto merge = [&](const auto& channels_in) {
+        mix_channels(channels_in(channels), channels_in(std::span(fresh)), weight);
+    };
+    merge([](std::span<float> all) { return all.first(k_alpha + 1); });
+    for (const PixelLayer& layer : k_pixel_layers)
+        if (layer.of_paths && plan.has(layer.layer))
+            merge([&](std::span<float> all) { return plan.channels(layer.layer, all); });
+    for (std::size_t j = 0; j < pixel.lamps.size(); ++j)
+        merge([&](std::span<float> all) { return plan.lamp_channels(j, all); });
+    for (std::size_t order = 0; order < plan.order_count(); ++order) {
+        merge([&](std::span<float> all) { return plan.order_channels(order, all); });
+        merge([&](std::span<float> all) { return plan.reflection_channels(order, all); });
+    }
+    restore_sums(plan, colour, channels);
 }
 
 void store_forward_scatter(const PixelResult& pixel, const LayerPlan& plan,

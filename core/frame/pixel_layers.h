@@ -24,13 +24,21 @@ struct PixelResult {
     Spectrum forward;  // added to `direct` by forward scatter: 0 before that pass
     Spectrum backscatter;
     Spectrum backscatter_first;  // of the first slab
-    Spectrum irradiance;         // on the surface, 0 where there is none
-    Spectrum exitance;           // of the surface: the part of the irradiance it reflects
-    Spectrum clean;              // radiance of the surface without water
-    Spectrum transmittance;      // surface to port, mean over the samples that hit a surface
-    double lit = 0;              // mean fraction of the lamps that see the surface
-    /// Radiance due to each lamp: direct + backscatter. Empty unless InScatterParts::lamps.
+    /// All other light, 0 unless multiple scattering is rendered: what the water scattered last,
+    /// and what surfaces reflected last.
+    Spectrum multiple_volume, multiple_surface;
+    Spectrum error;          // the standard error of the total, with the pixel's factor
+    Spectrum irradiance;     // on the surface, 0 where there is none
+    Spectrum exitance;       // of the surface: the part of the irradiance it reflects
+    Spectrum clean;          // radiance of the surface without water
+    Spectrum transmittance;  // surface to port, mean over the samples that hit a surface
+    double lit = 0;          // mean fraction of the lamps that see the surface
+    /// Radiance due to each lamp: direct + backscatter + multiple. Empty unless
+    /// InScatterParts::lamps.
     std::vector<Spectrum> lamps;
+    /// All radiance by how often it was scattered, and by how often it was reflected, as
+    /// LayerPlan::order_count; empty unless requested.
+    std::vector<Spectrum> orders, reflections;
     bool has_hit = false;  // whether the centre's ray hits a surface
     SurfaceHit hit;
     double depth_z = 0;  // camera-frame z of the hit
@@ -61,8 +69,10 @@ template <double PixelResult::*value>
 void number(const PixelResult& pixel, std::span<float> channels) {
     channels[0] = static_cast<float>(pixel.*value);
 }
-/// The sum of direct, forward and backscatter, each rounded to float before the addition, so that
-/// in the image they add up to the total to the bit.
+/// The sum of `multiple_volume` and `multiple_surface`, each rounded to float before the addition.
+void multiple(const PixelResult& pixel, std::span<float> channels);
+/// The sum of direct, forward, backscatter and `multiple`, in this order, each rounded to float
+/// before the addition, so that in the image they add up to the total to the bit.
 void total(const PixelResult& pixel, std::span<float> channels);
 void albedo(const PixelResult& pixel, std::span<float> channels);
 void normal(const PixelResult& pixel, std::span<float> channels);
@@ -79,6 +89,7 @@ struct PixelLayer {
     Layer layer;
     void (*fill)(const PixelResult& pixel, std::span<float> channels);
     ForwardScatter forward_scatter = ForwardScatter::leaves;
+    bool of_paths = false;          // a mean over light paths: merge_paths
     bool of_hit = false;            // 0 where the centre's ray hits no surface
     bool needs_first_slab = false;  // of the in-scatter
 };
@@ -87,20 +98,32 @@ struct PixelLayer {
 inline constexpr std::array<PixelLayer, k_layer_count> k_pixel_layers{{
     {.layer = Layer::total,
      .fill = layer_channels::total,
-     .forward_scatter = PixelLayer::ForwardScatter::replaces},
+     .forward_scatter = PixelLayer::ForwardScatter::replaces,
+     .of_paths = true},
     {.layer = Layer::direct,
      .fill = layer_channels::radiance<&PixelResult::direct>,
-     .forward_scatter = PixelLayer::ForwardScatter::replaces},
+     .forward_scatter = PixelLayer::ForwardScatter::replaces,
+     .of_paths = true},
     {.layer = Layer::forward,
      .fill = layer_channels::radiance<&PixelResult::forward>,
      .forward_scatter = PixelLayer::ForwardScatter::replaces},
     {.layer = Layer::backscatter,
      .fill = layer_channels::radiance<&PixelResult::backscatter>,
-     .forward_scatter = PixelLayer::ForwardScatter::replaces},
+     .forward_scatter = PixelLayer::ForwardScatter::replaces,
+     .of_paths = true},
     {.layer = Layer::backscatter_first,
      .fill = layer_channels::radiance<&PixelResult::backscatter_first>,
      .forward_scatter = PixelLayer::ForwardScatter::adds,
+     .of_paths = true,
      .needs_first_slab = true},
+    {.layer = Layer::multiple, .fill = layer_channels::multiple, .of_paths = true},
+    {.layer = Layer::multiple_volume,
+     .fill = layer_channels::radiance<&PixelResult::multiple_volume>,
+     .of_paths = true},
+    {.layer = Layer::multiple_surface,
+     .fill = layer_channels::radiance<&PixelResult::multiple_surface>,
+     .of_paths = true},
+    {.layer = Layer::error, .fill = layer_channels::spectrum<&PixelResult::error>},
     {.layer = Layer::irradiance, .fill = layer_channels::spectrum<&PixelResult::irradiance>},
     {.layer = Layer::exitance, .fill = layer_channels::spectrum<&PixelResult::exitance>},
     {.layer = Layer::lit, .fill = layer_channels::number<&PixelResult::lit>},
@@ -123,6 +146,11 @@ InScatterParts in_scatter_parts(const LayerPlan& plan);
 /// those of a film made with the plan's names.
 void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColour& colour,
                  std::span<float> channels);
+
+/// Adds more light paths to channels filled by store_pixel: what is a mean over paths becomes that
+/// of all, in which those of `pixel` have the share `weight`. Everything else stays.
+void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
+                 const BandColour& colour, std::span<float> channels);
 
 /// Writes the changes due to forward scatter into channels previously filled by store_pixel, except
 /// for the lamps. `pixel` holds the light after forward scatter, but in `backscatter_first` only

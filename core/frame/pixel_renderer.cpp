@@ -185,9 +185,13 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
             transmittance /= static_cast<double>(view.samples.size());
     if (!view.ray) return;
     add_water(in_scatter, result);
-    if (sensor_.uses_lens() || rays_.port_dims())
-        result.pixel_factor = sensor_.pixel_factor(rays_.lens_ray(view.x, view.y),
-                                                   view.has_hit ? view.range : k_infinitely_far);
+    result.pixel_factor = pixel_factor(view);
+}
+
+double PixelRenderer::pixel_factor(const PixelView& view) const {
+    if (!view.ray || !(sensor_.uses_lens() || rays_.port_dims())) return 1;
+    return sensor_.pixel_factor(rays_.lens_ray(view.x, view.y),
+                                view.has_hit ? view.range : k_infinitely_far);
 }
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {

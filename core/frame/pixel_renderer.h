@@ -32,6 +32,7 @@ class PixelRenderer {
     const RaySource& rays() const { return rays_; }
     const RayInScatter& in_scatter() const { return in_scatter_; }
     const LightTransport& transport() const { return transport_; }
+    const LitScene& scene() const { return scene_; }
 
     /// Traces the samples of pixel (x, y). Thread safe.
     void trace(int x, int y, PixelView& view) const;
@@ -44,6 +45,8 @@ class PixelRenderer {
     /// values `in_scatter` (RayInScatter). `result` is reused storage. Thread safe.
     void shade(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
                std::span<const double> in_scatter, PixelResult& result) const;
+    /// The factor of a pixel's light in the image, PixelResult::pixel_factor; 1 without a ray.
+    double pixel_factor(const PixelView& view) const;
     /// All of the above for a single pixel.
     void render(int x, int y, PixelResult& result) const;
 

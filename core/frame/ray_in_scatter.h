@@ -48,9 +48,10 @@ class RayInScatter {
     /// Thread safe.
     void integrate(const PixelView& view, std::span<double> values) const;
 
-  private:
+    /// The part of the ray within the first slab [m]; empty if it does not pass it.
     Interval first_slab_along(const Ray& ray) const;
 
+  private:
     const Integrator& integrator_;
     Affine camera_from_world_;
     Slabs slabs_;

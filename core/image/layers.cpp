@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::array<std::string_view, 3> k_not_supported{"flow", "flow_back", "flow_occluded"};
 
+/// Layers by how often light was scattered, and reflected.
+constexpr std::array<std::string_view, 2> k_orders{"order", "reflections"};
+
 constexpr std::string_view k_lamp_prefix = "lamp.";
 /// EXR allows 255 bytes for "lamp.<name>.<band>nm".
 constexpr std::size_t k_longest_lamp_name = 200;
@@ -52,6 +55,23 @@ std::string mend_of(std::string_view item) {
     return suggestion(item, words);
 }
 
+/// What to write to have a layer that is not in `supply`; empty if it is.
+std::string_view mend_of_missing(Layer layer, const LayerSupply& supply) {
+    switch (layer) {
+        case Layer::multiple:
+        case Layer::multiple_volume:
+        case Layer::multiple_surface:
+            if (supply.multiple) return {};
+            return "the scene is rendered with single scattering; write --set "
+                   "render.scattering=multiple, or --integrator path";
+        case Layer::error:
+            if (supply.error) return {};
+            return "only --integrator path has a standard error, from two samples on; write that";
+        default:
+            return {};
+    }
+}
+
 /// A lamp's name becomes part of a channel name: readers end it at NUL, and control characters
 /// corrupt terminals.
 void check_lamp_name(const std::string& name) {
@@ -71,27 +91,46 @@ void check_lamp_name(const std::string& name) {
 
 /// The layers requested by --layers.
 struct LayerPlan::Selection {
+    LayerSupply supply;
     std::array<bool, k_layer_count> layers{};
-    std::vector<bool> lamps;
+    std::vector<bool> lamps{};
 
     void add(std::string_view item, std::span<const std::string> lamp_names);
+    void add_all();
+    void add_layer(std::size_t layer);
     void add_lamp(std::string_view name, std::span<const std::string> lamp_names);
 };
 
 void LayerPlan::Selection::add(std::string_view item, std::span<const std::string> lamp_names) {
-    if (item == "all" || item == "default") layers.fill(true);
+    if (item == "all" || item == "default") add_all();
     if (item == "all" || item == "lamps") lamps.assign(lamps.size(), true);
     if (item == "all" || item == "default" || item == "lamps") return;
     if (item.starts_with(k_lamp_prefix)) {
         add_lamp(item.substr(k_lamp_prefix.size()), lamp_names);
     } else if (const auto layer = find_layer(item)) {
-        layers[*layer] = true;
+        add_layer(*layer);
+    } else if (std::ranges::find(k_orders, item.substr(0, item.find('.'))) != k_orders.end()) {
+        throw UsageError(fmt::format(
+            "--layers: {}: layers by order are written with --orders N; give that instead",
+            printable(item)));
     } else if (std::ranges::find(k_not_supported, item) != k_not_supported.end()) {
         throw UsageError(fmt::format("--layers: {}: not supported yet; leave it out", item));
     } else {
         throw UsageError(
             fmt::format("--layers: '{}': unknown layer; {}", printable(item), mend_of(item)));
     }
+}
+
+void LayerPlan::Selection::add_all() {
+    for (std::size_t i = 0; i < k_layer_count; ++i)
+        if (mend_of_missing(static_cast<Layer>(i), supply).empty()) layers[i] = true;
+}
+
+void LayerPlan::Selection::add_layer(std::size_t layer) {
+    const std::string_view mend = mend_of_missing(static_cast<Layer>(layer), supply);
+    if (!mend.empty())
+        throw UsageError(fmt::format("--layers: {}: {}", k_layers[layer].name, mend));
+    layers[layer] = true;
 }
 
 void LayerPlan::Selection::add_lamp(std::string_view name,
@@ -107,10 +146,10 @@ void LayerPlan::Selection::add_lamp(std::string_view name,
 }
 
 LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
-                     std::span<const std::string> lamp_names)
+                     std::span<const std::string> lamp_names, const LayerSupply& supply)
     : band_count_(bands_nm.size()), first_of_lamp_(lamp_names.size(), -1) {
     first_.fill(-1);
-    Selection selection;
+    Selection selection{.supply = supply};
     selection.lamps.resize(lamp_names.size());
     if (trimmed(request).empty()) request = "default";
     for (std::size_t begin = 0; begin <= request.size();) {
@@ -118,27 +157,46 @@ LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
         selection.add(trimmed(request.substr(begin, end - begin)), lamp_names);
         begin = end + 1;
     }
-
     const std::vector<std::string> bands = band_suffixes(bands_nm);
+    add_layers(selection, bands);
+    add_lamps(selection, lamp_names, bands);
+    if (supply.orders > 0) add_orders(supply.orders, bands);
+}
+
+void LayerPlan::add_layers(const Selection& selection, std::span<const std::string> bands) {
     for (std::size_t i = 0; i < k_layer_count; ++i) {
-        const bool is_rgb = i == static_cast<std::size_t>(Layer::total) && bands_nm.size() == 3;
+        const bool is_rgb = i == static_cast<std::size_t>(Layer::total) && band_count_ == 3;
         if (!selection.layers[i] || is_rgb) continue;
         first_[i] = static_cast<int>(channel_names_.size());
         std::vector<std::string> letters;
         for (const char letter : k_layers[i].suffixes) letters.emplace_back(1, letter);
         add_channels(std::string(k_layers[i].name), letters.empty() ? bands : letters);
     }
+}
+
+void LayerPlan::add_lamps(const Selection& selection, std::span<const std::string> lamp_names,
+                          std::span<const std::string> bands) {
     std::set<std::string_view> named;
     for (std::size_t lamp = 0; lamp < lamp_names.size(); ++lamp) {
         if (!selection.lamps[lamp]) continue;
         check_lamp_name(lamp_names[lamp]);
         if (!named.insert(lamp_names[lamp]).second) {
-            throw InputError(fmt::format(
-                "lamps: two are named '{}'; give each its own name, as each has its own layer",
-                lamp_names[lamp]));
+            throw InputError(
+                fmt::format("lamps: two are named '{}'; give each its own name to have its layer",
+                            lamp_names[lamp]));
         }
         first_of_lamp_[lamp] = static_cast<int>(channel_names_.size());
         add_channels(std::string(k_lamp_prefix) + lamp_names[lamp], bands);
+    }
+}
+
+void LayerPlan::add_orders(int orders, std::span<const std::string> bands) {
+    first_order_ = channel_names_.size();
+    order_count_ = static_cast<std::size_t>(orders) + 2;
+    for (const std::string_view what : k_orders) {
+        for (int order = 0; order <= orders; ++order)
+            add_channels(fmt::format("{}.{}", what, order), bands);
+        add_channels(fmt::format("{}.more", what), bands);
     }
 }
 

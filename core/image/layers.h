@@ -18,6 +18,10 @@ enum class Layer {
     forward,
     backscatter,
     backscatter_first,
+    multiple,
+    multiple_volume,
+    multiple_surface,
+    error,
     irradiance,
     exitance,
     lit,
@@ -48,6 +52,10 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::forward, "forward", ""},
     {Layer::backscatter, "backscatter", ""},
     {Layer::backscatter_first, "backscatter_first", ""},
+    {Layer::multiple, "multiple", ""},
+    {Layer::multiple_volume, "multiple.volume", ""},
+    {Layer::multiple_surface, "multiple.surface", ""},
+    {Layer::error, "error", ""},
     {Layer::irradiance, "irradiance", ""},
     {Layer::exitance, "exitance", ""},
     {Layer::lit, "lit", "V"},
@@ -71,6 +79,15 @@ constexpr bool has_every_layer(const std::array<Line, k_layer_count>& table) {
 }
 static_assert(has_every_layer(k_layers));
 
+/// What an image can hold besides what every image can.
+struct LayerSupply {
+    bool multiple = false;  // light scattered or reflected more than once
+    bool error = false;     // the standard error
+    /// The light by how often it was scattered, and by how often it was reflected, each 0 to this;
+    /// 0: not at all. These layers are in the plan without being requested.
+    int orders = 0;
+};
+
 /// Which channels an image has, what they are called, and where each layer begins.
 ///
 /// The first four channels are always R, G, B, A. Layers of one value per band are named
@@ -78,16 +95,19 @@ static_assert(has_every_layer(k_layers));
 /// decimal point is written as an underscore (`direct.540_5nm`), since readers take everything
 /// before the last point as the layer. Then the total per band is a layer of its own, `total`; with
 /// three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`, `normal.X .Y .Z`,
-/// `position.X .Y .Z`, `id.V`. A lamp's own light is `lamp.<name>.R` and so on.
+/// `position.X .Y .Z`, `id.V`. A lamp's own light is `lamp.<name>.R` and so on; light scattered n
+/// times is `order.<n>.R`, what is scattered more often than LayerSupply::orders `order.more.R`,
+/// and by reflections likewise `reflections.<n>.R`.
 class LayerPlan {
   public:
     /// `request` is the argument of --layers: comma-separated layers, including `lamps` for every
     /// lamp, `lamp.<name>` for one, `all`, and `default` for everything but the lamps. Empty means
-    /// `default`. Order and repetition do not matter. Throws UsageError for an unknown layer or
-    /// lamp, or one that is not supported yet; InputError if bands or lamps cannot be distinguished
+    /// `default`. Order and repetition do not matter. `all` and `default` leave out what is not in
+    /// `supply`. Throws UsageError for an unknown layer or lamp, for one that is not supported yet
+    /// and for one that is not in `supply`; InputError if bands or lamps cannot be distinguished
     /// by name or a lamp's name is not valid in a channel name.
     LayerPlan(std::string_view request, std::span<const double> bands_nm,
-              std::span<const std::string> lamp_names);
+              std::span<const std::string> lamp_names, const LayerSupply& supply = {});
 
     /// The names of all channels in the file, in order.
     const std::vector<std::string>& channel_names() const { return channel_names_; }
@@ -114,14 +134,30 @@ class LayerPlan {
     }
     std::size_t band_count() const { return band_count_; }
 
+    /// Number of layers of light by how often it was scattered, and of layers by how often it was
+    /// reflected; the last is that of all more often. 0 if they were not requested.
+    std::size_t order_count() const { return order_count_; }
+    /// Their channels among all those of a pixel.
+    std::span<float> order_channels(std::size_t order, std::span<float> pixel) const {
+        return pixel.subspan(first_order_ + order * band_count_, band_count_);
+    }
+    std::span<float> reflection_channels(std::size_t order, std::span<float> pixel) const {
+        return order_channels(order_count_ + order, pixel);
+    }
+
   private:
     struct Selection;
+    void add_layers(const Selection& selection, std::span<const std::string> bands);
+    void add_lamps(const Selection& selection, std::span<const std::string> lamp_names,
+                   std::span<const std::string> bands);
+    void add_orders(int orders, std::span<const std::string> bands);
     void add_channels(const std::string& layer, std::span<const std::string> suffixes);
 
     std::vector<std::string> channel_names_{"R", "G", "B", "A"};
     std::size_t band_count_;
     std::array<int, k_layer_count> first_{};
     std::vector<int> first_of_lamp_;
+    std::size_t first_order_ = 0, order_count_ = 0;
 };
 
 }  // namespace uw

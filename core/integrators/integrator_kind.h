@@ -32,6 +32,12 @@ struct IntegratorKind {
     bool interpolates_between_pixels = false;
     /// Sums over the slabs of `render.planes`; forward scatter then uses the same slabs.
     bool sums_slabs = false;
+    /// All light is rendered by random paths from the camera (PathTracer); its `samples` are theirs
+    /// and have a standard error.
+    bool traces_paths = false;
+    /// Renders light that is scattered or reflected more than once, too.
+    bool multiple_scattering = false;
+    int samples = 4, draft_samples = 1;  // per pixel, unless requested
     /// Throws InputError for a scene that it cannot render.
     void (*check)(const SceneDesc& scene) = [](const SceneDesc&) {};
     LightTransport (*make)(const IntegratorInputs& inputs) = nullptr;

@@ -7,11 +7,16 @@
 
 namespace uw {
 
-/// The two ways in which lamp light reaches the camera: scattered once by the water, or reflected
-/// by surfaces.
+class PathTracer;
+
+/// The ways in which lamp light reaches the camera: scattered once by the water, reflected once by
+/// surfaces, or any other.
 struct LightTransport {
     std::unique_ptr<const Integrator> integrator;
     std::unique_ptr<const SurfaceLighting> surfaces;
+    /// All light by random paths (IntegratorKind::traces_paths); null: the image is made of the
+    /// other two.
+    std::shared_ptr<const PathTracer> paths{};
 };
 
 }  // namespace uw

@@ -1,8 +1,11 @@
 #include "core/integrators/volume_integrator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/error.h"
 #include "core/base/quadrature.h"
 
 namespace uw {
@@ -90,6 +93,14 @@ void add_knots(const ConcentrationProfile& profile, int voxels, PanelBreaks& bre
     }
 }
 
+void check_for_volume(const SceneDesc& scene) {
+    if (scene.render.scattering == RenderDesc::Scattering::multiple)
+        throw InputError(fmt::format(
+            "{}: multiple scattering is not supported yet by integrator volume; use integrator "
+            "path",
+            scene.render.scattering_where));
+}
+
 LightTransport make_volume(const IntegratorInputs& inputs) {
     using Quality = RenderDesc::Quality;
     if (inputs.quality == Quality::draft)
@@ -104,8 +115,11 @@ LightTransport make_volume(const IntegratorInputs& inputs) {
 
 }  // namespace
 
-constinit const IntegratorKind VolumeIntegrator::k_kind{
-    .needs_deep_shadows = true, .interpolates_between_pixels = true, .make = make_volume};
+constinit const IntegratorKind VolumeIntegrator::k_kind{.needs_deep_shadows = true,
+                                                        .interpolates_between_pixels = true,
+                                                        .multiple_scattering = true,
+                                                        .check = check_for_volume,
+                                                        .make = make_volume};
 
 struct VolumeIntegrator::Workspace {
     ConcentrationProfile profile;

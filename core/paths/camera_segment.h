@@ -14,7 +14,11 @@ struct CameraSegment {
     /// Where the paths' first scattering lies: running sums of weights of the intervals between
     /// `distances`, in each of which it is uniform. Empty where the water scatters no light.
     std::vector<double> distances, cumulative;
-    double own_light = 0;  // roughly the ray's radiance, mean over the bands, for roulette
+    /// Rough means over the bands, which guide the paths.
+    struct Light {
+        double own = 0;      // the ray's radiance, without single scattering
+        double ambient = 0;  // what a path may meet anywhere
+    } light;
 };
 
 }  // namespace uw

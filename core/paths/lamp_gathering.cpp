@@ -1,6 +1,7 @@
 #include "core/paths/lamp_gathering.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/fast_exp.h"
@@ -10,20 +11,16 @@
 
 namespace uw {
 
-namespace {
-
-// An interval of h = tan(psi / 2).
-struct HalfTangents {
-    double begin = 0, end = 0;
-};
-
-}  // namespace
-
 /// One lamp's part in the light along a segment.
 struct LampGathering::Share {
+    // An interval of h = tan(psi / 2).
+    struct HalfTangents {
+        double begin = 0, end = 0;
+    };
+
     std::size_t lamp = 0;
-    double foot = 0, distance = 0;  // LampPassage
-    HalfTangents parts[2];          // outside the lamp's sphere and within its beam
+    double foot = 0, distance = 0;      // LampPassage
+    std::array<HalfTangents, 2> parts;  // outside the lamp's sphere and within its beam
     int part_count = 0;
     double mass = 0;  // of the weighted phase functions on them
 };
@@ -60,8 +57,8 @@ void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
         deep_shadows_[lamp]->columns(std::span(&x, 1), column);
 }
 
-void LampGathering::find_water_shares(const WaterSegment& segment, const PathState& state,
-                                      Workspace& w) const {
+void LampGathering::find_water_shares(const WaterSegment& segment, std::span<const double> weights,
+                                      const PathState& state, Workspace& w) const {
     const std::vector<Lamp>& lamps = *optics_.scene().lamps;
     const std::size_t phases = tables_.phase_count();
     // By the scattering of the whole segment: what is chosen need only resemble what it stands for.
@@ -89,6 +86,8 @@ void LampGathering::find_water_shares(const WaterSegment& segment, const PathSta
     w.cumulative.clear();
     double total = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
+        const double own_weight = weights.empty() ? 1 : weights[j];
+        if (!(own_weight > 0)) continue;
         const Interval lit = lamps[j].beam(segment.ray, {0, segment.length});
         if (!(lit.length() > 0)) continue;
         LampPassage passage(segment.ray, lamps[j].position());
@@ -96,14 +95,14 @@ void LampGathering::find_water_shares(const WaterSegment& segment, const PathSta
         Share share{j, passage.foot, passage.distance, {}, 0, 0};
         const auto add_part = [&](double begin, double end) {
             if (!(end > begin)) return;
-            const HalfTangents part{passage.half_tangent(begin, passage.radius(begin)),
-                                    passage.half_tangent(end, passage.radius(end))};
+            const Share::HalfTangents part{passage.half_tangent(begin, passage.radius(begin)),
+                                           passage.half_tangent(end, passage.radius(end))};
             double mass = 0;
             for (std::size_t m = 0; m < phases; ++m)
                 mass += w.phase_weights[m] *
                         (tables_.lines[m].mass_to(part.end) - tables_.lines[m].mass_to(part.begin));
             if (!(mass > 0)) return;
-            share.parts[share.part_count++] = part;
+            share.parts[static_cast<std::size_t>(share.part_count++)] = part;
             share.mass += mass;
         };
         if (passage.distance >= k_lamp_radius) {
@@ -118,7 +117,7 @@ void LampGathering::find_water_shares(const WaterSegment& segment, const PathSta
         // The light path R + s never shortens along the segment.
         const double weight = lamps.size() == 1
                                   ? 1
-                                  : share.mass / share.distance *
+                                  : own_weight * share.mass / share.distance *
                                         mean_of_arriving(state.throughput, lamps[j],
                                                          lit.begin + passage.radius(lit.begin));
         if (!(weight > 0)) continue;
@@ -128,13 +127,14 @@ void LampGathering::find_water_shares(const WaterSegment& segment, const PathSta
     }
 }
 
-void LampGathering::gather_from_water(const WaterSegment& segment, const PathState& state,
-                                      PathRandom& random, PathTerms& terms) const {
+void LampGathering::gather_from_water(const WaterSegment& segment, std::span<const double> weights,
+                                      const PathState& state, PathRandom& random,
+                                      PathTerms& terms) const {
     thread_local Workspace w;
     double of_lamp = random.next(), of_phase = random.next(), of_angle = random.next();
     const std::size_t phases = tables_.phase_count();
     if (phases == 0) return;
-    find_water_shares(segment, state, w);
+    find_water_shares(segment, weights, state, w);
     if (w.shares.empty()) return;
     const Choice lamp_choice = choose(w.cumulative, of_lamp);
     const Share& share = w.shares[lamp_choice.index];
@@ -143,8 +143,8 @@ void LampGathering::gather_from_water(const WaterSegment& segment, const PathSta
     w.masses.clear();
     double total = 0;
     for (std::size_t m = 0; m < phases; ++m) {
-        for (int part = 0; part < share.part_count; ++part) {
-            const HalfTangents& h = share.parts[part];
+        for (std::size_t part = 0; part < static_cast<std::size_t>(share.part_count); ++part) {
+            const Share::HalfTangents& h = share.parts[part];
             total += w.phase_weights[m] *
                      (tables_.lines[m].mass_to(h.end) - tables_.lines[m].mass_to(h.begin));
             w.masses.push_back(total);
@@ -153,7 +153,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, const PathSta
     const std::size_t pick = choose(w.masses, of_phase).index;
     const auto parts = static_cast<std::size_t>(share.part_count);
     const HalfTangentDensity& line = tables_.lines[pick / parts];
-    const HalfTangents& part = share.parts[pick % parts];
+    const Share::HalfTangents& part = share.parts[pick % parts];
     const double from = line.mass_to(part.begin), to = line.mass_to(part.end);
     const double h = std::clamp(line.invert(from + of_angle * (to - from)), part.begin, part.end);
     if (!(h > 0)) return;
@@ -180,7 +180,8 @@ void LampGathering::gather_from_water(const WaterSegment& segment, const PathSta
     const std::size_t bands = optics_.bands();
     const std::span<double> radiance = w.radiance.first(bands);
     optics_.transmittances(s + radius, w.column, radiance);
-    const double factor = relative * 2 / ((1 + h * h) * share.distance * density);
+    const double factor = (weights.empty() ? 1 : weights[share.lamp]) * relative * 2 /
+                          ((1 + h * h) * share.distance * density);
     for (std::size_t b = 0; b < bands; ++b) {
         double beta = 0;
         for (std::size_t m = 0; m < phases; ++m) beta += w.point.scattering[m][b] * w.p[m];

@@ -22,9 +22,10 @@ class LampGathering {
 
     /// The water's: int I b p e^-tau / R^2 ds for a lamp chosen by its share, at a point chosen by
     /// its scattering angle psi, in which 1/R^2 and the forward peak are flat: ds / R^2 = dpsi / D
-    /// with D the lamp's distance from the line. Uses three random numbers.
-    void gather_from_water(const WaterSegment& segment, const PathState& state, PathRandom& random,
-                           PathTerms& terms) const;
+    /// with D the lamp's distance from the line. Uses three random numbers. `weights`: a factor for
+    /// each lamp, or none; lamps whose factor is 0 are not chosen.
+    void gather_from_water(const WaterSegment& segment, std::span<const double> weights,
+                           const PathState& state, PathRandom& random, PathTerms& terms) const;
     /// The surface's, for a lamp chosen by its share; `transmittance` is that of the segment. Uses
     /// one random number. Precondition: segment.has_hit.
     void gather_from_surface(const WaterSegment& segment, std::span<const double> transmittance,
@@ -34,7 +35,8 @@ class LampGathering {
     struct Share;
     struct Workspace;
 
-    void find_water_shares(const WaterSegment& segment, const PathState& state, Workspace& w) const;
+    void find_water_shares(const WaterSegment& segment, std::span<const double> weights,
+                           const PathState& state, Workspace& w) const;
     double mean_of_arriving(const Spectrum& throughput, const Lamp& lamp, double length) const;
     void column_to_lamp(std::size_t lamp, const Point3& x, std::span<double> column) const;
 

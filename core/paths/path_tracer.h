@@ -12,6 +12,8 @@
 
 namespace uw {
 
+struct PathTables;
+
 /// Where light paths take optical depths between lamps and points from.
 struct PathOptions {
     /// One per lamp: their columns and no others. Empty: columns are exact.
@@ -42,13 +44,10 @@ class PathTracer {
     void trace_surface(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
 
   private:
-    class Walk;
-    struct Tables;
-
     void place_intervals(CameraSegment& segment) const;
     void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
 
-    std::unique_ptr<const Tables> tables_;
+    std::unique_ptr<const PathTables> tables_;
 };
 
 }  // namespace uw

@@ -1,11 +1,15 @@
 #include "core/paths/scattering_tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace uw {
 
 namespace {
+
+// The table of spread_glow.
+constexpr int k_first_octave = -12, k_last_octave = 8, k_per_octave = 4;
 
 // Shares of the phase functions in a lobe that serves all of the water: those of the scattering
 // coefficients of everything in it.
@@ -23,6 +27,9 @@ std::vector<double> typical_shares(const Medium& medium) {
     };
     include(medium.uniform);
     for (const Constituent& constituent : medium.constituents) include(constituent.per_unit);
+    double sum = 0;
+    for (const double share : shares) sum += share;
+    for (double& share : shares) share = sum > 0 ? share / sum : 0;
     return shares;
 }
 
@@ -50,6 +57,45 @@ ScatteringTables::ScatteringTables(const Medium& medium) : phases(medium) {
         }
     }
     lobe = HalfTangentDensity(std::move(of_lobe));
+    spread(shares);
+}
+
+double ScatteringTables::spread_glow(double half_tangent) const {
+    if (spread_glow_.empty()) return 0;
+    const double last = static_cast<double>(spread_glow_.size() - 1);
+    const double at = std::clamp(
+        k_per_octave * (std::log2(std::max(half_tangent, 1e-9)) - k_first_octave), 0.0, last);
+    const auto cell = std::min(static_cast<std::size_t>(at), spread_glow_.size() - 2);
+    const double t = at - static_cast<double>(cell);
+    return (1 - t) * spread_glow_[cell] + t * spread_glow_[cell + 1];
+}
+
+// By a few directions drawn evenly from each phase function.
+void ScatteringTables::spread(std::span<const double> shares) {
+    constexpr int k_angles = 48, k_azimuths = 12;
+    for (int i = 0; i <= k_per_octave * (k_last_octave - k_first_octave); ++i) {
+        const double psi =
+            2 * std::atan(std::exp2(k_first_octave + static_cast<double>(i) / k_per_octave));
+        double sum = 0;
+        for (std::size_t m = 0; m < shares.size(); ++m) {
+            for (int angle = 0; angle < k_angles; ++angle) {
+                const double h =
+                    directions[m].invert((angle + 0.5) / k_angles * directions[m].mass());
+                const double theta = 2 * std::atan(h);
+                for (int azimuth = 0; azimuth < k_azimuths; ++azimuth) {
+                    const double phi = std::numbers::pi * (azimuth + 0.5) / k_azimuths;
+                    const double cosine = std::cos(psi) * std::cos(theta) +
+                                          std::sin(psi) * std::sin(theta) * std::cos(phi);
+                    const double to_lamp = std::acos(std::clamp(cosine, -1.0, 1.0));
+                    // Not nearer to the lamp than these directions resolve.
+                    const double sine =
+                        std::max(std::sin(to_lamp), 0.3 / k_azimuths * std::sin(theta));
+                    sum += shares[m] * beyond(std::tan(0.5 * to_lamp)) / std::max(sine, 1e-6);
+                }
+            }
+        }
+        spread_glow_.push_back(sum / (k_angles * k_azimuths));
+    }
 }
 
 }  // namespace uw

@@ -22,6 +22,13 @@ struct ScatteringTables {
     /// int_psi^pi p_m over angles: the radiance of single-scattered light around a point lamp, as a
     /// function of the angle to it, times the sine of that angle.
     HalfTangentDensity lobe;
+    /// int_psi^pi p_m over angles [1/sr], of the phase function that `lobe` is made of.
+    double beyond(double half_tangent) const {
+        return lobe.density(half_tangent) * 0.5 * (1 + half_tangent * half_tangent);
+    }
+    /// The radiance around a point lamp, beyond / sin(psi), spread by one more scattering:
+    /// a convolution with the phase function, roughly [1/sr^2].
+    double spread_glow(double half_tangent) const;
 
     explicit ScatteringTables(const Medium& medium);
 
@@ -30,6 +37,11 @@ struct ScatteringTables {
     void phase(double half_tangent, std::span<double> p) const {
         phases.evaluate(std::span(&half_tangent, 1), p);
     }
+
+  private:
+    void spread(std::span<const double> shares);
+
+    std::vector<double> spread_glow_;  // at h = 2^-12, 2^-11.75, ...
 };
 
 }  // namespace uw

@@ -46,14 +46,22 @@ void WaterOptics::trace(const Ray& ray, WaterSegment& segment) const {
     set(ray, found ? &segment.hit : nullptr, segment);
 }
 
+void WaterOptics::trace_briefly(const Ray& ray, WaterSegment& segment) const {
+    segment.ray = ray;
+    segment.has_hit = false;
+    segment.length = std::min(scene_.surfaces->hit_distance(ray), k_far);
+    segment.profile.s.clear();
+    segment.has_field = crosses(bounds_, ray, segment.length);
+}
+
 void WaterOptics::set(const Ray& ray, const SurfaceHit* hit, WaterSegment& segment) const {
     segment.ray = ray;
     segment.has_hit = hit != nullptr;
     segment.length = hit ? hit->distance : k_far;
     if (hit && hit != &segment.hit) segment.hit = *hit;
     segment.profile.s.clear();
-    if (crosses(bounds_, ray, segment.length))
-        scene_.field->profile(ray, segment.length, segment.profile);
+    segment.has_field = crosses(bounds_, ray, segment.length);
+    if (segment.has_field) scene_.field->profile(ray, segment.length, segment.profile);
 }
 
 void WaterOptics::look_up(const WaterSegment& segment, double distance, WaterPoint& point) const {
@@ -61,8 +69,14 @@ void WaterOptics::look_up(const WaterSegment& segment, double distance, WaterPoi
     point.distance = distance;
     point.concentration.assign(count, 0.0);
     point.column.assign(count, 0.0);
+    if (!segment.has_field) return;
     const ConcentrationProfile& profile = segment.profile;
-    if (profile.s.empty()) return;
+    if (profile.s.empty()) {
+        const Point3 x = segment.ray.at(distance);
+        scene_.field->sample(x, point.concentration);
+        scene_.field->column(segment.ray.origin, x, point.column);
+        return;
+    }
     const std::size_t knot = knot_before(profile, distance);
     const double length = profile.s[knot + 1] - profile.s[knot];
     const double t = std::clamp((distance - profile.s[knot]) / length, 0.0, 1.0);

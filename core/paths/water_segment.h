@@ -19,6 +19,7 @@ struct WaterSegment {
     bool has_hit = false;
     SurfaceHit hit;                // at its end
     ConcentrationProfile profile;  // without knots where all of the water is uniform
+    bool has_field = false;        // without a profile, the field is asked at every point
 };
 
 /// The state of the water at one point of a segment. Reused storage.
@@ -41,7 +42,9 @@ class WaterOptics {
 
     /// Finds the end of the segment that begins with `ray`, and the concentrations along it.
     void trace(const Ray& ray, WaterSegment& segment) const;
-    /// The same for a segment whose end is known: `hit`, or none if null.
+    /// The same for a few looks at points of it: no hit, no profile.
+    void trace_briefly(const Ray& ray, WaterSegment& segment) const;
+    /// The same as trace for a segment whose end is known: `hit`, or none if null.
     void set(const Ray& ray, const SurfaceHit* hit, WaterSegment& segment) const;
 
     /// Concentrations and columns at `distance`, without the scattering.

@@ -35,21 +35,30 @@ struct ColourDesc {
 
 /// What is rendered and how.
 struct RenderDesc {
-    enum class Integrator { volume, planes, reference };
+    enum class Integrator { volume, planes, reference, path };
     Integrator integrator = Integrator::volume;
+    /// Single: what the water scatters once and surfaces reflect once. Multiple: all light.
+    enum class Scattering { single, multiple };
+    std::optional<Scattering> scattering;  ///< if omitted, that of the integrator (scattering_of)
+    SourceLocation scattering_where = "render.scattering";
     PlanesDesc planes;
     /// The quantity that the image holds; all but radiance require the camera's lens.
     enum class Output { radiance, sensor_irradiance, paper };
     Output output = Output::radiance;
     SourceLocation output_where;
     ColourDesc colour;
-    int samples = 4;     ///< rays per pixel, 1..4096
+    /// Rays per pixel, 1..k_most_samples or, of light paths, k_most_paths; if omitted, as many as
+    /// the integrator needs (samples_of).
+    std::optional<int> samples;
     double shutter = 0;  ///< exposure time [s], 0..60; 0: no motion blur
     /// Draft is for previews: within 3 % of the final image, at a fraction of its cost. Exact is
     /// for comparison: in-scatter is integrated along every pixel's own ray (InScatterLattice).
     enum class Quality { draft, final, exact };
     Quality quality = Quality::final;
 };
+
+/// The most rays per pixel, and the most light paths.
+inline constexpr int k_most_samples = 4096, k_most_paths = 65536;
 
 /// The qualities by their names in scene files.
 inline constexpr std::array<std::pair<std::string_view, RenderDesc::Quality>, 3> k_quality_names{
@@ -58,9 +67,15 @@ inline constexpr std::array<std::pair<std::string_view, RenderDesc::Quality>, 3>
      {"exact", RenderDesc::Quality::exact}}};
 
 /// The integrators by their names in scene files.
-inline constexpr std::array<std::pair<std::string_view, RenderDesc::Integrator>, 3>
+inline constexpr std::array<std::pair<std::string_view, RenderDesc::Integrator>, 4>
     k_integrator_names{{{"volume", RenderDesc::Integrator::volume},
                         {"planes", RenderDesc::Integrator::planes},
-                        {"reference", RenderDesc::Integrator::reference}}};
+                        {"reference", RenderDesc::Integrator::reference},
+                        {"path", RenderDesc::Integrator::path}}};
+
+/// What light is rendered, by its names in scene files.
+inline constexpr std::array<std::pair<std::string_view, RenderDesc::Scattering>, 2>
+    k_scattering_names{{{"single", RenderDesc::Scattering::single},
+                        {"multiple", RenderDesc::Scattering::multiple}}};
 
 }  // namespace uw

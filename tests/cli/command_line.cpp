@@ -66,7 +66,7 @@ TEST_F(CommandLine, ValuesThatMakeNoSense) {
     refused({"--crop", "0,0,34,19"}, "not a window of the image of 33 x 19 pixels");
     refused({"--crop", "5,5,5,9"}, "not a window");
     refused({"--crop", "-1,0,5,5"}, "not a window");
-    refused({"--samples", "0"}, "--samples: expected 1 to 4096, found '0'");
+    refused({"--samples", "0"}, "--samples: expected 1 to 65536, found '0'");
     refused({"--samples", "many"}, "found 'many'");
     refused({"--threads", "-1"}, "--threads: expected 0 to 1024, found '-1'");
     refused({"--integrator", "magic"}, "--integrator: unknown 'magic'; use volume");

@@ -71,13 +71,19 @@ ColourDesc read_colour(ConfigMap& map, const SceneContext& context) {
 }  // namespace
 
 RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value,
-                  {"integrator", "output", "planes", "samples", "shutter", "response", "white"},
-                  "write {samples: 4}");
+    ConfigMap map(
+        value,
+        {"integrator", "scattering", "output", "planes", "samples", "shutter", "response", "white"},
+        "write {samples: 4}");
     RenderDesc render;
     render.planes.where = value.location() + ".planes";
     if (const auto entry = map.find("integrator"))
         render.integrator = entry->choice(k_integrator_names);
+    render.scattering_where = value.location() + ".scattering";
+    if (const auto entry = map.find("scattering")) {
+        render.scattering = entry->choice(k_scattering_names);
+        render.scattering_where = entry->location();
+    }
     if (const auto entry = map.find("output")) {
         constexpr std::array<std::pair<std::string_view, RenderDesc::Output>, 3> k_outputs{
             {{"radiance", RenderDesc::Output::radiance},
@@ -88,7 +94,9 @@ RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
     }
     if (const auto entry = map.find("planes")) render.planes = read_planes(*entry);
     if (const auto entry = map.find("samples")) {
-        render.samples = entry->integer(1, 4096, "give the samples per pixel");
+        const bool paths = render.integrator == RenderDesc::Integrator::path;
+        render.samples =
+            entry->integer(1, paths ? k_most_paths : k_most_samples, "give the samples per pixel");
     }
     if (const auto entry = map.find("shutter")) {
         constexpr double k_longest = 60;

@@ -134,6 +134,7 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
                          std::nullopt};
     desc.water.where = scene.location();
     desc.render.planes.where = scene.location() + ": render.planes";
+    desc.render.scattering_where = scene.location() + ": render.scattering";
     if (const auto entry = map.find("water")) desc.water = read_water(*entry, context);
     read_camera_or_rig(map, context, desc);
     if (const auto entry = map.find("volumes")) desc.volumes = read_volumes(*entry, context);

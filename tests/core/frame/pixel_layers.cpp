@@ -122,6 +122,97 @@ TEST_F(PixelLayers, ForwardScatterChangesItsLayersAndLeavesTheOthers) {
     EXPECT_EQ(plan_.lamp_channels(0, channels_)[0], 50 + 2 + 6);
 }
 
+/// Images of all light.
+class PathLayers : public ::testing::Test {
+  protected:
+    /// A pixel whose light is `scale` thirds of what floats cannot hold exactly.
+    static PixelResult pixel(double scale) {
+        PixelResult result = full_pixel();
+        result.pixel_factor = 0.7;
+        result.direct = {{scale / 3, scale / 7, scale / 11}};
+        result.backscatter = {{scale / 13, scale / 17, scale / 19}};
+        result.multiple_volume = {{scale / 23, scale / 29, scale / 31}};
+        result.multiple_surface = {{scale / 37, scale / 41, scale / 43}};
+        result.lamps = {{{scale, scale, scale}}};
+        result.orders.assign(3, Spectrum{{scale, scale, scale}});
+        result.reflections.assign(3, Spectrum{{scale, scale, scale}});
+        return result;
+    }
+    static std::vector<float> stored(const LayerPlan& plan) {
+        return std::vector<float>(plan.channel_names().size(), -7.0F);
+    }
+    static void expect_sums(const LayerPlan& plan, std::vector<float>& channels) {
+        for (std::size_t b = 0; b < 3; ++b) {
+            const auto of = [&](Layer layer) { return plan.channels(layer, channels)[b]; };
+            EXPECT_EQ(of(Layer::multiple),
+                      of(Layer::multiple_volume) + of(Layer::multiple_surface));
+            EXPECT_EQ(channels[b],
+                      ((of(Layer::direct) + of(Layer::forward)) + of(Layer::backscatter)) +
+                          of(Layer::multiple));
+        }
+    }
+
+    std::vector<std::string> lamps_{"left"};
+    BandColour colour_{k_bands};
+    LayerSupply supply_{.multiple = true, .error = true, .orders = 1};
+};
+
+TEST_F(PathLayers, AddUpToTheBitBeforeAndAfterMorePaths) {
+    const LayerPlan plan("all", k_bands, lamps_, supply_);
+    std::vector<float> channels = stored(plan);
+    store_pixel(pixel(1), plan, colour_, channels);
+    expect_sums(plan, channels);
+    for (const float value : channels) EXPECT_NE(value, -7);
+    for (int round = 1; round < 20; ++round) {
+        merge_paths(pixel(1 + 0.1 * round), 1.0 / (round + 1), plan, colour_, channels);
+        expect_sums(plan, channels);
+    }
+    // The mean of 1 to 2.9.
+    EXPECT_NEAR(plan.channels(Layer::direct, channels)[0], 0.7 * 1.95 / 3, 1e-6);
+    EXPECT_NEAR(plan.lamp_channels(0, channels)[1], 0.7 * 1.95, 1e-6);
+    EXPECT_NEAR(plan.order_channels(2, channels)[2], 0.7 * 1.95, 1e-6);
+    EXPECT_NEAR(plan.reflection_channels(0, channels)[2], 0.7 * 1.95, 1e-6);
+}
+
+TEST_F(PathLayers, OfMorePathsLeaveWhatIsNoMeanOverPaths) {
+    const LayerPlan plan("all", k_bands, lamps_, supply_);
+    std::vector<float> channels = stored(plan);
+    store_pixel(pixel(1), plan, colour_, channels);
+    PixelResult more;
+    more.reset(1);
+    more.alpha = 0.25;
+    more.orders.assign(3, Spectrum{});
+    more.reflections.assign(3, Spectrum{});
+    merge_paths(more, 0.5, plan, colour_, channels);
+    EXPECT_EQ(channels[k_alpha], 0.5F);
+    EXPECT_EQ(plan.channels(Layer::depth, channels)[0], 2);
+    EXPECT_EQ(plan.channels(Layer::irradiance, channels)[0], 11);
+    EXPECT_EQ(plan.channels(Layer::clean, channels)[0], 0.7F * 17);
+    EXPECT_FLOAT_EQ(plan.channels(Layer::direct, channels)[0], 0.5F * 0.7F / 3);
+}
+
+// The total is the same whatever else the image holds.
+TEST_F(PathLayers, TotalDoesNotNeedItsTerms) {
+    const std::vector<double> bands{450, 500, 550, 600};
+    const BandColour colour(bands);
+    const auto totals = [&](const char* layers) {
+        const LayerPlan plan(layers, bands, lamps_, supply_);
+        std::vector<float> channels = stored(plan);
+        store_pixel(pixel(1), plan, colour, channels);
+        merge_paths(pixel(3), 0.25, plan, colour, channels);
+        const std::span<float> total = plan.channels(Layer::total, channels);
+        std::vector<float> all(total.begin(), total.end());
+        all.insert(all.end(), channels.begin(), channels.begin() + 4);
+        return all;
+    };
+    const std::vector<float> whole = totals("all");
+    for (const char* const layers : {"total", "total,direct,multiple", "total,multiple.volume"}) {
+        const std::vector<float> other = totals(layers);
+        for (std::size_t i = 0; i < whole.size(); ++i)
+            EXPECT_NEAR(other[i], whole[i], 1e-6) << layers;
+    }
+}
+
 TEST(InScatterPartsOfLayers, AreThoseThatSomeLayerNeeds) {
     const std::vector<std::string> lamps{"left", "right"};
     const auto parts = [&](const char* layers) {

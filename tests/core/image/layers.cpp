@@ -140,6 +140,44 @@ TEST(Layers, RefusesWithOneUsefulLine) {
     EXPECT_NE(message_of<UsageError>("lamp.x", k_rgb, {}).find("no lamps"), std::string::npos);
 }
 
+TEST(Layers, WhatCannotBeSuppliedIsLeftOutOrRefused) {
+    const auto names = [](std::string_view request, const LayerSupply& supply) {
+        return LayerPlan(request, k_rgb, k_lamps, supply).channel_names();
+    };
+    const Names all = names("all", {.multiple = true, .error = true});
+    ASSERT_EQ(all.size(), 42U + 12U + 6U);
+    EXPECT_EQ(Names(all.begin() + 16, all.begin() + 28),
+              (Names{"multiple.R", "multiple.G", "multiple.B", "multiple.volume.R",
+                     "multiple.volume.G", "multiple.volume.B", "multiple.surface.R",
+                     "multiple.surface.G", "multiple.surface.B", "error.R", "error.G", "error.B"}));
+    EXPECT_EQ(names("default", {.multiple = true}).size(), 42U + 9U);
+    EXPECT_EQ(names("multiple.surface", {.multiple = true}).size(), 4U + 3U);
+    for (const char* const name : {"multiple", "multiple.volume", "multiple.surface"})
+        EXPECT_EQ(message_of<UsageError>(name),
+                  std::string("--layers: ") + name +
+                      ": the scene is rendered with single scattering; write --set "
+                      "render.scattering=multiple, or --integrator path");
+    EXPECT_NE(message_of<UsageError>("error").find("only --integrator path has a standard error"),
+              std::string::npos);
+    EXPECT_NE(message_of<UsageError>("order.2").find("written with --orders N"), std::string::npos);
+}
+
+TEST(Layers, OrdersComeLast) {
+    const LayerPlan plan("depth,lamp.left", k_rgb, k_lamps, {.orders = 2});
+    const Names& names = plan.channel_names();
+    ASSERT_EQ(names.size(), 4U + 1U + 3U + 2U * 4U * 3U);
+    EXPECT_EQ(plan.order_count(), 4U);
+    EXPECT_EQ(names[8], "order.0.R");
+    EXPECT_EQ(names[16], "order.2.B");
+    EXPECT_EQ(names[17], "order.more.R");
+    EXPECT_EQ(names[20], "reflections.0.R");
+    EXPECT_EQ(names.back(), "reflections.more.B");
+    std::vector<float> pixel(names.size());
+    EXPECT_EQ(plan.order_channels(3, pixel).data(), &pixel[17]);
+    EXPECT_EQ(plan.reflection_channels(0, pixel).data(), &pixel[20]);
+    EXPECT_EQ(LayerPlan("depth", k_rgb, k_lamps).order_count(), 0U);
+}
+
 TEST(Layers, LampNamesThatCannotBeChannels) {
     EXPECT_NE(message_of<InputError>("lamps", k_rgb, {"a", "a"}).find("'a'"), std::string::npos);
     for (const std::string& name :

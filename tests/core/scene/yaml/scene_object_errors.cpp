@@ -163,12 +163,17 @@ TEST_F(SceneObjectErrors, spectraOfLamps) {
 TEST_F(SceneObjectErrors, render) {
     check(std::string(k_base) + "render:\n",
           {
-              {"  integrator: path\n", "render.integrator: unknown value 'path'; "},
+              {"  integrator: paths\n", "render.integrator: unknown value 'paths'; "},
+              {"  scattering: double\n",
+               "render.scattering: unknown value 'double'; use one of: single, multiple"},
               {"  output: irradiance\n", "render.output: unknown value 'irradiance'; "},
               {"  output: paper\n",
                "scene.yaml:4:11: render.output: needs the camera's lens; give camera.lens: {"},
               {"  output: sensor_irradiance\n", "render.output: needs the camera's lens; give "},
               {"  samples: 0\n", "render.samples: must be from 1 to 4096, found 0"},
+              {"  samples: 4097\n", "render.samples: must be from 1 to 4096, found 4097"},
+              {"  integrator: path\n  samples: 65537\n",
+               "render.samples: must be from 1 to 65536, found 65537"},
               {"  samples: 2.5\n", "render.samples: expected a whole number, found 2.5"},
               {"  planes: {count: 3, near: 2, far: 1}\n",
                "render.planes.far: must be greater than near"},

@@ -225,9 +225,20 @@ TEST_F(SceneReader, fillsInDefaults) {
     EXPECT_EQ(scene.water.temperature, 20);
     EXPECT_TRUE(scene.volumes.empty());
     EXPECT_EQ(scene.render.output, RenderDesc::Output::radiance);
-    EXPECT_EQ(scene.render.samples, 4);
+    EXPECT_FALSE(scene.render.samples);
+    EXPECT_FALSE(scene.render.scattering);
     ASSERT_EQ(scene.warnings.size(), 1U);
     EXPECT_NE(scene.warnings[0].find("no lamps, so the image will be black"), std::string::npos);
+}
+
+TEST_F(SceneReader, takesLightPaths) {
+    const SceneDesc scene = read(std::string(k_minimal) +
+                                 "render: {integrator: path, scattering: multiple, samples: "
+                                 "65536}\n");
+    EXPECT_EQ(scene.render.integrator, RenderDesc::Integrator::path);
+    EXPECT_EQ(scene.render.scattering, RenderDesc::Scattering::multiple);
+    EXPECT_NE(scene.render.scattering_where.find(": render.scattering"), std::string::npos);
+    EXPECT_EQ(scene.render.samples, 65536);
 }
 
 TEST_F(SceneReader, fyFollowsFx) {

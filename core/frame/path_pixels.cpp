@@ -1,0 +1,246 @@
+#include "core/frame/path_pixels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/paths/path_tracer.h"
+#include "core/surfaces/surface_reflection.h"
+
+namespace uw {
+
+namespace {
+
+// Rays of one batch that are traced and lit together.
+constexpr int k_together = 64;
+
+// Each of the estimates of a path has random numbers of its own, after those of its image position.
+enum Stream : std::uint64_t { k_position, k_single, k_water, k_surface };
+constexpr int k_position_dimensions = 2;
+
+}  // namespace
+
+/// The paths of one batch.
+struct PathPixels::Batch {
+    std::uint64_t pixel, number;
+    int samples;
+
+    PathRandom random(Stream stream, int index) const {
+        PathRandom numbers(PathRandom::seed_of(pixel, number, stream),
+                           static_cast<std::uint32_t>(index));
+        if (stream != k_position) numbers.skip_to(k_position_dimensions);
+        return numbers;
+    }
+};
+
+/// Adds up terms, in the pixel and for the batch.
+class PathPixels::Sum final : public PathTerms {
+  public:
+    Sum(PixelResult& pixel, std::size_t bands) : pixel_(pixel), bands_(bands) {}
+
+    std::size_t bands() const { return bands_; }
+    /// The part of the pixel's light that the next terms belong to.
+    void set_part(Spectrum PixelResult::*part) { part_ = part; }
+    /// Light that the water scatters here belongs to the first slab, too.
+    void set_first_slab(const Interval& slab) { first_slab_ = slab; }
+    /// Counted by the pixel's alpha.
+    void add_rays(std::size_t count) { pixel_.alpha += static_cast<double>(count); }
+
+    void begin_batch() { batch_ = {}; }
+    /// Of all terms since begin_batch.
+    const Spectrum& batch() const { return batch_; }
+
+    void add(const PathTerm& term) override {
+        add_to(pixel_.*part_, term);
+        add_to(batch_, term);
+        if (part_ == &PixelResult::backscatter && term.distance >= first_slab_.begin &&
+            term.distance < first_slab_.end)
+            add_to(pixel_.backscatter_first, term);
+        if (term.lamp != k_no_lamp && !pixel_.lamps.empty()) add_to(pixel_.lamps[term.lamp], term);
+        if (pixel_.orders.empty()) return;
+        const auto last = static_cast<int>(pixel_.orders.size()) - 1;
+        add_to(pixel_.orders[static_cast<std::size_t>(std::min(term.scatterings, last))], term);
+        add_to(pixel_.reflections[static_cast<std::size_t>(std::min(term.reflections, last))],
+               term);
+    }
+
+  private:
+    void add_to(Spectrum& sum, const PathTerm& term) const {
+        uw::add(sum.first(bands_), term.radiance);
+    }
+
+    PixelResult& pixel_;
+    std::size_t bands_;
+    Spectrum PixelResult::*part_ = &PixelResult::direct;
+    Interval first_slab_{};
+    Spectrum batch_;
+};
+
+void PathPixels::render(int x, int y, const PathRound& round, const TracedCallback& traced,
+                        PixelResult& result) const {
+    thread_local PixelView view;
+    render_the_rest(x, y, round, view, result);
+    const auto bands = static_cast<std::size_t>(pixels_.band_count());
+    const bool has_ray = view.ray.has_value();
+    Sum sum(result, bands);
+    std::array<Spectrum, PathRound::k_batches> means;
+    std::array<int, PathRound::k_batches> sizes{};
+    const int batches = round.batches();
+    const auto pixel = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
+    for (int b = 0; b < batches; ++b) {
+        const auto i = static_cast<std::size_t>(b);
+        // As equal as can be.
+        sizes[i] = (b + 1) * round.samples / batches - b * round.samples / batches;
+        const auto number = static_cast<std::uint64_t>(round.number) * PathRound::k_batches + i;
+        sum.begin_batch();
+        trace(x, y, {pixel, number, sizes[i]}, view, sum, traced);
+        means[i] = sum.batch() / sizes[i];
+    }
+    const double share = 1.0 / round.samples;
+    result.alpha *= share;
+    for (Spectrum PixelResult::*part :
+         {&PixelResult::direct, &PixelResult::backscatter, &PixelResult::backscatter_first,
+          &PixelResult::multiple_volume, &PixelResult::multiple_surface})
+        result.*part *= share;
+    for (std::vector<Spectrum>* list : {&result.lamps, &result.orders, &result.reflections})
+        for (Spectrum& light : *list) light *= share;
+    if (!has_ray) result.pixel_factor = pixels_.pixel_factor(view);
+    if (batches == 1) return;
+    // The variance of a batch's mean falls as 1 / its size.
+    for (std::size_t band = 0; band < bands; ++band) {
+        const double mean = result.direct[band] + result.backscatter[band] +
+                            result.multiple_volume[band] + result.multiple_surface[band];
+        double spread = 0;
+        for (std::size_t b = 0; b < static_cast<std::size_t>(batches); ++b) {
+            const double deviation = means[b][band] - mean;
+            spread += sizes[b] * share * deviation * deviation;
+        }
+        result.error[band] = result.pixel_factor * std::sqrt(spread / (batches - 1));
+    }
+}
+
+/// Everything but the light of the paths, which is 0 afterwards.
+void PathPixels::render_the_rest(int x, int y, const PathRound& round, PixelView& view,
+                                 PixelResult& result) const {
+    thread_local SurfaceLight light;
+    thread_local std::vector<double> no_water;
+    pixels_.trace(x, y, view);
+    if (round.number == 0) {
+        no_water.assign(pixels_.in_scatter().value_count(), 0.0);
+        pixels_.light_surfaces(std::span(&view, 1), light);
+        pixels_.shade(view, light, 0, no_water, result);
+        for (Spectrum& lamp : result.lamps) lamp = {};
+        result.direct = {};
+        result.alpha = 0;
+    } else {
+        const bool lamps = pixels_.in_scatter().parts().lamps;
+        result.reset(lamps ? static_cast<std::size_t>(pixels_.lamp_count()) : 0);
+        result.pixel_factor = pixels_.pixel_factor(view);
+    }
+    result.orders.assign(order_count_, Spectrum{});
+    result.reflections.assign(order_count_, Spectrum{});
+}
+
+void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,
+                       const TracedCallback& traced) const {
+    thread_local std::vector<Ray> rays;
+    thread_local std::vector<int> indices;  // of the rays' paths
+    thread_local std::vector<SurfaceHit> hits;
+    thread_local std::vector<char> found;
+    thread_local std::vector<SurfaceSample> samples;
+    thread_local std::vector<const SurfaceSample*> surfaces;
+    thread_local SurfaceLight light;
+    for (int first = 0; first < batch.samples; first += k_together) {
+        const int end = std::min(first + k_together, batch.samples);
+        rays.clear();
+        indices.clear();
+        samples.clear();
+        surfaces.clear();
+        for (int i = first; i < end; ++i) {
+            PathRandom random = batch.random(k_position, i);
+            const double across = x + random.next();
+            const double down = y + random.next();
+            const std::optional<Ray> ray = pixels_.rays().refracted_ray(across, down);
+            if (!ray) continue;
+            rays.push_back(*ray);
+            indices.push_back(i);
+            samples.push_back({*ray, {}, across, down});
+            if (view.ray) continue;  // a pixel whose edge alone sees water
+            view.ray = ray;
+            view.x = across;
+            view.y = down;
+        }
+        hits.resize(rays.size());
+        found.resize(rays.size());
+        pixels_.scene().surfaces->closest_hits(rays, k_far, hits, found);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (found[i] == 0) continue;
+            samples[i].hit = hits[i];
+            surfaces.push_back(&samples[i]);
+        }
+        pixels_.transport().surfaces->evaluate(surfaces, light);
+        std::size_t in_light = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const SurfaceSample* const surface = found[i] != 0 ? &samples[i] : nullptr;
+            trace_path(surface, rays[i], light, in_light, batch, indices[i], sum);
+            if (surface != nullptr) ++in_light;
+        }
+        sum.add_rays(rays.size());
+        traced(end - first);
+    }
+}
+
+void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+                            std::size_t in_light, const Batch& batch, int index, Sum& sum) const {
+    thread_local CameraSegment segment;
+    const PathTracer& paths = *pixels_.transport().paths;
+    Spectrum leaving;
+    if (surface != nullptr) {
+        sum.set_part(&PixelResult::direct);
+        add_direct(*surface, light, in_light, sum, leaving);
+    }
+    paths.begin(ray, surface != nullptr ? &surface->hit : nullptr, leaving.first(sum.bands()),
+                segment);
+    const auto estimate = [&](Spectrum PixelResult::*part, Stream stream, const auto& trace_part) {
+        PathRandom random = batch.random(stream, index);
+        sum.set_part(part);
+        (paths.*trace_part)(segment, random, sum);
+    };
+    if (pixels_.in_scatter().parts().first_slab)
+        sum.set_first_slab(pixels_.in_scatter().first_slab_along(ray));
+    estimate(&PixelResult::backscatter, k_single, &PathTracer::trace_single);
+    estimate(&PixelResult::multiple_volume, k_water, &PathTracer::trace_water);
+    estimate(&PixelResult::multiple_surface, k_surface, &PathTracer::trace_surface);
+}
+
+/// `leaving`: the radiance at the surface itself [W m^-2 sr^-1].
+void PathPixels::add_direct(const SurfaceSample& surface, const SurfaceLight& light,
+                            std::size_t in_light, Sum& sum, Spectrum& leaving) const {
+    const std::size_t bands = sum.bands();
+    const LitScene& scene = pixels_.scene();
+    const std::span<const double> to_camera = light.to_camera(in_light);
+    const SurfaceReflection reflection(*scene.surfaces, surface, pixels_.band_count());
+    Spectrum arriving, brdf;
+    PathTerm term{.distance = surface.hit.distance, .radiance = arriving.first(bands)};
+    if (reflection.emits()) {
+        for (std::size_t b = 0; b < bands; ++b) {
+            leaving[b] += reflection.emission()[b];
+            arriving[b] = reflection.emission()[b] * to_camera[b];
+        }
+        sum.add(term);
+    }
+    term.reflections = 1;
+    for (std::size_t j = 0; j < light.lamp_count(); ++j) {
+        if (!light.visible(in_light, j)) continue;
+        reflection.brdf((*scene.lamps)[j].position(), brdf);
+        for (std::size_t b = 0; b < bands; ++b) {
+            const double reflected = light.irradiance(in_light, j, b) * brdf[b];
+            leaving[b] += reflected;
+            arriving[b] = reflected * to_camera[b];
+        }
+        term.lamp = j;
+        sum.add(term);
+    }
+}
+
+}  // namespace uw

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "core/frame/pixel_renderer.h"
+
+namespace uw {
+
+/// Light paths of each pixel: a round of an image, which may have several.
+struct PathRound {
+    /// Paths are traced in as many batches, whose means are independent; their spread tells the
+    /// standard error.
+    static constexpr int k_batches = 16;
+
+    int number = 0;   // of the round, from 0: each has random numbers of its own
+    int samples = 1;  // paths per pixel, >= 1
+
+    int batches() const { return samples < k_batches ? samples : k_batches; }
+};
+
+/// Pixels whose light is the mean over random paths from the camera (PathTracer): no bias, and a
+/// standard error.
+class PathPixels {
+  public:
+    /// Receives the number of paths traced since it was last called; may throw.
+    using TracedCallback = std::function<void(int paths)>;
+
+    /// `pixels` renders everything that is not a mean over paths, and its light transport has
+    /// paths; it must outlive this object. `order_count`: of PixelResult::orders and reflections.
+    PathPixels(const PixelRenderer& pixels, std::size_t order_count)
+        : pixels_(pixels), order_count_(order_count) {}
+
+    /// Renders pixel (x, y). The same for any number of threads, and for any part of the image. In
+    /// rounds after the first, only what is a mean over paths. Thread safe.
+    void render(int x, int y, const PathRound& round, const TracedCallback& traced,
+                PixelResult& result) const;
+
+  private:
+    class Sum;
+    struct Batch;
+
+    void render_the_rest(int x, int y, const PathRound& round, PixelView& view,
+                         PixelResult& result) const;
+    void trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,
+               const TracedCallback& traced) const;
+    void trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+                    std::size_t in_light, const Batch& batch, int index, Sum& sum) const;
+    void add_direct(const SurfaceSample& surface, const SurfaceLight& light, std::size_t in_light,
+                    Sum& sum, Spectrum& leaving) const;
+
+    const PixelRenderer& pixels_;
+    std::size_t order_count_;
+};
+
+}  // namespace uw

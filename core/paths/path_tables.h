@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/integrators/deep_shadow.h"
+#include "core/paths/lamp_gathering.h"
+#include "core/paths/lamp_glow.h"
+#include "core/paths/path_vertex.h"
+#include "core/paths/scattering_tables.h"
+#include "core/paths/water_segment.h"
+
+namespace uw {
+
+/// What all paths through a scene look up.
+struct PathTables {
+    WaterOptics optics;
+    ScatteringTables scattering;
+    LampGathering lamps;
+    LampGlow glow;
+    VertexTables vertices;
+    Spectrum light;  // of all lamps on their axes, or 1 without lamps
+
+    /// `deep_shadows`: as LampGathering takes them.
+    PathTables(const LitScene& scene, std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
+        : optics(scene),
+          scattering(*scene.medium),
+          lamps(optics, scattering, std::move(deep_shadows)),
+          glow(optics, scattering),
+          vertices{&optics, &scattering, &glow} {
+        for (const Lamp& lamp : *scene.lamps) light += lamp.axis_intensity();
+        if (scene.lamps->empty())
+            for (std::size_t b = 0; b < optics.bands(); ++b) light[b] = 1;
+    }
+};
+
+}  // namespace uw

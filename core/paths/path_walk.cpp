@@ -1,0 +1,245 @@
+#include "core/paths/path_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/integrators/integrator.h"
+#include "core/paths/choice.h"
+
+namespace uw {
+
+namespace {
+
+// Limits of the probability to go on: below, spared paths would outweigh the rest.
+constexpr double k_least_survival = 0.3, k_least_lobe_survival = 0.25, k_most_survival = 0.97;
+// How far rays begin above the surface they leave, relative to the coordinates and to the last
+// segment: above the rounding of single precision, in which surfaces are found.
+constexpr double k_offset = 4e-7;
+
+Point3 above(const SurfaceHit& hit) {
+    const double scale = std::max({std::abs(hit.position.x), std::abs(hit.position.y),
+                                   std::abs(hit.position.z), hit.distance});
+    return hit.position + (k_offset * scale) * hit.geometric_normal;
+}
+
+}  // namespace
+
+/// A direction in which a path may go on from a vertex.
+struct PathWalk::Continuation {
+    Spectrum response;                   // PathVertex::respond
+    double own_density = 0;              // of PathVertex::draw
+    std::vector<double> lobe_densities;  // by lamp, of PathVertex::draw_lobe
+    double density = 0;                  // the sum of them
+    double value = 0;  // what may still arrive at the camera from there [W m^-2 sr^-1]
+};
+
+/// Per thread: paths do not allocate.
+struct PathWalk::Workspace {
+    /// A branch of a path that has yet to be followed.
+    struct Pending {
+        PathState state;
+        Ray ray;
+    };
+
+    WaterSegment segment, lobe_segment;
+    WaterPoint point;
+    std::vector<double> transmittance, c, shares, cumulative;
+    PathVertex vertex;
+    Continuation along_own, along_lobe;
+    std::vector<double> chosen_lamp;  // a weight for each
+    std::vector<Pending> pending;
+};
+
+PathWalk::Workspace& PathWalk::workspace_of_thread() {
+    thread_local Workspace workspace;
+    return workspace;
+}
+
+void PathWalk::from_water(const WaterSegment& segment, const WaterPoint& point) {
+    PathVertex& vertex = workspace_of_thread().vertex;
+    const Point3 x = segment.ray.at(point.distance);
+    vertex.scatter(tables_.vertices, x, segment.ray.direction, point, state_.throughput);
+    ++state_.scatterings;
+    follow(leave(x));
+}
+
+void PathWalk::from_surface(const WaterSegment& segment) {
+    PathVertex& vertex = workspace_of_thread().vertex;
+    vertex.reflect(tables_.vertices, segment, state_.throughput);
+    ++state_.reflections;
+    follow(leave(above(segment.hit)));
+}
+
+// Gathers along a direction of the vertex's own and along one around a lamp, weighted against each
+// other by the balance heuristic (Veach and Guibas 1995). The path may go on along both, each with
+// a probability in proportion to what may still arrive from there: drawing one of them each time
+// would let throughputs grow from vertex to vertex, and taking none of the second kind would miss
+// the paths that head for the bright water at a lamp.
+bool PathWalk::leave(const Point3& origin) {
+    Workspace& w = workspace_of_thread();
+    const PathVertex& vertex = w.vertex;
+    const std::size_t bands = tables_.optics.bands();
+    const std::optional<DrawnLobe> lobe = vertex.draw_lobe(random_);
+    const std::optional<DrawnDirection> own = vertex.draw(random_);
+    const double of_lobe = random_.next(), of_own = random_.next();
+    if (lobe) continuation(lobe->direction, w.along_lobe);
+    if (own) continuation(own->direction, w.along_own);
+    // The probabilities to go on. Less than one branch does on average, or paths might never end.
+    double by_lobe = lobe ? survival(w.along_lobe, k_least_lobe_survival) : 0;
+    double by_own = own ? survival(w.along_own, k_least_survival) : 0;
+    const double excess = (by_lobe + by_own) / k_most_survival;
+    if (excess > 1) {
+        by_lobe /= excess;
+        by_own /= excess;
+    }
+    if (lobe) {
+        gather_along(*lobe, w.along_lobe, origin);
+        if (of_lobe < by_lobe)
+            w.pending.push_back({continued(w.along_lobe, by_lobe), {origin, lobe->direction}});
+    }
+    if (!own) return false;
+    PathState state = state_;
+    for (std::size_t b = 0; b < bands; ++b)
+        state.throughput[b] *= w.along_own.response[b] / own->density;
+    for (double& weight : w.along_own.lobe_densities)
+        weight = own->density / (own->density + weight);
+    trace({origin, own->direction});
+    tables_.lamps.gather_from_water(w.segment, w.along_own.lobe_densities, state, random_, terms_);
+    if (w.segment.has_hit)
+        tables_.lamps.gather_from_surface(w.segment, w.transmittance, state, random_, terms_);
+    if (of_own >= by_own) return false;
+    state_ = continued(w.along_own, by_own);
+    return true;
+}
+
+// The single-scattered light of a lamp around which a direction was drawn.
+void PathWalk::gather_along(const DrawnLobe& lobe, const Continuation& along,
+                            const Point3& origin) {
+    Workspace& w = workspace_of_thread();
+    PathState state = state_;
+    const double density = lobe.density + along.own_density;
+    for (std::size_t b = 0; b < tables_.optics.bands(); ++b)
+        state.throughput[b] *= along.response[b] / density;
+    w.chosen_lamp.assign(along.lobe_densities.size(), 0.0);
+    w.chosen_lamp[lobe.lamp] = 1;
+    tables_.optics.trace_briefly({origin, lobe.direction}, w.lobe_segment);
+    tables_.lamps.gather_from_water(w.lobe_segment, w.chosen_lamp, state, random_, terms_);
+}
+
+void PathWalk::continuation(const Vector3& direction, Continuation& along) const {
+    const PathVertex& vertex = workspace_of_thread().vertex;
+    vertex.lobe_densities(direction, along.lobe_densities);
+    vertex.respond(direction, along.response);
+    along.own_density = along.density = vertex.density(direction);
+    for (const double of_lamp : along.lobe_densities) along.density += of_lamp;
+    along.value = 0;
+    double responds = 0, all = 0;
+    for (std::size_t b = 0; b < tables_.optics.bands(); ++b) {
+        responds += state_.throughput[b] * along.response[b];
+        all += state_.throughput[b];
+    }
+    if (!(along.density > 0) || !(responds > 0)) return;
+    const double light = vertex.expected_light(direction) / all + light_.ambient;
+    along.value = responds / along.density * light / static_cast<double>(tables_.optics.bands());
+}
+
+// Russian roulette by what may still arrive, relative to the light of the path's pixel.
+double PathWalk::survival(const Continuation& along, double least) const {
+    if (!(along.value > 0)) return 0;
+    if (!(light_.own > 0)) return k_most_survival;
+    return std::clamp(along.value / light_.own, least, k_most_survival);
+}
+
+PathState PathWalk::continued(const Continuation& along, double survival) const {
+    PathState state = state_;
+    for (std::size_t b = 0; b < tables_.optics.bands(); ++b)
+        state.throughput[b] *= along.response[b] / (along.density * survival);
+    return state;
+}
+
+void PathWalk::trace(const Ray& ray) {
+    Workspace& w = workspace_of_thread();
+    const WaterOptics& optics = tables_.optics;
+    optics.trace(ray, w.segment);
+    w.transmittance.assign(optics.bands(), 0.0);  // no light returns from k_far
+    if (!w.segment.has_hit) return;
+    optics.look_up(w.segment, w.segment.length, w.point);
+    optics.transmittances(w.segment.length, w.point.column, w.transmittance);
+}
+
+void PathWalk::follow(bool goes_on) {
+    Workspace& w = workspace_of_thread();
+    while (goes_on) goes_on = advance();
+    while (!w.pending.empty()) {
+        const Workspace::Pending pending = w.pending.back();
+        w.pending.pop_back();
+        state_ = pending.state;
+        trace(pending.ray);
+        do {
+            goes_on = advance();
+        } while (goes_on);
+    }
+}
+
+bool PathWalk::advance() {
+    Workspace& w = workspace_of_thread();
+    const std::size_t bands = tables_.optics.bands();
+    const double u = random_.next();
+    // Each band has a share in a density that serves all of them.
+    w.shares.resize(bands);
+    double all = 0, to_surface = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        w.shares[b] = state_.throughput[b] * tables_.light[b];
+        all += w.shares[b];
+        to_surface += w.shares[b] * w.transmittance[b];
+    }
+    if (!(all > 0)) return false;
+    for (double& share : w.shares) share /= all;
+    to_surface /= all;
+    if (u < to_surface) return w.segment.has_hit && reflect_at_end(to_surface);
+    return scatter_on_the_way((u - to_surface) / (1 - to_surface));
+}
+
+bool PathWalk::reflect_at_end(double probability) {
+    Workspace& w = workspace_of_thread();
+    const SurfaceHit& hit = w.segment.hit;
+    Spectrum& throughput = state_.throughput;
+    const std::size_t bands = tables_.optics.bands();
+    for (std::size_t b = 0; b < bands; ++b) throughput[b] *= w.transmittance[b] / probability;
+    w.vertex.reflect(tables_.vertices, w.segment, throughput);
+    ++state_.reflections;
+    return leave(above(hit));
+}
+
+bool PathWalk::scatter_on_the_way(double u) {
+    Workspace& w = workspace_of_thread();
+    const WaterOptics& optics = tables_.optics;
+    Spectrum& throughput = state_.throughput;
+    const std::size_t bands = optics.bands();
+    w.cumulative.resize(bands);
+    double total = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        total += w.shares[b] * (1 - w.transmittance[b]);
+        w.cumulative[b] = total;
+    }
+    if (!(total > 0)) return false;
+    const std::size_t band = choose(w.cumulative, u).index;
+    const double depth = -std::log1p(-u * (1 - w.transmittance[band]));
+    const double s = optics.distance_at_depth(w.segment, band, depth);
+    if (!(s < w.segment.length)) return false;  // beyond k_far, or by rounding
+    optics.look_up(w.segment, s, w.point);
+    optics.find_scattering(w.point);
+    w.c.resize(bands);
+    optics.attenuations(w.point, w.c);
+    optics.transmittances(s, w.point.column, w.transmittance);
+    double density = 0;
+    for (std::size_t b = 0; b < bands; ++b) density += w.shares[b] * w.c[b] * w.transmittance[b];
+    if (!(density > 0)) return false;
+    for (std::size_t b = 0; b < bands; ++b) throughput[b] *= w.transmittance[b] / density;
+    const Point3 x = w.segment.ray.at(s);
+    w.vertex.scatter(tables_.vertices, x, w.segment.ray.direction, w.point, throughput);
+    ++state_.scatterings;
+    return leave(x);
+}
+
+}  // namespace uw

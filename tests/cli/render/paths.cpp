@@ -1,0 +1,114 @@
+// ctest labels: unit
+// `uwvdb render --integrator path`.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/cli_test.h"
+
+namespace uw {
+namespace {
+
+using test::ImageFile;
+
+class Paths : public test::CliTest {
+  protected:
+    static std::vector<std::string> with(std::vector<std::string> more) {
+        more.insert(more.begin(), {"--integrator", "path", "--size", "12x8"});
+        return more;
+    }
+    void refused(std::vector<std::string> more, int exit_code, const std::string& part) const {
+        more.insert(more.begin(), {"render", "scene.yaml", "-o", "out.exr"});
+        expect_failure(more, exit_code, part);
+        EXPECT_FALSE(exists("out.exr"));
+    }
+};
+
+TEST_F(Paths, HaveLayersAndAHeaderOfTheirOwn) {
+    const ImageFile image =
+        render(with({"--samples", "20", "--layers", "all", "--orders", "1", "--stats", "s.json"}));
+    for (const char* const name :
+         {"multiple.R", "multiple.volume.G", "multiple.surface.B", "error.R", "lamp.left.G",
+          "order.0.R", "order.more.B", "reflections.1.G", "depth.Z"})
+        EXPECT_TRUE(image.channels.contains(name)) << name;
+    test::expect_finite_and_lit(image);
+    EXPECT_EQ(image.metadata.at("uwvdb/integrator"), "path");
+    EXPECT_EQ(image.metadata.at("uwvdb/scattering"), "multiple");
+    EXPECT_EQ(image.metadata.at("uwvdb/samples"), "20");
+    EXPECT_EQ(image.metadata.at("uwvdb/seed"), "0: the same paths every time");
+    const nlohmann::json stats = nlohmann::json::parse(read("s.json"));
+    EXPECT_EQ(stats.at("samples"), 20);
+    EXPECT_GT(stats.at("error"), 0);
+    EXPECT_EQ(stats.at("camera_rays"), 12 * 8 * 20);
+
+    const ImageFile single = render({"--size", "12x8", "--layers", "all"});
+    EXPECT_FALSE(single.channels.contains("multiple.R"));
+    EXPECT_FALSE(single.channels.contains("error.R"));
+    EXPECT_FALSE(single.metadata.contains("uwvdb/scattering"));
+}
+
+TEST_F(Paths, AreAsManyAsTheErrorNeeds) {
+    const test::ProgramResult result =
+        run({"render", "scene.yaml", "-o", "out.exr", "--integrator", "path", "--size", "12x8",
+             "--error", "0.2", "--stats", "s.json", "--layers", "error"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.err.find(" samples, error "), std::string::npos) << result.err;
+    const nlohmann::json stats = nlohmann::json::parse(read("s.json"));
+    EXPECT_LE(stats.at("error"), 0.2);
+    EXPECT_GE(stats.at("samples"), 16);
+    const ImageFile image = test::read_exr(folder_ / "out.exr");
+    EXPECT_EQ(image.metadata.at("uwvdb/samples"), stats.at("samples").dump());
+    EXPECT_EQ(image.metadata.at("uwvdb/error_requested"), "0.2");
+}
+
+TEST_F(Paths, AreSixteenUnlessRequestedAndFewInDrafts) {
+    EXPECT_EQ(render(with({})).metadata.at("uwvdb/samples"), "16");
+    EXPECT_EQ(render(with({"--quality", "draft"})).metadata.at("uwvdb/samples"), "4");
+    write("scene.yaml", std::string(test::k_small_scene) + "render: {samples: 3}\n");
+    EXPECT_EQ(render(with({})).metadata.at("uwvdb/samples"), "3");
+}
+
+TEST_F(Paths, AreNotTracedAgainToResume) {
+    const std::vector<std::string> sequence{
+        "render", "scene.yaml", "--frames", "2-3",     "-o",  "{frame}.exr", "--integrator",
+        "path",   "--size",     "8x6",      "--error", "0.3", "--resume"};
+    EXPECT_EQ(run(sequence).exit_code, 0);
+    const test::ProgramResult again = run(sequence);
+    EXPECT_NE(again.err.find("resume: frames 2-3 are there already"), std::string::npos)
+        << again.err;
+    EXPECT_EQ(read("2.exr").size(), read("3.exr").size());
+    std::vector<std::string> closer = sequence;
+    closer[11] = "0.25";
+    EXPECT_EQ(run(closer).err.find("there already"), std::string::npos);
+}
+
+TEST_F(Paths, AreRefusedWhereTheyMakeNoSense) {
+    refused({"--error", "0.1"}, 2, "--error: is for --integrator path only");
+    refused({"--orders", "2"}, 2, "--orders: is for --integrator path only");
+    refused(with({"--error", "0.1", "--samples", "4"}), 2, "--samples and --error: each says");
+    refused({"--samples", "4097"}, 2, "--samples: expected 1 to 4096, found 4097; only integrator");
+    refused({"--layers", "multiple"}, 2, "--layers: multiple: the scene is rendered with single");
+    refused({"--layers", "error"}, 2, "--layers: error: only --integrator path");
+    refused(with({"--layers", "order.1"}), 2, "written with --orders N");
+    refused(with({"--set", "render.scattering=single"}), 3, "always renders all light");
+    refused({"--integrator", "planes", "--set", "render.scattering=multiple"}, 3,
+            "use integrator volume or path");
+    refused({"--set", "render.scattering=multiple"}, 3, "not supported yet by integrator volume");
+    refused(with({"--set", "water.forward_scatter={K: 1, G: 0.02, B: 0.1}"}), 3,
+            "would count twice");
+    refused(with({"--set", "render.output=paper", "--set",
+                  "camera.lens={f_number: 2.8, focal_length: 0.0085}"}),
+            3, "the paper's formula");
+}
+
+TEST_F(Paths, AreTheSameInEveryCrop) {
+    const ImageFile whole = render(with({"--layers", "all"}));
+    const ImageFile part = render(with({"--layers", "all", "--crop", "3,2,9,7"}));
+    for (const auto& [name, values] : part.channels)
+        for (int y = 2; y < 7; ++y)
+            for (int x = 3; x < 9; ++x)
+                ASSERT_EQ(part.at(name, x, y), whole.at(name, x, y)) << name;
+}
+
+}  // namespace
+}  // namespace uw
