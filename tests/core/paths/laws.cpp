@@ -74,7 +74,8 @@ void compare_kinds(const std::vector<TermSums>& a, std::size_t band_a,
                 };
                 const BatchMeans first = of(a, band_a), second = of(b, band_b);
                 // Some kinds are none, and rare ones are not normally distributed.
-                if (!(first.error() < 0.1 * first.mean())) continue;
+                if (!(first.error() < 0.05 * first.mean() && second.error() < 0.05 * second.mean()))
+                    continue;
                 deviations.add(what + " scatterings " + std::to_string(s) + " reflections " +
                                    std::to_string(r) + (water ? " from water" : ""),
                                first, second.mean(), second.error());
@@ -179,7 +180,7 @@ TEST(PathLaws, EachLampHasItsOwnLight) {
     CameraSegment segment;
     tracer.begin(ray, &hit, {}, segment);
     std::array<BatchMeans, 2> shares;
-    constexpr std::uint32_t k_paths = 1 << 11;
+    constexpr std::uint32_t k_paths = 1 << 10;
     for (std::uint64_t n = 0; n < 32; ++n) {
         PerLamp terms;
         for (std::uint32_t i = 0; i < k_paths; ++i) {
@@ -206,7 +207,7 @@ TEST(PathLaws, EachLampHasItsOwnLight) {
 TEST(PathLaws, BandsAreThoseOfRunsOfTheirOwn) {
     // The densities of distance are mixed over bands: those of clear and turbid water differ most.
     const std::vector<BandOptics> bands{{0.35, 0.20}, {0.08, 0.22}, {0.5, 1.5}};
-    const auto together = ray_batches(lit_scene(bands), some_ray(), 1, 32, 1 << 12);
+    const auto together = ray_batches(lit_scene(bands), some_ray(), 1, 32, 1 << 11);
     Deviations deviations;
     for (std::size_t b = 0; b < bands.size(); ++b)
         compare_kinds(together, b, ray_batches(lit_scene({bands[b]}), some_ray(), 2 + b, 32), 0,

@@ -37,7 +37,7 @@ TEST(ClosedRooms, AnIntegratingSphereIsEvenlyLitByEachReflection) {
                        irradiance * rho * rho / (1 - rho) / std::numbers::pi);
     }
     deviations.expect_within_errors();
-    deviations.expect_within(0.01);
+    deviations.expect_errors_below(0.01);
 }
 
 // Where everything emits what it does not reflect, everything is as bright as that.
@@ -73,7 +73,7 @@ TEST(ClosedRooms, AWhiteFurnaceIsWhiteInEveryDirection) {
         }
     }
     deviations.expect_within_errors();
-    deviations.expect_within(0.01);
+    deviations.expect_errors_below(0.01);
 }
 
 // Reflectance of a rough surface in an evenly lit room: the glTF 2.0 BRDF (appendix B) written
@@ -146,7 +146,7 @@ TEST(ClosedRooms, AShiningSurfaceReflectsTheIntegralOfItsBrdf) {
             RoughSurface(c.cosine, c.roughness, c.f0, c.rho).reflectance());
     }
     deviations.expect_within_errors();
-    deviations.expect_within(0.01);
+    deviations.expect_errors_below(0.01);
 }
 
 }  // namespace

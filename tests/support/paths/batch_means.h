@@ -92,6 +92,14 @@ class Deviations {
                   << ", mean " << mean() << ", largest " << largest() << ", beyond three " << beyond
                   << "; largest relative deviation " << largest_relative() << "\n";
     }
+    /// Every standard error is below `fraction` of the truth, or that of every estimate whose
+    /// name ends with `of`: being within errors says something.
+    void expect_errors_below(double fraction, const std::string& of = "") const {
+        for (const Item& item : items_)
+            if (item.what.ends_with(of)) {
+                EXPECT_LT(item.error, fraction * std::abs(item.truth)) << describe(item);
+            }
+    }
     /// Every estimate is within `fraction` of its truth.
     void expect_within(double fraction) const {
         for (const Item& item : items_)
