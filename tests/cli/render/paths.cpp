@@ -107,7 +107,7 @@ TEST_F(Paths, OfTheFastFormHaveAStatedError) {
         "--quality", "draft",      "--stats", "s.json",  "--set",  "render.scattering=multiple"};
     const test::ProgramResult result = run(fast);
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_NE(result.err.find("\nmultiple scattering: standard error "), std::string::npos)
+    EXPECT_NE(result.err.find("multiple scattering: standard error "), std::string::npos)
         << result.err;
     EXPECT_NE(result.err.find(" % of the image's mean\n"), std::string::npos) << result.err;
     const nlohmann::json stats = nlohmann::json::parse(read("s.json"));
