@@ -52,7 +52,7 @@ MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOpt
 
 void MultipleLight::prepare(const PixelWindow& window, const Progress& progress) {
     // The corners of all cells in the window, and what these are fitted to.
-    constexpr int k_margin = LatticeFit::k_reach + k_search + 1;
+    constexpr int k_margin = k_smoothing_reach + k_search + 1;
     const RaySource& rays = pixels_.rays();
     column_ = std::max(0, window.x0 / spacing_ - k_margin);
     row_ = std::max(0, window.y0 / spacing_ - k_margin);

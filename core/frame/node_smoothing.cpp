@@ -18,14 +18,12 @@ constexpr double k_tolerance = 1e-3;
 /// The nodes around one that take part in a fit.
 class Neighbourhood {
   public:
-    /// `of(node)` is the node's FitNode without its place, or empty if it takes no part; it gets
-    /// the mean of their variances, as that of a few batches says little.
+    /// `of(node)` is the node's FitNode without its place, or empty if it takes no part.
     template <class Of>
     void find(const Grid2D<MultipleNode>& raw, int i, int j, const Of& of) {
         constexpr int k_reach = LatticeFit::k_reach;
         nodes_.clear();
         light_ = 0;
-        double variance = 0;
         for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v) {
             for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach);
                  ++u) {
@@ -35,13 +33,10 @@ class Neighbourhood {
                 node->dy = v - j;
                 node->index = raw.index(u, v);
                 nodes_.push_back(*node);
-                variance += node->variance;
                 light_ += raw(u, v).mean_light;
             }
         }
-        const double count = std::max(1.0, static_cast<double>(nodes_.size()));
-        for (FitNode& node : nodes_) node.variance = variance / count;
-        light_ /= count;
+        light_ /= std::max(1.0, static_cast<double>(nodes_.size()));
     }
 
     std::span<const FitNode> nodes() const { return nodes_; }
@@ -52,6 +47,37 @@ class Neighbourhood {
     std::vector<FitNode> nodes_;
     double light_ = 0;
 };
+
+/// The nodes with each variance averaged over those around: that of a few batches says little by
+/// itself, and that of the whole neighbourhood would hide features of its dark parts.
+Grid2D<MultipleNode> with_mean_variances(const Grid2D<MultipleNode>& raw) {
+    constexpr int k_reach = k_smoothing_reach - LatticeFit::k_reach;
+    Grid2D<MultipleNode> nodes = raw;
+    parallel_for(raw.size(), [&](std::size_t at) {
+        const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
+        MultipleNode& node = nodes(i, j);
+        std::ranges::fill(node.water_variance, 0.0F);
+        node.diffuse_variance = 0;
+        float waters = 0;
+        double surfaces = 0;
+        for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v) {
+            for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach);
+                 ++u) {
+                const MultipleNode& other = raw(u, v);
+                if (!other.has_ray) continue;
+                ++waters;
+                for (std::size_t k = 0; k < node.water_variance.size(); ++k)
+                    node.water_variance[k] += other.water_variance[k];
+                if (!other.surface) continue;
+                ++surfaces;
+                node.diffuse_variance += other.diffuse_variance;
+            }
+        }
+        for (float& variance : node.water_variance) variance /= std::max(waters, 1.0F);
+        node.diffuse_variance /= std::max(surfaces, 1.0);
+    });
+    return nodes;
+}
 
 class NodeSmoothing {
   public:
@@ -148,7 +174,9 @@ Grid2D<SmoothNode> smoothed(const Grid2D<MultipleNode>& raw, const DistanceInter
     std::size_t values = 0;
     for (const MultipleNode& node : raw) values = std::max(values, node.halves[0].water.size());
     if (values == 0) return nodes;
-    const NodeSmoothing smoothing(raw, intervals, groups, values / (intervals.count() * groups));
+    const Grid2D<MultipleNode> averaged = with_mean_variances(raw);
+    const NodeSmoothing smoothing(averaged, intervals, groups,
+                                  values / (intervals.count() * groups));
     parallel_for(raw.size(), [&](std::size_t at) {
         const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
         smoothing.smooth(i, j, nodes(i, j));

@@ -2,6 +2,7 @@
 
 #include "core/base/grid2d.h"
 #include "core/frame/distance_intervals.h"
+#include "core/frame/lattice_fit.h"
 #include "core/frame/multiple_nodes.h"
 
 namespace uw {
@@ -9,6 +10,9 @@ namespace uw {
 /// The cosine of the largest angle between the normals at two places whose indirect light is
 /// alike.
 inline constexpr double k_least_node_cosine = 0.7;
+
+/// How far away the nodes are, in steps of the lattice, on which a smoothed node depends.
+inline constexpr int k_smoothing_reach = LatticeFit::k_reach + 2;
 
 /// A node whose light is smoothed over those around it.
 struct SmoothNode {
