@@ -7,10 +7,14 @@
 #include "core/base/error.h"
 #include "core/colour/colour_response.h"
 #include "core/integrators/integrator_table.h"
+#include "render/far_lamps.h"
 
 namespace uw {
 
 namespace {
+
+// A stated standard error that final images should not exceed, relative to their mean.
+constexpr double k_most_multiple_error = 0.03;
 
 PixelWindow whole_image(const CameraDesc& camera) {
     return {0, 0, camera.width, camera.height};
@@ -118,6 +122,7 @@ void Renderer::prepare(const RenderOptions& options) {
     assemble();
     if (!colour_->warning().empty()) report_.warnings.push_back(colour_->warning());
     report_.warnings.insert(report_.warnings.end(), scene_.warnings.begin(), scene_.warnings.end());
+    if (const auto warning = far_lamp_warning(scene_)) report_.warnings.push_back(*warning);
 }
 
 void Renderer::count_work() {
@@ -146,6 +151,15 @@ void Renderer::warn_of_error(const PathRequest& request) {
         *request.error, report_.paths.samples, *report_.paths.error));
 }
 
+void Renderer::warn_of_multiple_error() {
+    const bool is_draft = scene_.desc.render.quality == RenderDesc::Quality::draft;
+    if (is_draft || !(report_.multiple_error > k_most_multiple_error)) return;
+    report_.warnings.push_back(fmt::format(
+        "multiple scattering: its standard error is {:.2g} % of the image's mean; for less, use "
+        "--quality exact, or --integrator path with --error 0.02",
+        100 * *report_.multiple_error));
+}
+
 const Film& Renderer::render(const RenderOptions& options) {
     prepare(options);
     if (needs_light())
@@ -154,16 +168,17 @@ const Film& Renderer::render(const RenderOptions& options) {
         begin("splat");
     LightTransport own;
     if (!options.transport) own = make_light_transport(scene_, light_);
-    begin("render");
     is_film_clear_ = false;
-    render_scene(
-        scene_, light_, options.transport ? *options.transport : own, *plan_, *colour_, *film_,
-        [this](const std::string& stage, double fraction) {
-            return !progress_ || progress_(stage, fraction);
-        },
-        {samples_of(scene_.desc.render), options.paths.error},
-        [this](const PathAccuracy& so_far) { report_.paths = so_far; });
+    render_scene(scene_, light_, options.transport ? *options.transport : own, *plan_, *colour_,
+                 *film_,
+                 [this](const std::string& stage, double fraction) {
+                     return !progress_ || progress_(stage, fraction);
+                 },
+                 {samples_of(scene_.desc.render), options.paths.error},
+                 {[this](const PathAccuracy& so_far) { report_.paths = so_far; },
+                  [this](double error) { report_.multiple_error = error; }});
     warn_of_error(options.paths);
+    warn_of_multiple_error();
     count_work();
     if (film_->window() == window_) return *film_;
     cropped_ = cropped(*film_, window_);

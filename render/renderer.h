@@ -37,6 +37,9 @@ struct RenderReport {
     /// Of an image of light paths: so far, while it is rendered; it changes only between two calls
     /// of the progress callback.
     PathAccuracy paths;
+    /// The stated standard error of light scattered more than once, where the integrator volume
+    /// renders it (MultipleLight::error), relative to the image's mean.
+    std::optional<double> multiple_error;
 };
 
 /// Renders images of scenes: the only path from a scene description to pixels.
@@ -49,10 +52,11 @@ struct RenderReport {
 /// unchanged; every image is the same to the bit as from a new renderer. It neither prints nor ends
 /// the program. Faults in files are an InputError or IoError, in options a UsageError.
 ///
-/// Stages, in this order: "volumes", "geometry", "splat", "render" and, with forward scatter,
-/// "forward scatter". `progress` receives each with 0 before it begins, on the calling thread. If
-/// it returns false, or throws, the work ends with Interrupted, or with what was thrown; the
-/// renderer stays usable, and the same image can be requested again.
+/// Stages, in this order: "volumes", "geometry", "splat", "multiple scattering" if the integrator
+/// volume renders it, "render" and, with forward scatter, "forward scatter". `progress` receives
+/// each with 0 before it begins, on the calling thread. If it returns false, or throws, the work
+/// ends with Interrupted, or with what was thrown; the renderer stays usable, and the same image
+/// can be requested again.
 class Renderer {
   public:
     explicit Renderer(RenderProgress progress = {}) : progress_(std::move(progress)) {}
@@ -109,6 +113,7 @@ class Renderer {
     void fit_film(const RenderOptions& options);
     void count_work();
     void warn_of_error(const PathRequest& request);
+    void warn_of_multiple_error();
 
     RenderProgress progress_;
     AssembledScene scene_;  // its `desc` alone until it is assembled

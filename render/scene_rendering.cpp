@@ -138,15 +138,15 @@ double in_scatter_tolerance(const RenderDesc& render) {
 MultipleLightOptions multiple_light_options(const SceneDesc& scene, const LayerPlan& plan) {
     MultipleLightOptions options;
     options.lamps = plan.has_lamps();
-    options.nodes = 1600;
-    options.paths = 1'000'000;
+    options.nodes = 4000;
+    options.paths = 2'000'000;
     if (scene.render.quality == RenderDesc::Quality::draft) {
-        options.nodes = 400;
-        options.paths = 50'000;
+        options.nodes = 1000;
+        options.paths = 60'000;
     }
     if (scene.render.quality == RenderDesc::Quality::exact) {
-        options.nodes = 6400;
-        options.paths = 8'000'000;
+        options.nodes = 16000;
+        options.paths = 16'000'000;
     }
     return options;
 }
@@ -180,21 +180,27 @@ PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& 
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const RenderProgress& progress, const PathGoal& goal,
-                  const AccuracyCallback& reached) {
+                  const AccuracyCallbacks& reached) {
     const PixelRenderer renderer = pixel_renderer(scene, transport, in_scatter_parts(plan));
     const double tolerance = in_scatter_tolerance(scene.desc.render);
     const auto told = [&progress](const std::string& stage) {
         return [&progress, stage](double fraction) { return progress(stage, fraction); };
     };
-    if (transport.paths && integrator_kind(scene.desc.render.integrator).traces_paths) {
-        render_path_film(renderer, goal, plan, colour, film, told("render"), reached);
-        return;
-    }
-    if (transport.paths) {
+    const auto begin = [&progress](const std::string& stage) {
+        if (!progress(stage, 0)) throw Interrupted();
+    };
+    if (transport.paths && !integrator_kind(scene.desc.render.integrator).traces_paths) {
+        begin("multiple scattering");
         MultipleLight multiple(renderer, multiple_light_options(scene.desc, plan));
         multiple.prepare(film.window(), told("multiple scattering"));
-        reached({0, multiple.error()});
+        if (reached.multiple) reached.multiple(multiple.error());
+        begin("render");
         render_film(renderer, tolerance, plan, colour, film, told("render"), {}, &multiple);
+        return;
+    }
+    begin("render");
+    if (transport.paths) {
+        render_path_film(renderer, goal, plan, colour, film, told("render"), reached.paths);
         return;
     }
     if (scene.desc.water.forward_scatter.K == 0) {

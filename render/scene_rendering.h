@@ -43,14 +43,22 @@ double in_scatter_tolerance(const RenderDesc& render);
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts = {});
 
+/// Whom to tell how accurate an image is; either may be empty.
+struct AccuracyCallbacks {
+    AccuracyCallback paths{};                      // of an image of light paths, so far
+    std::function<void(double error)> multiple{};  // MultipleLight::error, before "render"
+};
+
 /// Renders `scene` into `film` by `transport`: the stage "render", and, with forward scatter on,
 /// the stage "forward scatter", for which the film's window must be the whole image.
-/// A transport that has paths is rendered by them until `goal` is reached. Throws Interrupted if
-/// `progress` returned false; InputError if there is not enough memory.
+/// A transport that has paths is rendered by them until `goal` is reached, if the integrator traces
+/// paths; else they estimate what it leaves out, in a stage "multiple scattering" before "render".
+/// `progress` receives each with 0 before it begins. Throws Interrupted if it returned false;
+/// InputError if there is not enough memory.
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const RenderProgress& progress, const PathGoal& goal = {},
-                  const AccuracyCallback& reached = {});
+                  const AccuracyCallbacks& reached = {});
 
 /// How the light of `scene` is scattered forward. If the integrator sums slabs the water is split
 /// into them, else into slabs that grow with the distance. `deep_shadows` and `scene` outlive the

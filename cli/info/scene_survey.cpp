@@ -10,6 +10,7 @@
 #include "cli/info/survey_warnings.h"
 #include "core/base/parallel.h"
 #include "core/optics/optical_depth.h"
+#include "render/far_lamps.h"
 
 namespace uw {
 
@@ -191,6 +192,7 @@ SceneSurvey survey_scene(const AssembledScene& scene) {
                             degrees_between(ray(width / 2, 0), ray(width / 2, height))};
     survey.warnings = scene.warnings;
     append_survey_warnings(survey);
+    if (const auto warning = far_lamp_warning(scene)) survey.warnings.push_back(*warning);
     return survey;
 }
 

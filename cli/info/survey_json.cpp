@@ -2,6 +2,8 @@
 
 #include "cli/json.h"
 #include "cli/version.h"
+#include "cli/word_of.h"
+#include "core/integrators/integrator_table.h"
 
 namespace uw {
 
@@ -53,6 +55,13 @@ Json lamps(const AssembledScene& scene) {
     return out;
 }
 
+Json render(const RenderDesc& desc) {
+    return {{"integrator", word_of(desc.integrator, k_integrator_names)},
+            {"scattering", word_of(scattering_of(desc), k_scattering_names)},
+            {"quality", word_of(desc.quality, k_quality_names)},
+            {"samples", samples_of(desc)}};
+}
+
 Json grid_json(const GridSurvey& grid, const Medium& medium) {
     const VolumeReport& r = grid.report;
     Json out;
@@ -101,6 +110,7 @@ std::string survey_json(const SceneSurvey& survey) {
     json["geometry"] = {{"entries", scene.desc.geometry.size()},
                         {"triangles", scene.surfaces->triangle_count()},
                         {"bounds", bounds_json(scene.surfaces->bounds())}};
+    json["render"] = render(scene.desc.render);
     json["grids"] = Json::array();
     for (const GridSurvey& grid : survey.grids)
         json["grids"].push_back(grid_json(grid, scene.water.medium));

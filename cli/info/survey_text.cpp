@@ -6,6 +6,8 @@
 
 #include "cli/frame_list.h"
 #include "cli/grid_summary.h"
+#include "cli/word_of.h"
+#include "core/integrators/integrator_table.h"
 
 namespace uw {
 
@@ -34,6 +36,21 @@ std::string describe_water(const AssembledScene& scene) {
                             medium.wavelengths_nm[static_cast<std::size_t>(band)], a, c - a, c);
     }
     return text;
+}
+
+// What `uwvdb render` will make of the scene.
+std::string describe_render(const AssembledScene& scene) {
+    const RenderDesc& render = scene.desc.render;
+    std::string text = fmt::format(
+        "render\n  integrator {}, quality {}: ", word_of(render.integrator, k_integrator_names),
+        word_of(render.quality, k_quality_names));
+    if (integrator_kind(render.integrator).traces_paths)
+        text += fmt::format("all light, by {} random paths per pixel", samples_of(render));
+    else if (scattering_of(render) == RenderDesc::Scattering::multiple)
+        text += "all light; what is scattered or reflected more than once, with a standard error";
+    else
+        text += "light scattered once or reflected once";
+    return text + "\n";
 }
 
 std::string describe_camera(const SceneSurvey& survey) {
@@ -113,7 +130,7 @@ std::string survey_text(const SceneSurvey& survey) {
     const AssembledScene& scene = survey.scene;
     std::string text = describe_sequences(survey);
     text += describe_water(scene) + describe_camera(survey) + describe_lamps(scene) +
-            describe_geometry(scene);
+            describe_geometry(scene) + describe_render(scene);
     if (survey.grids.empty()) text += "no volumes\n";
     for (const GridSurvey& grid : survey.grids) {
         text += describe_grid(grid.report, scene.water.medium);

@@ -83,7 +83,8 @@ void FrameRenderer::begin_stage(const std::string& stage) {
         show("", 1);  // of how many paths may not be known yet
     else if (stage == "render" || stage == "forward scatter")
         show("Mpx", 1e-6 * static_cast<double>(renderer_.report().pixels));
-    if (stage == "render") begin_orderly_stop();
+    if (stage == "multiple scattering") show("", 1);
+    if (stage == "multiple scattering" || stage == "render") begin_orderly_stop();
     if (stage != "forward scatter") stats_->begin_stage(stage);  // which is part of "render"
 }
 
@@ -107,6 +108,7 @@ void FrameRenderer::count_work(RunStats& stats) const {
     stats.count("triangles", report.triangles);
     stats.count("lamps", report.lamps);
     stats.count("bands", report.bands);
+    if (report.multiple_error) stats.measure("multiple_error", *report.multiple_error);
     if (report.paths.samples == 0) return;
     stats.count("samples", static_cast<std::uint64_t>(report.paths.samples));
     if (report.paths.error) stats.measure("error", *report.paths.error);
@@ -142,6 +144,9 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& st
     for (std::size_t i = warned; i < report.warnings.size(); ++i) warn(frame, report.warnings[i]);
     if (report.paths.samples > 0)
         say(fmt::format("{} of the image's mean", describe(report.paths)));
+    if (report.multiple_error)
+        say(fmt::format("multiple scattering: standard error {:.2g} % of the image's mean",
+                        100 * *report.multiple_error));
     count_work(stats);
     if (with_irradiance) {
         stats.begin_stage("irradiance");
@@ -150,7 +155,7 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& st
     }
     stats.begin_stage("write");
     write_images(
-        files, film, metadata_of(renderer_.assembled(), frame.number, options.paths, report.paths),
+        files, film, metadata_of(renderer_.assembled(), frame.number, options.paths, report),
         [&](const std::string& line) { say(line); },
         [&](const std::string& line) { warn(frame, line); });
     stats.end_stage();

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <span>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "cli/version.h"
+#include "cli/word_of.h"
 #include "core/image/preview.h"
 #include "core/integrators/integrator_table.h"
 #include "core/integrators/sensor.h"
@@ -17,13 +15,6 @@
 namespace uw {
 
 namespace {
-
-// The name of one of the words that scenes and options accept.
-template <class T, std::size_t N>
-std::string name_of(T value, const std::array<std::pair<std::string_view, T>, N>& names) {
-    return std::string(
-        std::ranges::find(names, value, &std::pair<std::string_view, T>::second)->first);
-}
 
 std::string band_list(std::span<const double> values) {
     std::string text;
@@ -70,8 +61,8 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
     ImageMetadata m{{"software", "uwvdb " + program_version()},
                     {"uwvdb/scene", scene.file.filename().string()},
                     {"uwvdb/scene_hash", scene.hash},
-                    {"uwvdb/integrator", name_of(scene.render.integrator, k_integrator_names)},
-                    {"uwvdb/quality", name_of(scene.render.quality, k_quality_names)},
+                    {"uwvdb/integrator", word_of(scene.render.integrator, k_integrator_names)},
+                    {"uwvdb/quality", word_of(scene.render.quality, k_quality_names)},
                     {"uwvdb/samples", static_cast<double>(samples_of(scene.render))},
                     {"uwvdb/seed", std::string("none: deterministic")},
                     {"uwvdb/rgb_quantity", quantity},
@@ -79,7 +70,7 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
                     {"uwvdb/bands_nm", band_list(scene.water.bands_nm)}};
     if (const auto scattering = scattering_of(scene.render);
         scattering == RenderDesc::Scattering::multiple)
-        m["uwvdb/scattering"] = name_of(scattering, k_scattering_names);
+        m["uwvdb/scattering"] = word_of(scattering, k_scattering_names);
     if (integrator_kind(scene.render.integrator).traces_paths)
         m["uwvdb/seed"] = std::string("0: the same paths every time");
     if (paths.error) {
@@ -115,10 +106,11 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
 }
 
 ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
-                          const PathRequest& paths, const PathAccuracy& reached) {
+                          const PathRequest& paths, const RenderReport& report) {
     ImageMetadata m = metadata_of(scene.desc, frame, paths);
-    if (reached.samples > 0) m["uwvdb/samples"] = static_cast<double>(reached.samples);
-    if (reached.error) m["uwvdb/error"] = *reached.error;
+    if (report.paths.samples > 0) m["uwvdb/samples"] = static_cast<double>(report.paths.samples);
+    if (report.paths.error) m["uwvdb/error"] = *report.paths.error;
+    if (report.multiple_error) m["uwvdb/multiple_error"] = *report.multiple_error;
     const Medium& medium = scene.water.medium;
     std::vector<double> a, b, c;
     for (int band = 0; band < medium.band_count(); ++band) {

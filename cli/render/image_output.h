@@ -7,7 +7,7 @@
 #include "cli/render/output_files.h"
 #include "core/image/film.h"
 #include "core/image/image_writer.h"
-#include "render/scene_rendering.h"
+#include "render/renderer.h"
 
 namespace uw {
 
@@ -17,9 +17,9 @@ namespace uw {
 ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
                           const PathRequest& paths = {});
 
-/// The whole header of an image.
+/// The whole header of an image; `report` is about it.
 ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
-                          const PathRequest& paths = {}, const PathAccuracy& reached = {});
+                          const PathRequest& paths = {}, const RenderReport& report = {});
 
 /// Prints one line.
 using SayCallback = std::function<void(const std::string& line)>;

@@ -10,11 +10,15 @@
 
 #include "cli/console.h"
 #include "cli/stop_signal.h"
+#include "cli/validate/all_light.h"
+#include "cli/validate/lamp_table.h"
+#include "cli/validate/light_report.h"
 #include "cli/validate/validation_report.h"
 #include "cli/validate/validation_suite.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/integrators/integrator_table.h"
 #include "render/scene_loading.h"
 
 namespace uw {
@@ -27,8 +31,13 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     if (!a.report.empty()) const AtomicFile probe(a.report);
     const ValidationSuite suite;
     std::vector<std::pair<std::string, SceneDesc>> scenes = suite.scenes();
-    if (!a.scene.empty())
+    std::vector<std::pair<std::string, SceneDesc>> all_light = suite.all_light();
+    if (!a.scene.empty()) {
         scenes = {{a.scene.filename().string(), load_scene(a.scene, a.overrides)}};
+        all_light.clear();
+        if (scattering_of(scenes[0].second.render) == RenderDesc::Scattering::multiple)
+            all_light = scenes;
+    }
 
     ValidationOptions options;
     options.tolerance = a.tolerance;
@@ -36,15 +45,25 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     options.proceed = [] { return !stop_requested(); };
     if (!a.quiet) options.say = [](const std::string& what) { print_message(what + "\n"); };
     std::vector<SceneValidation> results;
+    std::vector<LightValidation> lights;
     bool passed = true;
+    const auto tell = [&](bool this_passed, const std::string& table) {
+        passed = passed && this_passed;
+        if (!a.quiet || !this_passed) out << table;
+        out.flush();
+    };
     for (auto& [name, desc] : scenes) {
         results.push_back(validate_scene(std::move(desc), name, options));
-        passed = passed && results.back().passed();
-        if (!a.quiet || !results.back().passed()) out << validation_table(results.back(), colour);
-        out.flush();
+        tell(results.back().passed(), validation_table(results.back(), colour));
     }
+    const auto keep = [&](LightValidation light) {
+        lights.push_back(std::move(light));
+        tell(lights.back().passed(), light_table(lights.back(), colour));
+    };
+    if (a.scene.empty()) keep(validate_by_table(lamp_table(), options));
+    for (auto& [name, desc] : all_light) keep(validate_all_light(std::move(desc), name, options));
     if (!a.report.empty()) {
-        write_validation_report(a.report, results);
+        write_validation_report(a.report, results, lights);
         if (!a.quiet) print_message(fmt::format("wrote {}\n", a.report.string()));
     }
     if (!a.quiet || !passed) out << (passed ? "validation passed\n" : "validation FAILED\n");

@@ -11,8 +11,9 @@ Computes a scene in every available way and compares the results, per component 
 McGlamery's planes and their limit, adaptive quadrature, the reference integrator and a VDB of
 constant value against the volume integrator in uniform water (grids replaced by their mean), and on
 the scene's own grids the volume against the reference integrator. If the scene has forward scatter,
-its effect is compared, too, also with a sum over all pairs of pixels. Without a scene: a built-in
-suite.
+its effect is compared, too, also with a sum over all pairs of pixels. If it has multiple
+scattering, the fast form is compared with unbiased light paths, in units of their standard errors.
+Without a scene: a built-in suite, which compares light paths with tables, too.
 Exit codes: 0 all within the tolerance, 5 not; 1 internal fault, 2 wrong usage, 3 bad input,
 4 cannot read or write, 130 interrupted.)";
 

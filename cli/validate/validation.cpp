@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "camera/image_size.h"
 #include "cli/validate/direct_sum.h"
 #include "core/base/error.h"
 #include "core/integrators/planes_integrator.h"
@@ -56,24 +55,15 @@ std::string planes_name(int count) {
 
 ResolvedScene small_image(ResolvedScene scene, int longest_side) {
     SceneDesc& small = scene.edit();
-    CameraDesc& camera = small.camera;
-    if (camera.distortion.model == DistortionDesc::Model::fisheye)
+    if (small.camera.distortion.model == DistortionDesc::Model::fisheye)
         throw InputError(
             "validate: it includes sums over slabs parallel to the image plane, but a fisheye lens "
             "can see past them; give --set camera.distortion='{k: [0, 0, 0]}'");
-    const double scale =
-        std::min(1.0, static_cast<double>(longest_side) / std::max(camera.width, camera.height));
-    const int width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
-    const int height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
-    resize_image(camera, width, height);
+    show_radiance_in_water(small, longest_side);
     small.render.integrator = RenderDesc::Integrator::volume;
+    small.render.scattering = RenderDesc::Scattering::single;
     small.render.quality = RenderDesc::Quality::exact;
     small.render.samples = 1;
-    // What is compared is the radiance in the water.
-    small.render.output = RenderDesc::Output::radiance;
-    small.render.colour = {};
-    if (camera.port)
-        std::visit([](auto& port) { port.fresnel = port.radiance_in_air = false; }, *camera.port);
     return scene;
 }
 

@@ -14,9 +14,10 @@ namespace uw {
 using TransportWrapper = std::function<LightTransport(LightTransport honest)>;
 
 struct ValidationOptions {
-    double tolerance = 1e-3;  // largest relative difference allowed at a smooth pixel
-    int longest_side = 48;    // of the image that is compared [pixels]
-    int most_planes = 512;    // slabs of the finest sum
+    double tolerance = 1e-3;              // largest relative difference allowed at a smooth pixel
+    int longest_side = 48;                // of the image that is compared [pixels]
+    int longest_side_of_all_light = 320;  // where all light is compared [pixels]
+    int most_planes = 512;                // slabs of the finest sum
     TransportWrapper volume;  // of the volume integrator's; empty: it is tested as it is
     std::function<bool()> proceed = [] { return true; };  // false stops with Interrupted
     std::function<void(const std::string&)> say = [](const std::string&) {};

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "camera/image_size.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/scratch_folder.h"
@@ -89,6 +90,19 @@ TrialScene splatted(Renderer renderer) {
 }
 
 }  // namespace
+
+void show_radiance_in_water(SceneDesc& scene, int longest_side) {
+    CameraDesc& camera = scene.camera;
+    const double scale =
+        std::min(1.0, static_cast<double>(longest_side) / std::max(camera.width, camera.height));
+    const int width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
+    const int height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
+    resize_image(camera, width, height);
+    scene.render.output = RenderDesc::Output::radiance;
+    scene.render.colour = {};
+    if (camera.port)
+        std::visit([](auto& port) { port.fresnel = port.radiance_in_air = false; }, *camera.port);
+}
 
 TrialScene make_trial(const ResolvedScene& scene, const std::function<bool()>& proceed) {
     return splatted(make_renderer(scene, proceed));

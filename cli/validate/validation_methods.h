@@ -17,6 +17,10 @@ struct MethodImage {
     std::vector<Spectrum> blurred_backscatter;  // with forward scatter
 };
 
+/// Resizes the image of `scene` to at most `longest_side` pixels a side, and makes it radiance in
+/// the water, in which methods are compared.
+void show_radiance_in_water(SceneDesc& scene, int longest_side);
+
 /// A scene under test, assembled, with its lamps splatted.
 struct TrialScene {
     Renderer renderer;

@@ -5,65 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 
 #include "cli/plot/svg_plot.h"
+#include "cli/validate/light_report.h"
+#include "cli/validate/report_page.h"
 #include "cli/version.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/scratch_folder.h"
 #include "core/colour/colour.h"
-#include "core/image/image_writer.h"
 
 namespace uw {
 
 namespace {
-
-constexpr int k_picture_width = 288;  // of one picture on the page [CSS pixels]
-
-constexpr const char* k_style =
-    "body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;"
-    "color:#222}table{border-collapse:collapse;margin:1em 0}td,th{padding:.15em .8em;"
-    "border-bottom:1px solid "
-    "#ddd;text-align:left}td.n{text-align:right;white-space:nowrap;font-variant-numeric:"
-    "tabular-nums}.failed{color:#c00;font-weight:bold}.passed{color:#070}figure{display:"
-    "inline-block;margin:0 1em 1em "
-    "0;vertical-align:top}figcaption{font-size:13px;max-width:288px}img{image-"
-    "rendering:pixelated;display:block;border:1px solid #ccc}";
-
-std::string base64(const std::string& bytes) {
-    static constexpr const char* k_digits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        unsigned group = 0;
-        for (std::size_t j = 0; j < 3; ++j)
-            group =
-                group << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0U);
-        for (std::size_t j = 0; j < 4; ++j)
-            text += i + j > bytes.size() ? '=' : k_digits[group >> (18 - 6 * j) & 63U];
-    }
-    return text;
-}
-
-/// Turns pictures into HTML; owns the folder for their temporary files.
-class Pictures {
-  public:
-    std::string figure(const Preview& picture, const std::string& caption) {
-        const std::filesystem::path file = folder_.path() / "picture.png";
-        write_png(file, picture, {});
-        std::ifstream in(file, std::ios::binary);
-        const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-        return fmt::format(
-            "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
-            "<figcaption>{}</figcaption></figure>\n",
-            k_picture_width, k_picture_width * picture.height() / std::max(1, picture.width()),
-            caption, base64(bytes), caption);
-    }
-
-  private:
-    ScratchFolder folder_;
-};
 
 using Components = std::vector<Component>;
 const Components k_before{k_direct, k_backscatter};
@@ -183,7 +136,7 @@ std::string convergence_plot(const SceneValidation& scene) {
 
 // One picture per method that has all of `components`; empty if none has.
 std::string pictures_of(const SceneValidation& scene, const Components& components,
-                        const std::string& title, Pictures& pictures) {
+                        const std::string& title, ReportPictures& pictures) {
     std::string html;
     double exposure = 0;
     for (const auto& [name, image] : scene.images) {
@@ -198,7 +151,7 @@ std::string pictures_of(const SceneValidation& scene, const Components& componen
 }
 
 std::string differences_of(const SceneValidation& scene, const Component& component,
-                           Pictures& pictures) {
+                           ReportPictures& pictures) {
     std::string html;
     for (const Check& check : scene.checks) {
         if (check.component.image != component.image || check.band != 0) continue;
@@ -209,10 +162,8 @@ std::string differences_of(const SceneValidation& scene, const Component& compon
     return html.empty() ? html : fmt::format("<h4>{}</h4>\n{}", component.name, html);
 }
 
-std::string section_of(const SceneValidation& scene, Pictures& pictures) {
-    std::string html =
-        fmt::format("<h2>{}: <span class={}>{}</span></h2>\n", scene.name,
-                    scene.passed() ? "passed" : "failed", scene.passed() ? "passed" : "FAILED");
+std::string section_of(const SceneValidation& scene, ReportPictures& pictures) {
+    std::string html = fmt::format("<h2>{}: {}</h2>\n", scene.name, verdict_html(scene.passed()));
     const auto smooth = std::count(scene.smooth.begin(), scene.smooth.end(), char{1});
     html += fmt::format(
         "<p>{} × {} pixels; {:.0f} % of them without a shadow edge or hard beam edge in their ray. "
@@ -257,15 +208,17 @@ std::string validation_table(const SceneValidation& scene, bool colour) {
 }
 
 void write_validation_report(const std::filesystem::path& file,
-                             const std::vector<SceneValidation>& scenes) {
-    Pictures pictures;
+                             const std::vector<SceneValidation>& scenes,
+                             const std::vector<LightValidation>& lights) {
+    ReportPictures pictures;
     std::string html = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>uwvdb validate"
         "</title><style>{}</style></head><body>\n<h1>uwvdb validate</h1>\n<p>uwvdb {}. Every way "
         "of computing a scene against the others; tolerances are of the largest relative "
         "difference; the RMS may be three times the tolerance given.</p>\n",
-        k_style, program_version());
+        k_report_style, program_version());
     for (const SceneValidation& scene : scenes) html += section_of(scene, pictures);
+    for (const LightValidation& light : lights) html += light_section(light, pictures);
     html += "</body></html>\n";
     AtomicFile target(file);
     std::ofstream out(target.temporary_path(), std::ios::binary);

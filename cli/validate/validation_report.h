@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/validate/light_check.h"
 #include "cli/validate/validation.h"
 
 namespace uw {
@@ -12,8 +13,9 @@ namespace uw {
 std::string validation_table(const SceneValidation& scene, bool colour);
 
 /// Writes one self-contained HTML page: the tables, the pictures of every method, maps of their
-/// differences and the convergence of the planes. Throws IoError.
+/// differences, the convergence of the planes, and what is said of all light. Throws IoError.
 void write_validation_report(const std::filesystem::path& file,
-                             const std::vector<SceneValidation>& scenes);
+                             const std::vector<SceneValidation>& scenes,
+                             const std::vector<LightValidation>& lights);
 
 }  // namespace uw

@@ -20,9 +20,12 @@ class ValidationSuite {
     /// Name and description of each.
     const std::vector<std::pair<std::string, SceneDesc>>& scenes() const { return scenes_; }
 
+    /// Those of which all light is compared.
+    const std::vector<std::pair<std::string, SceneDesc>>& all_light() const { return all_light_; }
+
   private:
     ScratchFolder folder_;
-    std::vector<std::pair<std::string, SceneDesc>> scenes_;
+    std::vector<std::pair<std::string, SceneDesc>> scenes_, all_light_;
 };
 
 }  // namespace uw

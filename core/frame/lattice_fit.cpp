@@ -9,10 +9,10 @@ namespace uw {
 namespace {
 
 constexpr int k_most_terms = 6;  // 1, x, y, x^2, xy, y^2
-constexpr std::array<int, 4> k_reaches{0, 1, 2, LatticeFit::k_reach};
+constexpr std::array<int, 5> k_reaches{0, 1, 2, 4, LatticeFit::k_reach};
 // In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
 // light less well.
-constexpr double k_agreement = 2;
+constexpr double k_agreement = 1.5;
 
 using Terms = std::array<double, k_most_terms>;
 using Matrix = std::array<Terms, k_most_terms>;
@@ -68,6 +68,7 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms
     Terms solution{};
     if (used < 2 * terms - 1 || !solve_for_value(normal, terms, solution)) return false;
     tried_value_ = tried_variance_ = 0;
+    double amplification = 0;
     for (const FitNode& node : nodes) {
         const double x = node.dx * scale, y = node.dy * scale;
         const double rest = 1 - x * x - y * y;
@@ -80,8 +81,10 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms
         tried_.push_back({node.index, weight});
         tried_value_ += weight * node.value;
         tried_variance_ += weight * weight * node.variance;
+        amplification += weight * weight;
     }
-    return true;
+    // An extrapolation that makes noise greater is left to a lower degree.
+    return terms == 1 || amplification <= 1;
 }
 
 std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, double tolerance) {

@@ -26,7 +26,7 @@ struct FitWeight {
 class LatticeFit {
   public:
     /// Of the neighbourhoods, in steps of the lattice; a caller passes the nodes within.
-    static constexpr int k_reach = 4;
+    static constexpr int k_reach = 8;
 
     /// The weights with which the nodes make up the fitted value at (0, 0), the sum of which is 1.
     /// `nodes` need not include that place. `tolerance`: differences that do not matter, in units

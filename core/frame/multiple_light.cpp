@@ -25,12 +25,18 @@ double lerp_weight(double t, int side) {
     return side == 0 ? 1 - t : t;
 }
 
-// A power of two, for about as many nodes.
+// A power of two that leaves at most about as many nodes.
 int spacing_for(const RaySource& rays, int nodes) {
     const double area = static_cast<double>(rays.width()) * rays.height();
     int spacing = 1;
-    while (area / (4.0 * spacing * spacing) > nodes) spacing *= 2;
+    while (area / (static_cast<double>(spacing) * spacing) > nodes) spacing *= 2;
     return spacing;
+}
+
+// In the whole image.
+int node_count(const RaySource& rays, int spacing) {
+    return ((rays.width() + spacing - 1) / spacing + 1) *
+           ((rays.height() + spacing - 1) / spacing + 1);
 }
 
 }  // namespace
@@ -42,7 +48,7 @@ MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOpt
       intervals_(pixels.rays(), pixels.scene()),
       estimator_(pixels.rays(), pixels.scene(), pixels.transport(), intervals_,
                  {options.lamps ? static_cast<std::size_t>(pixels.lamp_count()) + 1 : 1,
-                  std::max(k_fewest_paths, options.paths / options.nodes)}) {}
+                  std::max(k_fewest_paths, options.paths / node_count(pixels.rays(), spacing_))}) {}
 
 void MultipleLight::prepare(const PixelWindow& window, const Progress& progress) {
     // The corners of all cells in the window, and what these are fitted to.

@@ -10,7 +10,7 @@ namespace uw {
 /// Reused storage.
 struct CameraSegment {
     WaterSegment water;
-    std::vector<double> transmittance;  // up to the surface, per band
+    Spectrum transmittance;  // up to the surface; not set without one
     /// Where the paths' first scattering lies: running sums of weights of the intervals between
     /// `distances`, in each of which it is uniform. Empty where the water scatters no light.
     std::vector<double> distances, cumulative;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace uw {
 
@@ -16,6 +15,7 @@ constexpr std::uint64_t k_first = std::bit_cast<std::uint64_t>(k_least) >> k_off
 // Those between powers of two, after the one from 0 to k_least.
 constexpr std::size_t k_cells =
     1 + (std::bit_cast<std::uint64_t>(k_most) >> k_offset_bits) - k_first;
+constexpr std::size_t k_guides = 1024;
 
 std::vector<double> make_nodes() {
     std::vector<double> nodes{0.0};
@@ -31,51 +31,56 @@ std::size_t cell_of(double h) {
            1;
 }
 
-const std::vector<double>& all_nodes() {
-    static const std::vector<double> nodes = make_nodes();
-    return nodes;
-}
-
 }  // namespace
 
 std::span<const double> HalfTangentDensity::nodes() {
-    return all_nodes();
+    static const std::vector<double> all = make_nodes();
+    return all;
 }
 
-HalfTangentDensity::HalfTangentDensity(std::vector<double> at_nodes)
-    : values_(std::move(at_nodes)), cumulative_(values_.size(), 0.0) {
-    const std::vector<double>& h = all_nodes();
-    for (std::size_t i = 1; i < values_.size(); ++i)
-        cumulative_[i] =
-            cumulative_[i - 1] + 0.5 * (values_[i - 1] + values_[i]) * (h[i] - h[i - 1]);
+HalfTangentDensity::HalfTangentDensity(std::span<const double> at_nodes) {
+    const std::span<const double> h = nodes();
+    for (std::size_t i = 0; i < k_cells; ++i) {
+        const double width = h[i + 1] - h[i];
+        cells_.push_back({h[i], mass_, at_nodes[i], (at_nodes[i + 1] - at_nodes[i]) / width});
+        mass_ += 0.5 * (at_nodes[i] + at_nodes[i + 1]) * width;
+    }
+    cells_.push_back({h[k_cells], mass_, 0, 0});
+    guides_.assign(k_guides, 0);
+    if (!(mass_ > 0)) return;
+    guides_per_mass_ = k_guides / mass_;
+    std::size_t cell = 0;
+    for (std::size_t i = 0; i < k_guides; ++i) {
+        const double begin = static_cast<double>(i) / guides_per_mass_;
+        while (cell + 1 < k_cells && cells_[cell + 1].before <= begin) ++cell;
+        guides_[i] = static_cast<std::uint16_t>(cell);
+    }
 }
 
 double HalfTangentDensity::mass_to(double h) const {
-    if (!(h < k_most)) return cumulative_.back();
-    const std::size_t cell = cell_of(h);
-    const double begin = all_nodes()[cell], end = all_nodes()[cell + 1];
-    const double t = (h - begin) / (end - begin);
-    return cumulative_[cell] +
-           (h - begin) * (values_[cell] + 0.5 * t * (values_[cell + 1] - values_[cell]));
+    if (!(h < k_most)) return mass_;
+    const Cell& cell = cells_[cell_of(h)];
+    const double t = h - cell.begin;
+    return cell.before + t * (cell.value + 0.5 * t * cell.slope);
 }
 
 double HalfTangentDensity::density(double h) const {
     if (!(h < k_most)) return 0;
-    const std::size_t cell = cell_of(h);
-    const double begin = all_nodes()[cell], end = all_nodes()[cell + 1];
-    return values_[cell] + (h - begin) / (end - begin) * (values_[cell + 1] - values_[cell]);
+    const Cell& cell = cells_[cell_of(h)];
+    return cell.value + (h - cell.begin) * cell.slope;
 }
 
 double HalfTangentDensity::invert(double mass) const {
-    const auto above = std::upper_bound(cumulative_.begin() + 1, cumulative_.end() - 1, mass);
-    const auto cell = static_cast<std::size_t>(above - cumulative_.begin()) - 1;
-    const double begin = all_nodes()[cell], width = all_nodes()[cell + 1] - begin;
-    const double rest = std::max(0.0, mass - cumulative_[cell]);
-    const double slope = (values_[cell + 1] - values_[cell]) / width;
+    const auto guide = static_cast<std::size_t>(mass * guides_per_mass_);
+    std::size_t i = guides_[std::min(guide, k_guides - 1)];
+    while (i + 1 < k_cells && cells_[i + 1].before <= mass) ++i;
+    const Cell& cell = cells_[i];
+    const double rest = std::max(0.0, mass - cell.before);
     // rest = value t + slope t^2 / 2, in a form without cancellation.
-    const double root = std::sqrt(std::max(0.0, values_[cell] * values_[cell] + 2 * slope * rest));
-    const double sum = values_[cell] + root;
-    return begin + (sum > 0 ? std::min(width, 2 * rest / sum) : 0.0);
+    const double root = std::sqrt(std::max(0.0, cell.value * cell.value + 2 * cell.slope * rest));
+    const double sum = cell.value + root;
+    return cell.begin +
+           (sum > 0 ? std::min(cells_[i + 1].begin - cell.begin, 2 * rest / sum) : 0.0);
 }
 
 }  // namespace uw

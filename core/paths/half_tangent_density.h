@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,10 +18,10 @@ class HalfTangentDensity {
 
     HalfTangentDensity() = default;
     /// `at_nodes`: the density per unit of h at each node, >= 0.
-    explicit HalfTangentDensity(std::vector<double> at_nodes);
+    explicit HalfTangentDensity(std::span<const double> at_nodes);
 
     /// The integral over all h.
-    double mass() const { return cumulative_.back(); }
+    double mass() const { return mass_; }
     /// The integral from 0 to `h` >= 0; infinity is allowed.
     double mass_to(double h) const;
     /// The density per unit of h at `h` >= 0; 0 beyond the last node.
@@ -29,8 +30,16 @@ class HalfTangentDensity {
     double invert(double mass) const;
 
   private:
-    std::vector<double> values_;      // at the nodes
-    std::vector<double> cumulative_;  // up to each node
+    /// Between two nodes: all that a look-up needs, in half a cache line.
+    struct Cell {
+        double begin = 0, before = 0;  // its first node, and the integral up to there
+        double value = 0, slope = 0;   // the density at `begin`, and its derivative
+    };
+
+    std::vector<Cell> cells_;            // and one of width 0 that ends them
+    std::vector<std::uint16_t> guides_;  // the cell of each of as many equal parts of the mass
+    double mass_ = 0;
+    double guides_per_mass_ = 0;
 };
 
 }  // namespace uw

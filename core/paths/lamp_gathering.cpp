@@ -4,12 +4,18 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/fast_exp.h"
 #include "core/integrators/ray_panels.h"
 #include "core/paths/choice.h"
 #include "core/surfaces/surface_reflection.h"
 
 namespace uw {
+
+namespace {
+
+// The share of what a field may scatter, typically, in the choice of a phase function.
+constexpr double k_field_share = 0.25;
+
+}  // namespace
 
 /// One lamp's part in the light along a segment.
 struct LampGathering::Share {
@@ -21,14 +27,21 @@ struct LampGathering::Share {
     std::size_t lamp = 0;
     double foot = 0, distance = 0;      // LampPassage
     std::array<HalfTangents, 2> parts;  // outside the lamp's sphere and within its beam
-    int part_count = 0;
-    double mass = 0;  // of the weighted phase functions on them
+    std::size_t part_count = 0;
+    double mass = 0;               // of the weighted phase functions on them
+    std::size_t first_masses = 0;  // of Workspace::masses
 };
 
 struct LampGathering::Workspace {
+    // HalfTangentDensity::mass_to at both ends of a part.
+    struct Masses {
+        double from = 0, to = 0;
+    };
+
     std::vector<double> phase_weights;  // of the phase functions on this segment
     std::vector<Share> shares;
-    std::vector<double> cumulative, masses;
+    std::vector<Masses> masses;  // by share, part and phase function
+    std::vector<double> cumulative;
     std::vector<double> column, p;
     WaterPoint point;
     Spectrum radiance, brdf;
@@ -37,16 +50,6 @@ struct LampGathering::Workspace {
 LampGathering::LampGathering(const WaterOptics& optics, const ScatteringTables& tables,
                              std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
     : optics_(optics), tables_(tables), deep_shadows_(std::move(deep_shadows)) {}
-
-// The sum over bands of throughput, intensity on the axis, and e^-c for the uniform water.
-double LampGathering::mean_of_arriving(const Spectrum& throughput, const Lamp& lamp,
-                                       double length) const {
-    double sum = 0;
-    for (std::size_t b = 0; b < optics_.bands(); ++b)
-        sum += throughput[b] * lamp.axis_intensity()[b] *
-               exp_of_minus(optics_.attenuation().uniform[b] * length);
-    return sum;
-}
 
 void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
                                    std::span<double> column) const {
@@ -69,6 +72,7 @@ void LampGathering::find_water_shares(const WaterSegment& segment, std::span<con
         const std::size_t count = optics_.constituents();
         const double c = optics_.attenuation().uniform[0];
         const double length = c > 0 ? std::min(segment.length, 1 / c) : segment.length;
+        double total = 0;
         for (std::size_t m = 0; m < phases; ++m) {
             double sum = 0;
             for (std::size_t b = 0; b < optics_.bands(); ++b) {
@@ -80,10 +84,16 @@ void LampGathering::find_water_shares(const WaterSegment& segment, std::span<con
                 sum += depth * state.throughput[b];
             }
             w.phase_weights[m] = sum;
+            total += sum;
         }
+        // A field may scatter where its profile is not known, or where nothing else does.
+        if (segment.has_field || !(total > 0))
+            for (std::size_t m = 0; m < phases; ++m)
+                w.phase_weights[m] += tables_.shares[m] * (total > 0 ? k_field_share * total : 1);
     }
     w.shares.clear();
     w.cumulative.clear();
+    w.masses.clear();
     double total = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         const double own_weight = weights.empty() ? 1 : weights[j];
@@ -92,17 +102,22 @@ void LampGathering::find_water_shares(const WaterSegment& segment, std::span<con
         if (!(lit.length() > 0)) continue;
         LampPassage passage(segment.ray, lamps[j].position());
         passage.distance = std::max(passage.distance, 1e-12 * (1 + std::abs(passage.foot)));
-        Share share{j, passage.foot, passage.distance, {}, 0, 0};
+        Share share{j, passage.foot, passage.distance, {}, 0, 0, w.masses.size()};
         const auto add_part = [&](double begin, double end) {
             if (!(end > begin)) return;
             const Share::HalfTangents part{passage.half_tangent(begin, passage.radius(begin)),
                                            passage.half_tangent(end, passage.radius(end))};
             double mass = 0;
-            for (std::size_t m = 0; m < phases; ++m)
-                mass += w.phase_weights[m] *
-                        (tables_.lines[m].mass_to(part.end) - tables_.lines[m].mass_to(part.begin));
-            if (!(mass > 0)) return;
-            share.parts[static_cast<std::size_t>(share.part_count++)] = part;
+            for (std::size_t m = 0; m < phases; ++m) {
+                w.masses.push_back(
+                    {tables_.lines[m].mass_to(part.begin), tables_.lines[m].mass_to(part.end)});
+                mass += w.phase_weights[m] * (w.masses.back().to - w.masses.back().from);
+            }
+            if (!(mass > 0)) {
+                w.masses.resize(w.masses.size() - phases);
+                return;
+            }
+            share.parts[share.part_count++] = part;
             share.mass += mass;
         };
         if (passage.distance >= k_lamp_radius) {
@@ -115,11 +130,12 @@ void LampGathering::find_water_shares(const WaterSegment& segment, std::span<con
         }
         if (share.part_count == 0) continue;
         // The light path R + s never shortens along the segment.
-        const double weight = lamps.size() == 1
-                                  ? 1
-                                  : own_weight * share.mass / share.distance *
-                                        mean_of_arriving(state.throughput, lamps[j],
-                                                         lit.begin + passage.radius(lit.begin));
+        const double weight =
+            lamps.size() == 1
+                ? 1
+                : own_weight * share.mass / share.distance *
+                      optics_.attenuated_sum(state.throughput, lamps[j].axis_intensity(),
+                                             lit.begin + passage.radius(lit.begin));
         if (!(weight > 0)) continue;
         total += weight;
         w.shares.push_back(share);
@@ -139,23 +155,20 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
     const Choice lamp_choice = choose(w.cumulative, of_lamp);
     const Share& share = w.shares[lamp_choice.index];
 
-    // A phase function and a part of the segment, then an angle.
-    w.masses.clear();
+    // A part of the segment and a phase function, then an angle.
+    const std::span<const Workspace::Masses> masses =
+        std::span(w.masses).subspan(share.first_masses, share.part_count * phases);
+    w.cumulative.clear();
     double total = 0;
-    for (std::size_t m = 0; m < phases; ++m) {
-        for (std::size_t part = 0; part < static_cast<std::size_t>(share.part_count); ++part) {
-            const Share::HalfTangents& h = share.parts[part];
-            total += w.phase_weights[m] *
-                     (tables_.lines[m].mass_to(h.end) - tables_.lines[m].mass_to(h.begin));
-            w.masses.push_back(total);
-        }
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+        total += w.phase_weights[i % phases] * (masses[i].to - masses[i].from);
+        w.cumulative.push_back(total);
     }
-    const std::size_t pick = choose(w.masses, of_phase).index;
-    const auto parts = static_cast<std::size_t>(share.part_count);
-    const HalfTangentDensity& line = tables_.lines[pick / parts];
-    const Share::HalfTangents& part = share.parts[pick % parts];
-    const double from = line.mass_to(part.begin), to = line.mass_to(part.end);
-    const double h = std::clamp(line.invert(from + of_angle * (to - from)), part.begin, part.end);
+    const std::size_t pick = choose(w.cumulative, of_phase).index;
+    const auto [from, to] = masses[pick];
+    const Share::HalfTangents& part = share.parts[pick / phases];
+    const double h = std::clamp(tables_.lines[pick % phases].invert(from + of_angle * (to - from)),
+                                part.begin, part.end);
     if (!(h > 0)) return;
     const double s =
         std::clamp(share.foot - share.distance * (1 - h * h) / (2 * h), 0.0, segment.length);
@@ -179,7 +192,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
     tables_.phase(h, w.p);
     const std::size_t bands = optics_.bands();
     const std::span<double> radiance = w.radiance.first(bands);
-    optics_.transmittances(s + radius, w.column, radiance);
+    optics_.transmittances(s + radius, w.column, w.radiance);
     const double factor = (weights.empty() ? 1 : weights[share.lamp]) * relative * 2 /
                           ((1 + h * h) * share.distance * density);
     for (std::size_t b = 0; b < bands; ++b) {
@@ -192,8 +205,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
     terms.add(term);
 }
 
-void LampGathering::gather_from_surface(const WaterSegment& segment,
-                                        std::span<const double> transmittance,
+void LampGathering::gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
                                         const PathState& state, PathRandom& random,
                                         PathTerms& terms) const {
     thread_local Workspace w;
@@ -221,7 +233,9 @@ void LampGathering::gather_from_surface(const WaterSegment& segment,
         const double radius = glm::length(to_lamp);
         const double geometry = relative * towards / (radius * radius * radius);
         const double weight =
-            lamps.size() == 1 ? 1 : geometry * mean_of_arriving(state.throughput, lamps[j], radius);
+            lamps.size() == 1 ? 1
+                              : geometry * optics_.attenuated_sum(
+                                               state.throughput, lamps[j].axis_intensity(), radius);
         if (!(weight > 0)) continue;
         total += weight;
         Share share;
@@ -239,7 +253,7 @@ void LampGathering::gather_from_surface(const WaterSegment& segment,
     w.column.resize(optics_.constituents());
     column_to_lamp(share.lamp, hit.position, w.column);
     reflection.brdf(lamp.position(), w.brdf);
-    optics_.transmittances(share.distance, w.column, radiance);
+    optics_.transmittances(share.distance, w.column, w.radiance);
     for (std::size_t b = 0; b < bands; ++b)
         radiance[b] *= share.mass / probability * lamp.axis_intensity()[b] * w.brdf[b] *
                        transmittance[b] * state.throughput[b];

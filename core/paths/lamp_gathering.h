@@ -28,7 +28,7 @@ class LampGathering {
                            const PathState& state, PathRandom& random, PathTerms& terms) const;
     /// The surface's, for a lamp chosen by its share; `transmittance` is that of the segment. Uses
     /// one random number. Precondition: segment.has_hit.
-    void gather_from_surface(const WaterSegment& segment, std::span<const double> transmittance,
+    void gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
                              const PathState& state, PathRandom& random, PathTerms& terms) const;
 
   private:
@@ -37,7 +37,6 @@ class LampGathering {
 
     void find_water_shares(const WaterSegment& segment, std::span<const double> weights,
                            const PathState& state, Workspace& w) const;
-    double mean_of_arriving(const Spectrum& throughput, const Lamp& lamp, double length) const;
     void column_to_lamp(std::size_t lamp, const Point3& x, std::span<double> column) const;
 
     const WaterOptics& optics_;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/base/fast_exp.h"
-
 namespace uw {
 
 namespace {
@@ -25,29 +23,17 @@ struct Nearness {
 
 }  // namespace
 
-void LampGlow::spread(const Point3& x, const Vector3& direction, std::span<double> values) const {
-    std::ranges::fill(values, 0.0);
-    for (const Lamp& lamp : *optics_.scene().lamps) {
-        const Nearness near(lamp, x);
-        const Vector3 to_lamp = lamp.position() - x;
-        const double along = glm::dot(to_lamp, direction);
-        const double across = glm::length(to_lamp - along * direction);
-        const double h = across / std::max(1e-12, std::hypot(along, across) + along);
-        const double share = near.relative * tables_.spread_glow(h);
-        for (std::size_t b = 0; b < values.size(); ++b)
-            values[b] += share * lamp.axis_intensity()[b] *
-                         exp_of_minus(optics_.attenuation().uniform[b] * near.radius);
-    }
+LampGlow::Spread LampGlow::spread(std::size_t lamp, const LampPassage& passage, double s,
+                                  const Point3& x) const {
+    const Nearness near((*optics_.scene().lamps)[lamp], x);
+    const double h = passage.half_tangent(s, near.radius);
+    return {near.relative * tables_.spread_glow(h), near.radius};
 }
 
 double LampGlow::of_lamp(std::size_t lamp, const Point3& x, const Spectrum& weights) const {
     const Lamp& source = (*optics_.scene().lamps)[lamp];
     const Nearness near(source, x);
-    double sum = 0;
-    for (std::size_t b = 0; b < optics_.bands(); ++b)
-        sum += weights[b] * source.axis_intensity()[b] *
-               exp_of_minus(optics_.attenuation().uniform[b] * near.radius);
-    return sum * near.relative;
+    return near.relative * optics_.attenuated_sum(weights, source.axis_intensity(), near.radius);
 }
 
 }  // namespace uw

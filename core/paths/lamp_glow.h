@@ -1,7 +1,6 @@
 #pragma once
 
-#include <span>
-
+#include "core/integrators/ray_panels.h"
 #include "core/paths/scattering_tables.h"
 #include "core/paths/water_segment.h"
 
@@ -18,10 +17,14 @@ class LampGlow {
     /// I e^(-c R) / R of a lamp, with c of the uniform water, summed over the bands with these
     /// weights [W sr^-1 m^-1].
     double of_lamp(std::size_t lamp, const Point3& x, const Spectrum& weights) const;
-    /// The same of all lamps in each band, times ScatteringTables::spread_glow of the angle to
-    /// each: b times this is roughly the radiance that is scattered once and, at `x`, once more
-    /// back along `direction`, per metre and b.
-    void spread(const Point3& x, const Vector3& direction, std::span<double> values) const;
+    /// Along the ray with this `passage` of a lamp, at the point `x` at `s`: I / R times
+    /// ScatteringTables::spread_glow, relative to the lamp's intensity, and R. With e^(-c R) and b,
+    /// it is roughly the radiance that is scattered once and, at `x`, once more back along the
+    /// ray, per metre and b.
+    struct Spread {
+        double relative = 0, radius = 0;
+    };
+    Spread spread(std::size_t lamp, const LampPassage& passage, double s, const Point3& x) const;
 
   private:
     const WaterOptics& optics_;

@@ -12,8 +12,11 @@ constexpr std::array<std::uint32_t, 24> k_generator{
     1,      182667, 469891, 498753, 110745, 446247, 250185, 118627, 245333, 283199, 408519, 391023,
     246327, 126539, 399185, 461527, 300343, 69681,  516695, 436179, 106383, 238523, 413283, 70841};
 
-std::uint64_t mixed(std::uint64_t x) {  // Steele, Lea and Flood 2014: splitmix64
-    x += 0x9e3779b97f4a7c15U;
+// Steele, Lea and Flood 2014: splitmix64.
+constexpr std::uint64_t k_step = 0x9e3779b97f4a7c15U;
+
+std::uint64_t mixed(std::uint64_t x) {
+    x += k_step;
     x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
     x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
     return x ^ (x >> 31U);
@@ -29,17 +32,14 @@ std::uint32_t reversed(std::uint32_t x) {
 
 }  // namespace
 
+PathRandom::PathRandom(std::uint64_t seed, std::uint32_t index)
+    : seed_(seed), stream_(mixed(seed ^ mixed(index))), point_(reversed(index)) {}
+
 double PathRandom::next() {
     const auto dimension = static_cast<std::uint64_t>(dimension_++);
-    const std::uint64_t shift = mixed(seed_ + 0x632be59bd9b4e019U * (dimension + 1));
-    std::uint64_t bits = 0;
-    if (dimension < k_generator.size()) {
-        // The van der Corput sequence times the generator, modulo 1, in units of 2^-32.
-        const std::uint32_t point = reversed(index_) * k_generator[dimension];
-        bits = (std::uint64_t{point} << 32U) + shift;
-    } else {
-        bits = mixed(shift ^ mixed(index_));
-    }
+    const bool in_lattice = dimension < k_generator.size();
+    std::uint64_t bits = mixed((in_lattice ? seed_ : stream_) + k_step * dimension);
+    if (in_lattice) bits += std::uint64_t{point_ * k_generator[dimension]} << 32U;
     return static_cast<double>(bits >> 11U) * 0x1p-53;
 }
 

@@ -14,7 +14,7 @@ namespace uw {
 /// seeds are independent.
 class PathRandom {
   public:
-    PathRandom(std::uint64_t seed, std::uint32_t index) : seed_(seed), index_(index) {}
+    PathRandom(std::uint64_t seed, std::uint32_t index);
 
     /// The number of the next dimension, in [0, 1).
     double next();
@@ -26,7 +26,8 @@ class PathRandom {
 
   private:
     std::uint64_t seed_;
-    std::uint32_t index_;
+    std::uint64_t stream_;  // of the numbers beyond the lattice
+    std::uint32_t point_;   // of the van der Corput sequence, in units of 2^-32
     int dimension_ = 0;
 };
 

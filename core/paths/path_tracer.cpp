@@ -18,9 +18,10 @@ namespace {
 // Paths are not followed beyond this optical depth of the camera ray: e^-20 = 2e-9.
 constexpr double k_reach = 20;
 // Intervals of uniform water in which the first scattering is uniform; most of them in a plume.
-constexpr int k_intervals = 16;
+constexpr int k_intervals = 8;
 constexpr double k_far_begin = 1.5, k_far_step = 0.5;
 constexpr std::size_t k_most_knots = 64;
+constexpr std::size_t k_most_guiding_bands = 4;
 // Share of the first scatterings that follow the transmittance alone, so that none is starved.
 constexpr double k_defensive_share = 0.1;
 // The light that a path may meet anywhere, relative to that of the surface its pixel sees, and at
@@ -30,7 +31,9 @@ constexpr double k_ambient_share = 0.5, k_least_ambient = 0.05;
 /// Per thread: preparing a ray does not allocate.
 struct Workspace {
     WaterPoint point;
-    std::vector<double> transmittance, glow, guided, plain;
+    std::vector<LampPassage> passages;  // of the lamps
+    std::vector<LampGlow::Spread> spreads;
+    std::vector<double> guided, plain;
 };
 
 Workspace& workspace_of_thread() {
@@ -52,8 +55,10 @@ void PathTracer::begin(const Ray& ray, const SurfaceHit* hit, std::span<const do
     WaterSegment& water = segment.water;
     optics.set(ray, hit, water);
     optics.look_up(water, water.length, w.point);
-    segment.transmittance.assign(optics.bands(), 0.0);
+    segment.transmittance = {};
     if (hit) optics.transmittances(water.length, w.point.column, segment.transmittance);
+    w.passages.clear();
+    for (const Lamp& lamp : *optics.scene().lamps) w.passages.emplace_back(ray, lamp.position());
     place_intervals(segment);
     weigh_intervals(surface_light, segment);
 }
@@ -61,12 +66,11 @@ void PathTracer::begin(const Ray& ray, const SurfaceHit* hit, std::span<const do
 // The ends of the intervals: at equal steps of the transmittance, at the lamp's nearest points, and
 // at knots of the concentrations.
 void PathTracer::place_intervals(CameraSegment& segment) const {
+    Workspace& w = workspace_of_thread();
     const WaterOptics& optics = tables_->optics;
     const WaterSegment& water = segment.water;
     std::vector<double>& s = segment.distances;
-    const double c = optics.attenuation().uniform.first(optics.bands()).empty()
-                         ? 0.0
-                         : optics.attenuation().uniform.least(optics.bands());
+    const double c = optics.attenuation().uniform[optics.clearest_band()];
     double reach = c > 0 ? std::min(water.length, k_reach / c) : water.length;
     s.assign(1, 0.0);
     const ConcentrationProfile& profile = water.profile;
@@ -87,14 +91,13 @@ void PathTracer::place_intervals(CameraSegment& segment) const {
     }
     // At equal steps of the transmittance, but at most half an optical depth apart: the light of an
     // interval is judged by its middle.
-    const double depth = c * reach;
+    const double depth = c * reach, lost = std::expm1(-depth);
     for (int i = 1; i < k_intervals; ++i) {
         const double share = static_cast<double>(i) / k_intervals;
-        s.push_back(c > 0 ? -std::log1p(share * std::expm1(-depth)) / c : share * reach);
+        s.push_back(c > 0 ? -std::log1p(share * lost) / c : share * reach);
     }
     for (double tau = k_far_begin; tau < depth; tau += k_far_step) s.push_back(tau / c);
-    for (const Lamp& lamp : *optics.scene().lamps) {
-        const LampPassage passage(water.ray, lamp.position());
+    for (const LampPassage& passage : w.passages) {
         for (const double octave : {-1.0, 0.0, 1.0})
             s.push_back(passage.foot + octave * passage.distance);
     }
@@ -111,8 +114,10 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
     const std::size_t bands = optics.bands();
     const WaterSegment& water = segment.water;
     const std::vector<double>& s = segment.distances;
-    w.glow.resize(bands);
-    w.transmittance.resize(bands);
+    const std::vector<Lamp>& lamps = *optics.scene().lamps;
+    const AttenuationTable& attenuation = optics.attenuation();
+    // A few of the bands, evenly spread, stand for all.
+    const std::size_t stride = (bands + k_most_guiding_bands - 1) / k_most_guiding_bands;
     w.guided.clear();
     w.plain.clear();
     double sum_guided = 0, sum_plain = 0;
@@ -120,26 +125,34 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
         const double length = s[i + 1] - s[i], middle = 0.5 * (s[i] + s[i + 1]);
         optics.look_up(water, middle, w.point);
         optics.find_scattering(w.point);
-        optics.transmittances(middle, w.point.column, w.transmittance);
+        w.spreads.clear();
+        for (std::size_t j = 0; j < lamps.size(); ++j)
+            w.spreads.push_back(
+                tables_->glow.spread(j, w.passages[j], middle, water.ray.at(middle)));
         double guided = 0, plain = 0;
-        tables_->glow.spread(water.ray.at(middle), water.ray.direction, w.glow);
-        for (std::size_t b = 0; b < bands; ++b) {
+        for (std::size_t b = stride / 2; b < bands; b += stride) {
             double scattering = 0;
             for (const Spectrum& m : w.point.scattering) scattering += m[b];
-            const double seen = scattering * w.transmittance[b];
-            double light = scattering * w.glow[b];
+            const double depth = attenuation.optical_depth(b, middle, w.point.column);
+            double light = 0;
+            for (std::size_t j = 0; j < lamps.size(); ++j)
+                light += w.spreads[j].relative * lamps[j].axis_intensity()[b] *
+                         exp_of_minus(depth + attenuation.uniform[b] * w.spreads[j].radius);
+            light *= scattering;
             // The lit surface, seen through the water by a small detour.
-            if (!surface_light.empty() && w.transmittance[b] > 0)
-                light += surface_light[b] * segment.transmittance[b] / w.transmittance[b];
-            guided += seen * light;
-            plain += seen * tables_->light[b];
+            if (!surface_light.empty()) light += surface_light[b] * segment.transmittance[b];
+            guided += scattering * light;
         }
+        for (const Spectrum& m : w.point.scattering)
+            for (const double b : m.first(bands)) plain += b;
+        plain *=
+            exp_of_minus(attenuation.optical_depth(optics.clearest_band(), middle, w.point.column));
         w.guided.push_back(guided * length);
         w.plain.push_back(plain * length);
         sum_guided += w.guided.back();
         sum_plain += w.plain.back();
     }
-    segment.light = {sum_guided, 0};
+    segment.light = {sum_guided * static_cast<double>(stride), 0};
     for (std::size_t b = 0; b < surface_light.size(); ++b) {
         segment.light.own += surface_light[b] * segment.transmittance[b];
         segment.light.ambient += surface_light[b];
@@ -147,6 +160,8 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
     segment.light.own /= static_cast<double>(bands);
     segment.light.ambient *= k_ambient_share / static_cast<double>(bands);
     segment.light.ambient = std::max(segment.light.ambient, k_least_ambient * segment.light.own);
+    // Nothing known of it, as where only emission lights the scene: by throughput alone.
+    if (!(segment.light.own > 0)) segment.light = {1, 1};
     segment.cumulative.clear();
     if (!(sum_plain > 0)) return;
     const double guided_share = sum_guided > 0 ? 1 - k_defensive_share : 0;
@@ -181,9 +196,9 @@ void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
     optics.find_scattering(w.point);
     PathWalk walk(*tables_, segment.light, random, terms);
     PathState& state = walk.state();
-    const std::span<double> throughput = state.throughput.first(optics.bands());
-    optics.transmittances(s, w.point.column, throughput);
-    for (double& value : throughput) value *= length / interval.probability;
+    optics.transmittances(s, w.point.column, state.throughput);
+    for (double& value : state.throughput.first(optics.bands()))
+        value *= length / interval.probability;
     state.from_water = true;
     state.distance = s;
     walk.from_water(segment.water, w.point);

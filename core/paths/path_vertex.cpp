@@ -83,7 +83,8 @@ void PathVertex::find_lobes(const Spectrum& throughput) {
     if (!(tables_.scattering->lobe.mass() > 0)) return;
     const std::vector<Lamp>& lamps = *tables_.optics->scene().lamps;
     const double scattering = scattering_around();
-    const double attenuation = tables_.optics->attenuation().uniform.least(tables_.optics->bands());
+    const double attenuation =
+        tables_.optics->attenuation().uniform[tables_.optics->clearest_band()];
     double total = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         const Vector3 to_lamp = lamps[j].position() - x_;
@@ -173,7 +174,7 @@ double PathVertex::density(const Vector3& direction) const {
 // b [1/m], mean over the bands.
 double PathVertex::scattering_around() const {
     double sum = 0;
-    const auto include = [&](const std::vector<Spectrum>& coefficients) {
+    const auto include = [&](std::span<const Spectrum> coefficients) {
         for (const Spectrum& b : coefficients)
             for (std::size_t band = 0; band < tables_.optics->bands(); ++band) sum += b[band];
     };

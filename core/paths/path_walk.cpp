@@ -43,7 +43,8 @@ struct PathWalk::Workspace {
 
     WaterSegment segment, lobe_segment;
     WaterPoint point;
-    std::vector<double> transmittance, c, shares, cumulative;
+    Spectrum transmittance;
+    std::vector<double> c, shares, cumulative;
     PathVertex vertex;
     Continuation along_own, along_lobe;
     std::vector<double> chosen_lamp;  // a weight for each
@@ -146,7 +147,6 @@ void PathWalk::continuation(const Vector3& direction, Continuation& along) const
 // Russian roulette by what may still arrive, relative to the light of the path's pixel.
 double PathWalk::survival(const Continuation& along, double least) const {
     if (!(along.value > 0)) return 0;
-    if (!(light_.own > 0)) return k_most_survival;
     return std::clamp(along.value / light_.own, least, k_most_survival);
 }
 
@@ -161,8 +161,10 @@ void PathWalk::trace(const Ray& ray) {
     Workspace& w = workspace_of_thread();
     const WaterOptics& optics = tables_.optics;
     optics.trace(ray, w.segment);
-    w.transmittance.assign(optics.bands(), 0.0);  // no light returns from k_far
-    if (!w.segment.has_hit) return;
+    if (!w.segment.has_hit) {
+        std::ranges::fill(w.transmittance.first(optics.bands()), 0.0);  // none returns from k_far
+        return;
+    }
     optics.look_up(w.segment, w.segment.length, w.point);
     optics.transmittances(w.segment.length, w.point.column, w.transmittance);
 }

@@ -1,15 +1,23 @@
 #include "core/paths/scattering_tables.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace uw {
 
 namespace {
 
-// The table of spread_glow.
-constexpr int k_first_octave = -12, k_last_octave = 8, k_per_octave = 4;
+// The table of spread_glow, linear in h between its nodes: 4 to an octave, at the ends of cells
+// that the leading bits of h number.
+constexpr double k_glow_least = 0x1p-12, k_glow_most = 0x1p8;
+constexpr int k_glow_offset_bits = 50;
+constexpr std::uint64_t k_glow_first =
+    std::bit_cast<std::uint64_t>(k_glow_least) >> k_glow_offset_bits;
+constexpr std::uint64_t k_glow_last =
+    std::bit_cast<std::uint64_t>(k_glow_most) >> k_glow_offset_bits;
 
 // Shares of the phase functions in a lobe that serves all of the water: those of the scattering
 // coefficients of everything in it.
@@ -35,12 +43,12 @@ std::vector<double> typical_shares(const Medium& medium) {
 
 }  // namespace
 
-ScatteringTables::ScatteringTables(const Medium& medium) : phases(medium) {
+ScatteringTables::ScatteringTables(const Medium& medium)
+    : phases(medium), shares(typical_shares(medium)) {
     const std::span<const double> nodes = HalfTangentDensity::nodes();
     const std::size_t count = medium.phase_functions.size();
     std::vector<double> p(count * nodes.size());
     phases.evaluate(nodes, p);
-    const std::vector<double> shares = typical_shares(medium);
     std::vector<double> of_lobe(nodes.size(), 0.0);
     for (std::size_t m = 0; m < count; ++m) {
         std::vector<double> direction, line;
@@ -49,33 +57,32 @@ ScatteringTables::ScatteringTables(const Medium& medium) : phases(medium) {
             line.push_back(p[m * nodes.size() + i] * dpsi);
             direction.push_back(2 * std::numbers::pi * line.back() * sine);
         }
-        directions.emplace_back(std::move(direction));
-        lines.emplace_back(std::move(line));
+        directions.emplace_back(direction);
+        lines.emplace_back(line);
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const double beyond = lines[m].mass() - lines[m].mass_to(nodes[i]);
             of_lobe[i] += shares[m] * beyond * 2 / (1 + nodes[i] * nodes[i]);
         }
     }
-    lobe = HalfTangentDensity(std::move(of_lobe));
-    spread(shares);
+    lobe = HalfTangentDensity(of_lobe);
+    spread();
 }
 
 double ScatteringTables::spread_glow(double half_tangent) const {
-    if (spread_glow_.empty()) return 0;
-    const double last = static_cast<double>(spread_glow_.size() - 1);
-    const double at = std::clamp(
-        k_per_octave * (std::log2(std::max(half_tangent, 1e-9)) - k_first_octave), 0.0, last);
-    const auto cell = std::min(static_cast<std::size_t>(at), spread_glow_.size() - 2);
-    const double t = at - static_cast<double>(cell);
-    return (1 - t) * spread_glow_[cell] + t * spread_glow_[cell + 1];
+    constexpr std::uint64_t k_offset_mask = (std::uint64_t{1} << k_glow_offset_bits) - 1;
+    constexpr double k_offset_unit = 1.0 / (std::uint64_t{1} << k_glow_offset_bits);
+    if (!(half_tangent < k_glow_most)) return spread_glow_.back();
+    const auto bits = std::bit_cast<std::uint64_t>(std::max(half_tangent, k_glow_least));
+    const double* cell = &spread_glow_[(bits >> k_glow_offset_bits) - k_glow_first];
+    const double t = static_cast<double>(bits & k_offset_mask) * k_offset_unit;
+    return cell[0] + t * (cell[1] - cell[0]);
 }
 
 // By a few directions drawn evenly from each phase function.
-void ScatteringTables::spread(std::span<const double> shares) {
+void ScatteringTables::spread() {
     constexpr int k_angles = 48, k_azimuths = 12;
-    for (int i = 0; i <= k_per_octave * (k_last_octave - k_first_octave); ++i) {
-        const double psi =
-            2 * std::atan(std::exp2(k_first_octave + static_cast<double>(i) / k_per_octave));
+    for (std::uint64_t node = k_glow_first; node <= k_glow_last; ++node) {
+        const double psi = 2 * std::atan(std::bit_cast<double>(node << k_glow_offset_bits));
         double sum = 0;
         for (std::size_t m = 0; m < shares.size(); ++m) {
             for (int angle = 0; angle < k_angles; ++angle) {

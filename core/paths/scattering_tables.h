@@ -12,6 +12,8 @@ namespace uw {
 /// The phase functions of a medium and the densities that random paths are drawn from.
 struct ScatteringTables {
     PhaseTable phases;
+    /// Of each phase function in all that the water may hold, roughly; their sum is 1.
+    std::vector<double> shares;
 
     // One per phase function m of the medium:
     /// p_m(psi) over directions: the angle of a scattering.
@@ -39,9 +41,9 @@ struct ScatteringTables {
     }
 
   private:
-    void spread(std::span<const double> shares);
+    void spread();
 
-    std::vector<double> spread_glow_;  // at h = 2^-12, 2^-11.75, ...
+    std::vector<double> spread_glow_;  // at quarters of the octaves of h from 2^-12 on
 };
 
 }  // namespace uw

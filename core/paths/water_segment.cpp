@@ -1,14 +1,19 @@
 #include "core/paths/water_segment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/fast_exp.h"
+#include "core/base/vector_clones.h"
 #include "core/integrators/integrator.h"
 
 namespace uw {
 
 namespace {
+
+constexpr std::size_t k_lanes = 4;  // of the widest registers that are common
+static_assert(k_max_bands % k_lanes == 0);
 
 bool crosses(const Bounds& bounds, const Ray& ray, double length) {
     if (bounds.empty()) return false;
@@ -39,7 +44,10 @@ WaterOptics::WaterOptics(const LitScene& scene)
     : scene_(scene),
       attenuation_(*scene.medium),
       bands_(static_cast<std::size_t>(scene.medium->band_count())),
-      bounds_(scene.field->bounds()) {}
+      bounds_(scene.field->bounds()) {
+    const std::span<const double> c = attenuation_.uniform.first(bands_);
+    clearest_band_ = static_cast<std::size_t>(std::ranges::min_element(c) - c.begin());
+}
 
 void WaterOptics::trace(const Ray& ray, WaterSegment& segment) const {
     const bool found = scene_.surfaces->closest_hit(ray, k_far, segment.hit);
@@ -91,10 +99,12 @@ void WaterOptics::look_up(const WaterSegment& segment, double distance, WaterPoi
 
 void WaterOptics::find_scattering(WaterPoint& point) const {
     const Medium& medium = *scene_.medium;
-    const std::size_t phases = medium.phase_functions.size();
-    point.scattering.resize(phases);
-    for (std::size_t m = 0; m < phases; ++m) {
-        const std::span<double> b = point.scattering[m].first(bands_);
+    point.scattering = medium.uniform.scattering;
+    if (std::ranges::all_of(point.concentration, [](double value) { return value == 0; })) return;
+    point.mixed.resize(medium.phase_functions.size());
+    point.scattering = point.mixed;
+    for (std::size_t m = 0; m < point.mixed.size(); ++m) {
+        const std::span<double> b = point.mixed[m].first(bands_);
         std::ranges::copy(medium.uniform.scattering[m].first(bands_), b.begin());
         for (std::size_t k = 0; k < point.concentration.size(); ++k)
             if (point.concentration[k] != 0)
@@ -108,10 +118,26 @@ void WaterOptics::attenuations(const WaterPoint& point, std::span<double> c) con
         c[b] = attenuation_.optical_depth(b, 1, point.concentration);
 }
 
-void WaterOptics::transmittances(double length, std::span<const double> columns,
-                                 std::span<double> values) const {
-    for (std::size_t b = 0; b < bands_; ++b)
-        values[b] = exp_of_minus(attenuation_.optical_depth(b, length, columns));
+UWVDB_VECTOR_CLONES void WaterOptics::transmittances(double length, std::span<const double> columns,
+                                                     Spectrum& values) const {
+    for (std::size_t first = 0; first < bands_; first += k_lanes) {
+        std::array<double, k_lanes> tau{};
+        for (std::size_t i = 0; i < k_lanes; ++i) tau[i] = attenuation_.uniform[first + i] * length;
+        for (std::size_t k = 0; k < columns.size(); ++k)
+            for (std::size_t i = 0; i < k_lanes; ++i)
+                tau[i] += attenuation_.constituents[k][first + i] * columns[k];
+        for (std::size_t i = 0; i < k_lanes; ++i) values[first + i] = exp_of_minus(tau[i]);
+    }
+}
+
+UWVDB_VECTOR_CLONES double WaterOptics::attenuated_sum(const Spectrum& a, const Spectrum& b,
+                                                       double length) const {
+    std::array<double, k_lanes> sums{};
+    for (std::size_t first = 0; first < bands_; first += k_lanes)
+        for (std::size_t i = 0; i < k_lanes; ++i)
+            sums[i] += a[first + i] * b[first + i] *
+                       exp_of_minus(attenuation_.uniform[first + i] * length);
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 double WaterOptics::depth_at_knot(const WaterSegment& segment, std::size_t band,

@@ -24,10 +24,12 @@ struct WaterSegment {
 
 /// The state of the water at one point of a segment. Reused storage.
 struct WaterPoint {
-    double distance = 0;                 // along the segment [m]
-    std::vector<double> concentration;   // of the constituents
-    std::vector<double> column;          // up to here [unit m]
-    std::vector<Spectrum> scattering{};  // b_m [1/m]: WaterOptics::find_scattering
+    double distance = 0;                // along the segment [m]
+    std::vector<double> concentration;  // of the constituents
+    std::vector<double> column;         // up to here [unit m]
+    // WaterOptics::find_scattering: b_m [1/m], either `mixed` or the uniform water's.
+    std::span<const Spectrum> scattering{};
+    std::vector<Spectrum> mixed{};
 };
 
 /// What WaterSegments need to know of a scene. Thread safe.
@@ -38,6 +40,8 @@ class WaterOptics {
     const LitScene& scene() const { return scene_; }
     const AttenuationTable& attenuation() const { return attenuation_; }
     std::size_t bands() const { return bands_; }
+    /// That in which the uniform water attenuates least.
+    std::size_t clearest_band() const { return clearest_band_; }
     std::size_t constituents() const { return attenuation_.constituents.size(); }
 
     /// Finds the end of the segment that begins with `ray`, and the concentrations along it.
@@ -54,9 +58,11 @@ class WaterOptics {
     /// c in every band at a point [1/m].
     void attenuations(const WaterPoint& point, std::span<double> c) const;
 
-    /// e^-tau of every band for a path of `length` [m] with these columns.
-    void transmittances(double length, std::span<const double> columns,
-                        std::span<double> values) const;
+    /// e^-tau of every band for a path of `length` [m] with these columns. Bands are computed four
+    /// at a time: past the last, values up to a multiple of four are overwritten, too.
+    void transmittances(double length, std::span<const double> columns, Spectrum& values) const;
+    /// The sum over the bands of a, b and e^(-c length) of the uniform water.
+    double attenuated_sum(const Spectrum& a, const Spectrum& b, double length) const;
     /// The distance at which the optical depth in `band` is `depth`; the segment's length if it is
     /// less everywhere.
     double distance_at_depth(const WaterSegment& segment, std::size_t band, double depth) const;
@@ -66,7 +72,7 @@ class WaterOptics {
 
     LitScene scene_;
     AttenuationTable attenuation_;
-    std::size_t bands_;
+    std::size_t bands_, clearest_band_ = 0;
     Bounds bounds_;  // of the field
 };
 

@@ -181,6 +181,18 @@ TEST_F(Images, TellTheirStagesInOrderFromZeroToOne) {
     EXPECT_EQ(stages, (std::vector<std::string>{"volumes", "geometry", "splat", "render",
                                                 "forward scatter"}));
     EXPECT_EQ(reached, 1);
+
+    desc_.water.forward_scatter = {};
+    desc_.render.scattering = RenderDesc::Scattering::multiple;
+    desc_.render.quality = RenderDesc::Quality::draft;
+    stages.clear();
+    renderer.set_scene(SceneDesc(desc_));
+    renderer.render();
+    EXPECT_EQ(std::vector<std::string>(stages.end() - 2, stages.end()),
+              (std::vector<std::string>{"multiple scattering", "render"}));
+    EXPECT_EQ(reached, 1);
+    EXPECT_GT(renderer.report().multiple_error, 0);
+    EXPECT_FALSE(renderer.report().paths.error);
 }
 
 TEST_F(Images, ThatCannotBeLeaveTheRendererAsItWas) {

@@ -60,6 +60,29 @@ TEST_F(Info, TellsOfEveryGridOfAFile) {
     EXPECT_NEAR(json.at("advice").at("optical_depth")[1].get<double>(), 1.5, 0.1);
 }
 
+TEST_F(Info, TellsHowASceneIsRendered) {
+    const auto text = [this](const std::vector<std::string>& more) {
+        std::vector<std::string> all{"info", "scene.yaml"};
+        all.insert(all.end(), more.begin(), more.end());
+        const test::ProgramResult result = run(all);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return result.out;
+    };
+    EXPECT_NE(text({}).find("integrator volume, quality final: light scattered once or"),
+              std::string::npos);
+    EXPECT_NE(text({"--set", "render.scattering=multiple"}).find("quality final: all light; what"),
+              std::string::npos);
+    EXPECT_NE(text({"--set", "render.integrator=path", "--set", "render.samples=7"})
+                  .find("all light, by 7 random paths per pixel"),
+              std::string::npos);
+    const Json json = json_of(
+        {"scene.yaml", "--set", "render.scattering=multiple", "--set", "water.absorption=12"});
+    EXPECT_EQ(json.at("render").at("integrator"), "volume");
+    EXPECT_EQ(json.at("render").at("scattering"), "multiple");
+    EXPECT_TRUE(warns(json, "the nearest lamp lies behind an optical depth"));
+    EXPECT_FALSE(warns(json_of({"scene.yaml", "--set", "water.absorption=12"}), "nearest lamp"));
+}
+
 TEST_F(Info, CountsWhatIsBadInValues) {
     test::VdbFixture fixture;
     fixture.name = "smoke";

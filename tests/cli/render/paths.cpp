@@ -93,12 +93,50 @@ TEST_F(Paths, AreRefusedWhereTheyMakeNoSense) {
     refused(with({"--set", "render.scattering=single"}), 3, "always renders all light");
     refused({"--integrator", "planes", "--set", "render.scattering=multiple"}, 3,
             "use integrator volume or path");
-    refused({"--set", "render.scattering=multiple"}, 3, "not supported yet by integrator volume");
     refused(with({"--set", "water.forward_scatter={K: 1, G: 0.02, B: 0.1}"}), 3,
             "would count twice");
     refused(with({"--set", "render.output=paper", "--set",
                   "camera.lens={f_number: 2.8, focal_length: 0.0085}"}),
             3, "the paper's formula");
+}
+
+// What the fast form of multiple scattering says of its own error.
+TEST_F(Paths, OfTheFastFormHaveAStatedError) {
+    const std::vector<std::string> fast{
+        "render",    "scene.yaml", "-o",      "out.exr", "--size", "12x8",
+        "--quality", "draft",      "--stats", "s.json",  "--set",  "render.scattering=multiple"};
+    const test::ProgramResult result = run(fast);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("multiple scattering: standard error "), std::string::npos)
+        << result.err;
+    EXPECT_NE(result.err.find(" % of the image's mean\n"), std::string::npos) << result.err;
+    const nlohmann::json stats = nlohmann::json::parse(read("s.json"));
+    EXPECT_GT(stats.at("multiple_error"), 0);
+    EXPECT_LT(stats.at("multiple_error"), 0.1);
+    EXPECT_FALSE(stats.contains("error"));
+    EXPECT_FALSE(stats.contains("samples"));
+    EXPECT_TRUE(stats.at("seconds").contains("multiple scattering"));
+    const ImageFile image = test::read_exr(folder_ / "out.exr");
+    EXPECT_NEAR(std::stod(image.metadata.at("uwvdb/multiple_error")), stats.at("multiple_error"),
+                1e-6);
+    EXPECT_FALSE(image.metadata.contains("uwvdb/error"));
+    EXPECT_EQ(image.metadata.at("uwvdb/scattering"), "multiple");
+    EXPECT_TRUE(image.channels.contains("multiple.volume.R"));
+}
+
+TEST_F(Paths, AreRecommendedWhereLampsLieTooFarForTheFastForm) {
+    std::vector<std::string> far{"--size",    "8x6",
+                                 "--quality", "draft",
+                                 "--set",     "render.scattering=multiple",
+                                 "--set",     "water.absorption=12"};
+    far.insert(far.begin(), {"render", "scene.yaml", "-o", "out.exr"});
+    const std::string said = run(far).err;
+    EXPECT_NE(said.find("warning: multiple scattering: the nearest lamp lies behind an optical "
+                        "depth of 6.6"),
+              std::string::npos)
+        << said;
+    far.back() = "water.absorption=1";
+    EXPECT_EQ(run(far).err.find("the nearest lamp"), std::string::npos);
 }
 
 TEST_F(Paths, AreTheSameInEveryCrop) {

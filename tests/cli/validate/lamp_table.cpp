@@ -1,0 +1,31 @@
+// ctest labels: statistical
+#include "cli/validate/lamp_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "cli/validate/light_report.h"
+
+namespace uw::test {
+namespace {
+
+TEST(LampTable, IsWhatLightPathsFindOrderByOrder) {
+    const LightValidation result = validate_by_table(lamp_table().subspan(1, 1), {});
+    EXPECT_TRUE(result.passed()) << light_table(result, false);
+    EXPECT_EQ(result.checks.size(), 5U);
+}
+
+TEST(LampTable, FailsInTheOrderThatIsWrong) {
+    LampTableRow row = lamp_table()[1];
+    row.orders[1] *= 1.01;
+    const LightValidation result = validate_by_table(std::span(&row, 1), {});
+    EXPECT_FALSE(result.passed());
+    for (const LightCheck& check : result.checks)
+        EXPECT_EQ(check.passed(), check.light != "order 2, 1 m, 5 degrees")
+            << light_table(result, true);
+    EXPECT_NE(light_table(result, true).find("\033[31m"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace uw::test

@@ -1,0 +1,118 @@
+// ctest labels: unit statistical metamorphic
+// The fast form of multiple scattering against light paths.
+#include "core/frame/multiple_light.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "tests/support/test_scene.h"
+
+namespace uw::test {
+namespace {
+
+/// A box before a wall, in hazy water, and two lamps.
+class MultipleLights : public testing::Test {
+  protected:
+    MultipleLights() {
+        desc_.geometry = {plane_at_z(3), box({0.1, -0.2, 1.0}, {0.4, 0.1, 1.3})};
+        desc_.lamps = {isotropic_lamp({-0.5, -0.2, 0}, 40), isotropic_lamp({0.6, 0.3, 0.1}, 30)};
+        desc_.lamps[1].name = "second";
+        desc_.render.scattering = RenderDesc::Scattering::multiple;
+        desc_.render.quality = RenderDesc::Quality::draft;
+    }
+
+    Film render(const SceneDesc& desc, const RenderOptions& options = {.layers = "all"}) {
+        Renderer renderer;
+        renderer.set_scene(SceneDesc(desc));
+        plan_ = layer_plan(desc, options.layers, options.paths);
+        Film film = renderer.render(options);
+        error_ = renderer.report().paths.error.value_or(0);
+        return film;
+    }
+    double mean(const Film& film, Layer layer) const {
+        double sum = 0;
+        for (int y = 0; y < film.height(); ++y)
+            for (int x = 0; x < film.width(); ++x)
+                for (std::size_t b = 0; b < 3; ++b)
+                    sum += static_cast<double>(film.pixel(
+                        x, y)[static_cast<std::size_t>(plan_->first_channel(layer)) + b]);
+        return sum / (3.0 * film.width() * film.height());
+    }
+
+    SceneDesc desc_ = pinhole_scene(48, 36);
+    std::optional<LayerPlan> plan_;
+    double error_ = 0;
+};
+
+TEST_F(MultipleLights, DependNeitherOnThreadsNorOnTheWindow) {
+    const Film whole = render(desc_);
+    {
+        const ThreadLimit one(1);
+        EXPECT_TRUE(std::ranges::equal(render(desc_).values(), whole.values()));
+    }
+    const PixelWindow window{9, 5, 20, 16};
+    const Film part = render(desc_, {.layers = "all", .window = window});
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x)
+            EXPECT_TRUE(std::ranges::equal(part.pixel(x, y), whole.pixel(x, y)));
+}
+
+TEST_F(MultipleLights, AgreeWithLightPathsInTheMean) {
+    const Film fast = render(desc_);
+    const double fast_error = error_;
+    const double water = mean(fast, Layer::multiple_volume);
+    const double surfaces = mean(fast, Layer::multiple_surface);
+    const double direct = mean(fast, Layer::direct) + mean(fast, Layer::backscatter);
+    SceneDesc paths = desc_;
+    paths.render.integrator = RenderDesc::Integrator::path;
+    paths.render.samples = 64;
+    const Film truth = render(paths);
+    const double all =
+        mean(truth, Layer::multiple) + mean(truth, Layer::direct) + mean(truth, Layer::backscatter);
+    ASSERT_GT(fast_error, 0);
+    ASSERT_LT(fast_error, 0.1);  // a draft
+    // Four standard errors of the two means, of errors that are independent between pixels of the
+    // one and some hundred nodes of the other, and 0.5 % for what is between the nodes of a draft.
+    const double allowed =
+        all *
+        (4 * std::hypot(error_ / std::sqrt(48.0 * 36), fast_error / std::sqrt(100.0)) + 0.005);
+    EXPECT_NEAR(water, mean(truth, Layer::multiple_volume), allowed);
+    EXPECT_NEAR(surfaces, mean(truth, Layer::multiple_surface), allowed);
+    // And it is not little that is compared.
+    EXPECT_GT(water + surfaces, 0.2 * direct);
+}
+
+TEST_F(MultipleLights, GiveEachLampItsShare) {
+    const Film film = render(desc_);
+    for (int y = 0; y < film.height(); y += 5) {
+        for (int x = 0; x < film.width(); x += 5) {
+            for (std::size_t b = 0; b < 3; ++b) {
+                const auto pixel = film.pixel(x, y);
+                double lamps = 0;
+                for (const std::size_t lamp : {0U, 1U})
+                    lamps += static_cast<double>(
+                        pixel[static_cast<std::size_t>(plan_->first_channel_of_lamp(lamp)) + b]);
+                // Rounding to float of some terms.
+                EXPECT_NEAR(lamps, static_cast<double>(pixel[b]),
+                            1e-5 * static_cast<double>(pixel[b]));
+            }
+        }
+    }
+}
+
+TEST_F(MultipleLights, LeaveTheRestAsItIs) {
+    const Film multiple = render(desc_);
+    const auto layers = {Layer::direct, Layer::backscatter, Layer::clean};
+    std::vector<double> before;
+    for (const Layer layer : layers) before.push_back(mean(multiple, layer));
+    SceneDesc single = desc_;
+    single.render.scattering = RenderDesc::Scattering::single;
+    const Film film = render(single);
+    std::size_t i = 0;
+    for (const Layer layer : layers) EXPECT_EQ(mean(film, layer), before[i++]);
+}
+
+}  // namespace
+}  // namespace uw::test

@@ -1,0 +1,239 @@
+// ctest labels: analytic statistical metamorphic
+// What holds of light whatever the water and the surfaces.
+#include <gtest/gtest.h>
+
+#include "tests/support/geometry_descs.h"
+#include "tests/support/paths/ray_batches.h"
+
+namespace uw::test {
+namespace {
+
+/// The same concentration everywhere.
+class ConstantField : public ConcentrationField {
+  public:
+    explicit ConstantField(double value) : value_(value) {}
+    int constituent_count() const override { return 1; }
+    Bounds bounds() const override { return {{-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}}; }
+    double finest_voxel() const override { return 0.5; }
+    void sample(const Point3&, std::span<double> concentration) const override {
+        concentration[0] = value_;
+    }
+    void column(const Point3& a, const Point3& b, std::span<double> column) const override {
+        column[0] = value_ * distance(a, b);
+    }
+    void profile(const Ray&, double s_end, ConcentrationProfile& profile) const override {
+        profile.constituent_count = 1;
+        profile.s = {0};
+        // Knots as in a grid, as far as any light comes from.
+        for (double s = 0.5; s < std::min(s_end, 20.0); s += 0.5) profile.s.push_back(s);
+        profile.s.push_back(s_end);
+        profile.concentration.assign(profile.s.size(), value_);
+        profile.column.clear();
+        for (const double s : profile.s) profile.column.push_back(value_ * s);
+    }
+
+  private:
+    double value_;
+};
+
+/// A box in front of a plane: light of every kind.
+std::vector<GeometryDesc> box_and_plane(std::size_t bands) {
+    return {with_reflectance(box({0.1, -0.2, 1.0}, {0.4, 0.1, 1.3}), 0.5, bands),
+            with_reflectance(plane({0, 0, 3}, {0, 0, -1}), 0.5, bands)};
+}
+
+constexpr Point3 k_lamp{1, -0.5, 0};
+const std::vector<BandOptics> k_three_bands{{0.35, 0.20}, {0.08, 0.22}, {0.05, 0.25}};
+
+PathScene lit_scene(const std::vector<BandOptics>& bands) {
+    PathScene scene(bands, 0.9);
+    scene.set_surfaces(box_and_plane(bands.size()));
+    scene.add_lamp(k_lamp, 1);
+    return scene;
+}
+
+/// A ray that passes the box and meets the plane.
+Ray some_ray() {
+    return {{0, 0, 0}, glm::normalize(Vector3(-0.1, 0.05, 1))};
+}
+
+/// Compares two sets of batches kind by kind, in one band of each.
+void compare_kinds(const std::vector<TermSums>& a, std::size_t band_a,
+                   const std::vector<TermSums>& b, std::size_t band_b, const std::string& what,
+                   Deviations& deviations) {
+    for (int s = 0; s <= 3; ++s)
+        for (int r = 0; r <= 2; ++r)
+            for (const bool water : {false, true}) {
+                const auto of = [&](const std::vector<TermSums>& batches, std::size_t band) {
+                    return means_of(batches, [&](const TermSums& sums) {
+                        return sums.sum(band, [&](int m, int n, bool from_water) {
+                            return std::min(m, 3) == s && std::min(n, 2) == r &&
+                                   from_water == water;
+                        });
+                    });
+                };
+                const BatchMeans first = of(a, band_a), second = of(b, band_b);
+                // Some kinds are none, and rare ones are not normally distributed.
+                if (!(first.error() < 0.05 * first.mean() && second.error() < 0.05 * second.mean()))
+                    continue;
+                deviations.add(what + " scatterings " + std::to_string(s) + " reflections " +
+                                   std::to_string(r) + (water ? " from water" : ""),
+                               first, second.mean(), second.error());
+            }
+}
+
+/// Checks what each term says of itself.
+class KindCheck final : public PathTerms {
+  public:
+    enum class Source { single, water, surface };
+    KindCheck(Source source, double distance) : source_(source), distance_(distance) {}
+    void add(const PathTerm& term) override {
+        ++count;
+        EXPECT_EQ(term.lamp, 0);
+        EXPECT_EQ(term.from_water, source_ != Source::surface);
+        if (source_ == Source::single) {
+            EXPECT_EQ(term.scatterings, 1);
+            EXPECT_EQ(term.reflections, 0);
+        } else {
+            EXPECT_GE(term.scatterings + term.reflections, 2);
+            EXPECT_GE(source_ == Source::water ? term.scatterings : term.reflections, 1);
+        }
+        if (source_ == Source::surface)
+            EXPECT_DOUBLE_EQ(term.distance, distance_);
+        else
+            EXPECT_LT(term.distance, distance_);
+        EXPECT_GE(term.distance, 0);
+        for (const double radiance : term.radiance) EXPECT_GE(radiance, 0);
+    }
+    int count = 0;
+
+  private:
+    Source source_;
+    double distance_;
+};
+
+TEST(PathLaws, TermsAreOfTheKindThatTheyClaim) {
+    const PathScene scene = lit_scene(k_three_bands);
+    const PathTracer tracer(scene.lit());
+    CameraSegment segment;
+    SurfaceHit hit;
+    ASSERT_TRUE(scene.surfaces->closest_hit(some_ray(), k_far, hit));
+    tracer.begin(some_ray(), &hit, {}, segment);
+    KindCheck single(KindCheck::Source::single, hit.distance),
+        water(KindCheck::Source::water, hit.distance),
+        surface(KindCheck::Source::surface, hit.distance);
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        PathRandom random(PathRandom::seed_of(1), i);
+        tracer.trace_single(segment, random, single);
+        tracer.trace_water(segment, random, water);
+        tracer.trace_surface(segment, random, surface);
+    }
+    for (const KindCheck* check : {&single, &water, &surface}) EXPECT_GT(check->count, 100);
+}
+
+TEST(PathLaws, OrdersGrowAsPowersOfTheScatteringCoefficient) {
+    // c = 1/m in all bands, so that one path takes the same way for each: exact up to rounding.
+    PathScene scene({{1 - 1e-6, 1e-6}, {0.98, 0.02}, {0.4, 0.6}}, 0.9);
+    scene.add_lamp(k_lamp, 1);
+    const auto batches = ray_batches(scene, some_ray(), 1, 4);
+    for (int n = 1; n <= 4; ++n)
+        for (const TermSums& sums : batches) {
+            const double truth = sums.order(2, n) / std::pow(0.6, n);
+            EXPECT_GT(truth, 0) << n;
+            EXPECT_NEAR(sums.order(0, n) / std::pow(1e-6, n), truth, 1e-7 * truth) << n;
+            EXPECT_NEAR(sums.order(1, n) / std::pow(0.02, n), truth, 1e-9 * truth) << n;
+        }
+}
+
+TEST(PathLaws, WaterThatScattersNothingBringsNothing) {
+    const PathScene scene = lit_scene({{0.3, 0}, {0.1, 0}});
+    for (const TermSums& sums : ray_batches(scene, some_ray(), 1, 4))
+        for (const std::size_t band : {0U, 1U})
+            EXPECT_EQ(sums.sum(band, [](int s, int, bool water) { return s > 0 || water; }), 0);
+}
+
+TEST(PathLaws, LightOfLampsIsThatOfTheirSum) {
+    const PathScene one = lit_scene(k_three_bands);
+    PathScene two = lit_scene(k_three_bands);
+    two.lamps.clear();
+    two.add_lamp(k_lamp, 0.25);
+    two.add_lamp(k_lamp, 0.75);
+    const auto whole = ray_batches(one, some_ray(), 1), halves = ray_batches(two, some_ray(), 2);
+    Deviations deviations;
+    for (std::size_t b = 0; b < 3; ++b) compare_kinds(whole, b, halves, b, "band", deviations);
+    deviations.expect_within_errors();
+}
+
+TEST(PathLaws, EachLampHasItsOwnLight) {
+    struct PerLamp final : PathTerms {
+        void add(const PathTerm& term) override { sums[term.lamp] += term.radiance[0]; }
+        std::array<double, 2> sums{};
+    };
+    PathScene both({{0.1, 0.3}}, 0.9);
+    both.set_surfaces(box_and_plane(1));
+    both.add_lamp(k_lamp, 1);
+    both.add_lamp({-0.7, 0.6, 0.5}, 0.5);
+    const PathTracer tracer(both.lit());
+    const Ray ray = some_ray();
+    SurfaceHit hit;
+    ASSERT_TRUE(both.surfaces->closest_hit(ray, k_far, hit));
+    CameraSegment segment;
+    tracer.begin(ray, &hit, {}, segment);
+    std::array<BatchMeans, 2> shares;
+    constexpr std::uint32_t k_paths = 1 << 10;
+    for (std::uint64_t n = 0; n < 32; ++n) {
+        PerLamp terms;
+        for (std::uint32_t i = 0; i < k_paths; ++i) {
+            PathRandom single(PathRandom::seed_of(n, 1), i), water(PathRandom::seed_of(n, 2), i),
+                surface(PathRandom::seed_of(n, 3), i);
+            tracer.trace_single(segment, single, terms);
+            tracer.trace_water(segment, water, terms);
+            tracer.trace_surface(segment, surface, terms);
+        }
+        for (const std::size_t lamp : {0U, 1U}) shares[lamp].add(terms.sums[lamp] / k_paths);
+    }
+    Deviations deviations;
+    for (const std::size_t lamp : {0U, 1U}) {
+        PathScene alone({{0.1, 0.3}}, 0.9);
+        alone.set_surfaces(box_and_plane(1));
+        alone.lamps.push_back(both.lamps[lamp]);
+        const BatchMeans truth = means_of(ray_batches(alone, ray, 5 + lamp),
+                                          [](const TermSums& sums) { return sums.total(0); });
+        deviations.add("lamp", shares[lamp], truth.mean(), truth.error());
+    }
+    deviations.expect_within_errors();
+}
+
+TEST(PathLaws, BandsAreThoseOfRunsOfTheirOwn) {
+    // The densities of distance are mixed over bands: those of clear and turbid water differ most.
+    const std::vector<BandOptics> bands{{0.35, 0.20}, {0.08, 0.22}, {0.5, 1.5}};
+    const auto together = ray_batches(lit_scene(bands), some_ray(), 1, 32, 1 << 11);
+    Deviations deviations;
+    for (std::size_t b = 0; b < bands.size(); ++b)
+        compare_kinds(together, b, ray_batches(lit_scene({bands[b]}), some_ray(), 2 + b, 32), 0,
+                      "band " + std::to_string(b), deviations);
+    deviations.expect_within_errors();
+}
+
+TEST(PathLaws, AFieldOfOneConcentrationIsUniformWater) {
+    const auto uniform = ray_batches(lit_scene(k_three_bands), some_ray(), 1);
+    // All of the water's optics from the field, and half of them.
+    for (const double share : {1.0, 0.5}) {
+        const auto scaled = [&](double factor) {
+            std::vector<BandOptics> bands = k_three_bands;
+            for (BandOptics& band : bands)
+                band = {factor * band.absorption, factor * band.scattering};
+            return bands;
+        };
+        PathScene scene = lit_scene(scaled(1 - share));
+        scene.set_field(std::make_unique<ConstantField>(0.25), scaled(4 * share), 0.9);
+        Deviations deviations;
+        const auto field = ray_batches(scene, some_ray(), 2);
+        for (std::size_t b = 0; b < 3; ++b)
+            compare_kinds(uniform, b, field, b, "band " + std::to_string(b), deviations);
+        deviations.expect_within_errors();
+    }
+}
+
+}  // namespace
+}  // namespace uw::test

@@ -1,0 +1,153 @@
+// ctest labels: analytic statistical
+// Light in closed rooms, where its sum is known, and around shining surfaces.
+#include <gtest/gtest.h>
+
+#include "tests/support/paths/closed_form_surfaces.h"
+#include "tests/support/paths/ray_batches.h"
+
+namespace uw::test {
+namespace {
+
+// In a hollow sphere each reflection illuminates all of the wall alike: light reflected n times
+// and more is rho^n of the lamp's power, over the area. Clear water.
+TEST(ClosedRooms, AnIntegratingSphereIsEvenlyLitByEachReflection) {
+    constexpr double k_radius = 1.5, k_intensity = 2;
+    PathScene scene({{0, 0}, {0, 0}}, 0.9);
+    const double reflectances[] = {0.5, 0.8};
+    auto wall = std::make_unique<ClosedFormSurfaces>();
+    wall->add_sphere({0.2, 0, 1}, k_radius, {{reflectances[0], reflectances[1]}, {}});
+    scene.surfaces = std::move(wall);
+    scene.add_lamp({0.5, -0.3, 0.4}, k_intensity);
+    const auto batches = ray_batches(scene, {{0, 0, 0}, {0, 0.6, 0.8}}, 3);
+    Deviations deviations;
+    for (const std::size_t band : {0U, 1U}) {
+        // Power over area; radiance is exitance over pi.
+        const double irradiance = k_intensity / (k_radius * k_radius);
+        const double rho = reflectances[band];
+        for (int n = 2; n <= 3; ++n)
+            deviations.add("reflections " + std::to_string(n),
+                           means_of(batches,
+                                    [&](const TermSums& sums) {
+                                        return sums.sum(band,
+                                                        [&](int, int r, bool) { return r == n; });
+                                    }),
+                           irradiance * std::pow(rho, n) / std::numbers::pi);
+        deviations.add("all",
+                       means_of(batches, [&](const TermSums& sums) { return sums.total(band); }),
+                       irradiance * rho * rho / (1 - rho) / std::numbers::pi);
+    }
+    deviations.expect_within_errors();
+    deviations.expect_errors_below(0.01);
+}
+
+// Where everything emits what it does not reflect, everything is as bright as that.
+TEST(ClosedRooms, AWhiteFurnaceIsWhiteInEveryDirection) {
+    PathScene scene({{0, 0.3}, {0, 1.0}, {0, 2.0}}, 0.8);
+    const auto glowing = [](double a, double b, double c) {
+        ClosedFormSurfaces::Material material{{a, b, c}, {}};
+        material.more.emission = Spectrum{1 - a, 1 - b, 1 - c};
+        return material;
+    };
+    auto room = std::make_unique<ClosedFormSurfaces>();
+    room->add_box({-1, -1.5, -1}, {1, 1, 2}, glowing(0.5, 0.5, 0.2));
+    room->add_sphere({0.4, 0.3, 1}, 0.4, glowing(0.8, 0.2, 0.7));
+    room->add_box({-0.9, -1.2, 0.2}, {-0.3, -0.1, 0.9}, glowing(0.1, 0.6, 0.3));
+    scene.surfaces = std::move(room);
+    const PathTracer tracer(scene.lit());
+    Deviations deviations;
+    int number = 0;
+    for (const Vector3& direction :
+         {Vector3(0.4, 0.3, 1), Vector3(-0.6, -0.6, 0.5), Vector3(0.1, -0.2, -1),
+          Vector3(0.7, -1, 0.2), Vector3(0.31, -0.1, 1)}) {
+        const Ray ray{{0, 0, 0}, glm::normalize(direction)};
+        SurfaceHit hit;
+        ASSERT_TRUE(scene.surfaces->closest_hit(ray, k_far, hit));
+        ++number;
+        const auto batches = ray_batches(scene, ray, static_cast<std::uint64_t>(number));
+        for (std::size_t b = 0; b < 3; ++b) {
+            const double seen = scene.surfaces->material(hit).emission[b] *
+                                std::exp(-scene.medium.uniform.attenuation(b) * hit.distance);
+            deviations.add(
+                "direction " + std::to_string(number) + " band " + std::to_string(b),
+                means_of(batches, [&](const TermSums& sums) { return seen + sums.total(b); }), 1);
+        }
+    }
+    deviations.expect_within_errors();
+    deviations.expect_errors_below(0.01);
+}
+
+// Reflectance of a rough surface in an evenly lit room: the glTF 2.0 BRDF (appendix B) written
+// again, over all directions of light. GGX without multiple reflections between facets loses some.
+class RoughSurface {
+  public:
+    RoughSurface(double cosine, double roughness, double f0, double rho)
+        : to_camera_(std::sqrt(1 - cosine * cosine), 0, cosine),
+          alpha2_(std::pow(roughness, 4)),
+          f0_(f0),
+          rho_(rho) {}
+
+    /// Integral of BRDF times cosine, in spherical coordinates around the mirror direction, where
+    /// the lobe is: angle k_pi t^3.
+    double reflectance() const {
+        constexpr double pi = std::numbers::pi;
+        const Vector3 mirror(-to_camera_.x, 0, to_camera_.z), u(to_camera_.z, 0, to_camera_.x),
+            v(0, 1, 0);
+        constexpr int k_rings = 1500, k_sectors = 400;
+        double sum = 0;
+        for (int i = 0; i < k_rings; ++i) {
+            const double t = (i + 0.5) / k_rings, theta = pi * t * t * t;
+            for (int j = 0; j < k_sectors; ++j) {
+                const double phi = 2 * pi * (j + 0.5) / k_sectors;
+                const Vector3 light = std::cos(theta) * mirror +
+                                      std::sin(theta) * (std::cos(phi) * u + std::sin(phi) * v);
+                if (light.z > 0) sum += brdf(light) * light.z * std::sin(theta) * 3 * pi * t * t;
+            }
+        }
+        return sum * 2 * pi / (k_rings * k_sectors);
+    }
+
+  private:
+    double brdf(const Vector3& to_light) const {
+        const Vector3 half = glm::normalize(to_light + to_camera_);
+        const double spread = half.z * half.z * (alpha2_ - 1) + 1;
+        const double d = alpha2_ / (std::numbers::pi * spread * spread);
+        const auto lambda = [&](double z) {  // Smith's, of a direction
+            return 0.5 * (std::sqrt(1 + alpha2_ * (1 - z * z) / (z * z)) - 1);
+        };
+        const double g = 1 / (1 + lambda(to_light.z) + lambda(to_camera_.z));
+        const double fresnel = f0_ + (1 - f0_) * std::pow(1 - glm::dot(half, to_camera_), 5);
+        return (1 - fresnel) * rho_ / std::numbers::pi +
+               fresnel * d * g / (4 * to_light.z * to_camera_.z);
+    }
+
+    Vector3 to_camera_;
+    double alpha2_, f0_, rho_;
+};
+
+TEST(ClosedRooms, AShiningSurfaceReflectsTheIntegralOfItsBrdf) {
+    struct Case {
+        double cosine, roughness, f0, rho;
+    };
+    Deviations deviations;
+    for (const Case& c : {Case{0.9, 0.3, 1, 0}, Case{0.3, 0.3, 1, 0}, Case{0.7, 0.6, 0.05, 0.6},
+                          Case{0.2, 0.8, 0.9, 0.1}, Case{0.8, 1.0, 1, 0}}) {
+        // A black room that shines with 1, and in it a box that does not; clear water.
+        PathScene scene({{0, 0}}, 0.9);
+        auto room = std::make_unique<ClosedFormSurfaces>();
+        room->add_sphere({0, 0, 0}, 5, {{}, {.emission = {1}}});
+        room->add_box({-1, -1, -1}, {1, 1, 0}, {{c.rho}, {{}, true, c.roughness, {c.f0}}});
+        scene.surfaces = std::move(room);
+        const Vector3 to_camera(std::sqrt(1 - c.cosine * c.cosine), 0, c.cosine);
+        const auto batches =
+            ray_batches(scene, {Point3{0.1, 0.2, 0} + 2.0 * to_camera, -to_camera}, 1);
+        deviations.add(
+            "cosine " + std::to_string(c.cosine) + " roughness " + std::to_string(c.roughness),
+            means_of(batches, [](const TermSums& sums) { return sums.total(0); }),
+            RoughSurface(c.cosine, c.roughness, c.f0, c.rho).reflectance());
+    }
+    deviations.expect_within_errors();
+    deviations.expect_errors_below(0.01);
+}
+
+}  // namespace
+}  // namespace uw::test

@@ -1,0 +1,53 @@
+// ctest labels: analytic statistical slow
+// All of the exact tables around a lamp in endless water, within stated errors. These are largest
+// for orders that are a small share of the light.
+#include <gtest/gtest.h>
+
+#include "tests/support/paths/path_tables.h"
+
+namespace uw::test {
+namespace {
+
+TEST(PathTablesInFull, RadianceByOrderFromOneTo180Degrees) {
+    Deviations deviations;
+    std::uint64_t seed = 0;
+    for (const TableRow& row : read_path_table("point_lamp_hg09_albedo08_radiance.csv", false))
+        compare_radiance(row, {64, 1 << 11, 64}, ++seed, deviations);
+    EXPECT_EQ(deviations.count(), 45 * 5);
+    deviations.expect_within_errors();
+    // 0.3 %, to three errors.
+    deviations.expect_errors_below(0.001, "L1");
+    deviations.expect_errors_below(0.001, "L2");
+    // The attained ones, doubled.
+    deviations.expect_errors_below(0.04, "L3");
+    deviations.expect_errors_below(0.15, "L4");
+    deviations.expect_errors_below(0.02, "total");
+}
+
+void compare_fluence_tables(const std::string& file, double g) {
+    Deviations deviations;
+    const std::vector<TableRow> table = read_path_table(file, true);
+    for (const double r : {0.5, 1.0, 3.0, 5.0}) {
+        std::vector<TableRow> rows;
+        for (const TableRow& row : table)
+            if (row.r == r && (row.albedo == 0.5 || row.albedo == 0.95)) rows.push_back(row);
+        ASSERT_EQ(rows.size(), 2);
+        compare_fluence(rows, g, {64, 1 << 6, 64}, static_cast<std::uint64_t>(10 * r), deviations);
+    }
+    deviations.expect_within_errors();
+    deviations.expect_errors_below(0.001, "order 1");
+    deviations.expect_errors_below(0.002, "order 2");
+    // The attained ones, doubled.
+    deviations.expect_errors_below(0.05, "total");
+}
+
+TEST(PathTablesInFull, FluenceByOrderForIsotropicScattering) {
+    compare_fluence_tables("point_source_isotropic_fluence.csv", 0);
+}
+
+TEST(PathTablesInFull, FluenceByOrderForForwardScattering) {
+    compare_fluence_tables("point_source_hg09_fluence.csv", 0.9);
+}
+
+}  // namespace
+}  // namespace uw::test
