@@ -14,7 +14,8 @@ namespace uw {
 
 namespace {
 
-constexpr int k_fewest_paths = 16;  // of a node
+// Of a node: more would leave less noise than there is light between the nodes of a small image.
+constexpr int k_fewest_node_paths = 16, k_most_node_paths = 1024;
 // Nodes see the same surface as a pixel if its normal is within 45 degrees of theirs and it lies
 // as near to their tangent plane, relative to its distance.
 constexpr double k_most_slope = 0.35;
@@ -48,7 +49,8 @@ MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOpt
       intervals_(pixels.rays(), pixels.scene()),
       estimator_(pixels.rays(), pixels.scene(), pixels.transport(), intervals_,
                  {options.lamps ? static_cast<std::size_t>(pixels.lamp_count()) + 1 : 1,
-                  std::max(k_fewest_paths, options.paths / node_count(pixels.rays(), spacing_))}) {}
+                  std::clamp(options.paths / node_count(pixels.rays(), spacing_),
+                             k_fewest_node_paths, k_most_node_paths)}) {}
 
 void MultipleLight::prepare(const PixelWindow& window, const Progress& progress) {
     // The corners of all cells in the window, and what these are fitted to.

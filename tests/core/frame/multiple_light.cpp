@@ -28,7 +28,8 @@ class MultipleLights : public testing::Test {
         renderer.set_scene(SceneDesc(desc));
         plan_ = layer_plan(desc, options.layers, options.paths);
         Film film = renderer.render(options);
-        error_ = renderer.report().paths.error.value_or(0);
+        const RenderReport& report = renderer.report();
+        error_ = report.multiple_error.value_or(report.paths.error.value_or(0));
         return film;
     }
     double mean(const Film& film, Layer layer) const {
