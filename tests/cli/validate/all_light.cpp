@@ -17,7 +17,7 @@ namespace {
 
 /// A box before a wall and a lamp beside the camera.
 SceneDesc small_scene() {
-    SceneDesc desc = pinhole_scene(16, 12);
+    SceneDesc desc = pinhole_scene(32, 24);
     desc.geometry = {plane_at_z(3), box({0.1, -0.2, 1.0}, {0.4, 0.1, 1.3})};
     desc.lamps = {isotropic_lamp({-0.5, -0.2, 0}, 40)};
     desc.water.absorption = PerBand{0.3, 0.1, 0.1};
