@@ -89,7 +89,7 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms
 
 std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, double tolerance) {
     weights_.clear();
-    variance_ = value_ = 0;
+    variance_ = 0;
     struct Accepted {
         double value, deviation;
     };
@@ -113,7 +113,6 @@ std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, doubl
         if (count > 0 && !agrees) break;
         accepted[count++] = {tried_value_, std::sqrt(tried_variance_)};
         weights_.swap(tried_);
-        value_ = tried_value_;
         variance_ = tried_variance_;
     }
     return weights_;

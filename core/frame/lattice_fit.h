@@ -40,7 +40,7 @@ class LatticeFit {
     bool fit_within(std::span<const FitNode> nodes, int reach, int terms);
 
     std::vector<FitWeight> weights_, tried_;
-    double variance_ = 0, value_ = 0;
+    double variance_ = 0;
     double tried_variance_ = 0, tried_value_ = 0;
 };
 

@@ -6,7 +6,6 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/frame/lattice_fit.h"
 #include "core/frame/node_smoothing.h"
 #include "core/surfaces/surface_reflection.h"
 
@@ -16,8 +15,8 @@ namespace {
 
 // Of a node: more would leave less noise than there is light between the nodes of a small image.
 constexpr int k_fewest_node_paths = 16, k_most_node_paths = 1024;
-// Nodes see the same surface as a pixel if its normal is within 45 degrees of theirs and it lies
-// as near to their tangent plane, relative to its distance.
+// Nodes see the same surface as a pixel if its normal agrees with theirs (k_least_node_cosine) and
+// it lies no farther from their tangent plane than this, relative to its distance.
 constexpr double k_most_slope = 0.35;
 constexpr int k_search = 3;            // cells around a pixel without a match at its corners
 constexpr int k_paths_of_sample = 64;  // where there is none at all

@@ -201,6 +201,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
         radiance[b] *= factor * beta * lamp.axis_intensity()[b] * state.throughput[b];
     }
     PathTerm term = state.term(share.lamp, radiance);
+    if (term.scatterings + term.reflections == 0) term.distance = s;  // on the camera ray
     ++term.scatterings;
     terms.add(term);
 }

@@ -90,7 +90,7 @@ void PathVertex::find_lobes(const Spectrum& throughput) {
         const Vector3 to_lamp = lamps[j].position() - x_;
         const double radius = glm::length(to_lamp);
         if (!(radius > 0) || (segment_ && glm::dot(segment_->hit.normal, to_lamp) <= 0)) continue;
-        const double weight = lamps.size() == 1 ? 1 : tables_.glow->of_lamp(j, x_, throughput);
+        const double weight = tables_.glow->of_lamp(j, x_, throughput);
         if (!(weight > 0)) continue;
         total += weight;
         const double again = scattering * std::min(radius, 1 / std::max(attenuation, 1e-9));
