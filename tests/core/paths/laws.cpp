@@ -102,7 +102,7 @@ class KindCheck final : public PathTerms {
             EXPECT_DOUBLE_EQ(term.distance, distance_);
         else
             EXPECT_LT(term.distance, distance_);
-        EXPECT_GE(term.distance, 0);
+        EXPECT_GT(term.distance, 0);
         for (const double radiance : term.radiance) EXPECT_GE(radiance, 0);
     }
     int count = 0;
