@@ -138,14 +138,14 @@ double in_scatter_tolerance(const RenderDesc& render) {
 MultipleLightOptions multiple_light_options(const SceneDesc& scene, const LayerPlan& plan) {
     MultipleLightOptions options;
     options.lamps = plan.has_lamps();
-    options.nodes = 4000;
+    options.nodes = 5000;
     options.paths = 2'000'000;
     if (scene.render.quality == RenderDesc::Quality::draft) {
         options.nodes = 1000;
         options.paths = 60'000;
     }
     if (scene.render.quality == RenderDesc::Quality::exact) {
-        options.nodes = 16000;
+        options.nodes = 20000;
         options.paths = 16'000'000;
     }
     return options;

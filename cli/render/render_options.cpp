@@ -23,7 +23,8 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render houdini.yaml --set 'volumes[0].file=/data/my.vdb' --irradiance-vdb light.vdb
 
 render.scattering: single, the default, is light that the water scatters once or a surface reflects
-once; multiple is all light, however often it was scattered and reflected (--integrator path).
+once; multiple is all light, however often it was scattered and reflected, fast by
+--integrator volume, unbiased by path.
 
 Writes OUT.exr (32-bit float, layers by name) and OUT.png beside it, a preview. With --frames, a
 volume's file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of

@@ -25,12 +25,10 @@ double lerp_weight(double t, int side) {
     return side == 0 ? 1 - t : t;
 }
 
-// A power of two that leaves at most about as many nodes.
+// The least that leaves no more nodes, apart from those at the edges.
 int spacing_for(const RaySource& rays, int nodes) {
     const double area = static_cast<double>(rays.width()) * rays.height();
-    int spacing = 1;
-    while (area / (static_cast<double>(spacing) * spacing) > nodes) spacing *= 2;
-    return spacing;
+    return std::max(1, static_cast<int>(std::ceil(std::sqrt(area / nodes))));
 }
 
 // In the whole image.
