@@ -47,7 +47,8 @@ MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOpt
       estimator_(pixels.rays(), pixels.scene(), pixels.transport(), intervals_,
                  {options.lamps ? static_cast<std::size_t>(pixels.lamp_count()) + 1 : 1,
                   std::clamp(options.paths / node_count(pixels.rays(), spacing_),
-                             k_fewest_node_paths, k_most_node_paths)}) {}
+                             k_fewest_node_paths, k_most_node_paths)}),
+      cells_(options.cells) {}
 
 void MultipleLight::prepare(const PixelWindow& window, const Progress& progress) {
     // The corners of all cells in the window, and what these are fitted to.
@@ -74,6 +75,7 @@ void MultipleLight::prepare(const PixelWindow& window, const Progress& progress)
         if (!progress(static_cast<double>(++done) / static_cast<double>(count)))
             throw Interrupted();
     });
+    take_away_glow(raw);
     nodes_ = smoothed(raw, intervals_, estimator_.options().groups);
     double variance = 0, light = 0;
     for (const SmoothNode& node : nodes_) {
@@ -82,6 +84,52 @@ void MultipleLight::prepare(const PixelWindow& window, const Progress& progress)
     }
     const auto all = static_cast<double>(nodes_.size());
     error_ = light > 0 ? std::sqrt(variance * all) / light : 0;
+}
+
+// Computes the glow, and leaves in the nodes what they hold beside it.
+void MultipleLight::take_away_glow(Grid2D<MultipleNode>& raw) {
+    const std::size_t groups = estimator_.options().groups;
+    const LitScene& scene = pixels_.scene();
+    const auto radiance = [&](const SurfaceSample& sample, const SurfaceLight& light,
+                              std::size_t index, std::span<double> channels) {
+        const std::span<const double> to_camera = light.to_camera(index);
+        const SurfaceReflection reflection(*scene.surfaces, sample, static_cast<int>(bands_));
+        if (reflection.emits())
+            for (std::size_t b = 0; b < bands_; ++b)
+                channels[(groups - 1) * bands_ + b] += reflection.emission()[b] * to_camera[b];
+        Spectrum brdf;
+        for (std::size_t j = 0; j < light.lamp_count(); ++j) {
+            if (!light.visible(index, j)) continue;
+            reflection.brdf((*scene.lamps)[j].position(), brdf);
+            double* sum = &channels[std::min(j, groups - 1) * bands_];
+            for (std::size_t b = 0; b < bands_; ++b)
+                sum[b] += light.irradiance(index, j, b) * brdf[b] * to_camera[b];
+        }
+    };
+    std::vector<SurfaceGlow::Position> positions;
+    for (int j = 0; j < raw.height(); ++j)
+        for (int i = 0; i < raw.width(); ++i)
+            positions.push_back({(column_ + i) * static_cast<double>(spacing_),
+                                 (row_ + j) * static_cast<double>(spacing_)});
+    glow_.emplace(pixels_.rays(), scene, *pixels_.transport().surfaces, intervals_, groups * bands_,
+                  cells_, radiance, positions);
+    const std::size_t values = groups * bands_;
+    for (std::size_t n = 0; n < raw.size(); ++n) {
+        MultipleNode& node = raw[n];
+        if (!node.has_ray) continue;
+        const std::span<const float> glow = glow_->of_node(n);
+        for (std::size_t i = 0; i < glow_->interval_count(); ++i) {
+            if (intervals_.begin(i) >= node.reach) break;
+            for (NodeLight& half : node.halves) {
+                float mean = 0;
+                for (std::size_t k = 0; k < values; ++k) {
+                    half.water[i * values + k] -= glow[i * values + k];
+                    mean += glow[i * values + k];
+                }
+                half.water_mean[i] -= mean / static_cast<float>(bands_);
+            }
+        }
+    }
 }
 
 void MultipleLight::find_corners(double x, double y, std::vector<Corner>& corners) const {
@@ -127,6 +175,20 @@ void MultipleLight::add_water(const PixelView& view, PixelResult& result) const 
                     give(group, b, share * sum, result);
                 }
             }
+        }
+    }
+}
+
+void MultipleLight::add_glow(const PixelView& view, PixelResult& result) const {
+    thread_local std::vector<double> glow;
+    const std::size_t groups = estimator_.options().groups;
+    glow.assign(groups * bands_, 0.0);
+    for (std::size_t d = 0; d < view.distances.size(); ++d)
+        glow_->add(view.x, view.y, view.distances[d], view.weights[d], glow);
+    for (std::size_t group = 0; group < groups; ++group) {
+        for (std::size_t b = 0; b < bands_; ++b) {
+            result.multiple_volume[b] += glow[group * bands_ + b];
+            give(group, b, glow[group * bands_ + b], result);
         }
     }
 }
@@ -194,6 +256,7 @@ void MultipleLight::add(const PixelView& view, const SurfaceLight& light, std::s
                         PixelResult& result) const {
     if (!view.ray) return;
     add_water(view, result);
+    add_glow(view, result);
     for (std::size_t i = 0; i < view.samples.size(); ++i)
         add_surface(view.samples[i], light.to_camera(first_sample + i), result);
 }

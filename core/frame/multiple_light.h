@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/base/grid2d.h"
@@ -10,6 +11,7 @@
 #include "core/frame/node_smoothing.h"
 #include "core/frame/pixel_layers.h"
 #include "core/frame/pixel_renderer.h"
+#include "core/frame/surface_glow.h"
 #include "core/image/film.h"
 
 namespace uw {
@@ -18,6 +20,7 @@ namespace uw {
 struct MultipleLightOptions {
     int paths = 0;       // in the whole image, of each kind, at its nodes
     int nodes = 0;       // about as many
+    int cells = 0;       // of the surfaces' glow, at most
     bool lamps = false;  // each lamp's light by itself
 };
 
@@ -25,7 +28,8 @@ struct MultipleLightOptions {
 /// light paths at the nodes of a lattice over the image (MultipleNodes), smoothed between them
 /// (LatticeFit), and interpolated: the water's by image position and distance, that on surfaces by
 /// position among nodes that see the same surface. The reflectance and the water in front of the
-/// surface are the pixel's own.
+/// surface are the pixel's own. Of the water's light, the surfaces' glow (SurfaceGlow) is as sharp
+/// as they are: it is computed for all pixels, and what light paths find beside it is smoothed.
 ///
 /// Nodes and their random numbers depend on the image's size and nothing else, so that crops hold
 /// the same pixels as the whole image, and a still camera does not flicker.
@@ -55,10 +59,12 @@ class MultipleLight {
         double weight;
     };
 
+    void take_away_glow(Grid2D<MultipleNode>& raw);
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
                       std::vector<Corner>& matches) const;
     void add_water(const PixelView& view, PixelResult& result) const;
+    void add_glow(const PixelView& view, PixelResult& result) const;
     void add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
                      PixelResult& result) const;
     void give(std::size_t group, std::size_t band, double radiance, PixelResult& result) const;
@@ -70,6 +76,8 @@ class MultipleLight {
     DistanceIntervals intervals_;
     MultipleNodes estimator_;
     Grid2D<SmoothNode> nodes_;
+    int cells_ = 0;
+    std::optional<SurfaceGlow> glow_;  // from prepare on
     double error_ = 0;
 };
 

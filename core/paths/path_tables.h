@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -20,7 +21,8 @@ struct PathTables {
     LampGathering lamps;
     LampGlow glow;
     VertexTables vertices;
-    Spectrum light;  // of all lamps on their axes, or 1 without lamps
+    Spectrum light;   // of all lamps on their axes, or 1 without lamps
+    Spectrum albedo;  // the greatest of all the water may hold, at least 0.1: guides paths
 
     /// `deep_shadows`: as LampGathering takes them.
     PathTables(const LitScene& scene, std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
@@ -30,6 +32,16 @@ struct PathTables {
           glow(optics, scattering),
           vertices{&optics, &scattering, &glow} {
         for (const Lamp& lamp : *scene.lamps) light += lamp.axis_intensity();
+        for (std::size_t b = 0; b < optics.bands(); ++b) {
+            const auto include = [&](const OpticalCoefficients& coefficients) {
+                const double c = coefficients.attenuation(b);
+                if (c > 0) albedo[b] = std::max(albedo[b], coefficients.total_scattering()[b] / c);
+            };
+            include(scene.medium->uniform);
+            for (const Constituent& constituent : scene.medium->constituents)
+                include(constituent.per_unit);
+            albedo[b] = std::max(albedo[b], 0.1);
+        }
         if (scene.lamps->empty())
             for (std::size_t b = 0; b < optics.bands(); ++b) light[b] = 1;
     }

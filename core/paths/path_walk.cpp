@@ -10,8 +10,12 @@ namespace uw {
 
 namespace {
 
-// Limits of the probability to go on: below, spared paths would outweigh the rest.
-constexpr double k_least_survival = 0.3, k_least_lobe_survival = 0.25, k_most_survival = 0.97;
+// The probability to go on for what may still arrive, relative to the light of the path's pixel,
+// and its limits: below, spared paths would outweigh the rest.
+constexpr double k_thoroughness = 3;
+constexpr double k_least_survival = 0.13, k_least_lobe_survival = 0.11, k_most_survival = 0.97;
+// Of a surface, as far as paths head for it.
+constexpr double k_least_reflectance = 0.1;
 // How far rays begin above the surface they leave, relative to the coordinates and to the last
 // segment: above the rounding of single precision, in which surfaces are found.
 constexpr double k_offset = 4e-7;
@@ -147,7 +151,7 @@ void PathWalk::continuation(const Vector3& direction, Continuation& along) const
 // Russian roulette by what may still arrive, relative to the light of the path's pixel.
 double PathWalk::survival(const Continuation& along, double least) const {
     if (!(along.value > 0)) return 0;
-    return std::clamp(along.value / light_.own, least, k_most_survival);
+    return std::clamp(k_thoroughness * along.value / light_.own, least, k_most_survival);
 }
 
 PathState PathWalk::continued(const Continuation& along, double survival) const {
@@ -189,16 +193,20 @@ bool PathWalk::advance() {
     const double u = random_.next();
     // Each band has a share in a density that serves all of them.
     w.shares.resize(bands);
-    double all = 0, to_surface = 0;
+    double in_water = 0, at_surface = 0;
     for (std::size_t b = 0; b < bands; ++b) {
-        w.shares[b] = state_.throughput[b] * tables_.light[b];
-        all += w.shares[b];
-        to_surface += w.shares[b] * w.transmittance[b];
+        const double share = state_.throughput[b] * tables_.light[b];
+        w.shares[b] = share * tables_.albedo[b];
+        in_water += w.shares[b] * (1 - w.transmittance[b]);
+        if (w.segment.has_hit)
+            at_surface += share * w.transmittance[b] *
+                          std::max(k_least_reflectance, w.segment.hit.reflectance[b]);
     }
+    const double all = in_water + at_surface;
     if (!(all > 0)) return false;
     for (double& share : w.shares) share /= all;
-    to_surface /= all;
-    if (u < to_surface) return w.segment.has_hit && reflect_at_end(to_surface);
+    const double to_surface = at_surface / all;
+    if (u < to_surface) return reflect_at_end(to_surface);
     return scatter_on_the_way((u - to_surface) / (1 - to_surface));
 }
 

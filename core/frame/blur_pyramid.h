@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "core/base/grid2d.h"
+
+namespace uw {
+
+/// A sum of images, each blurred by another width: level l by a smooth kernel, nearly a Gaussian,
+/// of the standard deviation `deviation(l)`, computed at 1 / 2^l of the resolution (Burt & Adelson
+/// 1983). Beyond its edges an image goes on with the values there. Reused storage.
+class BlurPyramid {
+  public:
+    /// Of level `level`, in pixels: 0, 1.2, 2.7, 5.6, …
+    static double deviation(int level);
+    /// So many levels that the last is one pixel.
+    static int level_count(int width, int height);
+
+    /// Starts a sum of nothing.
+    void begin(int width, int height);
+    /// Adds `image`, blurred by `level`; its contents are unspecified afterwards.
+    void add(int level, Grid2D<float>& image);
+    /// The sum; valid until the next call of begin.
+    const Grid2D<float>& sum();
+
+  private:
+    std::vector<Grid2D<float>> levels_;
+    Grid2D<float> rows_, coarse_;
+};
+
+}  // namespace uw
