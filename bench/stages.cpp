@@ -111,7 +111,7 @@ void march(StageRun& run, benchmark::State& state) {
             tile.begin({x0, y0, x1, y1});
             for (int y = y0; y < y1; ++y)
                 for (int x = x0; x < x1; ++x) {
-                    double red = tile.render(x, y).backscatter[0];
+                    double red = tile.render(x, y).result.backscatter[0];
                     benchmark::DoNotOptimize(red);
                 }
         });
@@ -129,9 +129,7 @@ void forward_scatter(StageRun& run, benchmark::State& state) {
     ForwardPass pass(renderer, scene.lit(), setup, plan);
     const BandColour colour(run.desc().water.bands_nm);
     render_film(renderer, in_scatter_tolerance(run.desc().render), plan, colour, film, go_on,
-                [&](int x, int y, const PixelView& view, const PixelResult& result) {
-                    pass.keep(x, y, view, result);
-                });
+                [&](int x, int y, const RenderedPixel& pixel) { pass.keep(x, y, pixel); });
     run.measure(state, [&] { pass.run(go_on); });
 }
 

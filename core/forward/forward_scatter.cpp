@@ -190,7 +190,7 @@ void ForwardScatter::spread(std::span<const float> light, const Paths& paths, bo
         MirroredBlur& level = level_for(width);
         const double metres = per_metre > 0 ? width / per_metre : 0;
         const BlurKernel kernel(desc_.shape, {metres * x, metres * y}, plane_.width, plane_.height,
-                                level.columns(), level.rows());
+                                level.grid().columns(), level.grid().rows());
         if (at_nodes_)
             level.add_nodes(part, means, kernel);
         else
@@ -208,27 +208,37 @@ MirroredBlur& ForwardScatter::level_for(double width) {
     return *levels_[level];
 }
 
-void ForwardScatter::finish(std::span<float> added) {
-    const std::size_t pixels =
-        static_cast<std::size_t>(plane_.width) * static_cast<std::size_t>(plane_.height);
-    if (added.size() != (levels_.empty() ? pixels : given_.size()))
-        throw std::invalid_argument("forward scatter: the result is not of the plane's size");
-    std::fill(added.begin(), added.end(), 0.0F);
-    const auto columns = static_cast<std::size_t>(given_.width());
-    const auto add_row = [&](int y, std::span<const double> row) {
-        float* out = added.data() + static_cast<std::size_t>(y) * columns;
+namespace {
+
+// Adds rows to an image of `columns` columns.
+RowSink adder(std::span<float> image, int columns) {
+    return [=](int y, std::span<const double> row) {
+        float* out = image.data() + static_cast<std::ptrdiff_t>(y) * columns;
         for (std::size_t x = 0; x < row.size(); ++x) out[x] += static_cast<float>(row[x]);
     };
-    for (std::optional<MirroredBlur>& level : levels_) {
-        if (!level || !level->any()) continue;
-        if (at_nodes_)
-            level->finish_nodes(add_row);
-        else
-            level->finish(add_row);
+}
+
+}  // namespace
+
+void ForwardScatter::finish(std::span<float> added) {
+    if (!at_nodes_) {
+        finish_pixels(added);
+        return;
     }
+    if (added.size() != given_.size())
+        throw std::invalid_argument("forward scatter: the result is not of the grid's size");
+    std::fill(added.begin(), added.end(), 0.0F);
+    levels_.front()->finish_nodes(adder(added, grid().columns()));
+}
+
+void ForwardScatter::finish_pixels(std::span<float> added) {
+    if (added.size() != static_cast<std::size_t>(plane_.width) * static_cast<std::size_t>(plane_.height))
+        throw std::invalid_argument("forward scatter: the result is not of the plane's size");
+    std::fill(added.begin(), added.end(), 0.0F);
+    for (std::optional<MirroredBlur>& level : levels_)
+        if (level && level->any()) level->finish(adder(added, plane_.width));
     // Light is never negative; negative values are errors of the transforms and the ladder.
-    if (!at_nodes_)
-        for (float& value : added) value = std::max(value, 0.0F);
+    for (float& value : added) value = std::max(value, 0.0F);
 }
 
 }  // namespace uw

@@ -64,7 +64,7 @@ class ForwardScatter {
     static double width_per_metre(const ForwardScatterDesc& desc, const ScatterPlane& plane);
 
     /// The grid of the nodes. Precondition: made for nodes, K > 0.
-    const MirroredBlur& grid() const { return *levels_.front(); }
+    const SplineGrid& grid() const { return levels_.front()->grid(); }
 
     /// Spreads one source's light; no effect if K is 0. At nodes, `means` says whether light is a
     /// mean about each. Throws std::invalid_argument if a size is wrong, or if a pixel's light or a
@@ -76,6 +76,8 @@ class ForwardScatter {
     /// Writes the accumulated light, one value per pixel, and resets to zero. The values are
     /// exactly zero if K is 0 or there was no light.
     void finish(std::span<float> added);
+    /// The same for one value per pixel where light is given at nodes.
+    void finish_pixels(std::span<float> added);
 
   private:
     class Paths;

@@ -35,17 +35,14 @@ std::vector<double> responses(const SplineLine& line) {
 }  // namespace
 
 MirroredBlur::MirroredBlur(int width, int height, double spacing)
-    : width_(width),
-      height_(height),
-      along_x_(width, SplineLine::node_count(width, spacing)),
-      along_y_(height, SplineLine::node_count(height, spacing)),
-      along_rows_(along_x_.nodes()),
-      along_columns_(along_y_.nodes()),
-      response_x_(responses(along_x_)),
-      response_y_(responses(along_y_)) {
+    : grid_(width, height, spacing),
+      along_rows_(grid_.columns()),
+      along_columns_(grid_.rows()),
+      response_x_(responses(grid_.x())),
+      response_y_(responses(grid_.y())) {
     try {
-        image_.assign(columns(), height);
-        spectrum_.assign(rows(), columns());
+        image_.assign(grid_.columns(), height);
+        spectrum_.assign(grid_.rows(), grid_.columns());
     } catch (const std::bad_alloc&) {
         throw InputError(
             "forward scatter: not enough memory for an image of this size; render a "
@@ -55,14 +52,14 @@ MirroredBlur::MirroredBlur(int width, int height, double spacing)
 
 void MirroredBlur::add(const RowSource& image, const BlurKernel& kernel) {
     std::atomic<bool> any = false;
-    parallel_blocks(height_, k_rows, [&](int begin, int end) {
-        std::vector<double> pixels(along_x_.is_identity() ? 0 : static_cast<std::size_t>(width_));
+    parallel_blocks(grid_.height(), k_rows, [&](int begin, int end) {
+        std::vector<double> pixels(grid_.x().is_identity() ? 0 : static_cast<std::size_t>(grid_.width()));
         for (int y = begin; y < end; ++y) {
             const std::span<double> row = image_.row(y);
             std::fill(row.begin(), row.end(), 0.0);
             std::fill(pixels.begin(), pixels.end(), 0.0);
             if (!image(y, pixels.empty() ? row : std::span(pixels))) continue;
-            if (!pixels.empty()) along_x_.spread(pixels, row);
+            if (!pixels.empty()) grid_.x().spread(pixels, row);
             along_rows_.forward(row.data());
             any = true;
         }
@@ -72,7 +69,7 @@ void MirroredBlur::add(const RowSource& image, const BlurKernel& kernel) {
 
 void MirroredBlur::add_nodes(const RowSource& nodes, bool means, const BlurKernel& kernel) {
     std::atomic<bool> any = false;
-    parallel_blocks(rows(), k_rows, [&](int begin, int end) {
+    parallel_blocks(grid_.rows(), k_rows, [&](int begin, int end) {
         for (int y = begin; y < end; ++y) {
             const std::span<double> row = image_.row(y);
             std::fill(row.begin(), row.end(), 0.0);
@@ -85,8 +82,8 @@ void MirroredBlur::add_nodes(const RowSource& nodes, bool means, const BlurKerne
 }
 
 void MirroredBlur::add_columns(const BlurKernel& kernel, Input input) {
-    const bool spread = input == Input::pixels && !along_y_.is_identity();
-    const int given = input == Input::pixels ? height_ : rows();
+    const bool spread = input == Input::pixels && !grid_.y().is_identity();
+    const int given = input == Input::pixels ? grid_.height() : grid_.rows();
     // What the input was multiplied by on its way to the nodes, and what the interpolation from
     // them is going to multiply the sum by.
     const bool twice = input != Input::node_values;
@@ -94,10 +91,10 @@ void MirroredBlur::add_columns(const BlurKernel& kernel, Input input) {
         return 1 / (twice ? response * response : response);
     };
     const double unit =
-        input == Input::pixels ? 1 : (1.0 * width_ / columns()) * (1.0 * height_ / rows());
-    const int count = std::min(kernel.column_count(), columns());
+        input == Input::pixels ? 1 : (1.0 * grid_.width() / grid_.columns()) * (1.0 * grid_.height() / grid_.rows());
+    const int count = std::min(kernel.column_count(), grid_.columns());
     parallel_blocks(count, k_columns, [&](int begin, int end) {
-        Grid2D<double> nodes(rows(), end - begin);
+        Grid2D<double> nodes(grid_.rows(), end - begin);
         for (int y = 0; y < given; ++y) {
             const std::span<const double> row = std::as_const(image_).row(y);
             for (int x = begin; x < end; ++x) {
@@ -106,12 +103,12 @@ void MirroredBlur::add_columns(const BlurKernel& kernel, Input input) {
                     nodes(y, x - begin) = value;
                     continue;
                 }
-                const SplineLine::Taps& taps = along_y_.taps()[static_cast<std::size_t>(y)];
-                for (std::size_t n = 0; n < SplineLine::k_taps; ++n)
-                    nodes(taps.nodes[n], x - begin) += taps.weights[n] * value;
+                grid_.y().for_each_tap(y, [&](int node, double weight) {
+                    nodes(node, x - begin) += weight * value;
+                });
             }
         }
-        std::vector<double> factors(static_cast<std::size_t>(rows()));
+        std::vector<double> factors(static_cast<std::size_t>(grid_.rows()));
         for (int x = begin; x < end; ++x) {
             const std::span<double> column = nodes.row(x - begin), sum = spectrum_.row(x);
             along_columns_.forward(column.data());
@@ -125,15 +122,15 @@ void MirroredBlur::add_columns(const BlurKernel& kernel, Input input) {
 }
 
 void MirroredBlur::finish_columns(bool pixels) {
-    const bool interpolate = pixels && !along_y_.is_identity();
-    const double unit = 0.25 / (1.0 * width_ * height_);
-    parallel_blocks(columns(), k_columns, [&](int begin, int end) {
-        std::vector<double> line(interpolate ? static_cast<std::size_t>(height_) : 0);
+    const bool interpolate = pixels && !grid_.y().is_identity();
+    const double unit = 0.25 / (1.0 * grid_.width() * grid_.height());
+    parallel_blocks(grid_.columns(), k_columns, [&](int begin, int end) {
+        std::vector<double> line(interpolate ? static_cast<std::size_t>(grid_.height()) : 0);
         for (int x = begin; x < end; ++x) {
             std::span<double> column = spectrum_.row(x);
             along_columns_.inverse(column.data());
             if (interpolate) {
-                along_y_.interpolate(column, line);
+                grid_.y().interpolate(column, line);
                 column = line;
             }
             for (std::size_t y = 0; y < column.size(); ++y)
@@ -148,12 +145,12 @@ void MirroredBlur::finish(const RowSink& sink) {
         finish_columns(true);
     else
         std::ranges::fill(image_, 0.0);
-    parallel_blocks(height_, k_rows, [&](int begin, int end) {
-        std::vector<double> pixels(along_x_.is_identity() ? 0 : static_cast<std::size_t>(width_));
+    parallel_blocks(grid_.height(), k_rows, [&](int begin, int end) {
+        std::vector<double> pixels(grid_.x().is_identity() ? 0 : static_cast<std::size_t>(grid_.width()));
         for (int y = begin; y < end; ++y) {
             const std::span<double> row = image_.row(y);
             if (any_) along_rows_.inverse(row.data());
-            if (!pixels.empty()) along_x_.interpolate(row, pixels);
+            if (!pixels.empty()) grid_.x().interpolate(row, pixels);
             sink(y, pixels.empty() ? row : std::span(pixels));
         }
     });
@@ -165,7 +162,7 @@ void MirroredBlur::finish_nodes(const RowSink& sink) {
         finish_columns(false);
     else
         std::ranges::fill(image_, 0.0);
-    parallel_blocks(rows(), k_rows, [&](int begin, int end) {
+    parallel_blocks(grid_.rows(), k_rows, [&](int begin, int end) {
         for (int y = begin; y < end; ++y) {
             const std::span<double> row = image_.row(y);
             if (any_) along_rows_.inverse(row.data());

@@ -6,7 +6,7 @@
 #include "core/base/grid2d.h"
 #include "core/forward/blur_kernel.h"
 #include "core/forward/cosine_transform.h"
-#include "core/forward/spline_line.h"
+#include "core/forward/spline_grid.h"
 
 namespace uw {
 
@@ -23,26 +23,17 @@ class MirroredBlur {
     /// apart. Throws InputError if there is not enough memory.
     MirroredBlur(int width, int height, double spacing = 1);
 
-    /// Number of nodes.
-    int columns() const { return along_x_.nodes(); }
-    int rows() const { return along_y_.nodes(); }
-    const SplineLine& along_x() const { return along_x_; }
-    const SplineLine& along_y() const { return along_y_; }
+    const SplineGrid& grid() const { return grid_; }
 
-    /// Writes row `y` of an image into a row of zeros; returns false if it remains zero. Called
-    /// from any thread, once per row.
-    using RowSource = std::function<bool(int y, std::span<double> row)>;
     /// Adds an image blurred with `kernel`, which must be made for images of this size.
     void add(const RowSource& image, const BlurKernel& kernel);
-    /// The same for an image given at the nodes: its values there, or, if they are `means`, its
-    /// means about the nodes, weighted as SplineLine::spread does.
+    /// The same for an image given at the nodes: its values there, or, if they are `means`,
+    /// SplineGrid::means.
     void add_nodes(const RowSource& nodes, bool means, const BlurKernel& kernel);
 
     /// Whether anything was added since the last sum.
     bool any() const { return any_; }
 
-    /// Receives row `y` of the sum. Called from any thread, once per row.
-    using RowSink = std::function<void(int y, std::span<const double> row)>;
     /// Passes the sum to `sink` and resets to zero.
     void finish(const RowSink& sink);
     /// The same as the coefficients of the spline, row by row of the nodes.
@@ -55,8 +46,7 @@ class MirroredBlur {
     // Leaves the coefficients of the sum in `image_`, a column of nodes or of pixels in each.
     void finish_columns(bool pixels);
 
-    int width_, height_;
-    SplineLine along_x_, along_y_;
+    SplineGrid grid_;
     CosineTransform along_rows_;
     CosineTransform along_columns_;
     std::vector<double> response_x_, response_y_;

@@ -28,10 +28,6 @@ double quintic(double x) {
 
 SplineLine::SplineLine(int pixels, int nodes) : nodes_(nodes) {
     if (nodes == pixels) return;
-    const auto reflected = [&](int node) {
-        const int place = ((node % (2 * nodes)) + 2 * nodes) % (2 * nodes);
-        return place < nodes ? place : 2 * nodes - 1 - place;
-    };
     for (int i = 0; i < pixels; ++i) {
         const double at = (i + 0.5) * nodes / pixels - 0.5;
         const double before = std::floor(at);
@@ -43,6 +39,12 @@ SplineLine::SplineLine(int pixels, int nodes) : nodes_(nodes) {
         }
         taps_.push_back(taps);
     }
+}
+
+/// The node that a node beyond either end is the mirror image of.
+int SplineLine::reflected(int node) const {
+    const int place = ((node % (2 * nodes_)) + 2 * nodes_) % (2 * nodes_);
+    return place < nodes_ ? place : 2 * nodes_ - 1 - place;
 }
 
 void SplineLine::spread(std::span<const double> pixels, std::span<double> nodes) const {

@@ -18,21 +18,31 @@ namespace uw {
 /// frequencies.
 class SplineLine {
   public:
-    /// Where a pixel lies among the nodes, and its share in each of them.
-    static constexpr std::size_t k_taps = 6;
-    struct Taps {
-        std::array<int, k_taps> nodes{};
-        std::array<double, k_taps> weights{};
-    };
-
     /// Precondition: 1 <= nodes <= pixels.
     SplineLine(int pixels, int nodes);
 
     int nodes() const { return nodes_; }
     /// Whether pixels and nodes are the same.
     bool is_identity() const { return taps_.empty(); }
-    /// The taps of each pixel. Precondition: not an identity.
-    const std::vector<Taps>& taps() const { return taps_; }
+    /// Calls `tap(node, weight)` for each node that pixel `i` has a share in.
+    template <class Tap>
+    void for_each_tap(int i, const Tap& tap) const {
+        if (is_identity()) {
+            tap(i, 1.0);
+            return;
+        }
+        const Taps& taps = taps_[static_cast<std::size_t>(i)];
+        for (std::size_t n = 0; n < k_taps; ++n) tap(taps.nodes[n], taps.weights[n]);
+    }
+    /// The same for the value of the spline at node `i`.
+    template <class Tap>
+    void for_each_node_tap(int i, const Tap& tap) const {
+        if (is_identity()) {
+            tap(i, 1.0);
+            return;
+        }
+        for (int n = -2; n <= 2; ++n) tap(reflected(i + n), k_at_nodes[static_cast<std::size_t>(n + 2)]);
+    }
 
     /// Adds each pixel to the nodes around it.
     void spread(std::span<const double> pixels, std::span<double> nodes) const;
@@ -46,6 +56,19 @@ class SplineLine {
     static int node_count(int pixels, double spacing);
 
   private:
+    // The quintic B-spline at -2..2 nodes.
+    static constexpr std::array<double, 5> k_at_nodes{1. / 120, 26. / 120, 66. / 120, 26. / 120,
+                                                      1. / 120};
+
+    /// Where a pixel lies among the nodes, and its share in each of them.
+    static constexpr std::size_t k_taps = 6;
+    struct Taps {
+        std::array<int, k_taps> nodes{};
+        std::array<double, k_taps> weights{};
+    };
+
+    int reflected(int node) const;
+
     int nodes_;
     std::vector<Taps> taps_;
 };
