@@ -26,7 +26,7 @@ constexpr double k_offset = 0.3;        // m
 constexpr double k_offset_depth = 0.6;  // optical depth
 // The angle between the rays along which slabs are integrated. Their light is blurred before it is
 // seen, by kernels wider than a tenth of that.
-constexpr double k_slab_spacing = 0.0073;  // rad
+constexpr double k_slab_spacing = 0.0091;  // rad
 // How far in-scatter that is interpolated between pixels may be from that of their own rays
 // (InScatterLattice), relative, where the lattice is confirmed; the image is interpolated from
 // closer nodes and has a quarter of that error.

@@ -62,8 +62,8 @@ ForwardPass::ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
     const bool first = plan.has(Layer::backscatter_first);
     const std::size_t constituents = scene.medium->constituents.size();
     const std::size_t per_group = (first ? 4 : 3) * bands_;
-    check_memory(setup.plane, 12 + groups_.size() * per_group + (several_ ? 3 : 2) * bands_ +
-                                  2 * constituents);
+    check_memory(setup.plane,
+                 12 + groups_.size() * per_group + (several_ ? 3 : 2) * bands_ + 2 * constituents);
     for (Group& group : groups_) {
         group.direct = planes(bands_);
         group.forward = planes(bands_);
@@ -170,6 +170,8 @@ void ForwardPass::add_surface(const RenderedPixel& pixel, std::size_t sample,
 }
 
 void ForwardPass::run(const ProgressCallback& progress) {
+    // Before all surfaces the error of a slab is of second order in its thickness.
+    if (setup_.spacing > 1) in_scatter_.join_pairs(water_.extent().nearest, setup_.first);
     const auto steps = static_cast<double>(in_scatter_.count()) + 1;
     const auto report = [&](std::size_t done) {
         if (!progress(static_cast<double>(done) / steps)) throw Interrupted();
@@ -202,13 +204,13 @@ void ForwardPass::scatter_surfaces() {
 void ForwardPass::scatter_water(const std::function<void(std::size_t slab)>& done) {
     std::vector<std::vector<std::size_t>> lamps;
     for (const Group& group : groups_) lamps.push_back(group.lamps);
-    const SlabLattice lattice(renderer_, in_scatter_, water_, lamps, setup_.sensor,
-                              setup_.spacing);
+    const SlabLattice lattice(renderer_, in_scatter_, water_, lamps, setup_.sensor, setup_.spacing);
     WaterScatter scatter(setup_.desc, setup_.plane, *scene_.medium, in_scatter_, water_, lattice,
                          setup_.spacing);
     const std::size_t constituents = scene_.medium->constituents.size();
-    const double slab_bytes = 4.0 * lattice.columns() * lattice.rows() *
-                              static_cast<double>((groups_.size() + 1) * bands_ + 2 + 2 * constituents);
+    const double slab_bytes =
+        4.0 * lattice.columns() * lattice.rows() *
+        static_cast<double>((groups_.size() + 1) * bands_ + 2 + 2 * constituents);
     const auto together = static_cast<std::size_t>(
         std::clamp(k_slab_bytes / slab_bytes, 1.0, static_cast<double>(in_scatter_.count())));
     std::vector<SlabImages> slabs;
@@ -243,8 +245,8 @@ void ForwardPass::write(const LayerPlan& plan, const BandColour& colour, Film& f
                 });
             };
             pixel.pixel_factor = factor_after(i);
-            pixel.direct = per_band(
-                bands_, [&](std::size_t b) { return static_cast<double>(direct[b][i]); });
+            pixel.direct =
+                per_band(bands_, [&](std::size_t b) { return static_cast<double>(direct[b][i]); });
             pixel.forward =
                 sum([&](std::size_t g, std::size_t b) { return groups_[g].forward[b][i]; });
             pixel.backscatter =
@@ -258,9 +260,8 @@ void ForwardPass::write(const LayerPlan& plan, const BandColour& colour, Film& f
             store_forward_scatter(pixel, plan, colour, channels);
             for (std::size_t g = 1; g < groups_.size(); ++g) {
                 const auto own = [&](const ImagePlane* planes) {
-                    return per_band(bands_, [&](std::size_t b) {
-                        return static_cast<double>(planes[b][i]);
-                    });
+                    return per_band(
+                        bands_, [&](std::size_t b) { return static_cast<double>(planes[b][i]); });
                 };
                 pixel.forward = own(groups_[g].forward.data());
                 pixel.backscatter = own(&added_[g * bands_]);

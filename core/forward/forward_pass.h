@@ -89,7 +89,7 @@ class ForwardPass {
     InScatterSlabs in_scatter_;
     std::size_t bands_;
     std::vector<Group> groups_;
-    bool several_;  // whether there is more than one group
+    bool several_;                         // whether there is more than one group
     std::vector<ImagePlane> direct_;       // per band, if there are several groups
     std::vector<ImagePlane> backscatter_;  // per band, without what is added
     std::vector<ImagePlane> added_;        // per group and band, to the backscatter

@@ -232,7 +232,8 @@ void ForwardScatter::finish(std::span<float> added) {
 }
 
 void ForwardScatter::finish_pixels(std::span<float> added) {
-    if (added.size() != static_cast<std::size_t>(plane_.width) * static_cast<std::size_t>(plane_.height))
+    if (added.size() !=
+        static_cast<std::size_t>(plane_.width) * static_cast<std::size_t>(plane_.height))
         throw std::invalid_argument("forward scatter: the result is not of the plane's size");
     std::fill(added.begin(), added.end(), 0.0F);
     for (std::optional<MirroredBlur>& level : levels_)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace uw {
 
@@ -27,6 +28,18 @@ InScatterSlabs::InScatterSlabs(const LitScene& scene, const Integrator& integrat
       shells_(shells),
       attenuation_(*scene.medium),
       sensor_(sensor) {}
+
+void InScatterSlabs::join_pairs(double end, const Interval& kept) {
+    std::vector<double> joined;
+    bool dropped = false;  // whether the face before was
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+        const double face = faces_[i];
+        dropped = !dropped && i > 0 && i + 1 < faces_.size() && faces_[i + 1] < end &&
+                  face != kept.begin && face != kept.end;
+        if (!dropped) joined.push_back(face);
+    }
+    faces_ = std::move(joined);
+}
 
 void InScatterSlabs::integrate(const Ray& ray, double end, std::size_t first, std::size_t last,
                                std::vector<SlabLight>& slabs) const {
@@ -79,8 +92,7 @@ void InScatterSlabs::fill_slab(const Ray& ray, double begin, double end, double 
     const auto measure = [&](double to, WaterPath& piece) {
         piece.reset(attenuation_.constituents.size());
         piece.length = to - begin;
-        if (!piece.columns.empty())
-            scene_.field->column(ray.at(begin), ray.at(to), piece.columns);
+        if (!piece.columns.empty()) scene_.field->column(ray.at(begin), ray.at(to), piece.columns);
     };
     measure(end, part);
     measure(behind, whole);

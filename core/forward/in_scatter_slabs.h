@@ -69,6 +69,10 @@ class InScatterSlabs {
                    const Affine& world_from_camera, std::vector<double> faces, bool shells,
                    const SensorModel& sensor);
 
+    /// Joins slabs in pairs before camera z `end`, or that distance, but not across the ends of
+    /// `kept`.
+    void join_pairs(double end, const Interval& kept);
+
     std::size_t count() const { return faces_.size() - 1; }
     /// Camera z, or distance, of face `i` and of the centre of slab `i` [m].
     double face(std::size_t i) const { return faces_[i]; }
@@ -78,7 +82,8 @@ class InScatterSlabs {
         return shells_ ? RayDepth::from_origin() : RayDepth(camera_from_world_, ray);
     }
 
-    /// Integrates slabs `first` to `last` - 1 along `ray` up to the distance `end` [m]. Thread safe.
+    /// Integrates slabs `first` to `last` - 1 along `ray` up to the distance `end` [m]. Thread
+    /// safe.
     void integrate(const Ray& ray, double end, std::size_t first, std::size_t last,
                    std::vector<SlabLight>& slabs) const;
 

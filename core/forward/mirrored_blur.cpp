@@ -53,7 +53,8 @@ MirroredBlur::MirroredBlur(int width, int height, double spacing)
 void MirroredBlur::add(const RowSource& image, const BlurKernel& kernel) {
     std::atomic<bool> any = false;
     parallel_blocks(grid_.height(), k_rows, [&](int begin, int end) {
-        std::vector<double> pixels(grid_.x().is_identity() ? 0 : static_cast<std::size_t>(grid_.width()));
+        std::vector<double> pixels(
+            grid_.x().is_identity() ? 0 : static_cast<std::size_t>(grid_.width()));
         for (int y = begin; y < end; ++y) {
             const std::span<double> row = image_.row(y);
             std::fill(row.begin(), row.end(), 0.0);
@@ -90,8 +91,9 @@ void MirroredBlur::add_columns(const BlurKernel& kernel, Input input) {
     const auto undone = [&](double response) {
         return 1 / (twice ? response * response : response);
     };
-    const double unit =
-        input == Input::pixels ? 1 : (1.0 * grid_.width() / grid_.columns()) * (1.0 * grid_.height() / grid_.rows());
+    const double unit = input == Input::pixels ? 1
+                                               : (1.0 * grid_.width() / grid_.columns()) *
+                                                     (1.0 * grid_.height() / grid_.rows());
     const int count = std::min(kernel.column_count(), grid_.columns());
     parallel_blocks(count, k_columns, [&](int begin, int end) {
         Grid2D<double> nodes(grid_.rows(), end - begin);
@@ -103,9 +105,8 @@ void MirroredBlur::add_columns(const BlurKernel& kernel, Input input) {
                     nodes(y, x - begin) = value;
                     continue;
                 }
-                grid_.y().for_each_tap(y, [&](int node, double weight) {
-                    nodes(node, x - begin) += weight * value;
-                });
+                grid_.y().for_each_tap(
+                    y, [&](int node, double weight) { nodes(node, x - begin) += weight * value; });
             }
         }
         std::vector<double> factors(static_cast<std::size_t>(grid_.rows()));
@@ -146,7 +147,8 @@ void MirroredBlur::finish(const RowSink& sink) {
     else
         std::ranges::fill(image_, 0.0);
     parallel_blocks(grid_.height(), k_rows, [&](int begin, int end) {
-        std::vector<double> pixels(grid_.x().is_identity() ? 0 : static_cast<std::size_t>(grid_.width()));
+        std::vector<double> pixels(
+            grid_.x().is_identity() ? 0 : static_cast<std::size_t>(grid_.width()));
         for (int y = begin; y < end; ++y) {
             const std::span<double> row = image_.row(y);
             if (any_) along_rows_.inverse(row.data());

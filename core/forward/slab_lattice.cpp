@@ -92,8 +92,7 @@ SlabLattice::NodeRay SlabLattice::find_ray(int i, int j) const {
         return slab;
     };
     if (view.ray) {
-        const bool hits =
-            renderer_.scene().surfaces->closest_hit(*view.ray, k_far, view.hit);
+        const bool hits = renderer_.scene().surfaces->closest_hit(*view.ray, k_far, view.hit);
         node.end = hits ? view.hit.distance : k_far;
     }
     if (!view.ray || slab_of(slabs_.depth(*view.ray).z(node.end)) < slab_of(deepest)) {

@@ -59,7 +59,8 @@ class SlabLattice {
     };
 
     NodeRay find_ray(int i, int j) const;
-    void store(const SlabLight& light, const NodeRay& ray, std::size_t node, SlabImages& slab) const;
+    void store(const SlabLight& light, const NodeRay& ray, std::size_t node,
+               SlabImages& slab) const;
     // Continues what is visible into what is not.
     static void fill_hidden(Grid2D<char>& visible, SlabImages& slab);
 

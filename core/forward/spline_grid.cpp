@@ -84,16 +84,21 @@ void SplineGrid::interpolate(const Grid2D<float>& coefficients, const RowSink& s
     });
 }
 
-float SplineGrid::at(const Grid2D<float>& coefficients, int x, int y) const {
-    double sum = 0;
+std::array<float, 2> SplineGrid::at(const Grid2D<float>& first, const Grid2D<float>& second, int x,
+                                    int y) const {
+    std::array<float, 2> sums{};
     y_.for_each_tap(y, [&](int row, double down) {
-        double line = 0;
+        const float* const of_first = first.row(row).data();
+        const float* const of_second = second.row(row).data();
+        float line = 0, other = 0;
         x_.for_each_tap(x, [&](int column, double across) {
-            line += across * static_cast<double>(coefficients(column, row));
+            line += static_cast<float>(across) * of_first[column];
+            other += static_cast<float>(across) * of_second[column];
         });
-        sum += down * line;
+        sums[0] += static_cast<float>(down) * line;
+        sums[1] += static_cast<float>(down) * other;
     });
-    return static_cast<float>(sum);
+    return sums;
 }
 
 }  // namespace uw

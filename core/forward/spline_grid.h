@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 
@@ -39,8 +40,9 @@ class SplineGrid {
     void values(const Grid2D<float>& coefficients, Grid2D<float>& nodes) const;
     /// Passes its values at the pixels to `sink`, row by row, from any thread.
     void interpolate(const Grid2D<float>& coefficients, const RowSink& sink) const;
-    /// Its value at pixel (x, y).
-    float at(const Grid2D<float>& coefficients, int x, int y) const;
+    /// The values at pixel (x, y) of two splines.
+    std::array<float, 2> at(const Grid2D<float>& first, const Grid2D<float>& second, int x,
+                            int y) const;
 
   private:
     int width_, height_;

@@ -41,7 +41,8 @@ class SplineLine {
             tap(i, 1.0);
             return;
         }
-        for (int n = -2; n <= 2; ++n) tap(reflected(i + n), k_at_nodes[static_cast<std::size_t>(n + 2)]);
+        for (int n = -2; n <= 2; ++n)
+            tap(reflected(i + n), k_at_nodes[static_cast<std::size_t>(n + 2)]);
     }
 
     /// Adds each pixel to the nodes around it.

@@ -10,8 +10,8 @@
 namespace uw {
 
 /// How far each pixel sees into the water, by camera z or whatever slabs are placed by. Where a
-/// pixel's samples end on surfaces at several depths, those in front and those behind the widest gap
-/// are each taken together.
+/// pixel's samples end on surfaces at several depths, those in front and those behind the widest
+/// gap are each taken together.
 class VisibleWater {
   public:
     VisibleWater() = default;

@@ -14,11 +14,12 @@ struct WaterScatter::Level {
         : spacing(of_spacing),
           grid(plane.width, plane.height, of_spacing),
           from_lamps(desc, plane, medium, of_spacing),
-          slab(grid.columns(), grid.rows(), groups,
-               static_cast<std::size_t>(medium.band_count()), medium.constituents.size()) {
+          slab(grid.columns(), grid.rows(), groups, static_cast<std::size_t>(medium.band_count()),
+               medium.constituents.size()) {
         for (std::size_t i = 0; i < groups * slab.weight.size(); ++i) {
             to_camera.emplace_back(desc, plane, medium, of_spacing);
             fallen.emplace_back(grid.columns(), grid.rows());
+            within.emplace_back(grid.columns(), grid.rows());
         }
     }
 
@@ -26,13 +27,15 @@ struct WaterScatter::Level {
     SplineGrid grid;
     PathScatter from_lamps;
     std::vector<PathScatter> to_camera;  // of each channel
-    std::vector<ImagePlane> fallen;      // what (17) has added to each: coefficients of the spline
-    SlabImages slab;                     // at the nodes
+    // What (17) adds to each in the slabs before, and in the current one: coefficients of the
+    // spline.
+    std::vector<ImagePlane> fallen, within;
+    SlabImages slab;  // at the nodes
     // About each: the fraction of the pixels that sees some of the slab, how much of it they see,
     // and the fraction that sees beyond it, to face `seen_at`.
     ImagePlane seen, share, seen_next;
     std::size_t seen_at = std::numeric_limits<std::size_t>::max();
-    ImagePlane source, within, values;
+    ImagePlane source, values;
 };
 
 WaterScatter::WaterScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane,
@@ -50,8 +53,7 @@ WaterScatter::WaterScatter(const ForwardScatterDesc& desc, const ScatterPlane& p
 
 WaterScatter::~WaterScatter() = default;
 
-void WaterScatter::add(std::size_t index, const SlabImages& images,
-                       std::vector<ImagePlane>& sums) {
+void WaterScatter::add(std::size_t index, const SlabImages& images, std::vector<ImagePlane>& sums) {
     if (extent_.farthest <= slabs_.face(index)) return;
     prepare(index, images, sums);
     level_->slab.fill_from(images, [&](const ImagePlane& from, ImagePlane& to) {
@@ -59,7 +61,7 @@ void WaterScatter::add(std::size_t index, const SlabImages& images,
     });
     if (cut_) cover(index);
     for (std::size_t g = 0; g < level_->slab.light.size(); ++g)
-        for (std::size_t b = 0; b < level_->slab.weight.size(); ++b) scatter(index, g, b);
+        for (std::size_t b = 0; b < level_->slab.weight.size(); ++b) scatter(g, b);
     next_ = index + 1;
 }
 
@@ -71,8 +73,10 @@ double WaterScatter::spacing_for(std::size_t index, const SlabImages& images) co
     for (const PathImage* path : {&images.from_lamps, &images.to_camera})
         for (const float length : path->length())
             if (length > 0) least = std::min(least, static_cast<double>(length));
-    const double needed = ForwardScatter::nodes_per_width(desc_.shape) *
-                          ForwardScatter::width_per_metre(desc_, plane_) * least;
+    // Coarser than for surfaces: edges are there, but not the details of texture.
+    const bool exponential = desc_.shape == ForwardScatterDesc::Shape::exponential;
+    const double nodes_per_width = exponential ? 1.0 : 1.5;
+    const double needed = nodes_per_width * ForwardScatter::width_per_metre(desc_, plane_) * least;
     double spacing = spacing_;
     while (spacing > 1 && spacing > needed) spacing /= 2;
     return std::max(1.0, spacing);
@@ -129,7 +133,7 @@ void WaterScatter::cover(std::size_t index) {
     level.seen_at = index + 1;
 }
 
-void WaterScatter::scatter(std::size_t index, std::size_t group, std::size_t band) {
+void WaterScatter::scatter(std::size_t group, std::size_t band) {
     Level& level = *level_;
     const std::size_t channel = group * level.slab.weight.size() + band;
     const ImagePlane& light = level.slab.light[group][band];
@@ -138,32 +142,32 @@ void WaterScatter::scatter(std::size_t index, std::size_t group, std::size_t ban
     if (cut_)
         for (std::size_t i = 0; i < light.size(); ++i) level.source[i] *= level.seen[i];
     level.from_lamps.add(band, level.source, level.slab.from_lamps, cut_);
-    level.within.resize(level.grid.columns(), level.grid.rows());
-    level.from_lamps.finish(level.within);
-    level.grid.values(level.within, level.values);
+    ImagePlane& within = level.within[channel];
+    level.from_lamps.finish(within);
+    level.grid.values(within, level.values);
     for (std::size_t i = 0; i < light.size(); ++i) {
         const float part = cut_ ? weight[i] * level.share[i] : weight[i];
         level.source[i] = part * (light[i] + std::max(0.0F, level.values[i]));
-        level.within[i] *= weight[i];
+        within[i] *= weight[i];
     }
     level.to_camera[channel].add(band, level.source, level.slab.to_camera, cut_);
-    if (cut_) gather_ends(index, level.fallen[channel], level.within, (*sums_)[channel]);
-    for (std::size_t i = 0; i < light.size(); ++i) level.fallen[channel][i] += level.within[i];
 }
 
-void WaterScatter::gather_ends(std::size_t index, const ImagePlane& before,
-                               const ImagePlane& within, ImagePlane& sum) const {
+void WaterScatter::gather_ends(std::size_t index) const {
     const double begin = slabs_.face(index), end = slabs_.face(index + 1);
-    parallel_for(static_cast<std::size_t>(sum.height()), [&](std::size_t row) {
+    parallel_for(static_cast<std::size_t>(plane_.height), [&](std::size_t row) {
         const int y = static_cast<int>(row);
-        for (int x = 0; x < sum.width(); ++x) {
-            const std::size_t pixel = sum.index(x, y);
+        for (int x = 0; x < plane_.width; ++x) {
+            const std::size_t pixel = pixels_.index(x, y);
             water_.for_each(pixel, [&](double share, double z) {
                 if (!(z > begin && z <= end)) return;
-                const double part = (z - begin) / (end - begin);
-                const double added = static_cast<double>(level_->grid.at(before, x, y)) +
-                                     part * static_cast<double>(level_->grid.at(within, x, y));
-                sum[pixel] += static_cast<float>(share * std::max(0.0, added));
+                const auto part = static_cast<float>((z - begin) / (end - begin));
+                for (std::size_t channel = 0; channel < sums_->size(); ++channel) {
+                    const auto [before, within] =
+                        level_->grid.at(level_->fallen[channel], level_->within[channel], x, y);
+                    (*sums_)[channel][pixel] +=
+                        static_cast<float>(share) * std::max(0.0F, before + part * within);
+                }
             });
         }
     });
@@ -174,8 +178,7 @@ void WaterScatter::gather_beyond(const ImagePlane& before, ImagePlane& sum) cons
     level_->grid.interpolate(before, [&](int y, std::span<const double> row) {
         for (std::size_t x = 0; x < row.size(); ++x) {
             const std::size_t pixel = sum.index(static_cast<int>(x), y);
-            sum[pixel] +=
-                static_cast<float>(water_.beyond(pixel, z) * std::max(0.0, row[x]));
+            sum[pixel] += static_cast<float>(water_.beyond(pixel, z) * std::max(0.0, row[x]));
         }
     });
 }

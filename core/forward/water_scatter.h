@@ -38,10 +38,9 @@ class WaterScatter {
     void prepare(std::size_t index, const SlabImages& images, std::vector<ImagePlane>& sums);
     // How much of the slab is seen about each node.
     void cover(std::size_t index);
-    void scatter(std::size_t index, std::size_t group, std::size_t band);
+    void scatter(std::size_t group, std::size_t band);
     // What (17) adds in pixels whose water ends in the slab, and in those that see beyond it.
-    void gather_ends(std::size_t index, const ImagePlane& before, const ImagePlane& within,
-                     ImagePlane& sum) const;
+    void gather_ends(std::size_t index) const;
     void gather_beyond(const ImagePlane& before, ImagePlane& sum) const;
 
     ForwardScatterDesc desc_;

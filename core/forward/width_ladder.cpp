@@ -33,6 +33,9 @@ WidthLadder::WidthLadder(ForwardScatterDesc::Shape shape, double least, double g
     while (extent > steps * std::log(rule.ratios[static_cast<std::size_t>(std::min(steps, 3)) - 1]))
         ++steps;
     neighbours_ = std::min(steps, 3) + 1;
+    for (int n = 0; n < neighbours_; ++n)
+        for (int i = 0; i < neighbours_; ++i)
+            if (i != n) inverse_[static_cast<std::size_t>(n)] /= n - i;
     per_step_ = extent / steps;
     for (int i = 1; i < steps; ++i) widths_.push_back(std::exp(begin_ + per_step_ * i) - offset_);
     widths_.push_back(greatest);
@@ -42,20 +45,6 @@ double WidthLadder::place(double width) const {
     if (widths_.size() == 1) return 0;
     const double last = static_cast<double>(widths_.size()) - 1;
     return std::clamp((std::log(width + offset_) - begin_) / per_step_, 0.0, last);
-}
-
-/// The first of the widths that a place is interpolated between.
-int WidthLadder::first_step(double place) const {
-    const int last = static_cast<int>(widths_.size()) - neighbours_;
-    return std::clamp(static_cast<int>(place - 0.5 * neighbours_) + 1, 0, last);
-}
-
-/// Lagrange's polynomial that is 1 at node `n`, and 0 at the others.
-double WidthLadder::polynomial(int n, double t) const {
-    double value = 1;
-    for (int i = 0; i < neighbours_; ++i)
-        if (i != n) value *= (t - i) / (n - i);
-    return value;
 }
 
 }  // namespace uw

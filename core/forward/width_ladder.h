@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "core/scene/forward_scatter_desc.h"
@@ -24,19 +27,23 @@ class WidthLadder {
     /// The share of the kernel of width `step` in that of the width at `place`; 0 unless `place` is
     /// close.
     double weight(int step, double place) const {
-        const int first = first_step(place);
-        return step < first || step >= first + neighbours_
-                   ? 0
-                   : polynomial(step - first, place - first);
+        const int last = static_cast<int>(widths_.size()) - neighbours_;
+        const int first = std::clamp(static_cast<int>(place - 0.5 * neighbours_) + 1, 0, last);
+        const int n = step - first;
+        if (n < 0 || n >= neighbours_) return 0;
+        // Lagrange's polynomial that is 1 at the nth of the neighbours, and 0 at the others.
+        const double t = place - first;
+        double value = inverse_[static_cast<std::size_t>(n)];
+        for (int i = 0; i < neighbours_; ++i)
+            if (i != n) value *= t - i;
+        return value;
     }
 
   private:
-    int first_step(double place) const;
-    double polynomial(int n, double t) const;
-
     double offset_ = 0;
-    double begin_ = 0, per_step_ = 1;  // of the logarithm
-    int neighbours_ = 1;               // in an interpolation
+    double begin_ = 0, per_step_ = 1;            // of the logarithm
+    int neighbours_ = 1;                         // in an interpolation
+    std::array<double, 4> inverse_{1, 1, 1, 1};  // of each polynomial's value at its own node
     std::vector<double> widths_;
 };
 

@@ -42,7 +42,7 @@ class TileRenderer {
     Grid2D<PixelView> views_;                 // of the tile
     SurfaceLight light_;                      // on all their samples
     std::vector<std::size_t> first_samples_;  // index of each view's first sample in light_
-    std::vector<double> in_scatter_;  // of the current pixel, if there is no lattice
+    std::vector<double> in_scatter_;          // of the current pixel, if there is no lattice
     PixelResult result_;
 };
 
