@@ -62,6 +62,10 @@ void WaterScatter::add(std::size_t index, const SlabImages& images, std::vector<
     if (cut_) cover(index);
     for (std::size_t g = 0; g < level_->slab.light.size(); ++g)
         for (std::size_t b = 0; b < level_->slab.weight.size(); ++b) scatter(g, b);
+    if (cut_) gather_ends(index);
+    for (std::size_t channel = 0; channel < level_->fallen.size(); ++channel)
+        for (std::size_t i = 0; i < level_->fallen[channel].size(); ++i)
+            level_->fallen[channel][i] += level_->within[channel][i];
     next_ = index + 1;
 }
 
