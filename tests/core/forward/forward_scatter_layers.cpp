@@ -91,13 +91,14 @@ TEST_P(ForwardScatterLayers, LadderOfWidthsMovesLittleLight) {
 
 // Kernels wide enough for coarse grids, on both sides of a step in depth, up to the borders, on
 // images whose sides have no small factors. Of the image's mean: 0.2 % RMS, and 1 % at any pixel of
-// at least that, is what forward scatter may be off; here every pixel has light of its own, more of
-// it in high frequencies than any picture.
+// at least that, is what forward scatter may be off; here single bright pixels stand in the dark,
+// more of it in high frequencies than any picture.
 TEST_P(ForwardScatterLayers, WideKernelsAreTheDirectSum) {
-    for (const auto& [width, height, focal] :
-         {std::tuple{67, 41, 1500.0}, {59, 53, 3000.0}, {71, 37, 9000.0}}) {
+    for (const auto& [width, height, focal] : {std::tuple{67, 41, 1500.0}, {73, 53, 3000.0}}) {
         const ForwardScatterDesc desc = with_shape(GetParam());
-        const Image light = random_image(static_cast<std::size_t>(width * height), 0, 10, 21);
+        Image light = random_image(static_cast<std::size_t>(width * height), 0, 10, 21);
+        for (std::size_t i = 0; i < light.size(); ++i)
+            if (i % 7 != 0) light[i] = 0;
         Image range;
         for (int i = 0; i < width * height; ++i)
             range.push_back(i % width < width / 2 ? 1.0F + 0.01F * static_cast<float>(i % width)
