@@ -24,6 +24,9 @@ namespace {
 constexpr double k_growth = 0.06;
 constexpr double k_offset = 0.3;        // m
 constexpr double k_offset_depth = 0.6;  // optical depth
+// The angle between the rays along which slabs are integrated. Their light is blurred before it is
+// seen, by kernels wider than a tenth of that.
+constexpr double k_slab_spacing = 0.0091;  // rad
 // How far in-scatter that is interpolated between pixels may be from that of their own rays
 // (InScatterLattice), relative, where the lattice is confirmed; the image is interpolated from
 // closer nodes and has a quarter of that error.
@@ -102,6 +105,8 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     setup.desc = scene.desc.water.forward_scatter;
     setup.plane = scatter_plane(*scene.camera);
     setup.faces = slab_faces(scene);
+    if (in_scatter_tolerance(scene.desc.render) > 0)
+        setup.spacing = std::max(1.0, std::floor(k_slab_spacing * setup.plane.focal_x));
     // Planes of constant camera z do not cover a view wider than a hemisphere.
     setup.shells = scene.desc.camera.distortion.model == DistortionDesc::Model::fisheye;
     setup.sensor = SensorModel(scene.desc);
@@ -213,9 +218,7 @@ void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
     const ForwardScatterSetup setup = forward_scatter_setup(scene, deep_shadows);
     ForwardPass forward(renderer, scene.lit(), setup, plan);
     render_film(renderer, tolerance, plan, colour, film, told("render"),
-                [&](int x, int y, const PixelView& view, const PixelResult& result) {
-                    forward.keep(x, y, view, result);
-                });
+                [&](int x, int y, const RenderedPixel& pixel) { forward.keep(x, y, pixel); });
     forward.run(told("forward scatter"));
     forward.write(plan, colour, film);
 }

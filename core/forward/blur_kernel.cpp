@@ -15,6 +15,8 @@ const double k_largest_exponent = -std::log(k_negligible);
 
 // Beyond this sigma a Gaussian's spectrum at half a cycle per pixel is below 3e-9: no aliases.
 constexpr double k_alias_free_sigma = 2;
+// Nor does an exponential have any that matter where its spectrum is below e^-18, 1.5e-8.
+constexpr double k_alias_free_exponent = 18;
 // In the mixture of Gaussians that makes up the exponential (below), a fraction of 2e-9 is narrower
 // than s / 6.
 constexpr double k_largest_deviate = 6;
@@ -74,25 +76,27 @@ std::array<double, 4> cubic_weights(double t) {
 
 }  // namespace
 
-BlurKernel::BlurKernel(ForwardScatterDesc::Shape shape, BlurWidth blur, int width, int height)
+BlurKernel::BlurKernel(ForwardScatterDesc::Shape shape, BlurWidth blur, int width, int height,
+                       int columns, int rows)
     : shape_(shape),
       blur_(blur),
       width_(width),
       height_(height),
-      column_count_(width),
-      across_(static_cast<std::size_t>(width)),
-      down_(static_cast<std::size_t>(height)) {
+      column_count_(columns),
+      row_count_(rows),
+      across_(static_cast<std::size_t>(columns)),
+      down_(static_cast<std::size_t>(rows)) {
     const bool gaussian = shape == ForwardScatterDesc::Shape::gaussian;
-    const auto fill = [&](std::vector<double>& factors, double s) {
+    const auto fill = [&](std::vector<double>& factors, double s, int side) {
         const PixelGaussian line(std::numbers::sqrt2 * s);
-        const double step = 0.5 / static_cast<double>(factors.size());
+        const double step = 0.5 / side;
         for (std::size_t i = 0; i < factors.size(); ++i) {
             const double f = static_cast<double>(i) * step;
             factors[i] = gaussian ? line.spectrum(f) : sinc(f);
         }
     };
-    fill(across_, blur.x);
-    fill(down_, blur.y);
+    fill(across_, blur.x, width);
+    fill(down_, blur.y, height);
     if (gaussian) {
         while (column_count_ > 1 &&
                across_[static_cast<std::size_t>(column_count_) - 1] < k_negligible)
@@ -100,7 +104,7 @@ BlurKernel::BlurKernel(ForwardScatterDesc::Shape shape, BlurWidth blur, int widt
     } else {
         tabulate_aliases();
         const double last = k_largest_exponent * width / (k_pi * blur.x);
-        if (aliases_.empty() && last < width) column_count_ = static_cast<int>(last) + 1;
+        if (aliases_.empty() && last < columns) column_count_ = static_cast<int>(last) + 1;
     }
 }
 
@@ -116,6 +120,10 @@ BlurKernel::TablePosition BlurKernel::table_position(double f) {
 /// the trapezoidal rule is accurate to 1e-9.
 void BlurKernel::tabulate_aliases() {
     const double narrow = std::min(blur_.x, blur_.y);
+    // In the lower half of the spectrum, aliases are those of 3/4 cycles per pixel at least.
+    if (2 * column_count_ <= width_ && 2 * row_count_ <= height_ &&
+        1.5 * k_pi * narrow > k_alias_free_exponent)
+        return;
     const double least_deviate = narrow / k_alias_free_sigma;
     if (least_deviate >= k_largest_deviate) return;
     aliases_.assign(static_cast<std::size_t>(k_nodes) * k_nodes, 0.0);
@@ -136,8 +144,8 @@ void BlurKernel::tabulate_aliases() {
     // Below this width no light leaves the pixel, and the mixture would be endless.
     constexpr double k_least_deviate = 1e-7;
     constexpr double k_log_step = 0.1;
-    table_rows_.reserve(static_cast<std::size_t>(height_));
-    for (int row = 0; row < height_; ++row)
+    table_rows_.reserve(static_cast<std::size_t>(row_count_));
+    for (int row = 0; row < row_count_; ++row)
         table_rows_.push_back(table_position(0.5 * row / height_));
     const double begin = std::log(std::max(least_deviate, k_least_deviate));
     const int count = static_cast<int>((std::log(k_largest_deviate) - begin) / k_log_step) + 1;
@@ -159,7 +167,7 @@ int BlurKernel::fill_exponential(double across, std::span<double> spectrum) cons
     const double x = 2 * k_pi * blur_.x * across;
     const double step = k_pi * blur_.y / height_;
     const double factor = sinc(across);
-    for (int row = 0; row < height_; ++row) {
+    for (int row = 0; row < row_count_; ++row) {
         const double y = step * row;
         const double exponent = std::sqrt(x * x + y * y);
         if (aliases_.empty() && exponent > k_largest_exponent) return row;
@@ -172,19 +180,19 @@ int BlurKernel::fill_exponential(double across, std::span<double> spectrum) cons
         }
         spectrum[at] = value;
     }
-    return height_;
+    return row_count_;
 }
 
 int BlurKernel::fill_column(int column, std::span<double> spectrum) const {
     if (shape_ == ForwardScatterDesc::Shape::exponential)
         return fill_exponential(0.5 * column / width_, spectrum);
     const double across = across_[static_cast<std::size_t>(column)];
-    for (int row = 0; row < height_; ++row) {
+    for (int row = 0; row < row_count_; ++row) {
         const double value = across * down_[static_cast<std::size_t>(row)];
         if (value < k_negligible) return row;
         spectrum[static_cast<std::size_t>(row)] = value;
     }
-    return height_;
+    return row_count_;
 }
 
 }  // namespace uw

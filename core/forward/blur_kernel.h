@@ -28,14 +28,18 @@ class BlurKernel {
   public:
     /// The kernel for images of `width` times `height` pixels, extended by reflection at their
     /// borders.
-    BlurKernel(ForwardScatterDesc::Shape shape, BlurWidth blur, int width, int height);
+    BlurKernel(ForwardScatterDesc::Shape shape, BlurWidth blur, int width, int height)
+        : BlurKernel(shape, blur, width, height, width, height) {}
+    /// The same for the first `columns` and `rows` of the spectrum alone.
+    BlurKernel(ForwardScatterDesc::Shape shape, BlurWidth blur, int width, int height, int columns,
+               int rows);
 
     /// Number of leading columns whose spectrum is not everywhere below 1e-15.
     int column_count() const { return column_count_; }
 
     /// Fills the spectrum of column `column` (column / (2 width) cycles per pixel across, row /
     /// (2 height) down) from row 0, and returns how many rows were filled; the rest are below
-    /// 1e-15. `spectrum` holds `height` values. Thread safe.
+    /// 1e-15. `spectrum` holds all rows that are asked for. Thread safe.
     int fill_column(int column, std::span<double> spectrum) const;
 
   private:
@@ -52,7 +56,7 @@ class BlurKernel {
     BlurWidth blur_;
     int width_;
     int height_;
-    int column_count_ = 0;
+    int column_count_, row_count_;
     std::vector<double> across_, down_;  // per column, per row: factors of the spectrum
     std::vector<double> aliases_;        // of the exponential's sampled spectrum, or empty
     std::vector<TablePosition> table_rows_;

@@ -2,27 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
 namespace uw {
 
 PathScatter::PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane,
-                         const Medium& medium)
-    : scatter_(desc, plane), attenuation_(medium), uniform_b_(medium.uniform.total_scattering()) {
+                         const Medium& medium, double spacing)
+    : PathScatter(ForwardScatter(desc, plane, spacing), medium,
+                  SplineLine::node_count(plane.width, spacing),
+                  SplineLine::node_count(plane.height, spacing)) {}
+
+PathScatter::PathScatter(ForwardScatter scatter, const Medium& medium, int width, int height)
+    : scatter_(std::move(scatter)),
+      attenuation_(medium),
+      uniform_b_(medium.uniform.total_scattering()) {
     for (const Constituent& constituent : medium.constituents)
         constituent_b_.push_back(constituent.per_unit.total_scattering());
     if (constituent_b_.empty()) return;
-    blur_length_.assign(plane.width, plane.height);
-    optical_depth_.assign(plane.width, plane.height);
+    blur_length_.assign(width, height);
+    optical_depth_.assign(width, height);
 }
 
-void PathScatter::operator()(std::size_t band, const ImagePlane& light, const PathImage& paths,
-                             ImagePlane& added) {
+void PathScatter::add(std::size_t band, const ImagePlane& light, const PathImage& paths,
+                      bool means) {
     const double c = attenuation_.uniform[band];
     if (constituent_b_.empty()) {
-        scatter_.add({light.values(), paths.length().values(), {}, c});
-        scatter_.finish(added.values());
+        scatter_.add({light.values(), paths.length().values(), {}, c}, means);
         return;
     }
     constexpr std::size_t k_block = 1 << 14;
@@ -40,8 +48,7 @@ void PathScatter::operator()(std::size_t band, const ImagePlane& light, const Pa
             optical_depth_[i] = static_cast<float>(tau);
         }
     });
-    scatter_.add({light.values(), blur_length_.values(), optical_depth_.values(), c});
-    scatter_.finish(added.values());
+    scatter_.add({light.values(), blur_length_.values(), optical_depth_.values(), c}, means);
 }
 
 void check_blur_length(const Medium& medium, const SourceLocation& where) {

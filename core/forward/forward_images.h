@@ -27,6 +27,12 @@ class PathImage {
     }
     const ImagePlane& length() const { return length_; }
     const ImagePlane& column(std::size_t constituent) const { return columns_[constituent]; }
+    /// Calls `change` with each plane of `from` and its own.
+    template <class Change>
+    void fill_from(const PathImage& from, const Change& change) {
+        change(from.length_, length_);
+        for (std::size_t k = 0; k < columns_.size(); ++k) change(from.columns_[k], columns_[k]);
+    }
 
   private:
     ImagePlane length_;
@@ -38,14 +44,23 @@ class PathImage {
 /// both are linear in its columns.
 class PathScatter {
   public:
-    PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Medium& medium);
+    PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Medium& medium)
+        : PathScatter(ForwardScatter(desc, plane), medium, plane.width, plane.height) {}
+    /// For light at the nodes of a grid; desc.K > 0.
+    PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Medium& medium,
+                double spacing);
 
-    /// Writes into `added` the light of band `band` that is added to the image when each pixel's
-    /// light is scattered along its path. Paths of dark pixels are not read.
-    void operator()(std::size_t band, const ImagePlane& light, const PathImage& paths,
-                    ImagePlane& added);
+    /// Spreads the light of band `band` along its paths. Paths of dark pixels are not read.
+    /// `means`: as ForwardScatter::add.
+    void add(std::size_t band, const ImagePlane& light, const PathImage& paths, bool means = false);
+    /// Writes the light that is added to the image by all that was spread, and resets to zero:
+    /// ForwardScatter::finish and finish_pixels.
+    void finish(ImagePlane& added) { scatter_.finish(added.values()); }
+    void finish_pixels(ImagePlane& added) { scatter_.finish_pixels(added.values()); }
 
   private:
+    PathScatter(ForwardScatter scatter, const Medium& medium, int width, int height);
+
     ForwardScatter scatter_;
     AttenuationTable attenuation_;
     Spectrum uniform_b_{};                 // b_0 [1/m]

@@ -6,6 +6,7 @@
 #include "core/colour/colour.h"
 #include "core/forward/forward_images.h"
 #include "core/forward/in_scatter_slabs.h"
+#include "core/forward/visible_water.h"
 #include "core/frame/pixel_renderer.h"
 #include "core/frame/render_film.h"
 #include "core/image/film.h"
@@ -22,6 +23,8 @@ struct ForwardScatterSetup {
     std::vector<double> faces;
     bool shells = false;  // `faces` and `first` are distances along water rays instead
     Interval first;       // camera z range of `backscatter_first`; both ends are among `faces`
+    /// Pixels between the nodes at which in-scatter is integrated, >= 1.
+    double spacing = 1;
     LampPaths::PointColumn lamp_column;
     SensorModel sensor;  // the renderer's
 };
@@ -47,7 +50,7 @@ class ForwardPass {
                 const ForwardScatterSetup& setup, const LayerPlan& plan);
 
     /// Stores what the second pass needs of pixel (x, y). Callable from any thread.
-    void keep(int x, int y, const PixelView& view, const PixelResult& result);
+    void keep(int x, int y, const RenderedPixel& pixel);
 
     /// Scatters everything stored. Throws Interrupted if `progress` returned false.
     void run(const ProgressCallback& progress);
@@ -56,21 +59,18 @@ class ForwardPass {
     void write(const LayerPlan& plan, const BandColour& colour, Film& film) const;
 
   private:
-    /// The light of all lamps, or of a single lamp whose layer is requested.
-    struct Component {
+    /// The light of a lamp whose layer is requested; the first has that of all others.
+    struct Group {
         std::vector<std::size_t> lamps;
-        std::vector<ImagePlane> direct;       // per band
-        std::vector<ImagePlane> forward;      // per band; irradiance until (14) has been done
-        std::vector<ImagePlane> backscatter;  // per band; for a single lamp, only the light added
+        std::vector<ImagePlane> direct;   // per band
+        std::vector<ImagePlane> forward;  // per band; irradiance until (14) has been done
     };
-    struct Slab;
     struct SurfaceSums;
 
-    void keep_surfaces(std::size_t i, const PixelView& view, const PixelResult& result);
-    void add_surface(const SurfaceSample& sample, SurfaceSums& sums) const;
+    void keep_surfaces(std::size_t i, const RenderedPixel& pixel);
+    void add_surface(const RenderedPixel& pixel, std::size_t sample, SurfaceSums& sums) const;
     void scatter_surfaces();
-    // Integrates slabs.size() slabs from `first` on, for every pixel.
-    void integrate(std::size_t first, std::vector<Slab>& slabs) const;
+    void scatter_water(const std::function<void(std::size_t slab)>& done);
     // The factors on the light of pixel `i` before and after its blur on the way to the camera.
     double factor_before(std::size_t i) const {
         return setup_.sensor.factors_before_blur() ? pixel_factor_[i] : 1.0;
@@ -78,13 +78,9 @@ class ForwardPass {
     double factor_after(std::size_t i) const {
         return setup_.sensor.factors_before_blur() ? 1.0 : pixel_factor_[i];
     }
-    // Stores one pixel's light in the slab; `light` is null where no ray enters the water.
-    void store(const SlabLight* light, std::size_t i, Slab& slab) const;
-    void scatter_slab(std::size_t index, Slab& slab);
     std::vector<ImagePlane> planes(std::size_t count) const {
         return std::vector<ImagePlane>(count, ImagePlane(setup_.plane.width, setup_.plane.height));
     }
-    PathImage paths() const;
 
     const PixelRenderer& renderer_;
     LitScene scene_;
@@ -92,14 +88,16 @@ class ForwardPass {
     LampPaths lamp_paths_;
     InScatterSlabs in_scatter_;
     std::size_t bands_;
-    std::vector<Component> components_;  // the first: all lamps
-    std::vector<ImagePlane> first_;      // per band: added to backscatter_first
-    std::vector<ImagePlane> response_;   // per band: direct light per irradiance [1/sr]
-    ImagePlane alpha_;
-    Grid2D<double> pixel_factor_;
+    std::vector<Group> groups_;
+    bool several_;                         // whether there is more than one group
+    std::vector<ImagePlane> direct_;       // per band, if there are several groups
+    std::vector<ImagePlane> backscatter_;  // per band, without what is added
+    std::vector<ImagePlane> added_;        // per group and band, to the backscatter
+    std::vector<ImagePlane> first_;        // of it, in backscatter_first; empty if not requested
+    std::vector<ImagePlane> response_;     // per band: direct light per irradiance [1/sr]
+    Grid2D<float> pixel_factor_;
     PathImage from_lamps_, to_camera_;  // of the surfaces
-    PathScatter scatter_;
-    ImagePlane added_, light_;
+    VisibleWater water_;
 };
 
 }  // namespace uw

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -15,26 +16,13 @@ namespace uw {
 
 namespace {
 
-/// The widths s [pixels] for which kernels are made: offset + s grows by `ratio` from one to the
-/// next. A mixture of two neighbours misplaces less than 0.25 % of the light compared with the
-/// exact kernel between them. Beyond `widest` image sides, all kernels spread light evenly.
-struct LadderRule {
-    double ratio, offset, widest;
-};
-
-LadderRule ladder_rule(ForwardScatterDesc::Shape shape) {
-    if (shape == ForwardScatterDesc::Shape::exponential) return {0.16, 0.1, 6};
-    return {0.085, 0.06, 1.5};
-}
-
 /// Width s in pixels of the kernel for a blur length of 1 m along an axis of focal length `focal`.
-double width_per_metre(double blur, double focal) {
+double width_along(double blur, double focal) {
     return focal * blur / (2 * std::numbers::pi);
 }
 
-double weight_between(double from, double to, double length) {
-    return (length - from) / (to - from);
-}
+// Spacings of grids, in powers of two.
+constexpr std::size_t k_levels = 10;
 
 }  // namespace
 
@@ -90,131 +78,168 @@ class ForwardScatter::Paths {
     double range_ = 0;
 };
 
-/// The least and the greatest blur length of lit pixels; empty if none is lit.
-struct ForwardScatter::Extent {
-    double least = std::numeric_limits<double>::infinity();
-    double greatest = -std::numeric_limits<double>::infinity();
-
-    void include(const Extent& other) {
-        least = std::min(least, other.least);
-        greatest = std::max(greatest, other.greatest);
-    }
-};
-
 ForwardScatter::ForwardScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane)
     : desc_(desc), plane_(plane) {
     if (plane.width < 1 || plane.height < 1 || !(plane.focal_x > 0) || !(plane.focal_y > 0))
         throw std::invalid_argument("forward scatter needs pixels and a positive focal length");
     check_forward_scatter(desc, {}, "water.forward_scatter");
-    if (desc.K > 0) sum_.emplace(plane.width, plane.height);
+    if (desc.K == 0) return;
+    levels_.resize(k_levels);
+    given_.assign(plane.width, plane.height);
+    place_.assign(plane.width, plane.height);
 }
 
-void ForwardScatter::add(const ScatterSource& source) {
-    if (!sum_) return;
+ForwardScatter::ForwardScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane,
+                               double spacing)
+    : desc_(desc), plane_(plane), at_nodes_(true) {
+    levels_.emplace_back(std::in_place, plane.width, plane.height, spacing);
+    given_.assign(grid().columns(), grid().rows());
+    place_.assign(grid().columns(), grid().rows());
+}
+
+double ForwardScatter::nodes_per_width(ForwardScatterDesc::Shape shape) {
+    return shape == ForwardScatterDesc::Shape::exponential ? 0.5 : 1.25;
+}
+
+double ForwardScatter::width_per_metre(const ForwardScatterDesc& desc, const ScatterPlane& plane) {
+    return width_along(desc.B, std::min(plane.focal_x, plane.focal_y));
+}
+
+/// Beyond this width [pixels], all kernels spread light evenly.
+double ForwardScatter::widest() const {
+    const double sides = desc_.shape == ForwardScatterDesc::Shape::exponential ? 6 : 1.5;
+    return sides * std::max(plane_.width, plane_.height);
+}
+
+void ForwardScatter::add(const ScatterSource& source, bool means) {
+    if (levels_.empty()) return;
     check_forward_scatter(desc_, std::span(&source.attenuation, 1), "water.forward_scatter");
     if (source.blur_length.size() != source.light.size() ||
         (!source.optical_depth.empty() && source.optical_depth.size() != source.light.size()))
         throw std::invalid_argument("forward scatter needs a path for every pixel");
-    spread(source.light, Paths(desc_, source));
+    spread(source.light, Paths(desc_, source), means);
 }
 
 void ForwardScatter::add(std::span<const float> light, double range, double attenuation) {
-    if (!sum_) return;
+    if (levels_.empty()) return;
     check_forward_scatter(desc_, std::span(&attenuation, 1), "water.forward_scatter");
-    spread(light, Paths(desc_, range, attenuation));
+    spread(light, Paths(desc_, range, attenuation), false);
 }
 
-void ForwardScatter::spread(std::span<const float> light, const Paths& paths) {
-    const auto width = static_cast<std::size_t>(plane_.width);
-    const auto height = static_cast<std::size_t>(plane_.height);
-    if (light.size() != width * height)
+WidthLadder ForwardScatter::place_light(std::span<const float> light, const Paths& paths) {
+    if (light.size() != given_.size())
         throw std::invalid_argument("forward scatter: the light is not of the plane's size");
-    std::vector<Extent> rows(height);
-    parallel_for(height, [&](std::size_t y) {
-        for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
-            if (light[i] == 0) continue;
-            const double length = paths.length(i), depth = paths.depth(i);
-            if (!(light[i] > 0 && std::isfinite(light[i]) && length >= 0 && depth >= 0 &&
-                  std::isfinite(length) && std::isfinite(depth)))
-                throw std::invalid_argument("forward scatter: light or path is not a number >= 0");
-            rows[y].include({length, length});
-        }
+    struct Extent {
+        double least = std::numeric_limits<double>::infinity();
+        double greatest = -std::numeric_limits<double>::infinity();
+    };
+    const auto columns = static_cast<std::size_t>(given_.width());
+    const double per_metre = width_per_metre(desc_, plane_), most = widest();
+    const auto each_row = [&](const auto& body) {
+        parallel_for(static_cast<std::size_t>(given_.height()), [&](std::size_t y) {
+            for (std::size_t i = y * columns; i < (y + 1) * columns; ++i) body(y, i);
+        });
+    };
+    std::vector<Extent> rows(static_cast<std::size_t>(given_.height()));
+    each_row([&](std::size_t y, std::size_t i) {
+        given_[i] = 0;
+        if (light[i] == 0) return;
+        const double length = paths.length(i), depth = paths.depth(i);
+        if (!(light[i] > 0 && std::isfinite(light[i]) && length >= 0 && depth >= 0 &&
+              std::isfinite(length) && std::isfinite(depth)))
+            throw std::invalid_argument("forward scatter: light or path is not a number >= 0");
+        const double width = std::min(per_metre * length, most);
+        given_[i] = static_cast<float>(paths.factor(i) * static_cast<double>(light[i]));
+        rows[y].least = std::min(rows[y].least, width);
+        rows[y].greatest = std::max(rows[y].greatest, width);
     });
     Extent all;
-    for (const Extent& row : rows) all.include(row);
-    if (all.least > all.greatest) return;
+    for (const Extent& row : rows) {
+        all.least = std::min(all.least, row.least);
+        all.greatest = std::max(all.greatest, row.greatest);
+    }
+    if (all.least > all.greatest) return {};
+    WidthLadder ladder(desc_.shape, all.least, all.greatest);
+    each_row([&](std::size_t, std::size_t i) {
+        if (given_[i] != 0)
+            place_[i] =
+                static_cast<float>(ladder.place(std::min(per_metre * paths.length(i), most)));
+    });
+    return ladder;
+}
 
-    const std::vector<double> lengths = ladder(all);
-    for (std::size_t k = 0; k < lengths.size(); ++k) {
-        const double here = lengths[k];
-        const double below = k > 0 ? lengths[k - 1] : -1;
-        const double above =
-            k + 1 < lengths.size() ? lengths[k + 1] : std::numeric_limits<double>::infinity();
-        const auto has_part = [&](const Extent& row) {
-            return row.greatest > below && row.least < above;
-        };
-        if (std::none_of(rows.begin(), rows.end(), has_part)) continue;
+void ForwardScatter::spread(std::span<const float> light, const Paths& paths, bool means) {
+    const WidthLadder ladder = place_light(light, paths);
+    const double per_metre = width_per_metre(desc_, plane_);
+    const double x = width_along(desc_.B, plane_.focal_x), y = width_along(desc_.B, plane_.focal_y);
+    for (int step = 0; step < static_cast<int>(ladder.widths().size()); ++step) {
+        const double width = ladder.widths()[static_cast<std::size_t>(step)];
         const auto part = [&](int row, std::span<double> values) {
-            const auto y = static_cast<std::size_t>(row);
+            const std::span<const float> given = std::as_const(given_).row(row);
+            const std::span<const float> place = std::as_const(place_).row(row);
             bool any = false;
-            if (!has_part(rows[y])) return any;
-            for (std::size_t x = 0; x < width; ++x) {
-                const std::size_t i = y * width + x;
-                const double length = paths.length(i);
-                if (light[i] == 0 || length <= below || length >= above) continue;
-                double weight = 1;
-                if (length < here && k > 0) weight = weight_between(below, here, length);
-                if (length > here && k + 1 < lengths.size())
-                    weight = weight_between(above, here, length);
-                values[x] = weight * paths.factor(i) * static_cast<double>(light[i]);
+            for (std::size_t i = 0; i < given.size(); ++i) {
+                if (given[i] == 0) continue;
+                const double weight = ladder.weight(step, static_cast<double>(place[i]));
+                if (weight == 0) continue;
+                values[i] = weight * static_cast<double>(given[i]);
                 any = true;
             }
             return any;
         };
-        sum_->add(part, kernel(here));
+        MirroredBlur& level = level_for(width);
+        const double metres = per_metre > 0 ? width / per_metre : 0;
+        const BlurKernel kernel(desc_.shape, {metres * x, metres * y}, plane_.width, plane_.height,
+                                level.grid().columns(), level.grid().rows());
+        if (at_nodes_)
+            level.add_nodes(part, means, kernel);
+        else
+            level.add(part, kernel);
     }
 }
 
-std::vector<double> ForwardScatter::ladder(const Extent& lengths) const {
-    const double width = std::sqrt(width_per_metre(desc_.B, plane_.focal_x) *
-                                   width_per_metre(desc_.B, plane_.focal_y));
-    const LadderRule rule = ladder_rule(desc_.shape);
-    const double widest = rule.widest * std::max(plane_.width, plane_.height);
-    const double least = std::min(width * lengths.least, widest);
-    const double greatest = std::min(width * lengths.greatest, widest);
-    const double begin = std::log1p(least / rule.offset);
-    const double end = std::log1p(greatest / rule.offset);
-    // Greater lengths than the last use its kernel.
-    std::vector<double> result{lengths.least};
-    if (!(end - begin > 1e-9)) return result;
-    const int steps = static_cast<int>(std::ceil((end - begin) / std::log1p(rule.ratio)));
-    for (int i = 1; i < steps; ++i)
-        result.push_back(rule.offset * std::expm1(begin + (end - begin) * i / steps) / width);
-    result.push_back(greatest / width);
-    return result;
+/// The grid for a kernel of this width.
+MirroredBlur& ForwardScatter::level_for(double width) {
+    if (at_nodes_) return *levels_.front();
+    const double spacing = nodes_per_width(desc_.shape) * width;
+    std::size_t level = 0;
+    while (level + 1 < k_levels && 2 << level <= spacing) ++level;
+    if (!levels_[level]) levels_[level].emplace(plane_.width, plane_.height, 1 << level);
+    return *levels_[level];
 }
 
-BlurKernel ForwardScatter::kernel(double length) const {
-    return {desc_.shape,
-            {length * width_per_metre(desc_.B, plane_.focal_x),
-             length * width_per_metre(desc_.B, plane_.focal_y)},
-            plane_.width,
-            plane_.height};
+namespace {
+
+// Adds rows to an image of `columns` columns.
+RowSink adder(std::span<float> image, int columns) {
+    return [=](int y, std::span<const double> row) {
+        float* out = image.data() + static_cast<std::ptrdiff_t>(y) * columns;
+        for (std::size_t x = 0; x < row.size(); ++x) out[x] += static_cast<float>(row[x]);
+    };
 }
+
+}  // namespace
 
 void ForwardScatter::finish(std::span<float> added) {
-    const auto width = static_cast<std::size_t>(plane_.width);
-    if (added.size() != width * static_cast<std::size_t>(plane_.height))
-        throw std::invalid_argument("forward scatter: the result is not of the plane's size");
-    if (!sum_) {
-        std::fill(added.begin(), added.end(), 0.0F);
+    if (!at_nodes_) {
+        finish_pixels(added);
         return;
     }
-    sum_->finish([&](int y, std::span<const double> row) {
-        float* out = added.data() + static_cast<std::size_t>(y) * width;
-        // Light is never negative; negative values are rounding errors of the transforms.
-        for (std::size_t x = 0; x < width; ++x) out[x] = static_cast<float>(std::max(row[x], 0.0));
-    });
+    if (added.size() != given_.size())
+        throw std::invalid_argument("forward scatter: the result is not of the grid's size");
+    std::fill(added.begin(), added.end(), 0.0F);
+    levels_.front()->finish_nodes(adder(added, grid().columns()));
+}
+
+void ForwardScatter::finish_pixels(std::span<float> added) {
+    if (added.size() !=
+        static_cast<std::size_t>(plane_.width) * static_cast<std::size_t>(plane_.height))
+        throw std::invalid_argument("forward scatter: the result is not of the plane's size");
+    std::fill(added.begin(), added.end(), 0.0F);
+    for (std::optional<MirroredBlur>& level : levels_)
+        if (level && level->any()) level->finish(adder(added, plane_.width));
+    // Light is never negative; negative values are errors of the transforms and the ladder.
+    for (float& value : added) value = std::max(value, 0.0F);
 }
 
 }  // namespace uw

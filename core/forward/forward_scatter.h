@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "core/base/grid2d.h"
 #include "core/forward/mirrored_blur.h"
+#include "core/forward/width_ladder.h"
 #include "core/scene/forward_scatter_desc.h"
 #include "core/scene/source_location.h"
 
@@ -42,36 +44,54 @@ struct ScatterSource {
 /// or the corresponding Gaussian. Where the water varies, R is the blur length, GR is (G/c_0) tau
 /// and cR is tau. Every pixel spreads its own light with its own kernel, so depth edges have no
 /// halo of the wrong width; the image is reflected at its border (MirroredBlur). Kernels are
-/// interpolated linearly in R between neighbouring widths of a ladder, which misplaces less than
-/// 0.25 % of the light; a single range is exact.
+/// interpolated between those of a few widths (WidthLadder), and a kernel is applied on a grid no
+/// finer than it needs; a single range of a few pixels' width is exact.
 ///
 /// Usage, one band at a time: add any number of sources (a single image of surfaces, or slab after
-/// slab), then finish. Memory: two images of doubles, none if K is 0.
+/// slab), then finish. Memory: two images of floats, and of doubles two at a time; none if K is 0.
 class ForwardScatter {
   public:
     ForwardScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane);
+    /// For smooth light, given and returned at the nodes of a grid of about `spacing` >= 1 pixels
+    /// alone: MirroredBlur::add_nodes and finish_nodes.
+    ForwardScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, double spacing);
 
-    /// Spreads one source's light; no effect if K is 0. Throws std::invalid_argument if a size is
-    /// wrong, or if a pixel's light or a lit pixel's path is negative or not finite; InputError as
-    /// check_forward_scatter.
-    void add(const ScatterSource& source);
+    /// The greatest distance [pixels] of nodes that a kernel of width s = 1 pixel may be applied
+    /// on, in proportion to s: what its spectrum has beyond them is below 0.2 %.
+    static double nodes_per_width(ForwardScatterDesc::Shape shape);
+    /// Width s in pixels of the kernel for a blur length of 1 m; the smaller one if pixels are not
+    /// square.
+    static double width_per_metre(const ForwardScatterDesc& desc, const ScatterPlane& plane);
+
+    /// The grid of the nodes. Precondition: made for nodes, K > 0.
+    const SplineGrid& grid() const { return levels_.front()->grid(); }
+
+    /// Spreads one source's light; no effect if K is 0. At nodes, `means` says whether light is a
+    /// mean about each. Throws std::invalid_argument if a size is wrong, or if a pixel's light or a
+    /// lit pixel's path is negative or not finite; InputError as check_forward_scatter.
+    void add(const ScatterSource& source, bool means = false);
     /// The same with all of `light` seen over one `range` [m] in uniform water.
     void add(std::span<const float> light, double range, double attenuation);
 
     /// Writes the accumulated light, one value per pixel, and resets to zero. The values are
     /// exactly zero if K is 0 or there was no light.
     void finish(std::span<float> added);
+    /// The same for one value per pixel where light is given at nodes.
+    void finish_pixels(std::span<float> added);
 
   private:
     class Paths;
-    struct Extent;
-    void spread(std::span<const float> light, const Paths& paths);
-    std::vector<double> ladder(const Extent& lengths) const;
-    BlurKernel kernel(double length) const;
+    void spread(std::span<const float> light, const Paths& paths, bool means);
+    // Computes `given_` and `place_` on a ladder, which is empty if there is no light.
+    WidthLadder place_light(std::span<const float> light, const Paths& paths);
+    MirroredBlur& level_for(double width);
+    double widest() const;
 
     ForwardScatterDesc desc_;
     ScatterPlane plane_;
-    std::optional<MirroredBlur> sum_;  // empty if K is 0
+    bool at_nodes_ = false;
+    std::vector<std::optional<MirroredBlur>> levels_;  // at nodes a single one
+    Grid2D<float> given_, place_;  // light times its factor, and its width's place on the ladder
 };
 
 }  // namespace uw

@@ -46,15 +46,16 @@ class LampPaths {
     PointColumn column_;
 };
 
-/// In-scatter of one slab of water in one pixel.
+/// In-scatter of one slab of water along one ray.
 struct SlabLight {
-    std::vector<Spectrum> lamps;  // radiance at the camera due to each lamp [W m^-2 sr^-1]
-    /// int e^-tau ds over the part of the slab that the pixel sees [m], in the paper's output
-    /// weighted by distance like the radiance (SensorModel::surface_factor). The radiance divided
-    /// by this is the light that the slab scatters towards the camera, E_s of the paper's equation
-    /// 17.
+    bool visible = false;  // whether the ray enters the slab before it ends; all else 0 if not
+    /// Due to each lamp, the mean of the light that the slab scatters towards the camera as far as
+    /// the ray goes, E_s of the paper's equation 17 [W m^-3 sr^-1].
+    std::vector<Spectrum> lamps;
+    /// int e^-tau ds over the whole slab [m], in the paper's output weighted by distance like the
+    /// radiance (SensorModel::surface_factor): the radiance at the camera per E_s.
     Spectrum weight;
-    /// From the lamps to the centroid of the light in the slab, and from there to the glass.
+    /// From the lamps to the middle of what the ray sees of the slab, and from there to the glass.
     WaterPath to_lamps, to_camera;
 };
 
@@ -63,34 +64,35 @@ class InScatterSlabs {
   public:
     /// `faces`: camera z of the slab boundaries [m], ascending; or, if the slabs are `shells`,
     /// their distances along the water rays, for views too wide for planes. `sensor` determines how
-    /// `integrator` weights light by distance. All references must outlive this object.
+    /// `integrate` weights light by distance. All references must outlive this object.
     InScatterSlabs(const LitScene& scene, const Integrator& integrator, const LampPaths& paths,
                    const Affine& world_from_camera, std::vector<double> faces, bool shells,
                    const SensorModel& sensor);
 
-    std::size_t count() const { return faces_.size() - 1; }
-    /// Camera z, or distance, of the centre of slab `i` [m].
-    double middle(std::size_t i) const { return 0.5 * (faces_[i] + faces_[i + 1]); }
-    const AttenuationTable& attenuation() const { return attenuation_; }
+    /// Joins slabs in pairs before camera z `end`, or that distance, but not across the ends of
+    /// `kept`.
+    void join_pairs(double end, const Interval& kept);
 
-    /// Integrates slabs `first` to `last` - 1 along `ray`; the fraction `weights[i]` of its samples
-    /// extends to `distances[i]` (PixelView). Thread safe.
-    void integrate(const Ray& ray, std::span<const double> distances,
-                   std::span<const double> weights, std::size_t first, std::size_t last,
+    std::size_t count() const { return faces_.size() - 1; }
+    /// Camera z, or distance, of face `i` and of the centre of slab `i` [m].
+    double face(std::size_t i) const { return faces_[i]; }
+    double middle(std::size_t i) const { return 0.5 * (faces_[i] + faces_[i + 1]); }
+    /// Where a point of a ray lies among the faces.
+    RayDepth depth(const Ray& ray) const {
+        return shells_ ? RayDepth::from_origin() : RayDepth(camera_from_world_, ray);
+    }
+
+    /// Integrates slabs `first` to `last` - 1 along `ray` up to the distance `end` [m]. Thread
+    /// safe.
+    void integrate(const Ray& ray, double end, std::size_t first, std::size_t last,
                    std::vector<SlabLight>& slabs) const;
 
   private:
-    struct Stretches;
-    void split(const Ray& ray, std::span<const double> distances, std::span<const double> weights,
-               std::size_t first, std::size_t last, Stretches& stretches) const;
-    void fill_slabs(const Ray& ray, const Stretches& stretches,
-                    std::vector<SlabLight>& slabs) const;
-    // Adds `part`, which continues `path`, to the weight, multiplied by its `visible` fraction.
-    void add_weight(const WaterPath& path, const WaterPath& part, double visible,
-                    Spectrum& weight) const;
-    // Adds the light of segment `i` and returns its sum over lamps and bands.
-    static double add_light(const Stretches& stretches, std::size_t i,
-                            std::vector<Spectrum>& lamps);
+    // Fills in what depends on the water between `begin` and `end`, but for the lamps' light.
+    void fill_slab(const Ray& ray, double begin, double end, double behind, WaterPath& path,
+                   SlabLight& slab) const;
+    // int e^-tau ds over `part`, which continues `path`.
+    Spectrum weight(const WaterPath& path, const WaterPath& part) const;
 
     LitScene scene_;
     const Integrator& integrator_;

@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/frame/tile_renderer.h"
 
 namespace uw {
 
@@ -75,9 +74,9 @@ void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, con
         const PixelWindow wanted = tile_within(x0, y0, window);
         for (int y = wanted.y0; y < wanted.y1; ++y) {
             for (int x = wanted.x0; x < wanted.x1; ++x) {
-                const PixelResult& result = tile_renderer->render(x, y);
-                store_pixel(result, plan, colour, film.pixel(x, y));
-                if (pixel_done) pixel_done(x, y, tile_renderer->view(), result);
+                const RenderedPixel pixel = tile_renderer->render(x, y);
+                store_pixel(pixel.result, plan, colour, film.pixel(x, y));
+                if (pixel_done) pixel_done(x, y, pixel);
             }
             if (!progress(static_cast<double>(++done) / all)) throw Interrupted();
         }

@@ -5,6 +5,7 @@
 #include "core/colour/colour.h"
 #include "core/frame/multiple_light.h"
 #include "core/frame/pixel_renderer.h"
+#include "core/frame/tile_renderer.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
 
@@ -14,8 +15,7 @@ namespace uw {
 using ProgressCallback = std::function<bool(double fraction)>;
 
 /// Receives each finished pixel, from any thread.
-using PixelCallback =
-    std::function<void(int x, int y, const PixelView& view, const PixelResult& result)>;
+using PixelCallback = std::function<void(int x, int y, const RenderedPixel& pixel)>;
 
 /// Renders every pixel of the film's window on all permitted threads. The result depends neither on
 /// their number nor on the window. `in_scatter_tolerance`: that of InScatterLattice; 0 integrates

@@ -24,14 +24,15 @@ void TileRenderer::begin(const PixelWindow& tile) {
     if (lattice_) lattice_->evaluate(tile, views_);
 }
 
-const PixelResult& TileRenderer::render(int x, int y) {
+RenderedPixel TileRenderer::render(int x, int y) {
     const std::size_t pixel = views_.index(x - tile_.x0, y - tile_.y0);
-    view_ = &views_[pixel];
-    if (!lattice_) renderer_.in_scatter().integrate(*view_, in_scatter_);
-    renderer_.shade(*view_, light_, first_samples_[pixel],
-                    lattice_ ? lattice_->values(pixel) : in_scatter_, result_);
-    if (multiple_) multiple_->add(*view_, light_, first_samples_[pixel], result_);
-    return result_;
+    const PixelView& view = views_[pixel];
+    const std::size_t first_sample = first_samples_[pixel];
+    if (!lattice_) renderer_.in_scatter().integrate(view, in_scatter_);
+    renderer_.shade(view, light_, first_sample, lattice_ ? lattice_->values(pixel) : in_scatter_,
+                    result_);
+    if (multiple_) multiple_->add(view, light_, first_sample, result_);
+    return {view, light_, first_sample, result_};
 }
 
 }  // namespace uw

@@ -10,6 +10,14 @@
 
 namespace uw {
 
+/// A pixel and what it was made of.
+struct RenderedPixel {
+    const PixelView& view;
+    const SurfaceLight& light;  // on its samples, from `first_sample` on
+    std::size_t first_sample;
+    const PixelResult& result;
+};
+
 /// Renders tile by tile: the surfaces that the pixels' rays hit, the in-scatter on the way, and the
 /// final pixels.
 class TileRenderer {
@@ -23,10 +31,8 @@ class TileRenderer {
     /// it, and its surfaces are lit in one batch.
     void begin(const PixelWindow& tile);
 
-    /// Renders a pixel of the tile.
-    const PixelResult& render(int x, int y);
-    /// The view of the pixel rendered last.
-    const PixelView& view() const { return *view_; }
+    /// Renders a pixel of the tile; the result refers to storage of the renderer's.
+    RenderedPixel render(int x, int y);
 
   private:
     const PixelRenderer& renderer_;
@@ -36,8 +42,7 @@ class TileRenderer {
     Grid2D<PixelView> views_;                 // of the tile
     SurfaceLight light_;                      // on all their samples
     std::vector<std::size_t> first_samples_;  // index of each view's first sample in light_
-    const PixelView* view_ = nullptr;
-    std::vector<double> in_scatter_;  // of the current pixel, if there is no lattice
+    std::vector<double> in_scatter_;          // of the current pixel, if there is no lattice
     PixelResult result_;
 };
 

@@ -77,6 +77,35 @@ TEST(ForwardScatter, OfTheReferenceIntegratorIsThatOfTheVolume) {
     expect_same_components(RenderedFilm(desc), volume, 3e-3);
 }
 
+// Between the nodes of a lattice, on coarse grids and in thick slabs: what every pixel's own ray
+// through thin slabs gives on the pixels themselves, within 0.2 % of the mean (RMS) and 1 % at any
+// pixel, beside a box and its shadows too.
+TEST_P(ForwardAgreement, OfALatticeIsThatOfEveryPixel) {
+    SceneDesc desc = scattering(staged(), forward(1, GetParam()));
+    desc.camera.width = 120;
+    desc.camera.height = 90;
+    desc.camera.intrinsics = {450, 450, 60, 45};  // four pixels between nodes
+    const RenderedFilm fast(desc);
+    desc.render.quality = RenderDesc::Quality::exact;
+    const RenderedFilm exact(desc);
+    for (const Layer layer : {Layer::forward, Layer::backscatter, Layer::backscatter_first}) {
+        for (int band = 0; band < 3; ++band) {
+            const double mean = exact.sum(layer, band) / (120 * 90);
+            double squares = 0, worst = 0;
+            for (int y = 0; y < 90; ++y)
+                for (int x = 0; x < 120; ++x) {
+                    const double truth = exact.value(layer, x, y, band);
+                    const double off = fast.value(layer, x, y, band) - truth;
+                    squares += off * off / (120 * 90);
+                    worst = std::max(worst, std::abs(off) / std::max(mean, truth));
+                }
+            std::cout << band << ": " << std::sqrt(squares) / mean << " RMS, " << worst << "\n";
+            EXPECT_LT(std::sqrt(squares), 2e-3 * mean) << band;
+            EXPECT_LT(worst, 1e-2) << band;
+        }
+    }
+}
+
 // Large images take few layers at a time, and their water from a distance on.
 class InScatterFrom : public ::testing::TestWithParam<RenderDesc::Output> {};
 

@@ -18,6 +18,7 @@ inline std::vector<double> direct_sum(const ForwardScatterDesc& desc, double c, 
     const int pixels = static_cast<int>(light.size()), height = pixels / width;
     for (int i = 0; i < pixels; ++i) {
         const auto from = static_cast<std::size_t>(i);
+        if (light[from] == 0) continue;
         const double r = range[from];
         const double gained = desc.K * (std::exp(-desc.G * r) - std::exp(-c * r));
         const BlurShares shares(desc.shape, focal * desc.B * r / (2 * std::numbers::pi), 200);

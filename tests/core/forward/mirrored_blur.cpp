@@ -18,7 +18,7 @@ constexpr int k_blur_width = 21, k_blur_height = 13;  // no multiples of a block
 /// An image of doubles, row by row.
 using BlurImage = std::vector<double>;
 
-MirroredBlur::RowSource rows_of(const BlurImage& image) {
+RowSource rows_of(const BlurImage& image) {
     return [&image](int y, std::span<double> row) {
         std::copy_n(image.begin() + y * k_blur_width, k_blur_width, row.begin());
         return true;

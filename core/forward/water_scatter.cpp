@@ -1,0 +1,202 @@
+#include "core/forward/water_scatter.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/parallel.h"
+
+namespace uw {
+
+/// What is kept of slabs that are scattered on the same grid.
+struct WaterScatter::Level {
+    Level(double of_spacing, const ForwardScatterDesc& desc, const ScatterPlane& plane,
+          const Medium& medium, std::size_t groups)
+        : spacing(of_spacing),
+          grid(plane.width, plane.height, of_spacing),
+          from_lamps(desc, plane, medium, of_spacing),
+          slab(grid.columns(), grid.rows(), groups, static_cast<std::size_t>(medium.band_count()),
+               medium.constituents.size()) {
+        for (std::size_t i = 0; i < groups * slab.weight.size(); ++i) {
+            to_camera.emplace_back(desc, plane, medium, of_spacing);
+            fallen.emplace_back(grid.columns(), grid.rows());
+            within.emplace_back(grid.columns(), grid.rows());
+        }
+    }
+
+    double spacing;
+    SplineGrid grid;
+    PathScatter from_lamps;
+    std::vector<PathScatter> to_camera;  // of each channel
+    // What (17) adds to each in the slabs before, and in the current one: coefficients of the
+    // spline.
+    std::vector<ImagePlane> fallen, within;
+    SlabImages slab;  // at the nodes
+    // About each: the fraction of the pixels that sees some of the slab, how much of it they see,
+    // and the fraction that sees beyond it, to face `seen_at`.
+    ImagePlane seen, share, seen_next;
+    std::size_t seen_at = std::numeric_limits<std::size_t>::max();
+    ImagePlane source, values;
+};
+
+WaterScatter::WaterScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane,
+                           const Medium& medium, const InScatterSlabs& slabs,
+                           const VisibleWater& water, const SlabLattice& lattice, double spacing)
+    : desc_(desc),
+      plane_(plane),
+      medium_(medium),
+      slabs_(slabs),
+      water_(water),
+      lattice_(lattice),
+      spacing_(spacing),
+      extent_(water.extent()),
+      pixels_(plane.width, plane.height) {}
+
+WaterScatter::~WaterScatter() = default;
+
+void WaterScatter::add(std::size_t index, const SlabImages& images, std::vector<ImagePlane>& sums) {
+    if (extent_.farthest <= slabs_.face(index)) return;
+    prepare(index, images, sums);
+    level_->slab.fill_from(images, [&](const ImagePlane& from, ImagePlane& to) {
+        lattice_.interpolate(from, level_->grid, to);
+    });
+    if (cut_) cover(index);
+    for (std::size_t g = 0; g < level_->slab.light.size(); ++g)
+        for (std::size_t b = 0; b < level_->slab.weight.size(); ++b) scatter(g, b);
+    if (cut_) gather_ends(index);
+    for (std::size_t channel = 0; channel < level_->fallen.size(); ++channel)
+        for (std::size_t i = 0; i < level_->fallen[channel].size(); ++i)
+            level_->fallen[channel][i] += level_->within[channel][i];
+    next_ = index + 1;
+}
+
+/// Where surfaces cut into the slab, its light has edges, and the grid must be as fine as its
+/// narrowest kernel needs. Elsewhere it is as smooth as the lattice.
+double WaterScatter::spacing_for(std::size_t index, const SlabImages& images) const {
+    if (!(extent_.nearest < slabs_.face(index + 1))) return spacing_;
+    double least = std::numeric_limits<double>::infinity();
+    for (const PathImage* path : {&images.from_lamps, &images.to_camera})
+        for (const float length : path->length())
+            if (length > 0) least = std::min(least, static_cast<double>(length));
+    // Coarser than for surfaces: edges are there, but not the details of texture.
+    const bool exponential = desc_.shape == ForwardScatterDesc::Shape::exponential;
+    const double nodes_per_width = exponential ? 1.0 : 1.5;
+    const double needed = nodes_per_width * ForwardScatter::width_per_metre(desc_, plane_) * least;
+    double spacing = spacing_;
+    while (spacing > 1 && spacing > needed) spacing /= 2;
+    return std::max(1.0, spacing);
+}
+
+void WaterScatter::prepare(std::size_t index, const SlabImages& images,
+                           std::vector<ImagePlane>& sums) {
+    const double spacing = spacing_for(index, images);
+    if (level_ && (level_->spacing != spacing || sums_ != &sums)) finish();
+    if (!level_)
+        level_ = std::make_unique<Level>(spacing, desc_, plane_, medium_, images.light.size());
+    sums_ = &sums;
+    cut_ = extent_.nearest < slabs_.face(index + 1);
+}
+
+void WaterScatter::cover(std::size_t index) {
+    Level& level = *level_;
+    const double begin = slabs_.face(index), end = slabs_.face(index + 1);
+    // Means of what `of(pixel)` is.
+    const auto means = [&](const auto& of, ImagePlane& nodes) {
+        level.grid.means(
+            [&](int y, std::span<double> row) {
+                const std::size_t first = row.size() * static_cast<std::size_t>(y);
+                bool any = false;
+                for (std::size_t x = 0; x < row.size(); ++x) {
+                    row[x] = of(first + x);
+                    any = any || row[x] != 0;
+                }
+                return any;
+            },
+            nodes);
+    };
+    if (level.seen_at == index)
+        level.seen = level.seen_next;
+    else
+        means([&](std::size_t pixel) { return water_.beyond(pixel, begin); }, level.seen);
+    // Only pixels whose water ends in the slab see more of this one than of the next.
+    const auto of_ends = [&](const auto& value) {
+        return [&, value](std::size_t pixel) {
+            double sum = 0;
+            water_.for_each(pixel, [&](double share, double z) {
+                if (z > begin && z <= end) sum += share * value(z);
+            });
+            return sum;
+        };
+    };
+    means(of_ends([](double) { return 1.0; }), level.source);
+    means(of_ends([&](double z) { return (z - begin) / (end - begin); }), level.share);
+    level.seen_next = level.seen;
+    for (std::size_t i = 0; i < level.seen.size(); ++i) {
+        level.seen_next[i] = std::max(0.0F, level.seen[i] - level.source[i]);
+        level.share[i] += level.seen_next[i];
+    }
+    level.seen_at = index + 1;
+}
+
+void WaterScatter::scatter(std::size_t group, std::size_t band) {
+    Level& level = *level_;
+    const std::size_t channel = group * level.slab.weight.size() + band;
+    const ImagePlane& light = level.slab.light[group][band];
+    const ImagePlane& weight = level.slab.weight[band];
+    level.source = light;
+    if (cut_)
+        for (std::size_t i = 0; i < light.size(); ++i) level.source[i] *= level.seen[i];
+    level.from_lamps.add(band, level.source, level.slab.from_lamps, cut_);
+    ImagePlane& within = level.within[channel];
+    level.from_lamps.finish(within);
+    level.grid.values(within, level.values);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        const float part = cut_ ? weight[i] * level.share[i] : weight[i];
+        level.source[i] = part * (light[i] + std::max(0.0F, level.values[i]));
+        within[i] *= weight[i];
+    }
+    level.to_camera[channel].add(band, level.source, level.slab.to_camera, cut_);
+}
+
+void WaterScatter::gather_ends(std::size_t index) const {
+    const double begin = slabs_.face(index), end = slabs_.face(index + 1);
+    parallel_for(static_cast<std::size_t>(plane_.height), [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < plane_.width; ++x) {
+            const std::size_t pixel = pixels_.index(x, y);
+            water_.for_each(pixel, [&](double share, double z) {
+                if (!(z > begin && z <= end)) return;
+                const auto part = static_cast<float>((z - begin) / (end - begin));
+                for (std::size_t channel = 0; channel < sums_->size(); ++channel) {
+                    const auto [before, within] =
+                        level_->grid.at(level_->fallen[channel], level_->within[channel], x, y);
+                    (*sums_)[channel][pixel] +=
+                        static_cast<float>(share) * std::max(0.0F, before + part * within);
+                }
+            });
+        }
+    });
+}
+
+void WaterScatter::gather_beyond(const ImagePlane& before, ImagePlane& sum) const {
+    const double z = slabs_.face(next_);
+    level_->grid.interpolate(before, [&](int y, std::span<const double> row) {
+        for (std::size_t x = 0; x < row.size(); ++x) {
+            const std::size_t pixel = sum.index(static_cast<int>(x), y);
+            sum[pixel] += static_cast<float>(water_.beyond(pixel, z) * std::max(0.0, row[x]));
+        }
+    });
+}
+
+void WaterScatter::finish() {
+    if (!level_) return;
+    for (std::size_t channel = 0; channel < sums_->size(); ++channel) {
+        ImagePlane& sum = (*sums_)[channel];
+        gather_beyond(level_->fallen[channel], sum);
+        level_->to_camera[channel].finish_pixels(pixels_);
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            sum[i] += static_cast<float>(water_.alpha(i)) * pixels_[i];
+    }
+    level_.reset();
+}
+
+}  // namespace uw
