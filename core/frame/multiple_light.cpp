@@ -20,6 +20,7 @@ constexpr int k_fewest_node_paths = 16, k_most_node_paths = 1024;
 constexpr double k_most_slope = 0.35;
 constexpr int k_search = 3;            // cells around a pixel without a match at its corners
 constexpr int k_paths_of_sample = 64;  // where there is none at all
+constexpr int k_mirrored_paths = 8;    // of a pixel whose surfaces are glossy
 
 double lerp_weight(double t, int side) {
     return side == 0 ? 1 - t : t;
@@ -234,7 +235,11 @@ void MultipleLight::add_surface(const SurfaceSample& sample, std::span<const dou
     double total = 0;
     for (const Corner& match : matches) total += match.weight;
     const SurfaceReflection reflection(*pixels_.scene().surfaces, sample, static_cast<int>(bands_));
-    const double weight = 1.0 / (total * pixels_.samples());
+    thread_local std::vector<double> mirrored;
+    if (reflection.is_glossy())
+        estimator_.estimate_mirrored(sample, std::max(1, k_mirrored_paths / pixels_.samples()),
+                                     mirrored);
+    const double weight = 1.0 / pixels_.samples();
     for (std::size_t group = 0; group < estimator_.options().groups; ++group) {
         for (std::size_t b = 0; b < bands_; ++b) {
             double diffuse = 0, glossy = 0;
@@ -243,8 +248,8 @@ void MultipleLight::add_surface(const SurfaceSample& sample, std::span<const dou
                 if (!match.node->light.glossy.empty())
                     glossy += match.weight * match.node->light.glossy[group * bands_ + b];
             }
-            double reflected = sample.hit.reflectance[b] * diffuse;
-            if (reflection.is_glossy()) reflected += glossy;
+            double reflected = sample.hit.reflectance[b] * diffuse / total;
+            if (reflection.is_glossy()) reflected += glossy / total + mirrored[group * bands_ + b];
             const double radiance = weight * to_camera[b] * reflected;
             result.multiple_surface[b] += radiance;
             give(group, b, radiance, result);

@@ -15,7 +15,12 @@ constexpr int k_node_batches = 4, k_batches_of_half = 2;
 // Least share of a surface's light that is taken to reach the camera.
 constexpr double k_least_seen = 1e-3;
 
-enum NodeStream : std::uint64_t { k_node_water = 1, k_node_diffuse = 2, k_node_glossy = 3 };
+enum NodeStream : std::uint64_t {
+    k_node_water = 1,
+    k_node_diffuse = 2,
+    k_node_glossy = 3,
+    k_mirrored = 4
+};
 
 // The variance of the mean over a half's batches, from all batches' sum and sum of squares.
 double variance_of_half(double sum, double squares) {
@@ -69,10 +74,12 @@ class MultipleNodes::WaterSum final : public PathTerms {
 
 class MultipleNodes::SurfaceSum final : public PathTerms {
   public:
-    SurfaceSum(const MultipleNodeOptions& options, std::size_t bands, std::vector<double>& sum)
-        : options_(options), bands_(bands), sum_(sum) {}
+    SurfaceSum(const MultipleNodeOptions& options, std::size_t bands, std::vector<double>& sum,
+               bool leaves_out_mirrored)
+        : options_(options), bands_(bands), sum_(sum), leaves_out_mirrored_(leaves_out_mirrored) {}
 
     void add(const PathTerm& term) override {
+        if (leaves_out_mirrored_ && PathTracer::is_mirrored(term)) return;
         const std::size_t group = std::min(term.lamp, options_.groups - 1);
         for (std::size_t b = 0; b < bands_; ++b) sum_[group * bands_ + b] += term.radiance[b];
         for (const double radiance : term.radiance) batch_ += radiance;
@@ -84,6 +91,7 @@ class MultipleNodes::SurfaceSum final : public PathTerms {
     const MultipleNodeOptions& options_;
     std::size_t bands_;
     std::vector<double>& sum_;
+    bool leaves_out_mirrored_;
     double batch_ = 0;
 };
 
@@ -180,6 +188,22 @@ void MultipleNodes::trace_water(std::uint64_t seed, Workspace& w, MultipleNode& 
     }
 }
 
+void MultipleNodes::estimate_mirrored(const SurfaceSample& sample, int paths,
+                                      std::vector<double>& radiance) const {
+    const auto bands = static_cast<std::size_t>(scene_.medium->band_count());
+    radiance.assign(options_.groups * bands, 0.0);
+    SurfaceSum sum(options_, bands, radiance, false);
+    const auto x = static_cast<std::uint64_t>(64 * sample.x);
+    const auto y = static_cast<std::uint64_t>(64 * sample.y);
+    SurfaceSample glossy = sample;
+    glossy.hit.reflectance = {};
+    for (int i = 0; i < paths; ++i) {
+        PathRandom random(PathRandom::seed_of(x, y, k_mirrored), static_cast<std::uint32_t>(i));
+        transport_.paths->trace_mirrored(glossy, random, sum);
+    }
+    for (double& value : radiance) value /= paths;
+}
+
 // Diffuse reflection as of a white surface, whose colour is that of each pixel; gloss as it is.
 void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
                                   MultipleNode& node) const {
@@ -187,7 +211,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
     const int in_batch = std::max(1, paths / k_node_batches);
     const auto trace = [&](NodeStream stream, double share, std::vector<float> NodeLight::*values) {
         std::array<double, k_node_batches> means{};
-        SurfaceSum sum(options_, bands, w.surface);
+        SurfaceSum sum(options_, bands, w.surface, stream == k_node_glossy);
         for (int batch = 0; batch < k_node_batches; ++batch) {
             if (batch % k_batches_of_half == 0) w.surface.assign(options_.groups * bands, 0.0);
             for (int i = 0; i < in_batch; ++i) {

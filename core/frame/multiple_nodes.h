@@ -27,7 +27,8 @@ struct NodeLight {
     /// By interval of distance, group and band: radiance from the water within it, at the camera.
     std::vector<float> water;
     /// By group and band: indirect irradiance / pi, what a white surface would reflect, and then
-    /// what the surface's specular lobe reflects [W m^-2 sr^-1].
+    /// what the surface's specular lobe reflects [W m^-2 sr^-1], but for what it mirrors
+    /// (PathTracer::is_mirrored).
     std::vector<float> diffuse, glossy;
     // The sums over the groups, means over the bands:
     std::vector<float> water_mean;  // by interval
@@ -72,6 +73,10 @@ class MultipleNodes {
     void estimate(double x, double y, std::uint64_t seed, MultipleNode& node) const;
     /// The light on one surface sample alone, by this many paths.
     void estimate_surface(const SurfaceSample& sample, int paths, NodeLight& light) const;
+    /// What the sample's specular lobe mirrors (PathTracer::trace_mirrored), by this many paths:
+    /// the radiance at the sample, by group and band.
+    void estimate_mirrored(const SurfaceSample& sample, int paths,
+                           std::vector<double>& radiance) const;
 
   private:
     class WaterSum;

@@ -214,4 +214,18 @@ void PathTracer::trace_surface(const CameraSegment& segment, PathRandom& random,
     walk.from_surface(segment.water);
 }
 
+void PathTracer::trace_mirrored(const SurfaceSample& sample, PathRandom& random,
+                                PathTerms& terms) const {
+    thread_local WaterSegment segment;
+    segment.ray = sample.ray;
+    segment.length = sample.hit.distance;
+    segment.has_hit = true;
+    segment.hit = sample.hit;
+    PathWalk walk(*tables_, {}, random, terms);
+    PathState& state = walk.state();
+    for (double& value : state.throughput.first(tables_->optics.bands())) value = 1;
+    state.distance = sample.hit.distance;
+    walk.mirror(segment);
+}
+
 }  // namespace uw

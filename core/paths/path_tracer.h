@@ -9,6 +9,7 @@
 #include "core/paths/camera_segment.h"
 #include "core/paths/path_random.h"
 #include "core/paths/path_terms.h"
+#include "core/surfaces/surface_sample.h"
 
 namespace uw {
 
@@ -42,6 +43,13 @@ class PathTracer {
     /// The light that the segment's surface reflects, other than direct light of lamps, and not
     /// what it emits: `multiple.surface`. Nothing without a surface.
     void trace_surface(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+    /// Of that the light that was scattered or reflected once, or emitted, before the sample
+    /// reflects it; at the surface itself, not dimmed by the water in front of it.
+    void trace_mirrored(const SurfaceSample& sample, PathRandom& random, PathTerms& terms) const;
+    /// Whether a term of trace_surface is one of trace_mirrored.
+    static bool is_mirrored(const PathTerm& term) {
+        return term.scatterings + term.reflections == (term.lamp == k_no_lamp ? 1 : 2);
+    }
 
   private:
     void place_intervals(CameraSegment& segment) const;

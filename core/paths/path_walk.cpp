@@ -75,12 +75,19 @@ void PathWalk::from_surface(const WaterSegment& segment) {
     follow(leave(above(segment.hit)));
 }
 
+void PathWalk::mirror(const WaterSegment& segment) {
+    PathVertex& vertex = workspace_of_thread().vertex;
+    vertex.reflect(tables_.vertices, segment, state_.throughput);
+    ++state_.reflections;
+    leave(above(segment.hit), true);
+}
+
 // Gathers along a direction of the vertex's own and along one around a lamp, weighted against each
 // other by the balance heuristic (Veach and Guibas 1995). The path may go on along both, each with
 // a probability in proportion to what may still arrive from there: drawing one of them each time
 // would let throughputs grow from vertex to vertex, and taking none of the second kind would miss
 // the paths that head for the bright water at a lamp.
-bool PathWalk::leave(const Point3& origin) {
+bool PathWalk::leave(const Point3& origin, bool is_last) {
     Workspace& w = workspace_of_thread();
     const PathVertex& vertex = w.vertex;
     const std::size_t bands = tables_.optics.bands();
@@ -90,8 +97,8 @@ bool PathWalk::leave(const Point3& origin) {
     if (lobe) continuation(lobe->direction, w.along_lobe);
     if (own) continuation(own->direction, w.along_own);
     // The probabilities to go on. Less than one branch does on average, or paths might never end.
-    double by_lobe = lobe ? survival(w.along_lobe, k_least_lobe_survival) : 0;
-    double by_own = own ? survival(w.along_own, k_least_survival) : 0;
+    double by_lobe = lobe && !is_last ? survival(w.along_lobe, k_least_lobe_survival) : 0;
+    double by_own = own && !is_last ? survival(w.along_own, k_least_survival) : 0;
     const double excess = (by_lobe + by_own) / k_most_survival;
     if (excess > 1) {
         by_lobe /= excess;

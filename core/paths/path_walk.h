@@ -20,6 +20,9 @@ class PathWalk {
     /// Begins with a scattering at `point` of `segment`, or with a reflection at its end.
     void from_water(const WaterSegment& segment, const WaterPoint& point);
     void from_surface(const WaterSegment& segment);
+    /// What the surface at the end of `segment` reflects of light that was scattered or reflected
+    /// once before, and no more.
+    void mirror(const WaterSegment& segment);
 
   private:
     struct Continuation;
@@ -28,8 +31,8 @@ class PathWalk {
     static Workspace& workspace_of_thread();
 
     // Gathers the light that arrives at the workspace's vertex, and finds the path's next segment;
-    // false if it ends there.
-    bool leave(const Point3& origin);
+    // false if it ends there, as it does anyhow if this `is_last`.
+    bool leave(const Point3& origin, bool is_last = false);
     void gather_along(const DrawnLobe& lobe, const Continuation& along, const Point3& origin);
     void continuation(const Vector3& direction, Continuation& along) const;
     double survival(const Continuation& along, double least) const;

@@ -39,9 +39,9 @@ class MixedImage {
         render_film(
             pixels_, tolerance, plan, BandColour(scene.water.bands_nm), film,
             [](double) { return true; },
-            [&](int x, int y, const PixelView&, const PixelResult& result) {
+            [&](int x, int y, const RenderedPixel& pixel) {
                 pixels[static_cast<std::size_t>((y - window.y0) * window.width() + x - window.x0)] =
-                    result;
+                    pixel.result;
             });
         return pixels;
     }

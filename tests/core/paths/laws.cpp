@@ -2,6 +2,8 @@
 // What holds of light whatever the water and the surfaces.
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "tests/support/geometry_descs.h"
 #include "tests/support/paths/ray_batches.h"
 
@@ -129,6 +131,70 @@ TEST(PathLaws, TermsAreOfTheKindThatTheyClaim) {
         tracer.trace_surface(segment, random, surface);
     }
     for (const KindCheck* check : {&single, &water, &surface}) EXPECT_GT(check->count, 100);
+}
+
+/// Passes on what is mirrored, times a factor for each band.
+class MirroredPart final : public PathTerms {
+  public:
+    MirroredPart(PathTerms& sums, std::span<const double> factors)
+        : sums_(sums), factors_(factors) {}
+    void add(const PathTerm& term) override {
+        if (!PathTracer::is_mirrored(term)) {
+            ++others;
+            return;
+        }
+        PathTerm scaled = term;
+        radiance_.assign(term.radiance.begin(), term.radiance.end());
+        for (std::size_t b = 0; b < radiance_.size(); ++b) radiance_[b] *= factors_[b];
+        scaled.radiance = radiance_;
+        sums_.add(scaled);
+    }
+    int others = 0;
+
+  private:
+    PathTerms& sums_;
+    std::span<const double> factors_;
+    std::vector<double> radiance_;
+};
+
+// By random numbers of their own, and with the water in front of the surface put in afterwards.
+TEST(PathLaws, WhatIsMirroredIsAPartOfTheSurfacesLight) {
+    const PathScene scene = lit_scene(k_three_bands);
+    const PathTracer tracer(scene.lit());
+    SurfaceSample sample{some_ray(), {}, 0, 0};
+    ASSERT_TRUE(scene.surfaces->closest_hit(sample.ray, k_far, sample.hit));
+    CameraSegment segment;
+    tracer.begin(sample.ray, &sample.hit, {}, segment);
+    constexpr std::uint32_t k_paths = 1 << 11;
+    const std::vector<double> ones(3, 1.0);
+    std::atomic<int> others = 0;
+    const auto parts = run_batches(32, 3, 1, [&](std::uint64_t seed, TermSums& sums) {
+        MirroredPart part(sums, ones);
+        for (std::uint32_t i = 0; i < k_paths; ++i) {
+            PathRandom random(seed, i);
+            tracer.trace_surface(segment, random, part);
+        }
+        others += part.others;
+    });
+    const auto mirrored = run_batches(32, 3, 2, [&](std::uint64_t seed, TermSums& sums) {
+        MirroredPart part(sums, segment.transmittance.first(3));
+        for (std::uint32_t i = 0; i < k_paths; ++i) {
+            PathRandom random(seed, i);
+            tracer.trace_mirrored(sample, random, part);
+        }
+        EXPECT_EQ(part.others, 0);
+    });
+    EXPECT_GT(others, 0);
+    Deviations deviations;
+    for (std::size_t b = 0; b < 3; ++b) {
+        const auto all = [&](const TermSums& sums) {
+            return sums.sum(b, [](int, int, bool) { return true; });
+        };
+        const BatchMeans part = means_of(parts, all), own = means_of(mirrored, all);
+        deviations.add("mirrored", part, own.mean(), own.error());
+    }
+    deviations.expect_within_errors();
+    deviations.expect_errors_below(0.02);
 }
 
 TEST(PathLaws, OrdersGrowAsPowersOfTheScatteringCoefficient) {
