@@ -2,9 +2,8 @@
 // What holds of light whatever the water and the surfaces.
 #include <gtest/gtest.h>
 
-#include <atomic>
-
 #include "tests/support/geometry_descs.h"
+#include "tests/support/paths/lit_box.h"
 #include "tests/support/paths/ray_batches.h"
 
 namespace uw::test {
@@ -38,27 +37,6 @@ class ConstantField : public ConcentrationField {
     double value_;
 };
 
-/// A box in front of a plane: light of every kind.
-std::vector<GeometryDesc> box_and_plane(std::size_t bands) {
-    return {with_reflectance(box({0.1, -0.2, 1.0}, {0.4, 0.1, 1.3}), 0.5, bands),
-            with_reflectance(plane({0, 0, 3}, {0, 0, -1}), 0.5, bands)};
-}
-
-constexpr Point3 k_lamp{1, -0.5, 0};
-const std::vector<BandOptics> k_three_bands{{0.35, 0.20}, {0.08, 0.22}, {0.05, 0.25}};
-
-PathScene lit_scene(const std::vector<BandOptics>& bands) {
-    PathScene scene(bands, 0.9);
-    scene.set_surfaces(box_and_plane(bands.size()));
-    scene.add_lamp(k_lamp, 1);
-    return scene;
-}
-
-/// A ray that passes the box and meets the plane.
-Ray some_ray() {
-    return {{0, 0, 0}, glm::normalize(Vector3(-0.1, 0.05, 1))};
-}
-
 /// Compares two sets of batches kind by kind, in one band of each.
 void compare_kinds(const std::vector<TermSums>& a, std::size_t band_a,
                    const std::vector<TermSums>& b, std::size_t band_b, const std::string& what,
@@ -82,119 +60,6 @@ void compare_kinds(const std::vector<TermSums>& a, std::size_t band_a,
                                    std::to_string(r) + (water ? " from water" : ""),
                                first, second.mean(), second.error());
             }
-}
-
-/// Checks what each term says of itself.
-class KindCheck final : public PathTerms {
-  public:
-    enum class Source { single, water, surface };
-    KindCheck(Source source, double distance) : source_(source), distance_(distance) {}
-    void add(const PathTerm& term) override {
-        ++count;
-        EXPECT_EQ(term.lamp, 0);
-        EXPECT_EQ(term.from_water, source_ != Source::surface);
-        if (source_ == Source::single) {
-            EXPECT_EQ(term.scatterings, 1);
-            EXPECT_EQ(term.reflections, 0);
-        } else {
-            EXPECT_GE(term.scatterings + term.reflections, 2);
-            EXPECT_GE(source_ == Source::water ? term.scatterings : term.reflections, 1);
-        }
-        if (source_ == Source::surface)
-            EXPECT_DOUBLE_EQ(term.distance, distance_);
-        else
-            EXPECT_LT(term.distance, distance_);
-        EXPECT_GT(term.distance, 0);
-        for (const double radiance : term.radiance) EXPECT_GE(radiance, 0);
-    }
-    int count = 0;
-
-  private:
-    Source source_;
-    double distance_;
-};
-
-TEST(PathLaws, TermsAreOfTheKindThatTheyClaim) {
-    const PathScene scene = lit_scene(k_three_bands);
-    const PathTracer tracer(scene.lit());
-    CameraSegment segment;
-    SurfaceHit hit;
-    ASSERT_TRUE(scene.surfaces->closest_hit(some_ray(), k_far, hit));
-    tracer.begin(some_ray(), &hit, {}, segment);
-    KindCheck single(KindCheck::Source::single, hit.distance),
-        water(KindCheck::Source::water, hit.distance),
-        surface(KindCheck::Source::surface, hit.distance);
-    for (std::uint32_t i = 0; i < 1000; ++i) {
-        PathRandom random(PathRandom::seed_of(1), i);
-        tracer.trace_single(segment, random, single);
-        tracer.trace_water(segment, random, water);
-        tracer.trace_surface(segment, random, surface);
-    }
-    for (const KindCheck* check : {&single, &water, &surface}) EXPECT_GT(check->count, 100);
-}
-
-/// Passes on what is mirrored, times a factor for each band.
-class MirroredPart final : public PathTerms {
-  public:
-    MirroredPart(PathTerms& sums, std::span<const double> factors)
-        : sums_(sums), factors_(factors) {}
-    void add(const PathTerm& term) override {
-        if (!PathTracer::is_mirrored(term)) {
-            ++others;
-            return;
-        }
-        PathTerm scaled = term;
-        radiance_.assign(term.radiance.begin(), term.radiance.end());
-        for (std::size_t b = 0; b < radiance_.size(); ++b) radiance_[b] *= factors_[b];
-        scaled.radiance = radiance_;
-        sums_.add(scaled);
-    }
-    int others = 0;
-
-  private:
-    PathTerms& sums_;
-    std::span<const double> factors_;
-    std::vector<double> radiance_;
-};
-
-// By random numbers of their own, and with the water in front of the surface put in afterwards.
-TEST(PathLaws, WhatIsMirroredIsAPartOfTheSurfacesLight) {
-    const PathScene scene = lit_scene(k_three_bands);
-    const PathTracer tracer(scene.lit());
-    SurfaceSample sample{some_ray(), {}, 0, 0};
-    ASSERT_TRUE(scene.surfaces->closest_hit(sample.ray, k_far, sample.hit));
-    CameraSegment segment;
-    tracer.begin(sample.ray, &sample.hit, {}, segment);
-    constexpr std::uint32_t k_paths = 1 << 11;
-    const std::vector<double> ones(3, 1.0);
-    std::atomic<int> others = 0;
-    const auto parts = run_batches(32, 3, 1, [&](std::uint64_t seed, TermSums& sums) {
-        MirroredPart part(sums, ones);
-        for (std::uint32_t i = 0; i < k_paths; ++i) {
-            PathRandom random(seed, i);
-            tracer.trace_surface(segment, random, part);
-        }
-        others += part.others;
-    });
-    const auto mirrored = run_batches(32, 3, 2, [&](std::uint64_t seed, TermSums& sums) {
-        MirroredPart part(sums, segment.transmittance.first(3));
-        for (std::uint32_t i = 0; i < k_paths; ++i) {
-            PathRandom random(seed, i);
-            tracer.trace_mirrored(sample, random, part);
-        }
-        EXPECT_EQ(part.others, 0);
-    });
-    EXPECT_GT(others, 0);
-    Deviations deviations;
-    for (std::size_t b = 0; b < 3; ++b) {
-        const auto all = [&](const TermSums& sums) {
-            return sums.sum(b, [](int, int, bool) { return true; });
-        };
-        const BatchMeans part = means_of(parts, all), own = means_of(mirrored, all);
-        deviations.add("mirrored", part, own.mean(), own.error());
-    }
-    deviations.expect_within_errors();
-    deviations.expect_errors_below(0.02);
 }
 
 TEST(PathLaws, OrdersGrowAsPowersOfTheScatteringCoefficient) {
