@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 
 namespace uw {
 namespace {
@@ -18,6 +19,10 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& target, const std::string& why) {
     throw IoError(fmt::format("{}: cannot write: {}", target.string(), why));
+}
+
+void refuse_input(const fs::path& resolved, const fs::path& target) {
+    if (is_input(resolved)) fail(target, "it is a file that this run reads; choose another name");
 }
 
 /// Rejects targets that a rename must not replace, and resolves a symbolic link to its target.
@@ -38,6 +43,7 @@ fs::path checked(const fs::path& target) {
     if (fs::exists(status) && !fs::is_regular_file(status)) {
         fail(target, "it is not a regular file; choose another name");
     }
+    refuse_input(resolved, target);
     return resolved;
 }
 
@@ -87,6 +93,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
+    refuse_input(target_, target_);  // it may have been read in the meantime
     std::error_code error;
     fs::rename(temporary_, target_, error);
     if (error) fail(target_, error.message());

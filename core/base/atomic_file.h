@@ -11,7 +11,7 @@ class AtomicFile {
   public:
     /// Creates the empty temporary file. A target that is a symbolic link is written through.
     /// Throws IoError if this is impossible: the folder is missing or not writable, or the target
-    /// is a folder or a device.
+    /// is a folder, a device, or a file that the program has read (remember_input).
     explicit AtomicFile(const std::filesystem::path& target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 
 namespace uw {
 
@@ -19,6 +20,7 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
         throw IoError(fmt::format("{}: is a folder; name the {} in it", subject, noun));
     if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
         throw IoError(fmt::format("{}: is a device; name the {}", subject, noun));
+    remember_input(file);
     std::ifstream stream(file, std::ios::binary);
     std::string text(most_bytes + 1, '\0');
     if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));

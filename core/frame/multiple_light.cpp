@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/frame/glow_source.h"
 #include "core/frame/node_smoothing.h"
 #include "core/surfaces/surface_reflection.h"
 
@@ -90,30 +91,18 @@ void MultipleLight::prepare(const PixelWindow& window, const Progress& progress)
 // Computes the glow, and leaves in the nodes what they hold beside it.
 void MultipleLight::take_away_glow(Grid2D<MultipleNode>& raw) {
     const std::size_t groups = estimator_.options().groups;
-    const LitScene& scene = pixels_.scene();
+    const GlowSource source(pixels_, estimator_);
     const auto radiance = [&](const SurfaceSample& sample, const SurfaceLight& light,
                               std::size_t index, std::span<double> channels) {
-        const std::span<const double> to_camera = light.to_camera(index);
-        const SurfaceReflection reflection(*scene.surfaces, sample, static_cast<int>(bands_));
-        if (reflection.emits())
-            for (std::size_t b = 0; b < bands_; ++b)
-                channels[(groups - 1) * bands_ + b] += reflection.emission()[b] * to_camera[b];
-        Spectrum brdf;
-        for (std::size_t j = 0; j < light.lamp_count(); ++j) {
-            if (!light.visible(index, j)) continue;
-            reflection.brdf((*scene.lamps)[j].position(), brdf);
-            double* sum = &channels[std::min(j, groups - 1) * bands_];
-            for (std::size_t b = 0; b < bands_; ++b)
-                sum[b] += light.irradiance(index, j, b) * brdf[b] * to_camera[b];
-        }
+        source.find_radiance(sample, light, index, channels);
     };
     std::vector<SurfaceGlow::Position> positions;
     for (int j = 0; j < raw.height(); ++j)
         for (int i = 0; i < raw.width(); ++i)
             positions.push_back({(column_ + i) * static_cast<double>(spacing_),
                                  (row_ + j) * static_cast<double>(spacing_)});
-    glow_.emplace(pixels_.rays(), scene, *pixels_.transport().surfaces, intervals_, groups * bands_,
-                  cells_, radiance, positions);
+    glow_.emplace(pixels_.rays(), pixels_.scene(), *pixels_.transport().surfaces, intervals_,
+                  groups * bands_, cells_, radiance, positions);
     const std::size_t values = groups * bands_;
     for (std::size_t n = 0; n < raw.size(); ++n) {
         MultipleNode& node = raw[n];

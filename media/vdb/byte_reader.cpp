@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 
 namespace uw {
 
@@ -22,6 +23,7 @@ ByteReader::ByteReader(const std::filesystem::path& file, const SourceLocation& 
                                   std::generic_category().message(reason)));
     if (!std::filesystem::is_regular_file(file, error))
         throw IoError(fmt::format("{}: cannot open '{}': not a file", where, file.string()));
+    remember_input(file);
     size_ = static_cast<std::int64_t>(std::filesystem::file_size(file));
 }
 

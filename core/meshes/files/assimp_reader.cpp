@@ -12,6 +12,7 @@
 
 #include "core/base/affine.h"
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/meshes/polygon.h"
 
 namespace uw {
@@ -25,7 +26,9 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   public:
     bool Exists(const char* name) const override { return allowed(name); }
     Assimp::IOStream* Open(const char* name, const char* mode) override {
-        return allowed(name) ? DefaultIOSystem::Open(name, mode) : nullptr;
+        if (!allowed(name)) return nullptr;
+        remember_input(name);
+        return DefaultIOSystem::Open(name, mode);
     }
 
   private:

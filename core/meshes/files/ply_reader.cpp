@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/meshes/files/ply_header.h"
 #include "core/meshes/files/ply_source.h"
 #include "core/meshes/polygon.h"
@@ -156,6 +157,7 @@ void read_faces(const PlyElement& element, PlySource& source, const std::string&
 
 TriangleMesh read_ply(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const std::string name = file.string();
+    remember_input(file);
     std::ifstream in(file, std::ios::binary);
     if (!in) throw IoError(name + ": cannot open the mesh; check the name and its permissions");
     const PlyHeader header = read_ply_header(in, name);

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/meshes/gltf/gltf_uri.h"
 
 namespace uw {
@@ -71,6 +72,7 @@ std::array<int, 256> base64_digits() {
 
 std::vector<std::byte> read_range(const std::filesystem::path& file, std::uint64_t offset,
                                   std::uint64_t size) {
+    remember_input(file);
     std::ifstream in(file, std::ios::binary);
     std::vector<std::byte> bytes(size);
     in.seekg(static_cast<std::streamoff>(offset));

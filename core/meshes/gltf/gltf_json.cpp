@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 
 namespace uw {
 namespace {
@@ -33,6 +34,7 @@ std::string json_text(const std::filesystem::path& file) {
     std::error_code status;
     // A pipe or device under a mesh's name would block the reader.
     const bool is_file = std::filesystem::is_regular_file(file, status);
+    remember_input(file);
     std::ifstream in;
     if (is_file) in.open(file, std::ios::binary);
     if (!is_file || !in)
