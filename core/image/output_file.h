@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+#include "core/base/atomic_file.h"
+
+namespace uw {
+
+/// A binary file that appears under its name only once it is complete: write, then commit. If any
+/// of it cannot be written, the IoError comes at the latest from commit().
+class OutputFile {
+  public:
+    /// Throws as AtomicFile's constructor.
+    explicit OutputFile(const std::filesystem::path& file);
+
+    void write(std::span<const std::byte> bytes);
+    void write(std::string_view bytes) { write(std::as_bytes(std::span(bytes))); }
+    /// Replaces bytes that have been written, from `position` on; what follows is appended again.
+    void rewrite(std::uint64_t position, std::span<const std::byte> bytes);
+    /// Bytes written so far.
+    std::uint64_t size() const { return size_; }
+
+    /// Throws IoError unless the file is complete and bears its name.
+    void commit();
+
+  private:
+    std::filesystem::path file_;
+    AtomicFile atomic_;
+    std::ofstream stream_;
+    std::uint64_t size_ = 0;
+};
+
+}  // namespace uw
