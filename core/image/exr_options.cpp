@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "core/image/half_float.h"
 #include "core/image/layers.h"
 
 namespace uw {
@@ -16,6 +15,8 @@ namespace {
 
 // Half floats below 2^-14 are rounded by up to 2^-25, which is 1.2e-4 of this.
 constexpr double k_least_mean = 0x1p-12;
+// What is rounded to an infinite half float: this and more. The largest finite one is 65504.
+constexpr float k_infinite_half = 65520.0F;
 constexpr float k_infinity = std::numeric_limits<float>::infinity();
 
 std::vector<std::size_t> light_channels(const Film& film) {

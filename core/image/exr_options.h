@@ -2,15 +2,25 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "core/image/exr_header.h"
 #include "core/image/film.h"
 
 namespace uw {
+
+/// How the lines of an EXR are compressed, all without loss: not at all, by deflate each line by
+/// itself, or in blocks of 16.
+enum class ExrCompression : std::uint8_t { none, zips, zip };
+
+struct ExrChannel {
+    std::string name;
+    bool is_half = false;  // else a 32-bit float
+};
 
 /// How an image is stored as an EXR.
 struct ExrOptions {

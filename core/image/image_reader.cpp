@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "core/base/error.h"
-#include "core/image/exr_header.h"
+#include "core/image/exr_file.h"
 #include "core/image/jpeg_reader.h"
 #include "core/image/png_reader.h"
 

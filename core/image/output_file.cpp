@@ -12,14 +12,12 @@ OutputFile::OutputFile(const std::filesystem::path& file)
 void OutputFile::write(std::span<const std::byte> bytes) {
     stream_.write(reinterpret_cast<const char*>(bytes.data()),
                   static_cast<std::streamsize>(bytes.size()));
-    size_ += bytes.size();
+    position_ += bytes.size();
 }
 
-void OutputFile::rewrite(std::uint64_t position, std::span<const std::byte> bytes) {
+void OutputFile::seek(std::uint64_t position) {
     stream_.seekp(static_cast<std::streamoff>(position));
-    stream_.write(reinterpret_cast<const char*>(bytes.data()),
-                  static_cast<std::streamsize>(bytes.size()));
-    stream_.seekp(0, std::ios::end);
+    position_ = position;
 }
 
 void OutputFile::commit() {

@@ -12,7 +12,7 @@
 namespace uw {
 
 /// A binary file that appears under its name only once it is complete: write, then commit. If any
-/// of it cannot be written, the IoError comes at the latest from commit().
+/// of it cannot be written, commit() throws, and nothing before.
 class OutputFile {
   public:
     /// Throws as AtomicFile's constructor.
@@ -20,10 +20,11 @@ class OutputFile {
 
     void write(std::span<const std::byte> bytes);
     void write(std::string_view bytes) { write(std::as_bytes(std::span(bytes))); }
-    /// Replaces bytes that have been written, from `position` on; what follows is appended again.
-    void rewrite(std::uint64_t position, std::span<const std::byte> bytes);
-    /// Bytes written so far.
-    std::uint64_t size() const { return size_; }
+    /// Where the next bytes go, from the beginning of the file.
+    std::uint64_t position() const { return position_; }
+    void seek(std::uint64_t position);
+
+    const std::filesystem::path& path() const { return file_; }
 
     /// Throws IoError unless the file is complete and bears its name.
     void commit();
@@ -32,7 +33,7 @@ class OutputFile {
     std::filesystem::path file_;
     AtomicFile atomic_;
     std::ofstream stream_;
-    std::uint64_t size_ = 0;
+    std::uint64_t position_ = 0;
 };
 
 }  // namespace uw

@@ -3,53 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cmath>
+#include <algorithm>
 #include <limits>
 
-#include "core/image/half_float.h"
 #include "core/image/layers.h"
 
 namespace uw {
 namespace {
 
 constexpr float k_infinity = std::numeric_limits<float>::infinity();
-
-/// The value of a half float, by its definition.
-double half_value(std::uint16_t bits) {
-    const int exponent = bits >> 10 & 31, mantissa = bits & 1023;
-    const double size = exponent == 31  ? (mantissa == 0 ? k_infinity : std::nan(""))
-                        : exponent == 0 ? std::ldexp(mantissa, -24)
-                                        : std::ldexp(1024 + mantissa, exponent - 25);
-    return (bits & 0x8000) != 0 ? -size : size;
-}
-
-TEST(HalfFloat, HoldsEveryHalfFloatAsItIs) {
-    for (unsigned bits = 0; bits < 0x10000; ++bits) {
-        const auto half = static_cast<std::uint16_t>(bits);
-        const double value = half_value(half);
-        const std::uint16_t again = half_bits(static_cast<float>(value));
-        if (std::isnan(value))
-            EXPECT_TRUE(std::isnan(half_value(again)));
-        else
-            EXPECT_EQ(again, half);
-    }
-}
-
-TEST(HalfFloat, RoundsToTheNearestAndBetweenTwoToTheEvenOne) {
-    for (std::uint16_t half = 0; half < 0x7bff; ++half) {  // all but the largest
-        const auto next = static_cast<std::uint16_t>(half + 1);
-        // Exact in single precision.
-        const auto middle = static_cast<float>(0.5 * (half_value(half) + half_value(next)));
-        EXPECT_EQ(half_bits(middle), half % 2 == 0 ? half : next);
-        EXPECT_EQ(half_bits(std::nextafter(middle, 0.0F)), half);
-        EXPECT_EQ(half_bits(std::nextafter(middle, k_infinity)), next);
-        EXPECT_EQ(half_bits(-middle), half_bits(middle) | 0x8000);
-    }
-    EXPECT_EQ(half_value(half_bits(std::nextafter(k_infinite_half, 0.0F))), 65504);
-    EXPECT_EQ(half_value(half_bits(k_infinite_half)), k_infinity);
-    EXPECT_EQ(half_value(half_bits(1e30F)), k_infinity);
-}
 
 Film grey(float value, const std::vector<std::string>& names = {"R", "G", "B", "A", "depth.Z"}) {
     Film film(4, 2, {0, 0, 4, 2}, names);

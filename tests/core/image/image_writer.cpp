@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -87,7 +88,7 @@ TEST_F(ImageWriterTest, EveryChannelComesBackBitForBit) {
 
 /// Width, height and lines per block that do not divide each other; noise that does not compress,
 /// and lines that do.
-TEST_F(ImageWriterTest, EveryCompressionIsReadByOpenExr) {
+TEST_F(ImageWriterTest, EveryCompressionAndPrecisionComesBack) {
     const std::vector<std::string> names{"R", "G", "B", "A", "depth.Z"};
     Film film(41, 45, {2, 3, 39, 40}, names);
     std::uint32_t random = 1;
@@ -121,8 +122,23 @@ TEST_F(ImageWriterTest, EveryCompressionIsReadByOpenExr) {
     }
 }
 
+TEST_F(ImageWriterTest, HalfFloatsOverflowWhereHalfLossSaysSo) {
+    Film film(2, 1, {0, 0, 2, 1}, {"R", "G", "B", "A"});
+    film.pixel(0, 0)[k_red] = -65519;
+    film.pixel(1, 0)[k_red] = std::nextafter(65520.0F, 0.0F);
+    film.pixel(0, 0)[k_green] = 65520;
+    film.pixel(1, 0)[k_green] = -1e30F;
+    ASSERT_EQ(half_loss(film).too_large, 2U);
+    write_exr(exr_, film, {}, {ExrOptions::Precision::half, ExrCompression::zip});
+    const test::ImageFile image = test::read_exr(exr_);
+    EXPECT_EQ(image.at("R", 0, 0), -65504);
+    EXPECT_EQ(image.at("R", 1, 0), 65504);
+    EXPECT_EQ(image.at("G", 0, 0), std::numeric_limits<float>::infinity());
+    EXPECT_EQ(image.at("G", 1, 0), -std::numeric_limits<float>::infinity());
+}
+
 TEST_F(ImageWriterTest, BytesDoNotDependOnThreads) {
-    Film film = filled_film(200, 300, {0, 0, 200, 300}, {"R", "G", "B", "A", "depth.Z"});
+    const Film film = filled_film(200, 300, {0, 0, 200, 300}, {"R", "G", "B", "A", "depth.Z"});
     Preview preview(900, 700);
     for (std::size_t i = 0; i < preview.size(); ++i)
         preview[i] = {static_cast<std::uint8_t>(i / 7), static_cast<std::uint8_t>(i * i / 91), 7};
@@ -135,7 +151,6 @@ TEST_F(ImageWriterTest, BytesDoNotDependOnThreads) {
     }
     EXPECT_EQ(written[0], written[1]);
     EXPECT_EQ(written[0], written[2]);
-    // Of several parts, and each as it was.
     const auto input = OIIO::ImageInput::open(png_.string());
     ASSERT_TRUE(input) << OIIO::geterror();
     Preview read(900, 700);
