@@ -1,5 +1,6 @@
 // Each stage of a render alone, on the plume scene at 640 x 360 unless its name says otherwise.
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -157,12 +158,35 @@ void store_film(StageRun& run, benchmark::State& state) {
     });
 }
 
-void write_image(StageRun& run, benchmark::State& state) {
-    Film film = run.film();
-    render_film(run.pixels(), in_scatter_tolerance(run.desc().render), run.plan(),
+Film rendered(StageRun& run, const char* layers) {
+    const LayerPlan plan = layer_plan(run.desc(), layers);
+    const CameraDesc& camera = run.desc().camera;
+    Film film(camera.width, camera.height, {0, 0, camera.width, camera.height},
+              plan.channel_names());
+    render_film(run.pixels(), in_scatter_tolerance(run.desc().render), plan,
                 BandColour(run.desc().water.bands_nm), film, [](double) { return true; });
+    return film;
+}
+
+enum class Layers { usual, all };
+
+template <Layers layers, ExrOptions::Precision precision, ExrCompression compression>
+void write_image(StageRun& run, benchmark::State& state) {
+    const Film film = rendered(run, layers == Layers::all ? "all" : "default");
     const ScratchFolder folder;
-    run.measure(state, [&] { write_exr(folder.path() / "image.exr", film, {}); });
+    const auto file = folder.path() / "image.exr";
+    run.measure(state, [&] { write_exr(file, film, {}, {precision, compression}); });
+    state.counters["written_MB"] = 1e-6 * static_cast<double>(std::filesystem::file_size(file));
+}
+
+void write_preview(StageRun& run, benchmark::State& state) {
+    const Film film = rendered(run, "default");
+    const ScratchFolder folder;
+    const auto file = folder.path() / "image.png";
+    run.measure(state, [&] {
+        write_png(file, make_preview(film, automatic_exposure(film).value_or(1)), {});
+    });
+    state.counters["written_MB"] = 1e-6 * static_cast<double>(std::filesystem::file_size(file));
 }
 
 SceneCase plume(int width = 640, int height = 360) {
@@ -210,7 +234,19 @@ std::vector<Stage> all_stages() {
     }
     stages.push_back({"forward_scatter", forward_scatter, plume()});
     stages.push_back({"store_film", store_film, plume()});
-    stages.push_back({"write_exr", write_image, plume()});
+    using enum ExrOptions::Precision;
+    using enum ExrCompression;
+    SceneCase uniform_hd = plume(1280, 720);
+    uniform_hd.kind = Kind::uniform;
+    for (const SceneCase& scene : {uniform_hd, plume(1280, 720)}) {
+        stages.push_back({"write_exr", write_image<Layers::usual, automatic, zip>, scene});
+        stages.push_back({"write_exr_zips", write_image<Layers::usual, automatic, zips>, scene});
+        stages.push_back({"write_exr_none", write_image<Layers::usual, automatic, none>, scene});
+        stages.push_back({"write_exr_float", write_image<Layers::usual, single, zip>, scene});
+        stages.push_back({"write_exr_all", write_image<Layers::all, automatic, zip>, scene});
+        stages.push_back({"write_exr_all_half", write_image<Layers::all, half, zip>, scene});
+        stages.push_back({"write_png", write_preview, scene});
+    }
     return stages;
 }
 

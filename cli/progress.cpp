@@ -52,7 +52,14 @@ Progress::Progress(std::string label, std::string unit, double scale, bool quiet
       start_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() {
+    end_line();
+}
+
+void Progress::end_line() {
+    const std::lock_guard lock(mutex_);
     if (drawn_ && terminal_) print_message("\n");
+    drawn_ = false;
+    last_length_ = 0;
 }
 
 void Progress::update(double fraction, const std::string& note) {

@@ -27,6 +27,10 @@ class Progress {
     /// Reports that `fraction` (0..1) of the work is done; `note`, if any, is shown beside it.
     void update(double fraction, const std::string& note = {});
 
+    /// To be called before anything else is printed: ends the bar's line. The next update draws it
+    /// anew.
+    void end_line();
+
   private:
     void draw(double fraction, double seconds, const std::string& note);
     void draw_bar(double fraction, const std::string& figures);

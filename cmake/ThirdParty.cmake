@@ -10,6 +10,9 @@ endif()
 find_package(yaml-cpp REQUIRED)
 find_package(assimp REQUIRED)
 find_package(fmt REQUIRED)
+find_package(OpenEXR REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 QUIET)
 if(NOT TARGET CLI11::CLI11)
@@ -38,10 +41,3 @@ target_include_directories(uwvdb_nanovdb SYSTEM INTERFACE ${NANOVDB_INCLUDE_DIR}
 target_link_libraries(uwvdb_nanovdb INTERFACE OpenVDB::openvdb)
 # Its conversions and checksums run on all threads; one setting for all files, unity or not.
 target_compile_definitions(uwvdb_nanovdb INTERFACE NANOVDB_USE_TBB)
-
-# OpenImageIO's exported target names an OpenCV include folder that its package does not provide.
-find_package(OpenImageIO REQUIRED)
-get_target_property(uwvdb_oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
-list(FILTER uwvdb_oiio_includes EXCLUDE REGEX opencv)
-set_target_properties(OpenImageIO::OpenImageIO PROPERTIES
-                      INTERFACE_INCLUDE_DIRECTORIES "${uwvdb_oiio_includes}")

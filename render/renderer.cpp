@@ -185,4 +185,11 @@ const Film& Renderer::render(const RenderOptions& options) {
     return *cropped_;
 }
 
+Film Renderer::release_film() {
+    std::optional<Film>& film = cropped_ ? cropped_ : film_;
+    Film released = std::move(*film);
+    film.reset();
+    return released;
+}
+
 }  // namespace uw

@@ -76,6 +76,10 @@ class Renderer {
     /// UsageError for a window that is not within the image, and as layer_plan.
     const Film& render(const RenderOptions& options = {});
 
+    /// The film that render() returned last, for those who keep it: the next image gets memory of
+    /// its own. Precondition: nothing has been prepared since.
+    Film release_film();
+
     /// About the image that was prepared or rendered last.
     const RenderReport& report() const { return report_; }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <utility>
 
 #include "cli/console.h"
@@ -9,6 +10,7 @@
 #include "cli/render/image_output.h"
 #include "cli/render/irradiance_export.h"
 #include "cli/stop_signal.h"
+#include "core/base/available_memory.h"
 #include "core/integrators/integrator_table.h"
 
 namespace uw {
@@ -40,24 +42,42 @@ std::string describe(const PathAccuracy& reached) {
 
 }  // namespace
 
+struct FrameRenderer::Written {
+    Frame frame;
+    bool is_first;
+    Film film;
+    ImageMetadata metadata;
+    RunStats stats;
+    std::string label;  // empty: the only image
+    double seconds = 0;
+    struct Line {
+        bool is_warning;
+        std::string text;
+    };
+    std::vector<Line> lines{};
+};
+
 FrameRenderer::FrameRenderer(const RenderArguments& arguments, const SceneDesc& scene,
-                             const std::vector<PixelWindow>& windows, std::size_t count)
+                             const std::vector<PixelWindow>& windows, std::size_t count, Done done)
     : arguments_(arguments),
       all_frames_(scene),
       windows_(windows),
       clock_(count, scene.cameras.empty() ? "frame" : "image"),
       renderer_(
-          [this](const std::string& stage, double fraction) { return proceed(stage, fraction); }) {}
+          [this](const std::string& stage, double fraction) { return proceed(stage, fraction); }),
+      done_(std::move(done)) {}
+
+FrameRenderer::~FrameRenderer() = default;
 
 void FrameRenderer::say(const std::string& line) const {
     if (!arguments_.quiet) print_message(line + "\n");
 }
 
-void FrameRenderer::warn(const Frame& frame, const std::string& line) {
+void FrameRenderer::warn(const Frame& frame, bool is_first, const std::string& line) {
     if (!warned_.insert(without_frame(line, renderer_.scene(), all_frames_)).second) return;
     std::string which;
-    if (clock_.images_done() > 0 && frame.number) which = fmt::format("frame {}: ", *frame.number);
-    if (clock_.images_done() > 0 && !frame.camera_name.empty())
+    if (!is_first && frame.number) which = fmt::format("frame {}: ", *frame.number);
+    if (!is_first && !frame.camera_name.empty())
         which += fmt::format("camera {}: ", frame.camera_name);
     print_message(fmt::format("warning: {}{}\n", which, line));
 }
@@ -65,6 +85,10 @@ void FrameRenderer::warn(const Frame& frame, const std::string& line) {
 bool FrameRenderer::proceed(const std::string& stage, double fraction) {
     const std::lock_guard lock(mutex_);
     if (stage != stage_) begin_stage(stage);
+    if (writing_ && writing_->is_done()) {
+        if (progress_) progress_->end_line();
+        finish();
+    }
     const PathAccuracy& paths = renderer_.report().paths;
     if (progress_) progress_->update(fraction, stage == "render" ? describe(paths) : "");
     return !stop_requested();
@@ -91,10 +115,10 @@ void FrameRenderer::begin_stage(const std::string& stage) {
 void FrameRenderer::prepare(const Frame& frame, const RenderOptions& options) {
     renderer_.prepare(options);
     const AssembledScene& scene = renderer_.assembled();
-    if (clock_.images_done() == 0 && !arguments_.quiet)
+    if (is_first() && !arguments_.quiet)
         for (const VolumeReport& report : scene.volume_reports)
             print_message(describe_grid(report, scene.water.medium));
-    for (const std::string& warning : renderer_.report().warnings) warn(frame, warning);
+    for (const std::string& warning : renderer_.report().warnings) warn(frame, is_first(), warning);
 }
 
 void FrameRenderer::count_work(RunStats& stats) const {
@@ -124,7 +148,7 @@ void FrameRenderer::write_irradiance(const std::filesystem::path& file) {
     });
 }
 
-void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& stats) {
+void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats stats) {
     const OutputFiles& files = frame.files;
     const bool with_irradiance = !files.irradiance_vdb.empty();
     const RenderOptions options{
@@ -138,10 +162,11 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& st
         renderer_.splat();
     }
     const std::size_t warned = renderer_.report().warnings.size();
-    const Film& film = renderer_.render(options);
+    renderer_.render(options);
     progress_.reset();
     const RenderReport& report = renderer_.report();
-    for (std::size_t i = warned; i < report.warnings.size(); ++i) warn(frame, report.warnings[i]);
+    for (std::size_t i = warned; i < report.warnings.size(); ++i)
+        warn(frame, is_first(), report.warnings[i]);
     if (report.paths.samples > 0)
         say(fmt::format("{} of the image's mean", describe(report.paths)));
     if (report.multiple_error)
@@ -153,18 +178,55 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats& st
         write_irradiance(files.irradiance_vdb);
         say(fmt::format("wrote {}", files.irradiance_vdb.string()));
     }
-    stats.begin_stage("write");
-    write_images(
-        files, film, metadata_of(renderer_.assembled(), frame.number, options.paths, report),
-        [&](const std::string& line) { say(line); },
-        [&](const std::string& line) { warn(frame, line); });
     stats.end_stage();
     stats.set_output(files.image.filename().string(), frame.number);
-    if (!clock_.is_sequence()) return;
-    std::string line = clock_.label("done in " + format_duration(stats.total_seconds()));
+    begin_writing(frame, options, std::move(stats));
+}
+
+void FrameRenderer::begin_writing(const Frame& frame, const RenderOptions& options,
+                                  RunStats stats) {
+    finish();
+    std::string label = clock_.is_sequence() ? clock_.label("done in ") : "";
+    ImageMetadata metadata =
+        metadata_of(renderer_.assembled(), frame.number, options.paths, renderer_.report());
+    written_.reset(new Written{frame, is_first(), renderer_.release_film(), std::move(metadata),
+                               std::move(stats), std::move(label)});
     clock_.finish_image();
-    if (!clock_.finished()) line += ", " + format_duration(*clock_.seconds_left()) + " left";
-    say(line);
+    writing_ = std::make_unique<BackgroundTask>([&written = *written_, exr = arguments_.exr()] {
+        const auto begin = std::chrono::steady_clock::now();
+        write_images(
+            written.frame.files, written.film, std::move(written.metadata), exr,
+            [&](const std::string& line) {
+                written.lines.push_back({false, line});
+            },
+            [&](const std::string& line) {
+                written.lines.push_back({true, line});
+            });
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+        written.seconds = elapsed.count();
+    });
+    // The next image needs as much memory again, and some to work with.
+    if (2 * written_->film.values().size_bytes() > available_memory_bytes()) finish();
+}
+
+void FrameRenderer::finish() {
+    if (!writing_) return;
+    const std::unique_ptr<Written> written = std::move(written_);
+    const std::unique_ptr<BackgroundTask> writing = std::move(writing_);
+    writing->finish();
+    for (const auto& [is_warning, text] : written->lines) {
+        if (is_warning)
+            warn(written->frame, written->is_first, text);
+        else
+            say(text);
+    }
+    written->stats.add_stage("write", written->seconds);
+    if (!written->label.empty()) {
+        std::string line = written->label + format_duration(written->stats.total_seconds());
+        if (!clock_.finished()) line += ", " + format_duration(*clock_.seconds_left()) + " left";
+        say(line);
+    }
+    done_(written->frame, std::move(written->stats));
 }
 
 }  // namespace uw

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "cli/progress.h"
+#include "cli/render/background_task.h"
 #include "cli/render/frame_sequence.h"
 #include "cli/render/render_arguments.h"
 #include "cli/render/sequence_clock.h"
@@ -17,27 +19,46 @@
 namespace uw {
 
 /// Renders and writes the images of a run one after the other, and reports progress to the user.
+/// Each is written while the next is rendered.
 class FrameRenderer {
   public:
+    /// Receives each frame that has been written, with its statistics, from any thread.
+    using Done = std::function<void(const Frame& frame, RunStats stats)>;
+
     /// `scene`: of all frames; `windows`: the pixels written, by camera; `count`: the number of
     /// images to come. All references outlive the renderer.
     FrameRenderer(const RenderArguments& arguments, const SceneDesc& scene,
-                  const std::vector<PixelWindow>& windows, std::size_t count);
+                  const std::vector<PixelWindow>& windows, std::size_t count, Done done);
+    ~FrameRenderer();
+    FrameRenderer(const FrameRenderer&) = delete;
+    FrameRenderer& operator=(const FrameRenderer&) = delete;
+    FrameRenderer(FrameRenderer&&) = delete;
+    FrameRenderer& operator=(FrameRenderer&&) = delete;
 
-    /// Renders one frame, with `scene` its own, and writes all its files but the statistics, which
-    /// go to `stats`. Reports on stderr what it does; a warning that recurs in several frames with
-    /// only the file's name changed is given once. Throws InputError, also if the image does not
-    /// fit into memory; IoError; Interrupted, and then no image of this frame has been written.
-    void render(const Frame& frame, ResolvedScene scene, RunStats& stats);
+    /// Renders one frame, with `scene` its own, and has all its files but the statistics written.
+    /// `stats` are continued. Reports on stderr what it does; a warning that recurs in several
+    /// frames with only the file's name changed is given once. Throws InputError, also if the image
+    /// does not fit into memory; IoError, of this frame or the one before; Interrupted, and then no
+    /// image of this frame is written.
+    void render(const Frame& frame, ResolvedScene scene, RunStats stats);
+
+    /// Waits until the last frame rendered has been written. Throws IoError if it cannot be.
+    void finish();
 
   private:
+    /// An image that is being written.
+    struct Written;
+
     bool proceed(const std::string& stage, double fraction);
     void begin_stage(const std::string& stage);
     void prepare(const Frame& frame, const RenderOptions& options);
     void count_work(RunStats& stats) const;
     void write_irradiance(const std::filesystem::path& file);
+    void begin_writing(const Frame& frame, const RenderOptions& options, RunStats stats);
     void say(const std::string& line) const;
-    void warn(const Frame& frame, const std::string& line);
+    /// `is_first`: of the run's frames, whose warnings need not say which.
+    void warn(const Frame& frame, bool is_first, const std::string& line);
+    bool is_first() const { return clock_.images_done() == 0; }
 
     const RenderArguments& arguments_;
     const SceneDesc& all_frames_;
@@ -50,6 +71,9 @@ class FrameRenderer {
     std::string stage_;
     std::unique_ptr<Progress> progress_;
     RunStats* stats_ = nullptr;
+    Done done_;
+    std::unique_ptr<Written> written_;
+    std::unique_ptr<BackgroundTask> writing_;  // uses the one before
 };
 
 }  // namespace uw

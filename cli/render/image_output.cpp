@@ -53,6 +53,19 @@ void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
             "light travels in this water");
 }
 
+void warn_of_half(const Film& film, const SayCallback& warn) {
+    const HalfLoss loss = half_loss(film);
+    if (loss.too_large > 0)
+        warn(fmt::format(
+            "--precision half: {} values are too large for half floats, and infinite in "
+            "the file; use --precision float",
+            loss.too_large));
+    if (loss.too_dark)
+        warn(
+            "--precision half: the light is so weak that half floats round it visibly; use "
+            "--precision float");
+}
+
 }  // namespace
 
 ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
@@ -132,13 +145,14 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
 }
 
 void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata,
-                  const SayCallback& say, const SayCallback& warn) {
+                  const ExrOptions& options, const SayCallback& say, const SayCallback& warn) {
     const std::optional<double> exposure = automatic_exposure(film);
     const Preview preview = make_preview(film, exposure.value_or(1.0));
-    write_exr(files.image, film, metadata);
+    write_exr(files.image, film, metadata, options);
     metadata["exposure"] = exposure.value_or(1.0);
     write_png(files.preview, preview, metadata);
     warn_of_darkness(film, !exposure, warn);
+    if (options.precision == ExrOptions::Precision::half) warn_of_half(film, warn);
     say(fmt::format("wrote {}", files.image.string()));
     if (exposure)
         say(fmt::format("wrote {} (preview, R G B x {:.4g})", files.preview.string(), *exposure));

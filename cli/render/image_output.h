@@ -25,8 +25,9 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
 using SayCallback = std::function<void(const std::string& line)>;
 
 /// Writes the EXR and its preview, each whole or not at all; prints where they are and the exposure
-/// of the preview, and warns of an image that is black or empty in part. Throws IoError.
+/// of the preview, and warns of an image that is black or empty in part, or that half floats cannot
+/// hold. Throws IoError.
 void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata,
-                  const SayCallback& say, const SayCallback& warn);
+                  const ExrOptions& options, const SayCallback& say, const SayCallback& warn);
 
 }  // namespace uw

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/image/exr_options.h"
 #include "render/scene_rendering.h"
 
 namespace uw {
@@ -22,6 +23,7 @@ struct RenderArguments {
     std::string camera;                      // --camera: this one of a rig only; empty: all
     std::string integrator;                  // empty: the scene's
     std::string layers;                      // empty: the default set
+    std::string precision, compression;      // of the EXR; empty: as ExrOptions
     std::optional<int> samples;
     std::optional<double> error;  // --error: instead of a number of samples
     std::optional<int> orders;    // --orders: layers by order of scattering
@@ -31,6 +33,8 @@ struct RenderArguments {
     std::filesystem::path irradiance_vdb;
     bool quiet = false;
 
+    /// Throws UsageError for words that do not exist.
+    ExrOptions exr() const;
     PathRequest paths() const { return {.error = error, .orders = orders.value_or(0)}; }
 };
 

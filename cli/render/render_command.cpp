@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -109,15 +110,15 @@ void append_warnings(const RenderArguments& a, const Frame& first,
 
 // Removes the images that already exist.
 void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const LayerPlan& layers,
-                        const PathRequest& paths, const std::vector<PixelWindow>& windows,
-                        bool quiet) {
+                        const PathRequest& paths, const ExrOptions& storage,
+                        const std::vector<PixelWindow>& windows, bool quiet) {
     std::vector<int> there;
     std::vector<Frame> left;
     GltfSideFiles known;
     for (Frame& frame : sequence.frames) {
         const SceneDesc scene = scene_of_image(desc, frame.choice());
         const ImageLayout layout{scene.camera.width, scene.camera.height, windows[frame.camera],
-                                 layers.channel_names()};
+                                 layers.channel_names(), storage};
         // Headers describe the camera that was rendered, possibly a glTF file's.
         const auto is_image_of = [&](const std::filesystem::path& file) {
             const ResolvedScene resolved{SceneDesc(scene)};
@@ -168,19 +169,22 @@ class FrameScenes {
     std::vector<std::string> lamp_names_;
 };
 
-// Renders all frames; `done` receives the statistics of each, whatever ends the run.
-void render_frames(const FrameSequence& sequence, FrameScenes& scenes, const std::string& name,
-                   FrameRenderer& renderer, RunStats stats, std::vector<RunStats>& done) {
+// Renders all frames; `stats` are those of the first so far. Whatever ends the run, the frames that
+// were rendered are written, and so added to `done`.
+void render_frames(const FrameSequence& sequence, FrameScenes& scenes, FrameRenderer& renderer,
+                   RunStats stats, const std::vector<RunStats>& done) {
     try {
-        for (const Frame& frame : sequence.frames) {
-            renderer.render(frame, scenes.take(frame), stats);
-            if (!frame.files.stats.empty()) stats.write_json(frame.files.stats, name);
-            done.push_back(std::exchange(stats, RunStats()));
-        }
+        for (const Frame& frame : sequence.frames)
+            renderer.render(frame, scenes.take(frame), std::exchange(stats, RunStats()));
+        renderer.finish();
     } catch (const Interrupted&) {
+        renderer.finish();
         if (done.empty()) throw;
         throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume continues",
                                       done.size(), sequence.frames.size()));
+    } catch (...) {
+        renderer.finish();
+        throw;
     }
 }
 
@@ -189,8 +193,10 @@ void render_frames(const FrameSequence& sequence, FrameScenes& scenes, const std
 void run_render(const RenderArguments& a) {
     if (a.resume && a.frames.empty())
         throw UsageError("--resume: only continues a sequence; give its --frames");
+    const auto start = std::chrono::steady_clock::now();
     RunStats stats;
     const ThreadLimit limit(a.threads);
+    const ExrOptions storage = a.exr();
     FrameSequence sequence = frames_of(a);
 
     stats.begin_stage("scene");
@@ -201,28 +207,31 @@ void run_render(const RenderArguments& a) {
     append_warnings(a, sequence.frames.front(), windows, desc);
     FrameScenes scenes(desc, sequence.frames.front());
     const LayerPlan layers = layer_plan(scenes.first(), a.layers, a.paths());
-    if (a.resume) leave_out_rendered(sequence, desc, layers, a.paths(), windows, a.quiet);
+    if (a.resume) leave_out_rendered(sequence, desc, layers, a.paths(), storage, windows, a.quiet);
     if (sequence.frames.empty()) return;
     check_frames(sequence, desc);
-    FrameRenderer renderer(a, desc, windows, sequence.frames.size());
-
     std::vector<RunStats> done;
+    FrameRenderer renderer(
+        a, desc, windows, sequence.frames.size(), [&](const Frame& frame, RunStats of_frame) {
+            if (!frame.files.stats.empty())
+                of_frame.write_json(frame.files.stats, desc.file.filename().string());
+            done.push_back(std::move(of_frame));
+        });
     const auto write_stats = [&] {
         if (!sequence.stats.empty() && !done.empty())
             RunStats::write_json(sequence.stats, a.scene.filename().string(), done);
     };
     try {
-        render_frames(sequence, scenes, desc.file.filename().string(), renderer, std::move(stats),
-                      done);
+        render_frames(sequence, scenes, renderer, std::move(stats), done);
     } catch (...) {
         write_stats();  // of the frames done
         throw;
     }
     write_stats();
     if (a.quiet) return;
-    double seconds = 0;
-    for (const RunStats& frame : done) seconds += frame.total_seconds();
-    print_message(fmt::format("done in {}, peak memory {:.0f} MB\n", format_duration(seconds),
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    print_message(fmt::format("done in {}, peak memory {:.0f} MB\n",
+                              format_duration(elapsed.count()),
                               static_cast<double>(RunStats::peak_memory_bytes()) / 1e6));
 }
 

@@ -15,6 +15,7 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render assets/scenes/plume.yaml
   uwvdb render plume.yaml -o out/plume.exr --size 960x540 --samples 1
   uwvdb render plume.yaml --quality draft --size 480x270
+  uwvdb render plume.yaml --layers all --precision half
   uwvdb render plume.yaml --set lamps.left.intensity='[80, 80, 80]' --layers direct,depth
   uwvdb render plume.yaml --integrator reference --crop 100,80,140,120 --stats stats.json
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.exr --resume
@@ -26,7 +27,7 @@ render.scattering: single, the default, is light that the water scatters once or
 once; multiple is all light, however often it was scattered and reflected, fast by
 --integrator volume, unbiased by path.
 
-Writes OUT.exr (32-bit float, layers by name) and OUT.png beside it, a preview. With --frames, a
+Writes OUT.exr (the image and its depth; more with --layers) and OUT.png beside it, a preview. With --frames, a
 volume's file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of
 several cameras becomes an image of each, OUT.NAME.exr, or with NAME in place of {camera}.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
@@ -60,7 +61,23 @@ void accept_words(Option& option, const auto& names) {
     for (const auto& [word, meaning] : names) option.words.emplace_back(word);
 }
 
+template <class T, std::size_t N>
+T value_of(const char* option, const std::string& word,
+           const std::array<std::pair<std::string_view, T>, N>& names, T otherwise) {
+    if (word.empty()) return otherwise;
+    for (const auto& [known, value] : names)
+        if (word == known) return value;
+    throw UsageError(fmt::format("{}: unknown '{}'; use {}", option, printable(word),
+                                 alternatives(words_of(names))));
+}
+
 }  // namespace
+
+ExrOptions RenderArguments::exr() const {
+    const ExrOptions usual;
+    return {value_of("--precision", precision, k_precision_names, usual.precision),
+            value_of("--compression", compression, k_compression_names, usual.compression)};
+}
 
 Options render_options(RenderArguments& a) {
     Options options;
@@ -90,7 +107,14 @@ Options render_options(RenderArguments& a) {
                               alternatives(words_of(k_integrator_names))),
                  k_integrator_names);
     options.text("--layers", "NAMES", a.layers,
-                 "all, or names separated by commas, among them default and lamps");
+                 "names separated by commas, all, or default: the image and its depth");
+    accept_words(options.text("--precision", "NAME", a.precision,
+                              "of the light in the EXR: half, float, or auto: half where that is "
+                              "enough"),
+                 k_precision_names);
+    accept_words(options.text("--compression", "NAME", a.compression,
+                              "of the EXR, without loss: zip, zips (each line by itself) or none"),
+                 k_compression_names);
     options.integer("--samples", "N", a.samples, 1, k_most_paths,
                     fmt::format("surface samples per pixel, 1 to {}; with --integrator path light "
                                 "paths, up to {}",

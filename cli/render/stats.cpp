@@ -26,6 +26,10 @@ void RunStats::end_stage() {
     stage_.clear();
 }
 
+void RunStats::add_stage(const std::string& name, double seconds) {
+    stages_.emplace_back(name, seconds);
+}
+
 void RunStats::count(const std::string& name, std::uint64_t value) {
     counts_.emplace_back(name, value);
 }

@@ -19,6 +19,8 @@ class RunStats {
     /// Ends the current stage, if any, and begins `name`.
     void begin_stage(const std::string& name);
     void end_stage();
+    /// Adds a stage that has been timed elsewhere.
+    void add_stage(const std::string& name, double seconds);
     /// Adds a figure, e.g. count("camera_rays", 1e6).
     void count(const std::string& name, std::uint64_t value);
     /// Adds a number that is no count.

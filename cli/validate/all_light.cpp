@@ -154,8 +154,7 @@ class AllLightTrial {
                                 x, y)[static_cast<std::size_t>(plan.first_channel(layer)) + b]);
                     const LinearRgb rgb = colour(sum);
                     for (std::size_t c = 0; c < 3; ++c)
-                        picture(x, y)[c] = static_cast<std::uint8_t>(
-                            std::lround(255 * srgb_encode(exposure * rgb[c])));
+                        picture(x, y)[c] = srgb_bytes()(exposure * rgb[c]);
                 }
             }
             result_.pictures.emplace_back(name, std::move(picture));

@@ -35,9 +35,7 @@ Preview picture_of(const SceneValidation& scene, const MethodImage& image,
     Preview picture(scene.width, scene.height);
     for (std::size_t i = 0; i < scene.smooth.size(); ++i) {
         const LinearRgb rgb = colour(sum_of(image, components, i));
-        for (std::size_t c = 0; c < 3; ++c)
-            picture[i][c] =
-                static_cast<std::uint8_t>(std::lround(255 * srgb_encode(exposure * rgb[c])));
+        for (std::size_t c = 0; c < 3; ++c) picture[i][c] = srgb_bytes()(exposure * rgb[c]);
     }
     return picture;
 }

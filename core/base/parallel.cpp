@@ -9,6 +9,11 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); });
 }
 
+int permitted_threads() {
+    return static_cast<int>(
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
 ThreadLimit::ThreadLimit(int threads) {
     if (threads > 0)
         control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism,

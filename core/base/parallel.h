@@ -9,6 +9,9 @@ namespace uw {
 /// first exception thrown by a body stops the rest and is rethrown.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
+/// How many threads parallel_for may use now.
+int permitted_threads();
+
 /// Limits how many threads parallel_for (and the libraries that share its pool) may use for as
 /// long as the object lives; 0 means all cores.
 class ThreadLimit {

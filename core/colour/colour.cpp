@@ -41,6 +41,16 @@ std::vector<std::array<double, 3>> tristimulus_of_bands(std::span<const double> 
     return xyz;
 }
 
+/// The least value that srgb_encode brings to this byte or above, by bisection; 1 if there is none.
+double least_of_byte(int byte) {
+    double below = 0, above = 1;
+    for (;;) {
+        const double middle = 0.5 * (below + above);
+        if (middle <= below || middle >= above) return above;
+        (std::lround(255 * srgb_encode(middle)) < byte ? below : above) = middle;
+    }
+}
+
 }  // namespace
 
 double luminance(const LinearRgb& rgb) {
@@ -51,6 +61,20 @@ double srgb_encode(double linear) {
     if (!(linear > 0)) return 0;
     if (linear >= 1) return 1;
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+SrgbBytes::SrgbBytes() {
+    int byte = 0;
+    double next = least_of_byte(1);
+    for (int i = 0; i < k_steps; ++i) {
+        while (static_cast<double>(i) / k_steps >= next) next = least_of_byte(++byte + 1);
+        steps_[static_cast<std::size_t>(i)] = {next, byte};
+    }
+}
+
+const SrgbBytes& srgb_bytes() {
+    static const SrgbBytes bytes;
+    return bytes;
 }
 
 BandColour::BandColour(std::span<const double> bands_nm) : bands_(bands_nm.size()) {

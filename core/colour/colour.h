@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,30 @@ double luminance(const LinearRgb& rgb);
 
 /// The sRGB transfer function: linear 0..1 to encoded 0..1, clamped; 0 for NaN.
 double srgb_encode(double linear);
+
+/// srgb_encode to the nearest 8-bit value, 0 to 255, by table: [0, 1) in steps within which the
+/// value changes once at most.
+class SrgbBytes {
+  public:
+    SrgbBytes();
+    std::uint8_t operator()(double linear) const {
+        if (!(linear > 0)) return 0;
+        if (linear >= 1) return 255;
+        const Step& step = steps_[static_cast<std::size_t>(linear * k_steps)];
+        return static_cast<std::uint8_t>(step.byte + (linear >= step.next ? 1 : 0));
+    }
+
+  private:
+    // The steepest part is the straight one: 12.92 * 255 = 3295 values per unit.
+    static constexpr int k_steps = 4096;
+    struct Step {
+        double next;  // the least value of the byte after this
+        int byte;     // at the step's beginning
+    };
+    std::array<Step, k_steps> steps_{};
+};
+/// The table, made once.
+const SrgbBytes& srgb_bytes();
 
 /// Converts radiance per band into a colour. Linear, and a spectrum of 1 in all bands is white:
 /// R = G = B = 1, Y = 1.

@@ -6,23 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "core/image/exr_options.h"
 #include "core/image/film.h"
-#include "core/image/image_writer.h"
+#include "core/image/image_metadata.h"
+#include "core/image/pixel_image.h"
 
 namespace uw {
 
-/// A decoded image: row-major, top row first, channels interleaved. 8- and 16-bit values are scaled
-/// to 0..1; no transfer function is undone and alpha is not premultiplied.
-struct PixelImage {
-    int width = 0, height = 0, channels = 0;
-    std::vector<float> pixels;  // width * height * channels
-};
-
-/// Reads any image format that OpenImageIO supports. Throws IoError if the file cannot be opened,
-/// InputError if it is not an image, is truncated, or is larger than 2^28 pixels.
+/// Reads a PNG or JPEG file. Throws IoError if it cannot be opened, InputError if it is neither, is
+/// truncated or damaged, or is larger than 2^28 pixels.
 PixelImage read_image(const std::filesystem::path& file);
 
-/// The same for a PNG or JPEG in memory; messages call it `name`. Throws InputError.
+/// The same for an image in memory; messages call it `name`. Throws InputError.
 PixelImage read_image(std::span<const std::byte> encoded, const std::string& name);
 
 /// The layout of an image file, without its pixels.
@@ -30,6 +25,7 @@ struct ImageLayout {
     int width = 0, height = 0;  // of the whole image
     PixelWindow window;         // of the pixels stored
     std::vector<std::string> channel_names;
+    ExrOptions storage{};
 };
 
 /// Whether the header of `file` is that of an image written by write_exr with this layout and all

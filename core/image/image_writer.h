@@ -1,23 +1,19 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <string>
-#include <variant>
 
+#include "core/image/exr_options.h"
 #include "core/image/film.h"
+#include "core/image/image_metadata.h"
 #include "core/image/preview.h"
 
 namespace uw {
 
-/// Header metadata by name. Numbers are stored as 32-bit floats in EXR, as text in PNG.
-using ImageMetadata = std::map<std::string, std::variant<std::string, double>>;
-
-/// Writes the film as one OpenEXR part: every channel 32-bit float, scanlines, zip compression. The
-/// film's window is the data window, the whole image the display window. The file appears under its
-/// name only once it is complete; the same film and metadata give the same bytes, so no date is
-/// stored. Throws IoError.
-void write_exr(const std::filesystem::path& file, const Film& film, const ImageMetadata& metadata);
+/// Writes the film as one OpenEXR part, by scanlines. The film's window is the data window, the
+/// whole image the display window. The file appears under its name only once it is complete; the
+/// same film, metadata and options give the same bytes, so no date is stored. Throws IoError.
+void write_exr(const std::filesystem::path& file, const Film& film, const ImageMetadata& metadata,
+               const ExrOptions& options = {});
 
 /// Writes an 8-bit sRGB PNG; metadata as text chunks. The file appears under its name only once it
 /// is complete. Throws IoError.

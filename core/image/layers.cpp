@@ -17,6 +17,9 @@ constexpr std::array<std::string_view, 3> k_not_supported{"flow", "flow_back", "
 /// Layers by how often light was scattered, and reflected.
 constexpr std::array<std::string_view, 2> k_orders{"order", "reflections"};
 
+/// What an image is unless more of it is requested: the total of all bands, and the depth.
+constexpr std::array<Layer, 2> k_default_layers{Layer::total, Layer::depth};
+
 constexpr std::string_view k_lamp_prefix = "lamp.";
 /// EXR allows 255 bytes for "lamp.<name>.<band>nm".
 constexpr std::size_t k_longest_lamp_name = 200;
@@ -89,6 +92,18 @@ void check_lamp_name(const std::string& name) {
 
 }  // namespace
 
+bool is_image_channel(std::string_view channel_name) {
+    return channel_name.find('.') == std::string_view::npos || channel_name.starts_with("total.");
+}
+
+bool is_light(std::string_view channel_name) {
+    if (is_image_channel(channel_name) || channel_name.starts_with(k_lamp_prefix)) return true;
+    const auto layer = find_layer(channel_name.substr(0, channel_name.rfind('.')));
+    if (layer) return k_layers[*layer].is_light;
+    const auto order = channel_name.substr(0, channel_name.find('.'));
+    return std::ranges::find(k_orders, order) != k_orders.end();
+}
+
 /// The layers requested by --layers.
 struct LayerPlan::Selection {
     LayerSupply supply;
@@ -102,8 +117,10 @@ struct LayerPlan::Selection {
 };
 
 void LayerPlan::Selection::add(std::string_view item, std::span<const std::string> lamp_names) {
-    if (item == "all" || item == "default") add_all();
+    if (item == "all") add_all();
     if (item == "all" || item == "lamps") lamps.assign(lamps.size(), true);
+    if (item == "default")
+        for (const Layer layer : k_default_layers) layers[static_cast<std::size_t>(layer)] = true;
     if (item == "all" || item == "default" || item == "lamps") return;
     if (item.starts_with(k_lamp_prefix)) {
         add_lamp(item.substr(k_lamp_prefix.size()), lamp_names);

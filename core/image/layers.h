@@ -43,23 +43,24 @@ struct LayerKind {
     Layer layer;
     std::string_view name;
     std::string_view suffixes;  // one channel per letter; one per band if empty
+    bool is_light = false;      // radiance, irradiance or exitance; else ground truth
 };
 
 /// Every layer, in the order of Layer.
 inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
-    {Layer::total, "total", ""},
-    {Layer::direct, "direct", ""},
-    {Layer::forward, "forward", ""},
-    {Layer::backscatter, "backscatter", ""},
-    {Layer::backscatter_first, "backscatter_first", ""},
-    {Layer::multiple, "multiple", ""},
-    {Layer::multiple_volume, "multiple.volume", ""},
-    {Layer::multiple_surface, "multiple.surface", ""},
-    {Layer::error, "error", ""},
-    {Layer::irradiance, "irradiance", ""},
-    {Layer::exitance, "exitance", ""},
+    {Layer::total, "total", "", true},
+    {Layer::direct, "direct", "", true},
+    {Layer::forward, "forward", "", true},
+    {Layer::backscatter, "backscatter", "", true},
+    {Layer::backscatter_first, "backscatter_first", "", true},
+    {Layer::multiple, "multiple", "", true},
+    {Layer::multiple_volume, "multiple.volume", "", true},
+    {Layer::multiple_surface, "multiple.surface", "", true},
+    {Layer::error, "error", "", true},
+    {Layer::irradiance, "irradiance", "", true},
+    {Layer::exitance, "exitance", "", true},
     {Layer::lit, "lit", "V"},
-    {Layer::clean, "clean", ""},
+    {Layer::clean, "clean", "", true},
     {Layer::transmittance, "transmittance", ""},
     {Layer::albedo, "albedo", ""},
     {Layer::depth, "depth", "Z"},
@@ -78,6 +79,11 @@ constexpr bool has_every_layer(const std::array<Line, k_layer_count>& table) {
     return true;
 }
 static_assert(has_every_layer(k_layers));
+
+/// Whether a channel, by its name, holds light or the image's coverage rather than ground truth.
+bool is_light(std::string_view channel_name);
+/// Whether it is of the image itself: R, G, B, A or the total of a band.
+bool is_image_channel(std::string_view channel_name);
 
 /// What an image can hold besides what every image can.
 struct LayerSupply {
@@ -101,11 +107,11 @@ struct LayerSupply {
 class LayerPlan {
   public:
     /// `request` is the argument of --layers: comma-separated layers, including `lamps` for every
-    /// lamp, `lamp.<name>` for one, `all`, and `default` for everything but the lamps. Empty means
-    /// `default`. Order and repetition do not matter. `all` and `default` leave out what is not in
-    /// `supply`. Throws UsageError for an unknown layer or lamp, for one that is not supported yet
-    /// and for one that is not in `supply`; InputError if bands or lamps cannot be distinguished
-    /// by name or a lamp's name is not valid in a channel name.
+    /// lamp, `lamp.<name>` for one, `all`, and `default` for the image with its depth. Empty means
+    /// `default`. Order and repetition do not matter. `all` leaves out what is not in `supply`.
+    /// Throws UsageError for an unknown layer or lamp, for one that is not supported yet and for
+    /// one that is not in `supply`; InputError if bands or lamps cannot be distinguished by name or
+    /// a lamp's name is not valid in a channel name.
     LayerPlan(std::string_view request, std::span<const double> bands_nm,
               std::span<const std::string> lamp_names, const LayerSupply& supply = {});
 

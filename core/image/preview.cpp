@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "core/colour/colour.h"
 
 namespace uw {
@@ -17,14 +19,20 @@ constexpr double k_luminance_of_percentile = 0.8;
 
 std::optional<double> automatic_exposure(const Film& film) {
     const PixelWindow& window = film.window();
-    std::vector<double> luminances;
-    for (int y = window.y0; y < window.y1; ++y) {
+    constexpr float k_not_counted = -std::numeric_limits<float>::infinity();
+    std::vector<float> luminances(static_cast<std::size_t>(window.width()) *
+                                  static_cast<std::size_t>(window.height()));
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        const int y = window.y0 + static_cast<int>(line);
+        float* out = &luminances[line * static_cast<std::size_t>(window.width())];
         for (int x = window.x0; x < window.x1; ++x) {
             const std::span<const float> pixel = film.pixel(x, y);
             const double brightness = luminance({pixel[k_red], pixel[k_green], pixel[k_blue]});
-            if (pixel[k_alpha] > 0 && std::isfinite(brightness)) luminances.push_back(brightness);
+            const bool counts = pixel[k_alpha] > 0 && std::isfinite(brightness);
+            *out++ = counts ? static_cast<float>(brightness) : k_not_counted;
         }
-    }
+    });
+    std::erase(luminances, k_not_counted);
     if (luminances.empty()) return std::nullopt;
     const auto last = static_cast<double>(luminances.size() - 1);
     const auto middle =
@@ -40,16 +48,17 @@ std::optional<double> automatic_exposure(const Film& film) {
 Preview make_preview(const Film& film, double exposure) {
     const PixelWindow& window = film.window();
     Preview preview(window.width(), window.height());
-    for (int y = 0; y < preview.height(); ++y) {
-        for (int x = 0; x < preview.width(); ++x) {
-            const std::span<const float> pixel = film.pixel(window.x0 + x, window.y0 + y);
-            for (const FilmChannel channel : {k_red, k_green, k_blue}) {
-                const double linear = pixel[k_alpha] > 0 ? exposure * pixel[channel] : 0.0;
-                preview(x, y)[channel] =
-                    static_cast<std::uint8_t>(std::lround(255 * srgb_encode(linear)));
-            }
+    const SrgbBytes& encode = srgb_bytes();
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        const int y = static_cast<int>(line);
+        int x = window.x0;
+        for (Srgb8& out : preview.row(y)) {
+            const std::span<const float> pixel = film.pixel(x++, window.y0 + y);
+            if (!(pixel[k_alpha] > 0)) continue;  // black
+            for (const FilmChannel channel : {k_red, k_green, k_blue})
+                out[channel] = encode(exposure * pixel[channel]);
         }
-    }
+    });
     return preview;
 }
 

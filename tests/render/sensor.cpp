@@ -138,7 +138,7 @@ TEST(Outputs, LampsAddUpAndTwiceTheLampsIsTwiceTheImage) {
 
 TEST(Outputs, StoredComponentsAddUpToTheBit) {
     const std::vector<double> bands{620, 540, 450};
-    const LayerPlan plan("default", bands, {});
+    const LayerPlan plan("all", bands, {});
     const BandColour colour(bands);
     for (const Output output : {Output::sensor_irradiance, Output::paper}) {
         const TestScene scene(plane_behind_port(output));

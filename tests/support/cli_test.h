@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -55,10 +56,13 @@ class CliTest : public testing::Test {
                            {.folder = folder_.path(), .terminal_columns = terminal_columns});
     }
 
-    /// Renders scene.yaml to out.exr with the further arguments; the run must succeed.
+    /// Renders scene.yaml to out.exr with the further arguments, and with all layers unless they
+    /// say which; the run must succeed.
     ImageFile render(const std::vector<std::string>& more = {}) const {
         std::vector<std::string> arguments{"render", "scene.yaml", "-o", "out.exr"};
         arguments.insert(arguments.end(), more.begin(), more.end());
+        if (std::ranges::find(more, "--layers") == more.end())
+            arguments.insert(arguments.end(), {"--layers", "all"});
         const ProgramResult result = run(arguments);
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return read_exr(folder_ / "out.exr");

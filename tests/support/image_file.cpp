@@ -2,7 +2,12 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
+
+#include "tests/support/temp_dir.h"
 
 namespace uw::test {
 
@@ -26,6 +31,24 @@ ImageFile read_exr(const std::filesystem::path& file) {
     for (const OIIO::ParamValue& entry : spec.extra_attribs)
         image.metadata[entry.name().string()] = entry.get_string();
     return image;
+}
+
+std::string encoded_image(const std::string& extension, int width, int height, int channels,
+                          const std::vector<int>& values, int bits) {
+    const TempDir folder;
+    const std::string file = (folder.path() / ("image." + extension)).string();
+    OIIO::ImageSpec spec(width, height, channels, bits == 16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("Compression", "jpeg:100");
+    const std::vector<std::uint8_t> bytes(values.begin(), values.end());
+    const std::vector<std::uint16_t> words(values.begin(), values.end());
+    const auto output = OIIO::ImageOutput::create(file);
+    const void* const pixels = bits == 16 ? static_cast<const void*>(words.data()) : bytes.data();
+    if (!output || !output->open(file, spec) || !output->write_image(spec.format, pixels) ||
+        !output->close())
+        throw std::runtime_error("cannot write " + file);
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace uw::test

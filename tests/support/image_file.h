@@ -25,4 +25,9 @@ struct ImageFile {
 /// Throws std::runtime_error if the file cannot be read.
 ImageFile read_exr(const std::filesystem::path& file);
 
+/// The bytes of an image file as OpenImageIO writes it: `extension` is that of its format; `values`
+/// are of `bits` bits, row by row, channels interleaved; alpha, if any, is not premultiplied.
+std::string encoded_image(const std::string& extension, int width, int height, int channels,
+                          const std::vector<int>& values, int bits = 8);
+
 }  // namespace uw::test

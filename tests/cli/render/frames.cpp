@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/cli_test.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 
@@ -113,8 +114,8 @@ TEST_F(Frames, KeepWhatDoesNotChange) {
         expect_done(sequence({"--frames", frame, "-o", "one.exr", "--set", meshes}));
         EXPECT_EQ(read("m" + frame + ".exr"), read("one.exr")) << frame;
     }
-    EXPECT_NE(test::read_exr(folder_ / "m2.exr").channels.at("id.V"),
-              test::read_exr(folder_ / "m3.exr").channels.at("id.V"));
+    EXPECT_NE(test::read_exr(folder_ / "m2.exr").channels.at("depth.Z"),
+              test::read_exr(folder_ / "m3.exr").channels.at("depth.Z"));
 }
 
 TEST_F(Frames, ThatAreMissingAreNamedBeforeAnythingIsRendered) {
@@ -235,6 +236,9 @@ TEST_F(Frames, ResumeRendersWhatIsMissingOrOfAnotherScene) {
                                                {"--size", "16x8"},
                                                {"--crop", "0,0,8,8"},
                                                {"--layers", "depth"},
+                                               {"--layers", "direct"},
+                                               {"--precision", "float"},
+                                               {"--compression", "zips"},
                                                {"--integrator", "reference"},
                                                {"--set", "lamps.left.intensity=[1, 2, 3]"}}) {
         EXPECT_EQ(resumed(other), "") << other.front();
@@ -247,6 +251,17 @@ TEST_F(Frames, ResumeRendersWhatIsMissingOrOfAnotherScene) {
     // What is there already needs no input.
     std::filesystem::remove(folder_ / name(1));
     EXPECT_NE(resumed({}).find("frames 1,3 are there"), std::string::npos);
+}
+
+// Written while the next is rendered: the fault is still that of the run.
+TEST_F(Frames, ThatCannotBeWrittenEndTheRun) {
+    const std::size_t files = file_count();
+    test::ProgramResult result;
+    test::limited(200, [&] { result = sequence({"--frames", "1-3", "--quiet"}); });
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_EQ(test::line_count(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("smoke.0001.exr: cannot write: "), std::string::npos) << result.err;
+    EXPECT_EQ(file_count(), files);
 }
 
 TEST_F(Frames, ThatAreDoneStayWhenInterrupted) {

@@ -37,6 +37,40 @@ TEST_F(ImageLayers, ThreeBandsAreRedGreenBlue) {
     EXPECT_EQ(image.metadata.at("uwvdb/integrator"), "volume");
 }
 
+TEST_F(ImageLayers, DefaultIsTheImageWithItsDepth) {
+    const ImageFile image = render({"--layers", "default"}), all = render({"--layers", "all"});
+    EXPECT_EQ(sorted(image.names), (Names{"A", "B", "G", "R", "depth.Z"}));
+    EXPECT_EQ(image.channels.at("depth.Z"), all.channels.at("depth.Z"));
+    for (const char* band : {"R", "G", "B"}) {
+        const std::vector<float>& exact = all.channels.at(band);
+        for (std::size_t i = 0; i < exact.size(); ++i)  // half floats: 11 bits
+            EXPECT_LE(std::abs(image.channels.at(band)[i] - exact[i]), 0x1p-11F * exact[i]);
+        EXPECT_NE(image.channels.at(band), exact);
+        EXPECT_EQ(render({"--layers", "default", "--precision", "float"}).channels.at(band), exact);
+    }
+}
+
+TEST_F(ImageLayers, WhatHalfFloatsCannotHoldIsKeptOrSaid) {
+    const Names bright{"--layers", "default", "--set", "lamps.left.intensity=1e8"};
+    const Names dark{"--layers", "default", "--set", "lamps.left.intensity=1e-6"};
+    const auto with_precision = [](Names arguments, const char* precision) {
+        arguments.insert(arguments.end(), {"--precision", precision});
+        return arguments;
+    };
+    for (const Names& arguments : {bright, dark}) {
+        const ImageFile image = render(with_precision(arguments, "auto"));
+        EXPECT_EQ(image.channels.at("G"),
+                  render(with_precision(arguments, "float")).channels.at("G"));
+    }
+    const auto said = [&](Names arguments) {
+        arguments.insert(arguments.begin(), {"render", "scene.yaml", "--precision", "half"});
+        return run(arguments).err;
+    };
+    EXPECT_NE(said(bright).find("values are too large for half floats"), std::string::npos);
+    EXPECT_NE(said(dark).find("the light is so weak that half floats"), std::string::npos);
+    EXPECT_EQ(said({}).find("half floats"), std::string::npos);
+}
+
 TEST_F(ImageLayers, OtherBandsAreNamedByWavelength) {
     for (const int count : {1, 5, 16}) {
         Names bands;

@@ -140,7 +140,7 @@ TEST_F(OutputFiles, StayAsTheyWereWhenInterrupted) {
 }
 
 TEST_F(OutputFiles, AreWholeWhoeverListens) {
-    render();
+    render({"--layers", "default"});
     const std::string whole = read("out.exr");
     for (const test::ProgramOptions& deaf :
          {test::ProgramOptions{.folder = folder_.path(), .streams_full = true},

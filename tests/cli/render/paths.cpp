@@ -104,7 +104,8 @@ TEST_F(Paths, AreRefusedWhereTheyMakeNoSense) {
 TEST_F(Paths, OfTheFastFormHaveAStatedError) {
     const std::vector<std::string> fast{
         "render",    "scene.yaml", "-o",      "out.exr", "--size", "12x8",
-        "--quality", "draft",      "--stats", "s.json",  "--set",  "render.scattering=multiple"};
+        "--quality", "draft",      "--stats", "s.json",  "--set",  "render.scattering=multiple",
+        "--layers",  "all"};
     const test::ProgramResult result = run(fast);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.err.find("multiple scattering: standard error "), std::string::npos)

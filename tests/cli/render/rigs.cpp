@@ -71,7 +71,7 @@ TEST_F(Rigs, EachImageIsToTheBitThatOfItsCameraAlone) {
 }
 
 TEST_F(Rigs, APlanesDisparityIsThatOfPinholes) {
-    expect_runs({"render", "rig.yaml", "-o", "{camera}_out.exr", "--set",
+    expect_runs({"render", "rig.yaml", "-o", "{camera}_out.exr", "--layers", "all", "--set",
                  "geometry[1]={type: sphere, center: [0, 0, 9], radius: 1}"});
     const ImageFile left = image("left_out.exr"), right = image("right_out.exr");
     for (int y = 0; y < 18; ++y) {
@@ -111,7 +111,7 @@ TEST_F(Rigs, LampsAndCamerasMoveWithTheRig) {
               ", frame: rig", 0.5, 7));
     write("first.yaml", rig("", ", frame: camera", 0.3, 4));
     for (const std::string name : {"at_rest", "moved", "first"})
-        expect_runs({"render", name + ".yaml", "-o", name + ".exr"});
+        expect_runs({"render", name + ".yaml", "-o", name + ".exr", "--layers", "all"});
     for (const std::string camera_name : {"a", "b"}) {
         const ImageFile expected = image("at_rest." + camera_name + ".exr");
         for (const std::string name : {"moved.", "first."}) {

@@ -41,7 +41,8 @@ TEST_F(WideCameras, PositionsReprojectToThePixelCentres) {
             write("room.yaml", "uwvdb: 1\ncamera: {resolution: [96, 64], " + lens + ", " + port +
                                    ", pose: {position: [0.1, 0.2, -0.3], look_at: [0.4, 0, 2]}}" +
                                    k_room);
-            const auto result = run({"render", "room.yaml", "-o", "room.exr", "--samples", "1"});
+            const auto result =
+                run({"render", "room.yaml", "-o", "room.exr", "--samples", "1", "--layers", "all"});
             ASSERT_EQ(result.exit_code, 0) << result.err;
             const ImageFile image = test::read_exr(folder_ / "room.exr");
             const Camera camera(read_scene(folder_ / "room.yaml", {}).camera);
@@ -74,7 +75,8 @@ water: {absorption: [0.35, 0.08, 0.05], scattering: {b: 0.2, phase: {type: hg, g
 lamps: [{position: [0, -0.5, 0], intensity: 50}]
 )");
     const auto spread = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{"render", "circle.yaml", "-o", "circle.exr"};
+        std::vector<std::string> arguments{"render",     "circle.yaml", "-o",
+                                           "circle.exr", "--layers",    "all"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const auto result = run(arguments);
         EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -112,8 +114,8 @@ lamps:
 )");
     for (const char* name : {"fisheye", "pinhole"}) {
         const std::string stem(name);
-        const auto result = run({"render", stem + ".yaml", "-o", stem + ".exr", "--quality",
-                                 "exact", "--samples", "1"});
+        const auto result = run({"render", stem + ".yaml", "-o", stem + ".exr", "--layers", "all",
+                                 "--quality", "exact", "--samples", "1"});
         ASSERT_EQ(result.exit_code, 0) << result.err;
     }
     const ImageFile fisheye = test::read_exr(folder_ / "fisheye.exr");

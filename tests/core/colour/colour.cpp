@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/colour/cie1931.h"
@@ -112,6 +113,18 @@ TEST(Colour, SrgbTransferFunction) {
     EXPECT_NEAR(srgb_encode(0.002), 0.02584, 1e-12);
     EXPECT_NEAR(srgb_encode(0.21404114), 0.5, 1e-7);  // known: mid grey
     EXPECT_NEAR(luminance({0, 1, 0}), 0.7152, 1e-4);
+}
+
+TEST(Colour, BytesAreTheNearestToSrgb) {
+    const SrgbBytes& srgb_byte = srgb_bytes();
+    for (int i = -100; i < 100'100; ++i) {
+        const double linear = 1e-5 * i;
+        ASSERT_EQ(srgb_byte(linear), std::lround(255 * srgb_encode(linear))) << linear;
+    }
+    EXPECT_EQ(srgb_byte(std::nan("")), 0);
+    EXPECT_EQ(srgb_byte(std::numeric_limits<double>::infinity()), 255);
+    EXPECT_EQ(srgb_byte(std::nextafter(1.0, 0.0)), 255);
+    EXPECT_EQ(srgb_byte(std::numeric_limits<double>::denorm_min()), 0);
 }
 
 }  // namespace

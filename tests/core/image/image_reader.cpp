@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "core/base/error.h"
+#include "core/image/image_writer.h"
+#include "tests/support/image_file.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/message_of.h"
 #include "tests/support/scene_folder.h"
@@ -53,21 +58,62 @@ TEST(ImageReader, TellsAFileItCannotOpenFromOneItCannotRead) {
                 }).starts_with(text.string() + ": cannot read the image"));
     EXPECT_NE(test::message_of<InputError>([&] {
                   read_image(encoded_bytes("GIF89a"), "x");
-              }).find("x: neither PNG nor JPEG"),
+              }).find("x: cannot read the image: neither PNG nor JPEG"),
               std::string::npos);
 }
 
-TEST(ImageReader, ReadsFloatsAsTheyWereWritten) {
-    const test::SceneFolder folder;
-    Film film(2, 1, {0, 0, 2, 1}, {"R", "G", "B", "A"});
-    const std::vector<float> values{0.1F, -2, 1e6F, 1, 0.25F, 3, 0, 1};
-    for (int x = 0; x < 2; ++x)
-        for (std::size_t c = 0; c < 4; ++c)
-            film.pixel(x, 0)[c] = values[4 * static_cast<std::size_t>(x) + c];
-    write_exr(folder.path() / "a.exr", film, {});
-    const PixelImage image = read_image(folder.path() / "a.exr");
-    EXPECT_EQ(image.channels, 4);
-    EXPECT_EQ(image.pixels, values);
+/// An image of values that tell every place from the others, and what is read of it.
+struct Decoded {
+    std::vector<int> values;
+    PixelImage image;
+};
+Decoded decoded(const std::string& format, int channels, int bits = 8) {
+    constexpr int k_width = 5, k_height = 3;
+    Decoded result;
+    for (int i = 0; i < k_width * k_height * channels; ++i)
+        result.values.push_back(i * (bits == 16 ? 1091 : 4) + 1);
+    const std::string bytes =
+        test::encoded_image(format, k_width, k_height, channels, result.values, bits);
+    result.image = read_image(encoded_bytes(bytes), "x." + format);
+    EXPECT_EQ(result.image.width, k_width);
+    EXPECT_EQ(result.image.height, k_height);
+    return result;
+}
+
+TEST(ImageReader, ReadsEveryKindOfPngExactly) {
+    for (const int bits : {8, 16}) {
+        for (const int channels : {1, 2, 3, 4}) {
+            const auto [values, image] = decoded("png", channels, bits);
+            ASSERT_EQ(image.channels, channels);
+            ASSERT_EQ(image.pixels.size(), values.size());
+            const double most = (1 << bits) - 1;
+            for (std::size_t i = 0; i < values.size(); ++i)
+                EXPECT_NEAR(image.pixels[i], values[i] / most, 1e-7) << bits << " " << channels;
+        }
+    }
+}
+
+TEST(ImageReader, ReadsJpegAsFarAsItIsExact) {
+    for (const int channels : {1, 3}) {
+        const auto [values, image] = decoded("jpg", channels);
+        ASSERT_EQ(image.channels, channels);
+        // Colours are rounded to YCbCr and back, and so are their frequencies, by 1 each.
+        for (std::size_t i = 0; i < values.size(); ++i)
+            EXPECT_NEAR(image.pixels[i], values[i] / 255.0, 3.5 / 255) << channels;
+    }
+}
+
+TEST(ImageReader, RefusesImagesThatEndEarly) {
+    for (const std::string format : {"png", "jpg"}) {
+        std::vector<int> noise;
+        for (unsigned i = 0; i < 64 * 64 * 3; ++i)
+            noise.push_back(static_cast<int>(i * i * 2654435761u >> 24));
+        const std::string bytes = test::encoded_image(format, 64, 64, 3, noise);
+        EXPECT_EQ(read_image(encoded_bytes(bytes), "x").width, 64);
+        for (const std::size_t size : {bytes.size() / 2, bytes.size() / 10, std::size_t{20}})
+            EXPECT_THROW(read_image(encoded_bytes(bytes.substr(0, size)), "x"), InputError)
+                << format << " " << size;
+    }
 }
 
 class ImageHeader : public testing::Test {
@@ -97,6 +143,28 @@ TEST_F(ImageHeader, IsOfTheSameLayout) {
     EXPECT_FALSE(fits({8, 6, window_, {"R", "G", "B", "A", "Y"}}));
 }
 
+TEST_F(ImageHeader, IsOfTheSameStorage) {
+    using enum ExrOptions::Precision;
+    const auto stored = [&](ExrOptions::Precision precision, const std::string& light) {
+        const std::vector<std::string> names{"R", "G", "B", "A", light, "depth.Z"};
+        write_exr(file_, Film(8, 6, window_, names), {}, {precision, ExrCompression::zips});
+        const auto fits = [&](ExrOptions::Precision requested, ExrCompression compression) {
+            return has_header_of(file_, {8, 6, window_, names, {requested, compression}}, {});
+        };
+        EXPECT_FALSE(fits(precision, ExrCompression::zip));
+        EXPECT_TRUE(fits(precision, ExrCompression::zips));
+        return std::vector<bool>{fits(automatic, ExrCompression::zips),
+                                 fits(half, ExrCompression::zips),
+                                 fits(single, ExrCompression::zips)};
+    };
+    // Whether an image of the total alone is half follows from its pixels.
+    EXPECT_EQ(stored(half, "total.540nm"), (std::vector<bool>{true, true, false}));
+    EXPECT_EQ(stored(single, "total.540nm"), (std::vector<bool>{true, false, true}));
+    EXPECT_EQ(stored(half, "direct.R"), (std::vector<bool>{false, true, false}));
+    EXPECT_EQ(stored(single, "direct.R"), (std::vector<bool>{true, false, true}));
+    EXPECT_EQ(stored(automatic, "direct.R"), (std::vector<bool>{true, false, true}));
+}
+
 TEST_F(ImageHeader, HasAllOfTheMetadata) {
     const ImageLayout layout{8, 6, window_, names_};
     EXPECT_TRUE(fits(layout, {{"scene", std::string("ab12")}}));
@@ -111,6 +179,17 @@ TEST_F(ImageHeader, IsNoneOfWhatCannotBeRead) {
     EXPECT_FALSE(has_header_of(folder_.path() / "none.exr", layout, {}));
     EXPECT_FALSE(has_header_of(folder_.path(), layout, {}));
     EXPECT_FALSE(has_header_of(folder_.write("text.exr", "no image"), layout, {}));
+    // The header of an image without samples, cut off or damaged anywhere.
+    std::ifstream in(file_, std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(in), {}};
+    const std::size_t end = whole.find("screenWindowWidth");
+    for (std::size_t size = 0; size < end; ++size)
+        EXPECT_FALSE(has_header_of(folder_.write("cut.exr", whole.substr(0, size)), layout, {}));
+    for (std::size_t at = 0; at < end; ++at) {
+        std::string damaged = whole;
+        damaged[at] = '\xff';
+        has_header_of(folder_.write("damaged.exr", damaged), layout, {});  // must return
+    }
 }
 
 }  // namespace

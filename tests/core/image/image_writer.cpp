@@ -4,12 +4,17 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/image/layers.h"
 #include "tests/support/full_disk.h"
+#include "tests/support/image_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace uw {
@@ -81,6 +86,78 @@ TEST_F(ImageWriterTest, EveryChannelComesBackBitForBit) {
     }
 }
 
+/// Width, height and lines per block that do not divide each other; noise that does not compress,
+/// and lines that do.
+TEST_F(ImageWriterTest, EveryCompressionAndPrecisionComesBack) {
+    const std::vector<std::string> names{"R", "G", "B", "A", "depth.Z"};
+    Film film(41, 45, {2, 3, 39, 40}, names);
+    std::uint32_t random = 1;
+    for (int y = 3; y < 40; ++y)
+        for (int x = 2; x < 39; ++x)
+            for (float& value : film.pixel(x, y)) {
+                random = random * 1664525u + 1013904223u;
+                value = y < 20 ? static_cast<float>(random) * 0x1p-30F : 0.25F;
+            }
+    for (const auto& [word, compression] : k_compression_names) {
+        for (const auto& [precision_word, precision] : k_precision_names) {
+            write_exr(exr_, film, {}, {precision, compression});
+            const test::ImageFile image = test::read_exr(exr_);
+            const bool is_half = precision != ExrOptions::Precision::single;
+            for (int y = 3; y < 40; ++y)
+                for (int x = 2; x < 39; ++x)
+                    for (std::size_t c = 0; c < names.size(); ++c) {
+                        const float value = film.pixel(x, y)[c];
+                        const float stored = image.at(names[c], x, y);
+                        if (is_half && c < 4)
+                            ASSERT_LE(std::abs(stored - value), 0x1p-11F * value) << word;
+                        else
+                            ASSERT_EQ(stored, value) << word << " " << precision_word;
+                    }
+            const auto input = OIIO::ImageInput::open(exr_.string());
+            ASSERT_TRUE(input) << OIIO::geterror();
+            EXPECT_EQ(input->spec().get_string_attribute("compression").str(), word);
+            EXPECT_EQ(input->spec().channelformat(0), is_half ? OIIO::TypeHalf : OIIO::TypeFloat);
+            EXPECT_EQ(input->spec().channelformat(4), OIIO::TypeFloat);
+        }
+    }
+}
+
+TEST_F(ImageWriterTest, HalfFloatsOverflowWhereHalfLossSaysSo) {
+    Film film(2, 1, {0, 0, 2, 1}, {"R", "G", "B", "A"});
+    film.pixel(0, 0)[k_red] = -65519;
+    film.pixel(1, 0)[k_red] = std::nextafter(65520.0F, 0.0F);
+    film.pixel(0, 0)[k_green] = 65520;
+    film.pixel(1, 0)[k_green] = -1e30F;
+    ASSERT_EQ(half_loss(film).too_large, 2U);
+    write_exr(exr_, film, {}, {ExrOptions::Precision::half, ExrCompression::zip});
+    const test::ImageFile image = test::read_exr(exr_);
+    EXPECT_EQ(image.at("R", 0, 0), -65504);
+    EXPECT_EQ(image.at("R", 1, 0), 65504);
+    EXPECT_EQ(image.at("G", 0, 0), std::numeric_limits<float>::infinity());
+    EXPECT_EQ(image.at("G", 1, 0), -std::numeric_limits<float>::infinity());
+}
+
+TEST_F(ImageWriterTest, BytesDoNotDependOnThreads) {
+    const Film film = filled_film(200, 300, {0, 0, 200, 300}, {"R", "G", "B", "A", "depth.Z"});
+    Preview preview(900, 700);
+    for (std::size_t i = 0; i < preview.size(); ++i)
+        preview[i] = {static_cast<std::uint8_t>(i / 7), static_cast<std::uint8_t>(i * i / 91), 7};
+    std::vector<std::string> written;
+    for (const int threads : {1, 2, 5}) {
+        const ThreadLimit limit(threads);
+        write_exr(exr_, film, {});
+        write_png(png_, preview, {});
+        written.push_back(read_bytes(exr_) + read_bytes(png_));
+    }
+    EXPECT_EQ(written[0], written[1]);
+    EXPECT_EQ(written[0], written[2]);
+    const auto input = OIIO::ImageInput::open(png_.string());
+    ASSERT_TRUE(input) << OIIO::geterror();
+    Preview read(900, 700);
+    ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeUInt8, read.values().data()));
+    EXPECT_TRUE(std::ranges::equal(read, preview));
+}
+
 TEST_F(ImageWriterTest, CropIsTheDataWindowOfTheWholeImage) {
     write_exr(exr_, filled_film(20, 10, {3, 4, 9, 6}, {"R", "G", "B", "A", "depth.Z"}), {});
     const auto input = OIIO::ImageInput::open(exr_.string());
@@ -113,19 +190,29 @@ TEST_F(ImageWriterTest, MetadataComesBack) {
     EXPECT_EQ(input->spec().get_float_attribute("uwvdb:seed"), 7.0f);
 }
 
+TEST_F(ImageWriterTest, LongNamesComeBack) {
+    const std::string name(100, 'n'), lamp = "lamp." + std::string(200, 'l') + ".R";
+    write_exr(exr_, filled_film(2, 2, {0, 0, 2, 2}, {"R", "G", "B", "A", lamp}), {{name, "x"}});
+    const test::ImageFile image = test::read_exr(exr_);
+    EXPECT_EQ(image.metadata.at(name), "x");
+    EXPECT_EQ(image.at(lamp, 1, 1), value_of(1, 1, 4));
+}
+
 TEST_F(ImageWriterTest, PngHoldsThePreviewAndItsExposure) {
     Preview image(2, 2);
     image(0, 0) = {255, 0, 0};
     image(1, 0) = {0, 255, 0};
     image(0, 1) = {0, 0, 255};
     image(1, 1) = {10, 20, 30};
-    write_png(png_, image, {{"exposure", 12.5}, {"uwvdb:version", "0.1.0"}});
+    write_png(png_, image,
+              {{"exposure", 12.5}, {"uwvdb:version", "0.1.0"}, {"camera", "\u00e9t\u00e9"}});
     const auto input = OIIO::ImageInput::open(png_.string());
     ASSERT_TRUE(input) << OIIO::geterror();
     EXPECT_EQ(input->spec().format, OIIO::TypeUInt8);
     EXPECT_EQ(input->spec().nchannels, 3);
     EXPECT_EQ(input->spec().get_string_attribute("exposure"), "12.5");
     EXPECT_EQ(input->spec().get_string_attribute("uwvdb:version"), "0.1.0");
+    EXPECT_EQ(input->spec().get_string_attribute("camera"), "\u00e9t\u00e9");
     EXPECT_EQ(input->spec().get_string_attribute("oiio:ColorSpace"), "sRGB");
     std::vector<std::uint8_t> pixels(12);
     ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeUInt8, pixels.data()));

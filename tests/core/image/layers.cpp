@@ -25,8 +25,8 @@ std::string message_of(std::string_view request, const std::vector<double>& band
     return "nothing thrown";
 }
 
-TEST(Layers, DefaultIsEverythingButLamps) {
-    const LayerPlan plan("", k_rgb, k_lamps);
+TEST(Layers, AllIsEveryLayer) {
+    const LayerPlan plan("all", k_rgb, {});
     const Names truth{"R",
                       "G",
                       "B",
@@ -73,11 +73,36 @@ TEST(Layers, DefaultIsEverythingButLamps) {
     EXPECT_EQ(plan.first_channel(Layer::total), -1);  // R G B
     EXPECT_EQ(plan.first_channel(Layer::direct), 4);
     EXPECT_EQ(plan.first_channel(Layer::position), 38);
-    EXPECT_EQ(plan.first_channel_of_lamp(0), -1);
-    EXPECT_EQ(LayerPlan("default", k_rgb, k_lamps).channel_names(), truth);
 }
 
-TEST(Layers, AllAddsTheLamps) {
+TEST(Layers, DefaultIsTheImageWithItsDepth) {
+    const Names rgb{"R", "G", "B", "A", "depth.Z"};
+    EXPECT_EQ(LayerPlan("", k_rgb, k_lamps).channel_names(), rgb);
+    EXPECT_EQ(LayerPlan("default", k_rgb, k_lamps).channel_names(), rgb);
+    EXPECT_EQ(
+        LayerPlan("default", k_rgb, k_lamps, {.multiple = true, .error = true}).channel_names(),
+        rgb);
+    EXPECT_EQ(LayerPlan("", std::vector<double>{450, 540.5}, {}).channel_names(),
+              (Names{"R", "G", "B", "A", "total.450nm", "total.540_5nm", "depth.Z"}));
+    EXPECT_EQ(LayerPlan("id,default", k_rgb, k_lamps).channel_names(),
+              (Names{"R", "G", "B", "A", "depth.Z", "id.V"}));
+}
+
+TEST(Layers, LightIsToldFromGroundTruth) {
+    for (const char* name :
+         {"R", "A", "total.540nm", "direct.R", "multiple.volume.540_5nm", "clean.B", "irradiance.R",
+          "error.G", "lamp.depth.Z.R", "order.1.R", "order.more.540nm", "reflections.0.B"})
+        EXPECT_TRUE(is_light(name)) << name;
+    for (const char* name : {"depth.Z", "range.V", "path.V", "normal.X", "position.Y", "id.V",
+                             "lit.V", "transmittance.R", "albedo.G"})
+        EXPECT_FALSE(is_light(name)) << name;
+    EXPECT_TRUE(is_image_channel("A"));
+    EXPECT_TRUE(is_image_channel("total.540_5nm"));
+    EXPECT_FALSE(is_image_channel("direct.R"));
+    EXPECT_FALSE(is_image_channel("depth.Z"));
+}
+
+TEST(Layers, AllHasTheLamps) {
     const LayerPlan plan("all", k_rgb, k_lamps);
     ASSERT_EQ(plan.channel_names().size(), 42u + 6u);
     EXPECT_EQ(plan.first_channel_of_lamp(0), 42);
@@ -150,7 +175,7 @@ TEST(Layers, WhatCannotBeSuppliedIsLeftOutOrRefused) {
               (Names{"multiple.R", "multiple.G", "multiple.B", "multiple.volume.R",
                      "multiple.volume.G", "multiple.volume.B", "multiple.surface.R",
                      "multiple.surface.G", "multiple.surface.B", "error.R", "error.G", "error.B"}));
-    EXPECT_EQ(names("default", {.multiple = true}).size(), 42U + 9U);
+    EXPECT_EQ(names("all", {.multiple = true}).size(), 42U + 9U + 6U);
     EXPECT_EQ(names("multiple.surface", {.multiple = true}).size(), 4U + 3U);
     for (const char* const name : {"multiple", "multiple.volume", "multiple.surface"})
         EXPECT_EQ(message_of<UsageError>(name),

@@ -13,7 +13,7 @@ namespace uw::test {
 /// than POSITION and the coordinates are set by the test.
 struct TexturedGltf {
     std::string material = "{}";  // JSON
-    std::string images = R"([{"uri":"t.tga"}])", node = R"({"mesh":0})";
+    std::string images = R"([{"uri":"t.png"}])", node = R"({"mesh":0})";
     std::vector<float> normals, tangents;  // per corner, if any
     std::vector<float> colors;             // r, g, b, a
 
@@ -51,18 +51,5 @@ struct TexturedGltf {
                R"(,"uri":"data:application/octet-stream;base64,)" + base64(buffer) + "\"}]}";
     }
 };
-
-/// A Targa picture of r, g, b, a texels, top row first.
-inline std::string targa(int width, int height, const std::vector<int>& rgba) {
-    std::string bytes(18, '\0');
-    bytes[2] = 2;  // true colour, not compressed
-    bytes[12] = static_cast<char>(width);
-    bytes[14] = static_cast<char>(height);
-    bytes[16] = 32;
-    bytes[17] = 0x28;  // 8 bits of alpha, top left
-    for (std::size_t at = 0; at + 3 < rgba.size(); at += 4)
-        for (const std::size_t k : {2, 1, 0, 3}) bytes += static_cast<char>(rgba[at + k]);
-    return bytes;
-}
 
 }  // namespace uw::test

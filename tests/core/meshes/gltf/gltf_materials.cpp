@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/meshes/files/mesh_reader.h"
+#include "tests/support/image_file.h"
 #include "tests/support/meshes/mesh_reading.h"
 #include "tests/support/meshes/textured_gltf.h"
 #include "tests/support/surface_probes.h"
@@ -23,9 +24,9 @@ class GltfMaterials : public test::MeshReading {
   protected:
     GltfMaterials() {
         // Top row red and green, bottom row blue and white with alphas 0, 100, 200, 255.
-        folder_.write("t.tga", test::targa(2, 2,
-                                           {255, 0, 0, 0, 0, 255, 0, 100,  //
-                                            0, 0, 255, 200, 255, 255, 255, 255}));
+        folder_.write("t.png", test::encoded_image("png", 2, 2, 4,
+                                                   {255, 0, 0, 0, 0, 255, 0, 100,  //
+                                                    0, 0, 255, 200, 255, 255, 255, 255}));
     }
     GeometryDesc desc(const TexturedGltf& gltf) {
         GeometryDesc result;
@@ -196,7 +197,7 @@ TEST_F(GltfMaterials, PbrComesOnRequestOnly) {
 class NormalMaps : public GltfMaterials {
   protected:
     NormalMaps() {
-        folder_.write("t.tga", test::targa(1, 1, {192, 160, 222, 255}));
+        folder_.write("t.png", test::encoded_image("png", 1, 1, 4, {192, 160, 222, 255}));
         gltf_.material = R"({"normalTexture":{"index":0,"scale":0.5}})";
     }
     // The texel as a vector; x and y halved by the scale.

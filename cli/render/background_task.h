@@ -1,0 +1,45 @@
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <thread>
+#include <utility>
+
+namespace uw {
+
+/// Work that is done on a thread of its own, from construction on. The destructor waits for it.
+class BackgroundTask {
+  public:
+    explicit BackgroundTask(std::function<void()> work)
+        : thread_([this, work = std::move(work)] {
+              try {
+                  work();
+              } catch (...) {
+                  error_ = std::current_exception();
+              }
+              is_done_ = true;
+          }) {}
+    ~BackgroundTask() {
+        if (thread_.joinable()) thread_.join();
+    }
+    BackgroundTask(const BackgroundTask&) = delete;
+    BackgroundTask& operator=(const BackgroundTask&) = delete;
+    BackgroundTask(BackgroundTask&&) = delete;
+    BackgroundTask& operator=(BackgroundTask&&) = delete;
+
+    /// Whether finish() would not wait.
+    bool is_done() const { return is_done_; }
+    /// Waits for the work, and throws what it threw. To be called once.
+    void finish() {
+        thread_.join();
+        if (error_) std::rethrow_exception(error_);
+    }
+
+  private:
+    std::exception_ptr error_;
+    std::atomic<bool> is_done_{false};
+    std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace uw

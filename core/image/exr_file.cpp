@@ -1,0 +1,183 @@
+#include "core/image/exr_file.h"
+
+#include <Imath/half.h>
+#include <OpenEXR/Iex.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <exception>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace uw {
+namespace {
+
+/// Lines handed over together, of which those of half floats are converted first.
+constexpr int k_lines_at_once = 128;
+/// More effort than the least, at no measurable cost.
+constexpr int k_zip_level = 2;
+
+constexpr std::array<std::pair<ExrCompression, Imf::Compression>, 3> k_compressions{
+    {{ExrCompression::none, Imf::NO_COMPRESSION},
+     {ExrCompression::zips, Imf::ZIPS_COMPRESSION},
+     {ExrCompression::zip, Imf::ZIP_COMPRESSION}}};
+
+Imf::Header openexr_header(const ExrHeader& header) {
+    const PixelWindow& window = header.window;
+    Imf::Header result({{0, 0}, {header.width - 1, header.height - 1}},
+                       {{window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}});
+    for (const auto& [ours, theirs] : k_compressions)
+        if (ours == header.compression) result.compression() = theirs;
+    result.zipCompressionLevel() = k_zip_level;
+    for (const ExrChannel& channel : header.channels)
+        result.channels().insert(channel.name,
+                                 Imf::Channel(channel.is_half ? Imf::HALF : Imf::FLOAT));
+    for (const auto& [name, value] : header.metadata) {
+        if (const auto* text = std::get_if<std::string>(&value))
+            result.insert(name, Imf::StringAttribute(*text));
+        else
+            result.insert(name, Imf::FloatAttribute(static_cast<float>(std::get<double>(value))));
+    }
+    return result;
+}
+
+/// OpenEXR's way to an OutputFile, which keeps errors until it is committed.
+class ExrStream : public Imf::OStream {
+  public:
+    explicit ExrStream(OutputFile& out) : OStream("image"), out_(out) {}
+    void write(const char bytes[], int count) override {
+        out_.write(std::string_view(bytes, static_cast<std::size_t>(count)));
+    }
+    std::uint64_t tellp() override { return out_.position(); }
+    void seekp(std::uint64_t position) override { out_.seek(position); }
+
+  private:
+    OutputFile& out_;
+};
+
+/// The lines of a film as OpenEXR takes them: floats where they are, half floats converted.
+class ExrLines {
+  public:
+    ExrLines(const Film& film, std::span<const ExrChannel> channels) : film_(film) {
+        for (const ExrChannel& channel : channels) {
+            const auto found = std::ranges::find(film.channel_names(), channel.name);
+            const auto index = static_cast<std::size_t>(found - film.channel_names().begin());
+            (channel.is_half ? halves_ : floats_).push_back(index);
+        }
+    }
+
+    /// Of the lines from `begin` on; valid until the next call.
+    Imf::FrameBuffer from(int begin, int end) {
+        convert(begin, end);
+        const PixelWindow& window = film_.window();
+        Imf::FrameBuffer buffer;
+        const auto insert = [&](std::size_t channel, Imf::PixelType type, const void* first,
+                                std::size_t pixel_bytes) {
+            buffer.insert(
+                film_.channel_names()[channel],
+                Imf::Slice::Make(type, first, Imath::V2i(window.x0, begin), window.width(),
+                                 end - begin, pixel_bytes, pixel_bytes * width()));
+        };
+        for (const std::size_t channel : floats_)
+            insert(channel, Imf::FLOAT, &film_.pixel(window.x0, begin)[channel],
+                   sizeof(float) * film_.channel_names().size());
+        for (std::size_t i = 0; i < halves_.size(); ++i)
+            insert(halves_[i], Imf::HALF, &converted_[i], sizeof(Imath::half) * halves_.size());
+        return buffer;
+    }
+
+  private:
+    std::size_t width() const { return static_cast<std::size_t>(film_.window().width()); }
+
+    void convert(int begin, int end) {
+        const std::size_t line_values = width() * halves_.size();
+        converted_.resize(static_cast<std::size_t>(end - begin) * line_values);
+        parallel_for(static_cast<std::size_t>(end - begin), [&](std::size_t line) {
+            Imath::half* out = converted_.data() + line * line_values;
+            const int y = begin + static_cast<int>(line);
+            for (int x = film_.window().x0; x < film_.window().x1; ++x) {
+                const std::span<const float> pixel = film_.pixel(x, y);
+                for (const std::size_t channel : halves_) *out++ = Imath::half(pixel[channel]);
+            }
+        });
+    }
+
+    const Film& film_;
+    std::vector<std::size_t> floats_, halves_;  // indices in the film
+    std::vector<Imath::half> converted_;        // as in the film, without the other channels
+};
+
+/// Empty if `header` is not one that `openexr_header` makes.
+std::optional<ExrHeader> known_header(const Imf::Header& header) {
+    const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
+    ExrHeader result{display.max.x + 1, display.max.y + 1, {}, {}, {}, {}};
+    result.window = {data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};
+    for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
+        const Imf::PixelType type = at.channel().type;
+        if (type != Imf::HALF && type != Imf::FLOAT) return std::nullopt;
+        result.channels.push_back({at.name(), type == Imf::HALF});
+    }
+    const auto compression = std::ranges::find(k_compressions, header.compression(),
+                                               &decltype(k_compressions)::value_type::second);
+    if (compression == k_compressions.end()) return std::nullopt;
+    result.compression = compression->first;
+    for (auto at = header.begin(); at != header.end(); ++at) {
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute()))
+            result.metadata[at.name()] = text->value();
+        if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&at.attribute()))
+            result.metadata[at.name()] = static_cast<double>(number->value());
+    }
+    return result;
+}
+
+}  // namespace
+
+void write_exr_file(OutputFile& out, const Film& film, const ExrHeader& header) {
+    const int threads = permitted_threads();
+    Imf::setGlobalThreadCount(threads > 1 ? threads : 0);  // 0: the calling thread alone
+    ExrStream stream(out);
+    try {
+        Imf::OutputFile file(stream, openexr_header(header));
+        ExrLines lines(film, header.channels);
+        const PixelWindow& window = film.window();
+        for (int begin = window.y0; begin < window.y1; begin += k_lines_at_once) {
+            const int end = std::min(begin + k_lines_at_once, window.y1);
+            file.setFrameBuffer(lines.from(begin, end));
+            file.writePixels(end - begin);
+        }
+    } catch (const Iex::BaseExc& error) {
+        throw IoError(fmt::format("{}: cannot write: {}", out.path().string(), error.what()));
+    }
+}
+
+std::optional<ExrHeader> read_exr_header(const std::filesystem::path& file) {
+    std::error_code status;
+    // A pipe or device under an image's name would block the reader.
+    if (!std::filesystem::is_regular_file(file, status)) return std::nullopt;
+    try {
+        constexpr int k_no_threads = 0;
+        constexpr bool k_restore_offsets = false;
+        const Imf::MultiPartInputFile input(file.c_str(), k_no_threads, k_restore_offsets);
+        if (input.parts() != 1) return std::nullopt;
+        return known_header(input.header(0));
+    } catch (const std::exception&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace uw

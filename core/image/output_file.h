@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+#include "core/base/atomic_file.h"
+
+namespace uw {
+
+/// A binary file that appears under its name only once it is complete: write, then commit. If any
+/// of it cannot be written, commit() throws, and nothing before.
+class OutputFile {
+  public:
+    /// Throws as AtomicFile's constructor.
+    explicit OutputFile(const std::filesystem::path& file);
+
+    void write(std::span<const std::byte> bytes);
+    void write(std::string_view bytes) { write(std::as_bytes(std::span(bytes))); }
+    /// Where the next bytes go, from the beginning of the file.
+    std::uint64_t position() const { return position_; }
+    void seek(std::uint64_t position);
+
+    const std::filesystem::path& path() const { return file_; }
+
+    /// Throws IoError unless the file is complete and bears its name.
+    void commit();
+
+  private:
+    std::filesystem::path file_;
+    AtomicFile atomic_;
+    std::ofstream stream_;
+    std::uint64_t position_ = 0;
+};
+
+}  // namespace uw

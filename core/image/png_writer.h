@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/image/image_metadata.h"
+#include "core/image/output_file.h"
+#include "core/image/preview.h"
+
+namespace uw {
+
+/// Writes all of a PNG of 8-bit sRGB, with metadata as its texts. Throws IoError if libpng refuses;
+/// what cannot be written is for out.commit() to report.
+void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata);
+
+}  // namespace uw
