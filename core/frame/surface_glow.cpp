@@ -60,8 +60,15 @@ class SurfaceGlow::Spreading {
             BlurPyramid::level_count(glow_.cells_.width(), glow_.cells_.height()));
     }
 
+    /// A pixel that is not blurred is as wide as a pixel.
+    static double width_of(std::size_t level) {
+        constexpr double k_pixel = 0.29;  // 1 / sqrt(12)
+        return std::max(k_pixel, BlurPyramid::deviation(static_cast<int>(level)));
+    }
+
     /// Of the pyramid's levels for each scale and distance: a component's width lies between those
-    /// of two levels, which share it such that the variance is right.
+    /// of two levels, which share it such that an edge is as steep: the slope is 1 / width. With
+    /// the right variance it would be too steep.
     void find_level_weights(std::size_t interval, std::size_t band) {
         const std::size_t scales = glow_.angles_.size(), distances = spread_.distances().size();
         weights_.assign(levels() * scales * distances, 0.0F);
@@ -70,16 +77,12 @@ class SurfaceGlow::Spreading {
             for (std::size_t m = 0; m < PointSpread::k_components; ++m) {
                 const double sigma = PointSpread::deviation(m) / glow_.angles_[scale];
                 std::size_t level = 0;
-                while (level + 2 < levels() &&
-                       BlurPyramid::deviation(static_cast<int>(level) + 1) <= sigma)
-                    ++level;
+                while (level + 2 < levels() && width_of(level + 1) <= sigma) ++level;
                 const std::size_t next = std::min(level + 1, levels() - 1);
-                const double narrow = BlurPyramid::deviation(static_cast<int>(level));
-                const double wide = BlurPyramid::deviation(static_cast<int>(next));
-                const double t = next > level ? std::clamp((sigma * sigma - narrow * narrow) /
-                                                               (wide * wide - narrow * narrow),
-                                                           0.0, 1.0)
-                                              : 0.0;
+                const double narrow = 1 / width_of(level), wide = 1 / width_of(next);
+                const double t = next > level
+                                     ? std::clamp((narrow - 1 / sigma) / (narrow - wide), 0.0, 1.0)
+                                     : 0.0;
                 for (std::size_t d = 0; d < distances; ++d) {
                     const float weight = spread_.weights(interval, band, d)[m];
                     weights_[(level * scales + scale) * distances + d] +=

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/input_files.h"
 #include "core/image/image_reader.h"
 #include "core/meshes/gltf/gltf_uri.h"
 
@@ -57,7 +58,11 @@ std::shared_ptr<const Texture> GltfMaterials::picture(std::size_t image, Texture
         const std::string name = fmt::format("{}: texture {}", document_.name(),
                                              json.value("name", std::to_string(image)));
         if (uri.starts_with("data:")) return read_image(decode_data_uri(document_, uri), name);
-        if (!uri.empty()) return read_image(gltf_uri_path(document_.file(), uri));
+        if (!uri.empty()) {
+            const std::filesystem::path file = gltf_uri_path(document_.file(), uri);
+            remember_input(file);
+            return read_image(file);
+        }
         return read_image(bytes_.view(json, "bufferView"), name);
     };
     known = std::make_shared<Texture>(decode(), encoding, keep_alpha);
