@@ -120,12 +120,18 @@ std::vector<SceneCase> all_cases() {
         add(small, &SceneCase::bands, 16);
     }
     add(sized(Kind::uniform, 640, 360), &SceneCase::triangles, 10'000'000);
-    for (const bool dense : {true, false})
+    for (const Fog kind : {Fog::dense, Fog::sparse})
         for (const int voxels : {128, 256, 512}) {
             SceneCase fog = sized(Kind::fog, 320, 180);
-            fog.dense = dense;
+            fog.fog = kind;
             add(fog, &SceneCase::voxels, voxels);
         }
+    SceneCase large = sized(Kind::fog, 640, 360);
+    large.voxels = 512;
+    add(large, &SceneCase::lamps, 2);
+    SceneCase ball = sized(Kind::fog, 640, 360);
+    ball.fog = Fog::ball;
+    add(ball, &SceneCase::voxels, 256);
     return cases;
 }
 

@@ -197,11 +197,11 @@ SceneCase plume(int width = 640, int height = 360) {
     return scene;
 }
 
-SceneCase fog(int voxels, bool dense) {
+SceneCase fog(int voxels, Fog kind) {
     SceneCase scene = plume(320, 180);
     scene.kind = Kind::fog;
     scene.voxels = voxels;
-    scene.dense = dense;
+    scene.fog = kind;
     return scene;
 }
 
@@ -217,8 +217,8 @@ std::vector<Stage> all_stages() {
     many_triangles.triangles = 10'000'000;
     std::vector<Stage> stages{{"load_vdb", load_volumes, plume()}};
     for (const int voxels : {128, 256, 512})
-        for (const bool dense : {true, false})
-            stages.push_back({"load_vdb", load_volumes, fog(voxels, dense)});
+        for (const Fog kind : {Fog::dense, Fog::sparse})
+            stages.push_back({"load_vdb", load_volumes, fog(voxels, kind)});
     for (const SceneCase& scene : {uniform, many_triangles}) {
         stages.push_back({"load_mesh", load_geometry, scene});
         stages.push_back({"splat", splat, scene});

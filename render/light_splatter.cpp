@@ -10,7 +10,8 @@ void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowO
         surfaces_ == scene.surfaces && options_.shadow_resolution == share.shadow_resolution;
     const bool same_columns = field_.lock() == scene.field &&
                               options_.columns_per_voxel == share.columns_per_voxel &&
-                              options_.column_budget == share.column_budget;
+                              options_.column_budget == share.column_budget &&
+                              options_.column_tolerance == share.column_tolerance;
     for (Maps& maps : maps_) {
         if (!same_shadows) maps.shadows.reset();
         if (!same_columns) maps.columns.reset();
@@ -28,8 +29,9 @@ void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Dire
         counts_.rays += maps.shadows->rays_traced();
     }
     if (!maps.columns) {
-        maps.columns = std::make_shared<ColumnMap>(
-            *scene.field, maps.lamp, options_.columns_per_voxel, options_.column_budget);
+        maps.columns =
+            std::make_shared<ColumnMap>(*scene.field, maps.lamp, options_.columns_per_voxel,
+                                        options_.column_budget, options_.column_tolerance);
         ++counts_.column_maps;
         counts_.rays += maps.columns->rays_traced();
     }

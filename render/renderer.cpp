@@ -63,7 +63,7 @@ const AssembledScene& Renderer::assemble() {
 
 const DeepShadows& Renderer::splat() {
     assemble();
-    if (light_.empty()) splat(deep_shadow_options(scene_.desc.render.quality));
+    if (light_.empty()) splat(deep_shadow_options(scene_.desc.render.quality, scene_.water.medium));
     return light_;
 }
 

@@ -32,6 +32,10 @@ constexpr double k_slab_spacing = 0.0091;  // rad
 // closer nodes and has a quarter of that error.
 constexpr double k_in_scatter_tolerance = 2e-3;
 constexpr double k_draft_tolerance = 0.05;
+// How far the columns of a lamp's map may be off between two of its rays, as optical depth: rays
+// half as far apart are used. A camera's ray meets hundreds of such errors, of either sign: the
+// image is off by less than 1e-4 of its mean (RMS).
+constexpr double k_column_tolerance = 0.02;
 // Rays per pixel for what is not a mean over light paths, in images that are.
 constexpr int k_most_samples_beside_paths = 16;
 
@@ -123,8 +127,10 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     return setup;
 }
 
-DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality) {
+DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium& medium) {
     DeepShadowOptions options;
+    if (quality != RenderDesc::Quality::exact)
+        options.column_tolerance = DepthTolerance(medium, k_column_tolerance);
     if (quality != RenderDesc::Quality::draft) return options;
     options.shadow_resolution = 128;
     options.columns_per_voxel = 0.75;

@@ -32,8 +32,8 @@ struct PathRequest {
 LayerPlan layer_plan(const SceneDesc& scene, std::string_view request,
                      const PathRequest& paths = {});
 
-/// The resolution at which lamps are splatted for an image of this quality.
-DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality);
+/// The resolution at which lamps are splatted into water of `medium` for an image of this quality.
+DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium& medium);
 
 /// How closely in-scatter is interpolated between pixels (InScatterLattice); 0 for integrators
 /// meant for comparison: every pixel has its own ray.

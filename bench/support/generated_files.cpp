@@ -95,17 +95,29 @@ void write_seabed(const std::filesystem::path& file, int triangles) {
     write_ply(file, mesh);
 }
 
-void write_fog(const std::filesystem::path& file, int voxels, bool dense) {
+void write_fog(const std::filesystem::path& file, int voxels, Fog fog) {
+    const auto noise = [voxels](int i, int j, int k) {
+        const double scale = 6.0 / voxels;  // lumps of the first octave along an edge
+        return value_noise({scale * i, scale * j, scale * k}, 3);
+    };
+    const auto value = [&](int i, int j, int k) {
+        switch (fog) {
+            case Fog::dense:
+                return 0.05 + noise(i, j, k);
+            case Fog::sparse:
+                return 4 * std::max(0.0, noise(i, j, k) - 0.6);
+            case Fog::ball:
+                return glm::length(Vector3(i, j, k) - Vector3(0.5 * voxels)) < 0.25 * voxels ? 1.0
+                                                                                             : 0.0;
+        }
+        throw InputError("unknown kind of fog");
+    };
     VdbOutputGrid grid;
     grid.name = "density";
     grid.size = {voxels, voxels, voxels};
     grid.voxel_size = k_fog_side / voxels;
     grid.origin = {-1.35, 0, -1.2};
-    grid.value = [voxels, dense](int i, int j, int k) {
-        const double scale = 6.0 / voxels;  // lumps of the first octave along an edge
-        const double noise = value_noise({scale * i, scale * j, scale * k}, 3);
-        return static_cast<float>(dense ? 0.05 + noise : 4 * std::max(0.0, noise - 0.6));
-    };
+    grid.value = [&](int i, int j, int k) { return static_cast<float>(value(i, j, k)); };
     write_vdb(file, {grid}, {{"creator", "uwvdb bench"}});
 }
 

@@ -12,8 +12,14 @@ void write_seabed(const std::filesystem::path& file, int triangles);
 /// Side of the box of fog [m]: x -1.35..1.05, y 0..2.4, z -1.2..1.2.
 inline constexpr double k_fog_side = 2.4;
 
-/// Writes a grid "density" of `voxels`^3 values of about 0 to 1. Dense: noise that is above 0
-/// everywhere. Sparse: clouds of it, with nothing between them.
-void write_fog(const std::filesystem::path& file, int voxels, bool dense);
+/// What a box of fog holds, in values of about 0 to 1.
+enum class Fog {
+    dense,   // noise that is above 0 everywhere
+    sparse,  // clouds of it, with nothing between them
+    ball,    // 1 within a ball that fills half of the box's edge, 0 outside: an edge of one voxel
+};
+
+/// Writes a grid "density" of `voxels`^3 values.
+void write_fog(const std::filesystem::path& file, int voxels, Fog fog);
 
 }  // namespace uw::bench

@@ -10,7 +10,6 @@
 #include <numbers>
 #include <vector>
 
-#include "bench/support/generated_files.h"
 #include "core/base/error.h"
 #include "render/scene_loading.h"
 
@@ -95,7 +94,8 @@ std::string text(const SceneCase& scene, const std::string& mesh, const std::str
 }
 
 std::string fog_name(const SceneCase& scene) {
-    return fmt::format("fog{}-{}", scene.voxels, scene.dense ? "dense" : "sparse");
+    const char* const names[]{"dense", "sparse", "ball"};
+    return fmt::format("fog{}-{}", scene.voxels, names[static_cast<std::size_t>(scene.fog)]);
 }
 
 std::string kind_name(const SceneCase& scene) {
@@ -140,7 +140,7 @@ SceneDesc SceneFiles::read(const SceneCase& scene) const {
         if (scene.kind == SceneCase::Kind::plume) vdb = UWVDB_BENCH_PLUME;
         if (scene.kind == SceneCase::Kind::fog) {
             vdb = fog_name(scene) + ".vdb";
-            if (!exists(folder_ / vdb)) write_fog(folder_ / vdb, scene.voxels, scene.dense);
+            if (!exists(folder_ / vdb)) write_fog(folder_ / vdb, scene.voxels, scene.fog);
         }
         yaml = text(scene, mesh, vdb);
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/support/generated_files.h"
 #include "core/base/scratch_folder.h"
 #include "core/scene/scene_desc.h"
 
@@ -24,7 +25,7 @@ struct SceneCase {
     int bands = 3;
     int triangles = 100'000;
     int voxels = 0;  // of fog, along an edge
-    bool dense = true;
+    Fog fog = Fog::dense;
     int threads = 1;
 
     /// "plume/640x360/lamps:3/bands:3/threads:1", and whatever else distinguishes the case.

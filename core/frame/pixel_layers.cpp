@@ -75,11 +75,18 @@ void restore_sums(const LayerPlan& plan, const BandColour& colour, std::span<flo
 
 }  // namespace
 
-void PixelResult::reset(std::size_t lamp_count) {
-    std::vector<Spectrum> storage = std::move(lamps);
-    *this = PixelResult{};
-    lamps = std::move(storage);
+void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
+    alpha = lit = depth_z = range = path = 0;
+    pixel_factor = 1;
+    has_hit = false;
+    hit = {};
+    for (Spectrum* const values :
+         {&direct, &forward, &backscatter, &backscatter_first, &multiple_volume, &multiple_surface,
+          &error, &irradiance, &exitance, &clean, &transmittance})
+        std::ranges::fill(values->first(bands), 0.0);
     lamps.assign(lamp_count, Spectrum{});
+    orders.clear();
+    reflections.clear();
 }
 
 namespace layer_channels {

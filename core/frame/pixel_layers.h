@@ -45,8 +45,9 @@ struct PixelResult {
     double range = 0;    // from the camera's centre to the hit
     double path = 0;     // in water, from the outer glass surface to the hit
 
-    /// Resets to an empty pixel, with 0 for each of `lamp_count` lamps. Storage is reused.
-    void reset(std::size_t lamp_count);
+    /// Resets to an empty pixel, with 0 for each of `lamp_count` lamps. Storage is reused. `bands`:
+    /// as many as any pixel that it has held; clearing all costs a tenth of a simple image's time.
+    void reset(std::size_t lamp_count, std::size_t bands = k_max_bands);
 };
 
 /// Functions that fill a layer's channels from a pixel.

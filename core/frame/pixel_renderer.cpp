@@ -169,7 +169,7 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
                           std::size_t first_sample, std::span<const double> in_scatter,
                           PixelResult& result) const {
     const auto bands = static_cast<std::size_t>(band_count());
-    result.reset(in_scatter_.parts().lamps ? scene_.lamps->size() : 0);
+    result.reset(in_scatter_.parts().lamps ? scene_.lamps->size() : 0, bands);
     result.alpha = view.alpha;
     result.has_hit = view.has_hit;
     if (view.has_hit) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/error.h"
 #include "core/base/quadrature.h"
 
 namespace uw {
@@ -19,10 +20,14 @@ constexpr double k_negligible_optical_depth = 15;
 // relative to the distance from the lamp.
 constexpr double k_least_relative_panel = 0.35;
 
-// Parameters by quality: drafts have more than the usual two voxels per panel, and the
+// Parameters by quality. A step of the profile along a ray may be off by k_depth_tolerance; the
+// integral over hundreds of steps, whose errors differ in sign, is off by far less. The
 // transmittance error of surfaces due to interpolated columns is far below what the eye or a 12-bit
 // camera can resolve.
-constexpr int k_draft_voxels_per_panel = 6;
+constexpr double k_depth_tolerance = 1e-3;
+constexpr double k_draft_depth_tolerance = 0.02;
+constexpr int k_knots_per_panel = 2;
+constexpr int k_draft_knots_per_panel = 6;
 constexpr double k_column_tolerance = 1e-3;
 constexpr double k_draft_column_tolerance = 0.01;
 
@@ -74,11 +79,10 @@ void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, con
     }
 }
 
-// Adds a profile's knots, which are spaced by voxels: every `voxels`-th one, and those where
-// particles begin and end.
-void add_knots(const ConcentrationProfile& profile, int voxels, PanelBreaks& breaks) {
-    const auto pace = static_cast<std::size_t>(voxels);
-    const double least_knots = voxels - 0.1;
+// Adds a profile's knots: every `knots`-th one, and those where particles begin and end.
+void add_knots(const ConcentrationProfile& profile, int knots, PanelBreaks& breaks) {
+    const auto pace = static_cast<std::size_t>(knots);
+    const double least_knots = knots - 0.1;
     bool was_empty = true;
     for (std::size_t i = 0; i + 1 < profile.s.size(); ++i) {
         const bool is_empty = profile.empty_between(i);
@@ -92,14 +96,23 @@ void add_knots(const ConcentrationProfile& profile, int voxels, PanelBreaks& bre
 
 LightTransport make_volume(const IntegratorInputs& inputs) {
     using Quality = RenderDesc::Quality;
-    if (inputs.quality == Quality::draft)
-        return {std::make_unique<VolumeIntegrator>(inputs.scene, inputs.deep_shadows,
-                                                   k_draft_voxels_per_panel),
-                std::make_unique<DirectLighting>(inputs.scene, inputs.deep_shadows,
-                                                 k_draft_column_tolerance)};
-    const double column_tolerance = inputs.quality == Quality::exact ? 0 : k_column_tolerance;
-    return {std::make_unique<VolumeIntegrator>(inputs.scene, inputs.deep_shadows),
-            std::make_unique<DirectLighting>(inputs.scene, inputs.deep_shadows, column_tolerance)};
+    const LitScene& scene = inputs.scene;
+    const auto make = [&](double depth_tolerance, int knots_per_panel, double column_tolerance) {
+        return LightTransport{
+            std::make_unique<VolumeIntegrator>(scene, inputs.deep_shadows,
+                                               DepthTolerance(*scene.medium, depth_tolerance),
+                                               knots_per_panel),
+            std::make_unique<DirectLighting>(scene, inputs.deep_shadows, column_tolerance)};
+    };
+    switch (inputs.quality) {
+        case Quality::draft:
+            return make(k_draft_depth_tolerance, k_draft_knots_per_panel, k_draft_column_tolerance);
+        case Quality::final:
+            return make(k_depth_tolerance, k_knots_per_panel, k_column_tolerance);
+        case Quality::exact:
+            return make(0, k_knots_per_panel, 0);
+    }
+    throw InputError("unknown quality");
 }
 
 }  // namespace
@@ -120,9 +133,10 @@ struct VolumeIntegrator::Workspace {
 
 VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
                                    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
-                                   int voxels_per_panel)
+                                   const DepthTolerance& tolerance, int knots_per_panel)
     : scene_(scene),
-      voxels_per_panel_(voxels_per_panel),
+      tolerance_(tolerance),
+      knots_per_panel_(knots_per_panel),
       deep_shadows_(std::move(deep_shadows)),
       phase_cotangents_(cotangents_of_breakpoints(*scene.medium)),
       phases_(*scene.medium),
@@ -145,7 +159,7 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
     thread_local Workspace w;
     const std::vector<Lamp>& lamps = *scene_.lamps;
     result.reset(distances.size(), lamps.size());
-    scene_.field->profile(ray, distances.back(), w.profile);
+    scene_.field->profile_within(tolerance_, ray, distances.back(), w.profile);
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         const LampPassage passage(ray, lamps[j].position());
         double reach = distances.back();
@@ -196,10 +210,10 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     for (const double cotangent : phase_cotangents_)
         w.breaks.add_edge(passage.foot - passage.distance * cotangent);
     if (w.profile.constituent_count > 0) {
-        add_knots(w.profile, voxels_per_panel_, w.breaks);
+        add_knots(w.profile, knots_per_panel_, w.breaks);
         w.marks.clear();
         deep_shadows_[lamp]->append_column_breaks(ray, interval, w.marks);
-        const double spacing = voxels_per_panel_ * scene_.field->finest_voxel();
+        const double spacing = knots_per_panel_ * scene_.field->finest_voxel();
         for (const double s : w.marks) w.breaks.add_mark(s, spacing);
     }
     return w.breaks.kept();

@@ -18,11 +18,12 @@ class VolumeIntegrator final : public Integrator {
     /// For every scene whose lamps have been splatted.
     static const IntegratorKind k_kind;
 
-    /// `deep_shadows`: one per lamp of `scene`. `voxels_per_panel`: how finely variation between
-    /// voxels is resolved, with at least two nodes per panel; large values are for drafts.
+    /// `deep_shadows`: one per lamp of `scene`. `tolerance`: of the concentrations along a ray.
+    /// `knots_per_panel`: how finely their variation is resolved, with at least two nodes per
+    /// panel; large values are for drafts.
     VolumeIntegrator(const LitScene& scene,
                      std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
-                     int voxels_per_panel = 2);
+                     const DepthTolerance& tolerance, int knots_per_panel);
 
     void in_scatter(const Ray& ray, std::span<const double> distances,
                     InScatter& result) const override;
@@ -41,7 +42,8 @@ class VolumeIntegrator final : public Integrator {
                     const ConcentrationProfile& profile, ScatterNodes& nodes) const;
 
     LitScene scene_;
-    int voxels_per_panel_;
+    DepthTolerance tolerance_;
+    int knots_per_panel_;
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;
     std::vector<double> phase_cotangents_;  // of all phase functions' breakpoints
     PhaseTable phases_;

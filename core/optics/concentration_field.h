@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/ray.h"
+#include "core/optics/depth_tolerance.h"
 
 namespace uw {
 
@@ -25,6 +26,8 @@ struct ConcentrationProfile {
         }
         return true;
     }
+    /// Computes the columns, those of linear concentrations between the knots.
+    void integrate();
 };
 
 /// Spatially varying concentrations of the medium's constituents, on top of the uniform water.
@@ -48,6 +51,12 @@ class ConcentrationField {
     /// Concentrations along `ray` from 0 to `s_end`, with knots at the resolution of the voxels;
     /// `profile` is reused storage and is overwritten. Intervals without particles take two knots.
     virtual void profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const = 0;
+
+    /// The same with as few knots as `tolerance` allows.
+    virtual void profile_within(const DepthTolerance& /*tolerance*/, const Ray& ray, double s_end,
+                                ConcentrationProfile& profile) const {
+        this->profile(ray, s_end, profile);
+    }
 };
 
 }  // namespace uw

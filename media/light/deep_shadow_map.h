@@ -14,6 +14,7 @@ struct DeepShadowOptions {
     int shadow_resolution = 512;              // texels along an edge of a cube face
     double columns_per_voxel = 2;             // texels and steps of columns per voxel edge
     std::size_t column_budget = 80ull << 20;  // bytes of columns, for all lamps of a scene together
+    DepthTolerance column_tolerance{};        // of columns where fewer than those would do
 };
 
 /// One lamp's light, splatted into the scene (docs/design.md): a shadow map and a column map,
@@ -24,9 +25,10 @@ class DeepShadowMap : public DeepShadow {
     /// options' whole budget to itself.
     DeepShadowMap(const ConcentrationField& field, const Surfaces& surfaces, const Point3& lamp,
                   const DeepShadowOptions& options)
-        : DeepShadowMap(std::make_shared<ShadowMap>(surfaces, lamp, options.shadow_resolution),
-                        std::make_shared<ColumnMap>(field, lamp, options.columns_per_voxel,
-                                                    options.column_budget)) {}
+        : DeepShadowMap(
+              std::make_shared<ShadowMap>(surfaces, lamp, options.shadow_resolution),
+              std::make_shared<ColumnMap>(field, lamp, options.columns_per_voxel,
+                                          options.column_budget, options.column_tolerance)) {}
 
     /// From existing maps, both for the same lamp position.
     DeepShadowMap(std::shared_ptr<const ShadowMap> shadows,

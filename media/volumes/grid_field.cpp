@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "media/volumes/profile_refinement.h"
+
 namespace uw {
 namespace {
 
@@ -12,6 +14,8 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // The interpolant is a cubic in each cell; linear interpolation with four knots per voxel has an
 // error of 0.06 % in the in-scatter of a rough plume, with two knots 0.2 %.
 constexpr double k_voxels_per_knot = 0.25;
+// profile_within starts with intervals of this many such steps, two voxels, and samples halfway.
+constexpr double k_coarse_steps = 8;
 
 /// An interval of the ray with the step that one brick requires.
 struct PacedStretch {
@@ -27,6 +31,8 @@ struct Scratch {
     std::vector<double> boundaries;
     std::vector<double> values;
     std::vector<char> at_empty;  // knots next to an empty piece, where the concentration is zero
+    std::vector<double> least;   // by interval between knots: the step of its piece, or infinity
+    ProfileRefinement refinement;
 };
 
 Scratch& scratch_of_thread() {
@@ -73,11 +79,11 @@ double step_of_piece(double begin, Scratch& scratch) {
     return step;
 }
 
-void append_piece(double begin, double end, double step, ConcentrationProfile& profile,
-                  Scratch& scratch) {
+void append_piece(double begin, double end, double step, double coarsening,
+                  ConcentrationProfile& profile, Scratch& scratch) {
     if (step == 0) scratch.at_empty.back() = 1;
-    if (step > 0 && step < end - begin) {
-        const double count = std::ceil((end - begin) / step);
+    if (step > 0 && coarsening * step < end - begin) {
+        const double count = std::ceil((end - begin) / (coarsening * step));
         for (double n = 1; n < count; ++n) {
             profile.s.push_back(begin + n * ((end - begin) / count));
             scratch.at_empty.push_back(0);
@@ -85,33 +91,34 @@ void append_piece(double begin, double end, double step, ConcentrationProfile& p
     }
     profile.s.push_back(end);
     scratch.at_empty.push_back(step == 0 ? 1 : 0);
+    scratch.least.resize(profile.s.size() - 1, step == 0 ? k_infinity : step);
 }
 
-void place_knots(double s_end, ConcentrationProfile& profile, Scratch& scratch) {
+// Intervals are `coarsening` times as long as the bricks require.
+void place_knots(double s_end, double coarsening, ConcentrationProfile& profile, Scratch& scratch) {
     profile.s.assign(1, 0.0);
     scratch.at_empty.assign(1, 0);
+    scratch.least.clear();
     double piece_begin = 0, piece_step = -1;
     for (std::size_t i = 0; i + 1 < scratch.boundaries.size(); ++i) {
         const double begin = scratch.boundaries[i];
         const double step = step_of_piece(begin, scratch);
         if (piece_step >= 0 && (step != piece_step || step == k_infinity)) {
-            append_piece(piece_begin, begin, piece_step, profile, scratch);
+            append_piece(piece_begin, begin, piece_step, coarsening, profile, scratch);
             piece_begin = begin;
         }
         piece_step = step;
     }
-    append_piece(piece_begin, s_end, std::max(piece_step, 0.0), profile, scratch);
+    append_piece(piece_begin, s_end, std::max(piece_step, 0.0), coarsening, profile, scratch);
 }
 
-void integrate(ConcentrationProfile& profile) {
-    const auto count = static_cast<std::size_t>(profile.constituent_count);
-    profile.column.assign(profile.concentration.size(), 0.0);
-    for (std::size_t i = count; i < profile.column.size(); ++i) {
-        const std::size_t knot = i / count;
-        const double sum = profile.concentration[i] + profile.concentration[i - count];
-        profile.column[i] = profile.column[i - count];
-        // Avoids 0 * infinity on an unbounded ray.
-        if (sum != 0) profile.column[i] += 0.5 * sum * (profile.s[knot] - profile.s[knot - 1]);
+// The interpolant is continuous: next to an empty interval it is exactly zero.
+void clear_at_empty(const Scratch& scratch, ConcentrationProfile& profile) {
+    const auto count = static_cast<std::ptrdiff_t>(profile.constituent_count);
+    for (std::size_t knot = 0; knot < scratch.at_empty.size(); ++knot) {
+        if (scratch.at_empty[knot] != 0)
+            std::fill_n(profile.concentration.begin() + static_cast<std::ptrdiff_t>(knot) * count,
+                        count, 0.0);
     }
 }
 
@@ -148,31 +155,52 @@ void GridField::column(const Point3& a, const Point3& b, std::span<double> colum
     }
 }
 
+void GridField::sample_knots(const Ray& ray, std::span<const double> s,
+                             std::vector<double>& concentration) const {
+    Scratch& scratch = scratch_of_thread();
+    const auto count = static_cast<std::size_t>(constituent_count_);
+    concentration.assign(s.size() * count, 0.0);
+    for (const GridVolume& volume : volumes_) {
+        const LatticeLine line = volume.lattice_line(ray.origin, ray.direction);
+        scratch.values.assign(s.size(), 0.0);
+        for (const NanoGrid& brick : volume.bricks()) brick.add_samples(line, s, scratch.values);
+        for (std::size_t knot = 0; knot < s.size(); ++knot) {
+            if (scratch.values[knot] == 0) continue;
+            for (const GridLoad& load : volume.loads())
+                concentration[knot * count + static_cast<std::size_t>(load.constituent)] +=
+                    load.per_unit * scratch.values[knot];
+        }
+    }
+}
+
 void GridField::profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const {
+    profile_within({}, ray, s_end, profile);
+}
+
+void GridField::profile_within(const DepthTolerance& tolerance, const Ray& ray, double s_end,
+                               ConcentrationProfile& profile) const {
     Scratch& scratch = scratch_of_thread();
     profile.constituent_count = constituent_count_;
     gather_stretches(volumes_, ray, s_end, scratch);
-    place_knots(s_end, profile, scratch);
-
-    const auto count = static_cast<std::size_t>(constituent_count_);
-    profile.concentration.assign(profile.s.size() * count, 0.0);
-    if (!scratch.paced.empty()) {
-        for (const GridVolume& volume : volumes_) {
-            const LatticeLine line = volume.lattice_line(ray.origin, ray.direction);
-            scratch.values.assign(profile.s.size(), 0.0);
-            for (const NanoGrid& brick : volume.bricks())
-                brick.add_samples(line, profile.s, scratch.values);
-            for (std::size_t knot = 0; knot < profile.s.size(); ++knot) {
-                // The interpolant is continuous: next to an empty interval it is exactly zero.
-                if (scratch.at_empty[knot] != 0 || scratch.values[knot] == 0) continue;
-                for (const GridLoad& load : volume.loads())
-                    profile
-                        .concentration[knot * count + static_cast<std::size_t>(load.constituent)] +=
-                        load.per_unit * scratch.values[knot];
-            }
-        }
+    place_knots(s_end, tolerance.exact() ? 1 : k_coarse_steps, profile, scratch);
+    if (scratch.paced.empty()) {
+        profile.concentration.assign(
+            profile.s.size() * static_cast<std::size_t>(constituent_count_), 0.0);
+        profile.column = profile.concentration;
+        return;
     }
-    integrate(profile);
+    sample_knots(ray, profile.s, profile.concentration);
+    clear_at_empty(scratch, profile);
+    if (tolerance.exact()) {
+        profile.integrate();
+        return;
+    }
+    scratch.refinement.run(
+        tolerance,
+        [&](std::span<const double> s, std::vector<double>& values) {
+            sample_knots(ray, s, values);
+        },
+        scratch.least, profile);
 }
 
 }  // namespace uw

@@ -3,13 +3,36 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "tests/support/gaussian_field.h"
 #include "tests/support/random_direction.h"
+#include "tests/support/tolerance.h"
 
 namespace uw::test {
 namespace {
+
+// A field in bounds much wider than its own, so that nothing tells where it lies.
+class WideField : public ConcentrationField {
+  public:
+    explicit WideField(const ConcentrationField& inner) : inner_(inner) {}
+    int constituent_count() const override { return inner_.constituent_count(); }
+    Bounds bounds() const override { return {{-1, -1, 1.5}, {1, 1, 2.5}}; }
+    double finest_voxel() const override { return inner_.finest_voxel(); }
+    void sample(const Point3& x, std::span<double> concentration) const override {
+        inner_.sample(x, concentration);
+    }
+    void column(const Point3& a, const Point3& b, std::span<double> column) const override {
+        inner_.column(a, b, column);
+    }
+    void profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const override {
+        inner_.profile(ray, s_end, profile);
+    }
+
+  private:
+    const ConcentrationField& inner_;
+};
 
 TEST(ColumnMap, MatchesTheClosedFormAndErrorFallsWithTheSquareOfTheVoxel) {
     const Point3 center{0.2, -0.1, 2.5};
@@ -60,6 +83,68 @@ TEST(ColumnMap, MemoryBudgetIsKept) {
     const ColumnMap map(field, {0, 0, 0}, 2, budget);
     EXPECT_GT(map.bytes(), budget / 8);
     EXPECT_LT(map.bytes(), 2 * budget);
+}
+
+TEST(ColumnMap, ToleranceSavesRaysAndIsKept) {
+    const Point3 center{0.2, -0.1, 2.5}, lamp{-1.2, 0.4, 0};
+    const GaussianField field(center, 0.3, 2.0, 0.04);
+    const ColumnMap exact(field, lamp, 2, 1 << 28);
+    std::uint64_t rays_before = exact.rays_traced();
+    for (const double tolerance : {1e-3, 1e-2, 1e-1}) {
+        const ColumnMap map(field, lamp, 2, 1 << 28, column_tolerance(tolerance));
+        EXPECT_LE(map.rays_traced(), rays_before);
+        EXPECT_LT(map.bytes(), exact.bytes());
+        rays_before = map.rays_traced();
+        std::mt19937 rng(7);
+        for (int n = 0; n < 4000; ++n) {
+            const Point3 x =
+                center + std::uniform_real_distribution<double>(0, 2)(rng) * random_direction(rng);
+            double got = 0, truth = 0;
+            map.columns(std::span<const Point3>(&x, 1), std::span<double>(&got, 1));
+            field.column(lamp, x, std::span<double>(&truth, 1));
+            // An error counts e^-column; between rays half as far apart as those tested, and
+            // between samples along them, it is within the tolerance each. Texels have 6e-4.
+            EXPECT_LT(std::abs(got - truth) * std::exp(-truth), 2 * tolerance + 6e-4);
+        }
+    }
+    EXPECT_LT(rays_before, exact.rays_traced() / 3);
+}
+
+TEST(ColumnMap, ToleranceKeepsASharpShadow) {
+    // A cloud whose edge is narrower than the widest spacing of rays.
+    const Point3 center{0, 0, 2}, lamp{0, 0, 0};
+    const GaussianField field(center, 0.03, 20.0, 0.03);
+    const ColumnMap map(field, lamp, 2, 1 << 28, column_tolerance(0.01));
+    std::mt19937 rng(9);
+    for (int n = 0; n < 4000; ++n) {
+        const Point3 x =
+            center + std::uniform_real_distribution<double>(0, 0.2)(rng) * random_direction(rng);
+        double got = 0, truth = 0;
+        map.columns(std::span<const Point3>(&x, 1), std::span<double>(&got, 1));
+        field.column(lamp, x, std::span<double>(&truth, 1));
+        // Texels of half a sigma: h^2/8 in each of three directions, of a peak of 1.5.
+        EXPECT_LT(std::abs(got - truth) * std::exp(-truth), 2 * 0.01 + 3 * 0.25 / 8 * 1.5);
+    }
+}
+
+TEST(ColumnMap, ToleranceKeepsTheShadowOfACloudOfOneVoxel) {
+    const double voxel = 0.02, tolerance = 0.01;
+    std::mt19937 rng(10);
+    std::uniform_real_distribution<double> offset(-0.3, 0.3);
+    for (int n = 0; n < 60; ++n) {
+        const Point3 lamp{0, 0, 0}, center{offset(rng), offset(rng), 2};
+        const GaussianField cloud(center, 0.5 * voxel, 40.0, voxel);  // a column of 1
+        const WideField field(cloud);
+        const ColumnMap every_ray(field, lamp, 2, 1 << 28);
+        const ColumnMap map(field, lamp, 2, 1 << 28, column_tolerance(tolerance));
+        EXPECT_LT(map.rays_traced(), every_ray.rays_traced() / 3);
+        double got = 0, truth = 0;
+        const Point3 behind = center + 0.1 * (center - lamp);
+        map.columns(std::span<const Point3>(&behind, 1), std::span<double>(&got, 1));
+        every_ray.columns(std::span<const Point3>(&behind, 1), std::span<double>(&truth, 1));
+        // One tolerance between rays, and one along them.
+        EXPECT_NEAR(got, truth, 2 * tolerance * std::exp(truth)) << n;
+    }
 }
 
 TEST(ColumnMap, BreaksFallOnlyWhereTheLightHasMetParticles) {
