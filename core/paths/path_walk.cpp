@@ -13,7 +13,7 @@ namespace {
 // The probability to go on for what may still arrive, relative to the light of the path's pixel,
 // and its limits: below, spared paths would outweigh the rest.
 constexpr double k_thoroughness = 3;
-constexpr double k_least_survival = 0.13, k_least_lobe_survival = 0.11, k_most_survival = 0.97;
+constexpr double k_least_survival = 0.25, k_least_lobe_survival = 0.2, k_most_survival = 0.97;
 // Of a surface, as far as paths head for it.
 constexpr double k_least_reflectance = 0.1;
 // How far rays begin above the surface they leave, relative to the coordinates and to the last
