@@ -47,6 +47,25 @@ void reduce(const Grid2D<float>& fine, Grid2D<float>& rows, Grid2D<float>& coars
     }
 }
 
+// 1/4 (1 2 1), which leaves nothing of what the pixels of the level cannot tell from slower
+// changes, along x and then along y.
+void smooth(Grid2D<float>& image, Grid2D<float>& rows) {
+    const int width = image.width(), height = image.height();
+    rows.resize(width, height);
+    for (int y = 0; y < height; ++y) {
+        const auto in = image.row(y), out = rows.row(y);
+        const std::size_t last = in.size() - 1;
+        for (std::size_t i = 0; i <= last; ++i)
+            out[i] = 0.5F * in[i] + 0.25F * (in[i > 0 ? i - 1 : 0] + in[std::min(i + 1, last)]);
+    }
+    for (int y = 0; y < height; ++y) {
+        const auto before = rows.row(std::max(y - 1, 0)), middle = rows.row(y),
+                   after = rows.row(std::min(y + 1, height - 1)), out = image.row(y);
+        for (std::size_t i = 0; i < out.size(); ++i)
+            out[i] = 0.5F * middle[i] + 0.25F * (before[i] + after[i]);
+    }
+}
+
 // Linear interpolation, along y and then along x.
 void add_expanded(const Grid2D<float>& coarse, Grid2D<float>& rows, Grid2D<float>& fine) {
     const int height = fine.height();
@@ -69,17 +88,29 @@ void add_expanded(const Grid2D<float>& coarse, Grid2D<float>& rows, Grid2D<float
 
 }  // namespace
 
-// Each step down and each step up adds 3/4 of its squared pixel.
+// Each step down and each step up adds 1/4 of the squared pixel of the finer image and 1/2 that of
+// its own, smoothing 1/2 of the squared pixel of the level.
 double BlurPyramid::deviation(int level) {
-    return std::sqrt(0.5 * (std::exp2(2 * level) - 1));
+    return level == 0 ? 0 : std::sqrt(std::exp2(2 * (level - 1)) - 0.5);
+}
+
+// Each step down and each step up is cos(w / 2)^3 at its own w, which doubles from step to step,
+// and smoothing cos(w / 2)^2: cos x cos 2x … cos 2^(n-1) x = sin(2^n x) / (2^n sin x).
+double BlurPyramid::transfer(int level, double omega) {
+    if (level == 0) return 1;
+    const double x = 0.5 * omega, wide = std::exp2(level - 1), sine = wide * std::sin(x);
+    const double steps = sine == 0 ? 1 : std::sin(wide * x) / sine;
+    const double smoothing = std::cos(wide * x);
+    return std::pow(steps, 6) * smoothing * smoothing;
 }
 
 int BlurPyramid::level_count(int width, int height) {
-    return 1 + std::bit_width(static_cast<unsigned>(std::max(1, std::max(width, height)) - 1));
+    return 2 + std::bit_width(static_cast<unsigned>(std::max(1, std::max(width, height)) - 1));
 }
 
 void BlurPyramid::begin(int width, int height) {
-    levels_.resize(static_cast<std::size_t>(level_count(width, height)));
+    unblurred_.assign(width, height);
+    levels_.resize(static_cast<std::size_t>(level_count(width, height)) - 1);
     for (Grid2D<float>& level : levels_) {
         level.assign(width, height);
         width = halved(width);
@@ -88,17 +119,19 @@ void BlurPyramid::begin(int width, int height) {
 }
 
 void BlurPyramid::add(int level, Grid2D<float>& image) {
-    for (int l = 0; l < level; ++l) {
+    for (int l = 1; l < level; ++l) {
         reduce(image, rows_, coarse_);
         std::swap(image, coarse_);
     }
-    Grid2D<float>& sum = levels_[static_cast<std::size_t>(level)];
+    if (level > 0) smooth(image, rows_);
+    Grid2D<float>& sum = level == 0 ? unblurred_ : levels_[static_cast<std::size_t>(level) - 1];
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += image[i];
 }
 
 const Grid2D<float>& BlurPyramid::sum() {
     for (std::size_t l = levels_.size(); --l > 0;) add_expanded(levels_[l], rows_, levels_[l - 1]);
-    return levels_.front();
+    for (std::size_t i = 0; i < unblurred_.size(); ++i) unblurred_[i] += levels_.front()[i];
+    return unblurred_;
 }
 
 }  // namespace uw

@@ -6,14 +6,17 @@
 
 namespace uw {
 
-/// A sum of images, each blurred by another width: level l by a smooth kernel, nearly a Gaussian,
-/// of the standard deviation `deviation(l)`, computed at 1 / 2^l of the resolution (Burt & Adelson
-/// 1983). Beyond its edges an image goes on with the values there. Reused storage.
+/// A sum of images, each blurred by another width: level 0 is as it was, level l is blurred by a
+/// smooth kernel, nearly a Gaussian, of the standard deviation `deviation(l)`, computed at
+/// 1 / 2^(l-1) of the resolution (Burt & Adelson 1983). Beyond its edges an image goes on with the
+/// values there. Reused storage.
 class BlurPyramid {
   public:
-    /// Of level `level`, in pixels: 0, 1.2, 2.7, 5.6, …
+    /// Of level `level`, in pixels: 0, 0.7, 1.9, 4.0, …
     static double deviation(int level);
-    /// So many levels that the last is one pixel.
+    /// The transfer function of `level` along an axis at the frequency `omega` [rad per pixel].
+    static double transfer(int level, double omega);
+    /// So many levels that the last is computed from one pixel.
     static int level_count(int width, int height);
 
     /// Starts a sum of nothing.
@@ -24,7 +27,8 @@ class BlurPyramid {
     const Grid2D<float>& sum();
 
   private:
-    std::vector<Grid2D<float>> levels_;
+    Grid2D<float> unblurred_;            // level 0
+    std::vector<Grid2D<float>> levels_;  // from level 1 on
     Grid2D<float> rows_, coarse_;
 };
 

@@ -42,11 +42,6 @@ void GlowSource::add_direct(const SurfaceSample& sample, const SurfaceLight& lig
     }
 }
 
-// Of the light that reaches surfaces by scattering, the share that is counted: what leaves least to
-// be smoothed, compared with light paths at the edge of a lit box and by the contrast of a
-// checkered cube in three waters.
-constexpr double k_indirect_share = 0.5;
-
 // From a few surfaces all over the image, whatever part of it is rendered.
 void GlowSource::find_gains() {
     constexpr int k_across = 16, k_paths = 64;
@@ -82,8 +77,7 @@ void GlowSource::find_gains() {
             of_lamps += direct[at][k];
             others += indirect[at][k];
         }
-        if (of_lamps > 0)
-            gains_[k] = std::min(k_most_gain, 1 + k_indirect_share * others / of_lamps);
+        if (of_lamps > 0) gains_[k] = std::min(k_most_gain, 1 + others / of_lamps);
     }
 }
 

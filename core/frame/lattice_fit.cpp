@@ -13,46 +13,20 @@ constexpr std::array<int, 5> k_reaches{0, 1, 2, 4, LatticeFit::k_reach};
 // In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
 // light less well.
 constexpr double k_agreement = 1.5;
+// Of normal equations, relative.
+constexpr double k_least_pivot = 1e-6;
 
 using Terms = std::array<double, k_most_terms>;
-using Matrix = std::array<Terms, k_most_terms>;
 
 Terms terms_at(double x, double y) {
     return {1, x, y, x * x, x * y, y * y};
 }
 
-// Solves matrix * solution = (1, 0, 0, ...) by Cholesky's method; false if it is nearly singular.
-bool solve_for_value(Matrix& a, int count, Terms& solution) {
-    const auto n = static_cast<std::size_t>(count);
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t j = 0; j <= i; ++j) {
-            double sum = a[i][j];
-            for (std::size_t k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
-            if (i != j) {
-                a[i][j] = sum / a[j][j];
-                continue;
-            }
-            if (!(sum > 1e-6 * a[i][i])) return false;
-            a[i][i] = std::sqrt(sum);
-        }
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        double sum = i == 0 ? 1 : 0;
-        for (std::size_t k = 0; k < i; ++k) sum -= a[i][k] * solution[k];
-        solution[i] = sum / a[i][i];
-    }
-    for (std::size_t i = n; i-- > 0;) {
-        double sum = solution[i];
-        for (std::size_t k = i + 1; k < n; ++k) sum -= a[k][i] * solution[k];
-        solution[i] = sum / a[i][i];
-    }
-    return true;
-}
-
 }  // namespace
 
 bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms) {
-    Matrix normal{};
+    const auto size = static_cast<std::size_t>(terms);
+    normal_.assign(size * size, 0.0);
     tried_.clear();
     const double scale = 1.0 / (reach + 1);
     int used = 0;
@@ -62,11 +36,12 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms
         if (rest <= 0) continue;
         ++used;
         const Terms t = terms_at(x, y);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(terms); ++i)
-            for (std::size_t j = 0; j <= i; ++j) normal[i][j] += rest * t[i] * t[j];
+        for (std::size_t i = 0; i < size; ++i)
+            for (std::size_t j = 0; j <= i; ++j) normal_[i * size + j] += rest * t[i] * t[j];
     }
-    Terms solution{};
-    if (used < 2 * terms - 1 || !solve_for_value(normal, terms, solution)) return false;
+    if (used < 2 * terms - 1 || !cholesky_.factor(normal_, size, k_least_pivot)) return false;
+    Terms solution{1};  // of which the first term is the value at (0, 0)
+    cholesky_.solve(std::span(solution).first(size));
     tried_value_ = tried_variance_ = 0;
     double amplification = 0;
     for (const FitNode& node : nodes) {
@@ -75,8 +50,7 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms
         if (rest <= 0) continue;
         const Terms t = terms_at(x, y);
         double weight = 0;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(terms); ++i)
-            weight += solution[i] * t[i];
+        for (std::size_t i = 0; i < size; ++i) weight += solution[i] * t[i];
         weight *= rest;
         tried_.push_back({node.index, weight});
         tried_value_ += weight * node.value;

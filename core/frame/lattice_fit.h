@@ -3,6 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "core/base/cholesky.h"
+
 namespace uw {
 
 /// A node of a regular lattice near the one that is fitted.
@@ -40,6 +42,8 @@ class LatticeFit {
     bool fit_within(std::span<const FitNode> nodes, int reach, int terms);
 
     std::vector<FitWeight> weights_, tried_;
+    std::vector<double> normal_;  // equations
+    CholeskyFactor cholesky_;
     double variance_ = 0;
     double tried_variance_ = 0, tried_value_ = 0;
 };

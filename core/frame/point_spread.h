@@ -18,33 +18,34 @@ namespace uw {
 ///     exp( b int_0^T p^(k (T - s) / T) ds ) - 1,
 ///
 /// with the phase function's Hankel transform p^(k) and angular frequencies k as seen by the camera
-/// [1/rad]. It is split by the distance s at which the light is scattered last, and each part is
-/// written as a sum of Gaussians, the weights of which are tabulated.
+/// [1/rad]. It is split by the distance s at which the light is scattered last, and the parts are
+/// tabulated.
 class PointSpread {
   public:
-    static constexpr std::size_t k_components = 12;
-    using Weights = std::array<float, k_components>;
+    /// Frequencies in the table: 4 to an octave.
+    static constexpr std::size_t k_frequencies = 80;
+    using Transfer = std::array<float, k_frequencies>;
 
     /// For surfaces up to the distance `farthest` [m].
     PointSpread(const Medium& medium, const DistanceIntervals& intervals, double farthest);
 
-    /// Standard deviation of a component [rad].
-    static double deviation(std::size_t component);
+    /// A frequency of the table [1/rad]; they ascend.
+    static double frequency(std::size_t index);
 
-    /// The surfaces' distances for which there are weights [m], ascending.
+    /// The surfaces' distances in the table [m], ascending.
     std::span<const double> distances() const { return distances_; }
     /// The intervals in which light of these surfaces is scattered.
     std::size_t interval_count() const { return intervals_; }
-    /// The components' weights for light that is scattered last in `interval`, for a surface at
+    /// The transfer function of light that is scattered last in `interval`, for a surface at
     /// distances()[distance]: 0 if it lies before the interval.
-    const Weights& weights(std::size_t interval, std::size_t band, std::size_t distance) const {
-        return weights_[(interval * bands_ + band) * distances_.size() + distance];
+    const Transfer& transfer(std::size_t interval, std::size_t band, std::size_t distance) const {
+        return transfers_[(interval * bands_ + band) * distances_.size() + distance];
     }
 
   private:
     std::size_t bands_ = 0, intervals_ = 0;
     std::vector<double> distances_;
-    std::vector<Weights> weights_;
+    std::vector<Transfer> transfers_;
 };
 
 }  // namespace uw

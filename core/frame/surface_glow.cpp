@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/frame/blur_fit.h"
 #include "core/frame/blur_pyramid.h"
 
 namespace uw {
@@ -17,14 +18,15 @@ constexpr double k_scales_of_octave = 4;
 // Weights that are left out, relative to the surface's own light.
 constexpr float k_least_weight = 1e-5F;
 // Cells show the same surface as a pixel if their distances differ by less, relatively.
-constexpr double k_same_distance = 0.1;
+constexpr double k_agreeing_distance = 0.1;
 
 }  // namespace
 
 /// Blurs one channel interval by interval.
 class SurfaceGlow::Spreading {
   public:
-    Spreading(const SurfaceGlow& glow, const PointSpread& spread) : glow_(glow), spread_(spread) {}
+    Spreading(const SurfaceGlow& glow, const PointSpread& spread, std::span<const BlurFit> fits)
+        : glow_(glow), spread_(spread), fits_(fits) {}
 
     /// The light of a channel that is scattered last in `interval`, by cell. Valid until the next
     /// call.
@@ -60,46 +62,26 @@ class SurfaceGlow::Spreading {
             BlurPyramid::level_count(glow_.cells_.width(), glow_.cells_.height()));
     }
 
-    /// A pixel that is not blurred is as wide as a pixel.
-    static double width_of(std::size_t level) {
-        constexpr double k_pixel = 0.29;  // 1 / sqrt(12)
-        return std::max(k_pixel, BlurPyramid::deviation(static_cast<int>(level)));
-    }
-
-    /// Of the pyramid's levels for each scale and distance: a component's width lies between those
-    /// of two levels, which share it such that an edge is as steep: the slope is 1 / width. With
-    /// the right variance it would be too steep.
     void find_level_weights(std::size_t interval, std::size_t band) {
         const std::size_t scales = glow_.angles_.size(), distances = spread_.distances().size();
-        weights_.assign(levels() * scales * distances, 0.0F);
+        weights_.resize(levels() * scales * distances);
         greatest_.assign(levels(), 0.0F);
+        std::vector<double> fitted(levels());
         for (std::size_t scale = 0; scale < scales; ++scale) {
-            for (std::size_t m = 0; m < PointSpread::k_components; ++m) {
-                const double sigma = PointSpread::deviation(m) / glow_.angles_[scale];
-                std::size_t level = 0;
-                while (level + 2 < levels() && width_of(level + 1) <= sigma) ++level;
-                const std::size_t next = std::min(level + 1, levels() - 1);
-                const double narrow = 1 / width_of(level), wide = 1 / width_of(next);
-                const double t = next > level
-                                     ? std::clamp((narrow - 1 / sigma) / (narrow - wide), 0.0, 1.0)
-                                     : 0.0;
-                for (std::size_t d = 0; d < distances; ++d) {
-                    const float weight = spread_.weights(interval, band, d)[m];
-                    weights_[(level * scales + scale) * distances + d] +=
-                        static_cast<float>(1 - t) * weight;
-                    weights_[(next * scales + scale) * distances + d] +=
-                        static_cast<float>(t) * weight;
+            for (std::size_t d = 0; d < distances; ++d) {
+                fits_[scale].fit(spread_.transfer(interval, band, d), fitted);
+                for (std::size_t level = 0; level < levels(); ++level) {
+                    const auto weight = static_cast<float>(fitted[level]);
+                    weights_[(level * scales + scale) * distances + d] = weight;
+                    greatest_[level] = std::max(greatest_[level], std::abs(weight));
                 }
             }
         }
-        for (std::size_t level = 0; level < levels(); ++level)
-            for (std::size_t i = 0; i < scales * distances; ++i)
-                greatest_[level] =
-                    std::max(greatest_[level], std::abs(weights_[level * scales * distances + i]));
     }
 
     const SurfaceGlow& glow_;
     const PointSpread& spread_;
+    std::span<const BlurFit> fits_;  // by scale
     BlurPyramid pyramid_;
     Grid2D<float> image_;
     std::vector<float> weights_;   // by level, scale and distance
@@ -136,11 +118,14 @@ SurfaceGlow::SurfaceGlow(const RaySource& rays, const LitScene& scene,
             static_cast<float>(d) + static_cast<float>(std::clamp(
                                         (cell.distance - at[0]) / (at[1] - at[0]), 0.0, 1 - 1e-4));
     }
+    const int levels = BlurPyramid::level_count(cells_.width(), cells_.height());
+    std::vector<BlurFit> fits;
+    for (const double angle : angles_) fits.emplace_back(levels, angle);
     const auto bands = static_cast<std::size_t>(scene.medium->band_count());
     parallel_for(channels_, [&](std::size_t channel) {
         const auto source = std::span(source_).subspan(channel * cells_.size(), cells_.size());
         if (std::ranges::all_of(source, [](float value) { return value == 0; })) return;
-        Spreading spreading(*this, spread);
+        Spreading spreading(*this, spread, fits);
         std::array<Corner, 4> corners;
         for (std::size_t interval = 0; interval < intervals_; ++interval) {
             const double begin = intervals.begin(interval);
@@ -251,7 +236,7 @@ void SurfaceGlow::add(double x, double y, double distance, double weight,
     for (std::size_t k = 0; k < corners.size(); ++k) {
         const double other = cells_[corners[k].cell].distance;
         const bool agrees = distance < k_far
-                                ? std::abs(other - distance) <= k_same_distance * distance
+                                ? std::abs(other - distance) <= k_agreeing_distance * distance
                                 : !std::isfinite(other);
         if (agrees) total += same[k] = corners[k].weight;
     }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace uw::test {
 namespace {
@@ -52,6 +53,26 @@ TEST(BlurPyramid, BlursByTheWidthOfItsLevel) {
             EXPECT_NEAR(mean, 0, 1e-4);
             const double variance = BlurPyramid::deviation(level) * BlurPyramid::deviation(level);
             EXPECT_NEAR(square, variance, 1e-4 * std::max(variance, 1.0)) << level << " " << x;
+        }
+    }
+}
+
+// Of a wave, averaged over its positions relative to the coarser levels' pixels.
+TEST(BlurPyramid, HasTheTransferFunctionOfItsLevel) {
+    constexpr int k_size = 256;
+    for (int level = 0; level <= 4; ++level) {
+        for (const int waves : {3, 9, 21, 50, 100}) {
+            const double omega = 2 * std::numbers::pi * waves / k_size;
+            BlurPyramid pyramid;
+            pyramid.begin(k_size, 1);
+            Grid2D<float> image(k_size, 1);
+            for (int i = 0; i < k_size; ++i) image(i, 0) = static_cast<float>(std::cos(omega * i));
+            pyramid.add(level, image);
+            const Grid2D<float>& blurred = pyramid.sum();
+            double sum = 0;
+            for (int i = 64; i < 192; ++i) sum += 2 * blurred(i, 0) * std::cos(omega * i) / 128;
+            // The part looked at holds no whole number of waves.
+            EXPECT_NEAR(sum, BlurPyramid::transfer(level, omega), 0.03) << level << " " << waves;
         }
     }
 }

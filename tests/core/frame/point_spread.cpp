@@ -33,17 +33,12 @@ class PointSpreads : public testing::Test {
         medium_.uniform.scattering[0][1] = 1;
     }
 
-    // The transfer function at k that the Gaussians make up, of all intervals from `first` on.
-    double transfer(const PointSpread& spread, std::size_t first, std::size_t band,
-                    std::size_t distance, double k) const {
+    // The transfer function of all intervals from `first` on.
+    static double transfer(const PointSpread& spread, std::size_t first, std::size_t band,
+                           std::size_t distance, std::size_t frequency) {
         double sum = 0;
-        for (std::size_t i = first; i < spread.interval_count(); ++i) {
-            for (std::size_t m = 0; m < PointSpread::k_components; ++m) {
-                const double x = k * PointSpread::deviation(m);
-                sum += static_cast<double>(spread.weights(i, band, distance)[m]) *
-                       std::exp(-0.5 * x * x);
-            }
-        }
+        for (std::size_t i = first; i < spread.interval_count(); ++i)
+            sum += static_cast<double>(spread.transfer(i, band, distance)[frequency]);
         return sum;
     }
     double b(std::size_t band) const { return medium_.uniform.scattering[0][band]; }
@@ -76,11 +71,12 @@ TEST_F(PointSpreads, HaveTheTransferFunctionOfSmallAngles) {
     EXPECT_EQ(spread.distances()[last], k_farthest);
     for (const std::size_t band : {0U, 1U}) {
         const double all = std::expm1(b(band) * k_farthest);
-        for (const double k : {3.0, 6.0, 12.0, 25.0, 50.0, 100.0, 400.0}) {
+        for (const std::size_t i : {8U, 20U, 24U, 28U, 32U, 36U, 40U, 48U}) {
+            const double k = PointSpread::frequency(i);
             const double exponent = exponent_of(b(band) * k_farthest, k);
-            // Of the whole, for the ripple of Gaussians an octave apart.
-            const double allowed = 0.01 * all;
-            EXPECT_NEAR(transfer(spread, 0, band, last, k), std::expm1(exponent), allowed)
+            // Of the whole, for frequencies a quarter of an octave apart and four places in each
+            // interval.
+            EXPECT_NEAR(transfer(spread, 0, band, last, i), std::expm1(exponent), 0.002 * all)
                 << "k " << k << ", band " << band;
         }
     }
@@ -93,10 +89,11 @@ TEST_F(PointSpreads, SplitLightByTheScatteringNearestToTheCamera) {
     const std::size_t last = spread.distances().size() - 1;
     const std::size_t half = spread.interval_count() / 2;
     const double behind = k_farthest - intervals_->begin(half);
-    for (const double k : {12.0, 50.0, 400.0}) {
-        const double exponent = exponent_of(b(1) * behind, k * behind / k_farthest);
-        EXPECT_NEAR(transfer(spread, half, 1, last, k), std::expm1(exponent),
-                    0.01 * std::expm1(b(1) * behind));
+    for (const std::size_t i : {28U, 36U, 48U}) {
+        const double exponent =
+            exponent_of(b(1) * behind, PointSpread::frequency(i) * behind / k_farthest);
+        EXPECT_NEAR(transfer(spread, half, 1, last, i), std::expm1(exponent),
+                    0.002 * std::expm1(b(1) * behind));
     }
 }
 
@@ -106,14 +103,14 @@ TEST_F(PointSpreads, LeaveOutWaterBehindTheSurfaceAndSurfacesThatAreTooFaint) {
     const auto distances = spread.distances();
     for (std::size_t d = 0; d < distances.size(); ++d) {
         if (distances[d] > intervals_->begin(half)) continue;
-        for (const float weight : spread.weights(half, 0, d)) EXPECT_EQ(weight, 0);
+        for (const float value : spread.transfer(half, 0, d)) EXPECT_EQ(value, 0);
     }
     medium_.uniform.scattering[0][1] = 1000;  // e^3000 overflows
     const PointSpread turbid(medium_, *intervals_, k_farthest);
     for (std::size_t i = 0; i < turbid.interval_count(); ++i) {
         for (std::size_t d = 0; d < distances.size(); ++d)
-            for (const float weight : turbid.weights(i, 1, d)) EXPECT_TRUE(std::isfinite(weight));
-        for (const float weight : turbid.weights(i, 1, distances.size() - 1)) EXPECT_EQ(weight, 0);
+            for (const float value : turbid.transfer(i, 1, d)) EXPECT_TRUE(std::isfinite(value));
+        for (const float value : turbid.transfer(i, 1, distances.size() - 1)) EXPECT_EQ(value, 0);
     }
 }
 
