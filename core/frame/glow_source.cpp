@@ -12,14 +12,18 @@ GlowSource::GlowSource(const PixelRenderer& pixels, const MultipleNodes& estimat
     : pixels_(pixels),
       estimator_(estimator),
       bands_(static_cast<std::size_t>(pixels.band_count())) {
-    find_gains();
+    find_indirect();
 }
 
 void GlowSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& light,
                                std::size_t index, std::span<double> radiance) const {
     std::ranges::fill(radiance, 0.0);
     add_direct(sample, light, index, radiance);
-    for (std::size_t k = 0; k < radiance.size(); ++k) radiance[k] *= gains_[k];
+    const std::span<const double> to_camera = light.to_camera(index);
+    for (std::size_t k = 0; k < radiance.size(); ++k) {
+        const double white = sample.hit.reflectance[k % bands_] * to_camera[k % bands_];
+        radiance[k] += indirect_[k].per_direct * radiance[k] + indirect_[k].ambient * white;
+    }
 }
 
 // Of what it emits, and of the light of lamps that it reflects.
@@ -42,14 +46,17 @@ void GlowSource::add_direct(const SurfaceSample& sample, const SurfaceLight& lig
     }
 }
 
-// From a few surfaces all over the image, whatever part of it is rendered.
-void GlowSource::find_gains() {
+// By least squares over a few surfaces all over the image, whatever part of it is rendered.
+void GlowSource::find_indirect() {
     constexpr int k_across = 16, k_paths = 64;
-    constexpr double k_most_gain = 100;
     const RaySource& rays = pixels_.rays();
     const std::size_t values = estimator_.options().groups * bands_;
-    std::vector<std::vector<double>> direct(k_across * k_across), indirect(k_across * k_across);
-    parallel_for(direct.size(), [&](std::size_t at) {
+    // What the camera sees of a surface, by group and band.
+    struct Seen {
+        std::vector<double> direct, indirect, white;  // white: per ambient light
+    };
+    std::vector<Seen> seen(k_across * k_across);
+    parallel_for(seen.size(), [&](std::size_t at) {
         const int i = static_cast<int>(at) % k_across, j = static_cast<int>(at) / k_across;
         const double x = (i + 0.5) * rays.width() / k_across;
         const double y = (j + 0.5) * rays.height() / k_across;
@@ -59,25 +66,38 @@ void GlowSource::find_gains() {
         if (!pixels_.scene().surfaces->closest_hit(*ray, k_far, sample.hit)) return;
         SurfaceLight light;
         pixels_.transport().surfaces->evaluate_one(sample, light);
-        direct[at].assign(values, 0.0);
-        add_direct(sample, light, 0, direct[at]);
+        Seen& of = seen[at];
+        of.direct.assign(values, 0.0);
+        add_direct(sample, light, 0, of.direct);
         NodeLight diffuse;
         estimator_.estimate_surface(sample, k_paths, diffuse);
-        indirect[at].assign(values, 0.0);
-        for (std::size_t k = 0; k < values; ++k)
-            indirect[at][k] = static_cast<double>(diffuse.diffuse[k]) *
-                              sample.hit.reflectance[k % bands_] *
-                              std::as_const(light).to_camera(0)[k % bands_];
-    });
-    gains_.assign(values, 1.0);
-    for (std::size_t k = 0; k < values; ++k) {
-        double of_lamps = 0, others = 0;
-        for (std::size_t at = 0; at < direct.size(); ++at) {
-            if (direct[at].empty()) continue;
-            of_lamps += direct[at][k];
-            others += indirect[at][k];
+        for (std::size_t k = 0; k < values; ++k) {
+            of.white.push_back(sample.hit.reflectance[k % bands_] *
+                               std::as_const(light).to_camera(0)[k % bands_]);
+            of.indirect.push_back(static_cast<double>(diffuse.diffuse[k]) * of.white.back());
         }
-        if (of_lamps > 0) gains_[k] = std::min(k_most_gain, 1 + others / of_lamps);
+    });
+    indirect_.assign(values, {});
+    for (std::size_t k = 0; k < values; ++k) {
+        double dd = 0, dw = 0, ww = 0, di = 0, wi = 0;
+        for (const Seen& of : seen) {
+            if (of.direct.empty()) continue;
+            dd += of.direct[k] * of.direct[k];
+            dw += of.direct[k] * of.white[k];
+            ww += of.white[k] * of.white[k];
+            di += of.direct[k] * of.indirect[k];
+            wi += of.white[k] * of.indirect[k];
+        }
+        // Neither may be negative; if one is, the other stands alone.
+        constexpr double k_independent = 1e-6;
+        const double determinant = dd * ww - dw * dw;
+        Indirect& of = indirect_[k];
+        if (determinant > k_independent * dd * ww) {
+            of.per_direct = (di * ww - wi * dw) / determinant;
+            of.ambient = (wi * dd - di * dw) / determinant;
+        }
+        if (!(of.ambient > 0)) of = {dd > 0 ? di / dd : 0, 0};
+        if (!(of.per_direct > 0)) of = {0, ww > 0 ? wi / ww : 0};
     }
 }
 

@@ -8,11 +8,12 @@
 
 namespace uw {
 
-/// The radiance of surfaces that SurfaceGlow blurs: by direct light and emission, times by how much
-/// the surfaces of the image are brighter, on the whole, by all light.
+/// The radiance of surfaces that SurfaceGlow blurs: by direct light and emission, which are exact,
+/// and roughly by the light that has been scattered or reflected before: as much as in proportion
+/// to the direct light and, beside it, from an even ambient light explains most of it.
 class GlowSource {
   public:
-    /// Estimates that factor for each group and band. Both references must outlive this object.
+    /// Estimates the rough part for each group and band. Both references must outlive this object.
     GlowSource(const PixelRenderer& pixels, const MultipleNodes& estimator);
 
     /// The radiance at the camera of `sample`, number `index` of `light`, by group and band. Thread
@@ -21,14 +22,19 @@ class GlowSource {
                        std::span<double> radiance) const;
 
   private:
-    void find_gains();
+    struct Indirect {
+        double per_direct = 0;
+        double ambient = 0;  // what a white surface would reflect [W m^-2 sr^-1]
+    };
+
+    void find_indirect();
     void add_direct(const SurfaceSample& sample, const SurfaceLight& light, std::size_t index,
                     std::span<double> radiance) const;
 
     const PixelRenderer& pixels_;
     const MultipleNodes& estimator_;
     std::size_t bands_;
-    std::vector<double> gains_;  // by group and band
+    std::vector<Indirect> indirect_;  // by group and band
 };
 
 }  // namespace uw

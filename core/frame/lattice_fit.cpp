@@ -12,7 +12,7 @@ constexpr int k_most_terms = 6;  // 1, x, y, x^2, xy, y^2
 constexpr std::array<int, 5> k_reaches{0, 1, 2, 4, LatticeFit::k_reach};
 // In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
 // light less well.
-constexpr double k_agreement = 1.5;
+constexpr double k_agreement = 2.2;
 // Of normal equations, relative.
 constexpr double k_least_pivot = 1e-6;
 
@@ -32,8 +32,9 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms
     int used = 0;
     for (const FitNode& node : nodes) {
         const double x = node.dx * scale, y = node.dy * scale;
-        const double rest = 1 - x * x - y * y;
-        if (rest <= 0) continue;
+        const double near = 1 - x * x - y * y;
+        if (near <= 0) continue;
+        const double rest = near * node.weight;
         ++used;
         const Terms t = terms_at(x, y);
         for (std::size_t i = 0; i < size; ++i)
@@ -46,8 +47,9 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms
     double amplification = 0;
     for (const FitNode& node : nodes) {
         const double x = node.dx * scale, y = node.dy * scale;
-        const double rest = 1 - x * x - y * y;
-        if (rest <= 0) continue;
+        const double near = 1 - x * x - y * y;
+        if (near <= 0) continue;
+        const double rest = near * node.weight;
         const Terms t = terms_at(x, y);
         double weight = 0;
         for (std::size_t i = 0; i < size; ++i) weight += solution[i] * t[i];

@@ -13,6 +13,7 @@ struct FitNode {
     double value = 0;    // representative of all that is fitted
     double variance = 0;
     std::size_t index = 0;  // the caller's
+    double weight = 1;      // in the fit, relative to others; > 0
 };
 
 /// A node's share in a fitted value.

@@ -7,6 +7,7 @@
 
 #include "core/base/grid2d.h"
 #include "core/frame/distance_intervals.h"
+#include "core/frame/interval_weights.h"
 #include "core/frame/multiple_nodes.h"
 #include "core/frame/node_smoothing.h"
 #include "core/frame/pixel_layers.h"
@@ -18,7 +19,8 @@ namespace uw {
 
 /// How much is spent on the light that was scattered or reflected more than once.
 struct MultipleLightOptions {
-    int paths = 0;       // in the whole image, of each kind, at its nodes
+    int paths = 0;       // in the whole image, of each kind, at its nodes, at most
+    double error = 0;    // standard error for which fewer will do, relative to the image's mean
     int nodes = 0;       // about as many
     int cells = 0;       // of the surfaces' glow, at most
     bool lamps = false;  // each lamp's light by itself
@@ -31,8 +33,8 @@ struct MultipleLightOptions {
 /// surface are the pixel's own. Of the water's light, the surfaces' glow (SurfaceGlow) is as sharp
 /// as they are: it is computed for all pixels, and what light paths find beside it is smoothed.
 ///
-/// Nodes and their random numbers depend on the image's size and nothing else, so that crops hold
-/// the same pixels as the whole image, and a still camera does not flicker.
+/// Nodes, their random numbers and the number of their paths depend on the whole image, so that
+/// crops hold the same pixels, and a still camera does not flicker.
 class MultipleLight {
   public:
     /// Receives the share that is done, on any thread; returns false to stop.
@@ -59,6 +61,7 @@ class MultipleLight {
         double weight;
     };
 
+    void limit_paths(double error);
     void take_away_glow(Grid2D<MultipleNode>& raw);
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
@@ -74,6 +77,7 @@ class MultipleLight {
     int spacing_ = 1;           // of the nodes [pixels]
     int column_ = 0, row_ = 0;  // of the first node of nodes_
     DistanceIntervals intervals_;
+    IntervalWeights weights_;
     MultipleNodes estimator_;
     Grid2D<SmoothNode> nodes_;
     int cells_ = 0;

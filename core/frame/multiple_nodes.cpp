@@ -1,8 +1,10 @@
 #include "core/frame/multiple_nodes.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
+#include "core/base/parallel.h"
 #include "core/surfaces/surface_reflection.h"
 
 namespace uw {
@@ -19,7 +21,8 @@ enum NodeStream : std::uint64_t {
     k_node_water = 1,
     k_node_diffuse = 2,
     k_node_glossy = 3,
-    k_mirrored = 4
+    k_mirrored = 4,
+    k_pilot = 5
 };
 
 // The variance of the mean over a half's batches, from all batches' sum and sum of squares.
@@ -112,6 +115,29 @@ void MultipleNodes::estimate(double x, double y, std::uint64_t seed, MultipleNod
     if (has_hit) trace_surface(seed, options_.paths, w, node);
 }
 
+double MultipleNodes::relative_variance() const {
+    constexpr int k_across = 16, k_paths = 64;
+    MultipleNodeOptions options = options_;
+    options.paths = k_paths;
+    const MultipleNodes pilot(rays_, scene_, transport_, weights_, options);
+    std::vector<double> lights(k_across * k_across), variances(k_across * k_across);
+    parallel_for(lights.size(), [&](std::size_t at) {
+        const auto i = at % k_across, j = at / k_across;
+        MultipleNode node;
+        pilot.estimate((static_cast<double>(i) + 0.5) * rays_.width() / k_across,
+                       (static_cast<double>(j) + 0.5) * rays_.height() / k_across,
+                       PathRandom::seed_of(i, j, k_pilot), node);
+        lights[at] = node.mean_light;
+        double variance = node.diffuse_variance * node.surface_seen * node.surface_seen;
+        for (const float of_interval : node.water_variance)
+            variance += static_cast<double>(of_interval);
+        variances[at] = variance * k_paths / 2;  // of either half's mean
+    });
+    const double light = std::accumulate(lights.begin(), lights.end(), 0.0);
+    const double variance = std::accumulate(variances.begin(), variances.end(), 0.0);
+    return light > 0 ? variance * static_cast<double>(lights.size()) / (light * light) : 0;
+}
+
 void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths,
                                      NodeLight& light) const {
     Workspace& w = workspace_of_thread();
@@ -133,6 +159,10 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
     const auto bands = static_cast<std::size_t>(scene_.medium->band_count());
     node.has_ray = true;
     node.reach = has_hit ? sample.hit.distance : k_far;
+    weights_.find(sample.ray, node.reach, node.weights);
+    node.mean_weights.assign(intervals_.count(), 0.0F);
+    for (std::size_t k = 0; k < node.weights.size(); ++k)
+        node.mean_weights[k / bands] += node.weights[k] / static_cast<float>(bands);
     w.seen.clear();
     if (has_hit) {
         transport_.surfaces->evaluate_one(sample, w.light);

@@ -7,7 +7,7 @@
 
 #include "core/base/grid2d.h"
 #include "core/base/ray_source.h"
-#include "core/frame/distance_intervals.h"
+#include "core/frame/interval_weights.h"
 #include "core/integrators/light_transport.h"
 #include "core/integrators/lit_scene.h"
 #include "core/paths/path_tracer.h"
@@ -39,7 +39,9 @@ struct NodeLight {
 struct MultipleNode {
     bool has_ray = false;
     std::optional<NodeSurface> surface;
-    double reach = 0;         // of the water along its ray [m]
+    double reach = 0;  // of the water along its ray [m]
+    /// IntervalWeights of its ray, by interval and band, and their means over the bands.
+    std::vector<float> weights, mean_weights;
     double mean_light = 0;    // roughly that of the ray, mean over the bands
     double surface_seen = 0;  // the camera's radiance per diffuse_mean
     /// Two independent estimates: what is decided by one is applied to the other.
@@ -60,14 +62,20 @@ class MultipleNodes {
   public:
     /// All references must outlive this object; `transport` has paths.
     MultipleNodes(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
-                  const DistanceIntervals& intervals, const MultipleNodeOptions& options)
+                  const IntervalWeights& weights, const MultipleNodeOptions& options)
         : rays_(rays),
           scene_(scene),
           transport_(transport),
-          intervals_(intervals),
+          weights_(weights),
+          intervals_(weights.intervals()),
           options_(options) {}
 
     const MultipleNodeOptions& options() const { return options_; }
+    void set_paths(int paths) { options_.paths = paths; }
+
+    /// The variance of one path of each kind over the squared mean of all light, on the average
+    /// over the image: from a few nodes all over it.
+    double relative_variance() const;
 
     /// The node at image position (x, y) [pixels]. `seed`: of its random numbers.
     void estimate(double x, double y, std::uint64_t seed, MultipleNode& node) const;
@@ -91,6 +99,7 @@ class MultipleNodes {
     const RaySource& rays_;
     const LitScene& scene_;
     const LightTransport& transport_;
+    const IntervalWeights& weights_;
     const DistanceIntervals& intervals_;
     MultipleNodeOptions options_;
 };

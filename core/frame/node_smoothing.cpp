@@ -5,13 +5,14 @@
 
 #include "core/base/parallel.h"
 #include "core/frame/lattice_fit.h"
+#include "core/frame/node_kinship.h"
 
 namespace uw {
 
 namespace {
 
-// An interval that a surface cuts counts if this share of its light lies before it.
-constexpr double k_least_share = 0.3;
+constexpr int k_variance_reach = 2;  // of nodes whose variances are averaged
+static_assert(k_smoothing_reach == LatticeFit::k_reach + k_variance_reach + k_sharing_reach);
 // Differences between fits that do not matter, relative to the light of the nodes around.
 constexpr double k_tolerance = 1e-3;
 
@@ -23,7 +24,7 @@ class Neighbourhood {
     void find(const Grid2D<MultipleNode>& raw, int i, int j, const Of& of) {
         constexpr int k_reach = LatticeFit::k_reach;
         nodes_.clear();
-        light_ = 0;
+        light_ = weight_ = 0;
         for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v) {
             for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach);
                  ++u) {
@@ -34,46 +35,60 @@ class Neighbourhood {
                 node->index = raw.index(u, v);
                 nodes_.push_back(*node);
                 light_ += raw(u, v).mean_light;
+                weight_ += node->weight;
             }
         }
-        light_ /= std::max(1.0, static_cast<double>(nodes_.size()));
+        const double count = std::max(1.0, static_cast<double>(nodes_.size()));
+        light_ /= count;
+        weight_ /= count;
     }
 
     std::span<const FitNode> nodes() const { return nodes_; }
     /// The mean of their light.
     double light() const { return light_; }
+    /// The mean of their weights.
+    double weight() const { return weight_; }
 
   private:
     std::vector<FitNode> nodes_;
-    double light_ = 0;
+    double light_ = 0, weight_ = 0;
 };
 
 /// The nodes with each variance averaged over those around: that of a few batches says little by
-/// itself, and that of the whole neighbourhood would hide features of its dark parts.
+/// itself, and that of the whole neighbourhood would hide features of its dark parts. The water's
+/// is in proportion to the weights of its intervals, as that of counts to their expectation.
 Grid2D<MultipleNode> with_mean_variances(const Grid2D<MultipleNode>& raw) {
-    constexpr int k_reach = k_smoothing_reach - LatticeFit::k_reach;
+    constexpr int k_reach = k_variance_reach;
     Grid2D<MultipleNode> nodes = raw;
+    std::size_t intervals = 0;
+    for (const MultipleNode& node : raw) intervals = std::max(intervals, node.mean_weights.size());
     parallel_for(raw.size(), [&](std::size_t at) {
         const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
         MultipleNode& node = nodes(i, j);
         std::ranges::fill(node.water_variance, 0.0F);
         node.diffuse_variance = 0;
-        float waters = 0;
+        thread_local std::vector<double> variances, weights;
+        variances.assign(intervals, 0.0);
+        weights.assign(intervals, 0.0);
         double surfaces = 0;
         for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v) {
             for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach);
                  ++u) {
                 const MultipleNode& other = raw(u, v);
                 if (!other.has_ray) continue;
-                ++waters;
-                for (std::size_t k = 0; k < node.water_variance.size(); ++k)
-                    node.water_variance[k] += other.water_variance[k];
+                for (std::size_t k = 0; k < intervals; ++k) {
+                    variances[k] += static_cast<double>(other.water_variance[k]);
+                    weights[k] += static_cast<double>(other.mean_weights[k]);
+                }
                 if (!other.surface) continue;
                 ++surfaces;
                 node.diffuse_variance += other.diffuse_variance;
             }
         }
-        for (float& variance : node.water_variance) variance /= std::max(waters, 1.0F);
+        for (std::size_t k = 0; k < node.water_variance.size(); ++k)
+            if (weights[k] > 0)
+                node.water_variance[k] = static_cast<float>(
+                    variances[k] / weights[k] * static_cast<double>(node.mean_weights[k]));
         node.diffuse_variance /= std::max(surfaces, 1.0);
     });
     return nodes;
@@ -104,31 +119,37 @@ class NodeSmoothing {
 void NodeSmoothing::smooth_water(int i, int j, SmoothNode& node) const {
     thread_local LatticeFit fit;
     thread_local Neighbourhood near;
+    const MultipleNode& own = raw_(i, j);
     node.light.water.assign(intervals_.count() * values_, 0.0F);
     for (std::size_t interval = 0; interval < intervals_.count(); ++interval) {
         for (std::size_t half = 0; half < 2; ++half) {
             near.find(raw_, i, j, [&](const MultipleNode& other) -> std::optional<FitNode> {
-                const double share =
-                    other.has_ray ? intervals_.share(interval, 0, other.reach) : 0.0;
-                if (share < k_least_share) return std::nullopt;
+                if (!shows_interval(other, intervals_, interval)) return std::nullopt;
                 FitNode of;
-                of.value = other.halves[1 - half].water_mean[interval] / share;
-                of.variance = other.water_variance[interval] / (share * share);
+                of.weight = static_cast<double>(other.mean_weights[interval]);
+                of.value =
+                    static_cast<double>(other.halves[1 - half].water_mean[interval]) / of.weight;
+                of.variance =
+                    static_cast<double>(other.water_variance[interval]) / (of.weight * of.weight);
                 return of;
             });
             if (near.nodes().empty()) return;
-            for (const FitWeight& weight : fit.fit(near.nodes(), k_tolerance * near.light())) {
+            // As much as the node's ray shows of it: nothing behind its surface.
+            const double shown =
+                own.has_ray ? static_cast<double>(own.mean_weights[interval]) : 0.0;
+            const double tolerance =
+                k_tolerance * near.light() / std::max(shown, 1e-3 * near.weight());
+            for (const FitWeight& weight : fit.fit(near.nodes(), tolerance)) {
                 const MultipleNode& other = raw_[weight.index];
                 const float* water = &other.halves[half].water[interval * values_];
                 for (std::size_t k = 0; k < values_; ++k) {
-                    const double share = intervals_.share(interval, k % bands_, other.reach);
+                    const float of_band = other.weights[interval * bands_ + k % bands_];
+                    if (!(of_band > 0)) continue;
                     node.light.water[interval * values_ + k] +=
-                        static_cast<float>(0.5 * weight.weight * water[k] / share);
+                        static_cast<float>(0.5 * weight.weight) * water[k] / of_band;
                 }
             }
-            // Nothing is seen of the water behind the node's own surface.
-            if (intervals_.begin(interval) < raw_(i, j).reach)
-                node.variance += 0.25 * fit.variance();
+            node.variance += 0.25 * fit.variance() * shown * shown;
         }
         node.known_to = intervals_.end(interval);
     }
@@ -143,10 +164,7 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
     node.light.glossy.assign(own.surface->is_glossy ? values_ : 0, 0.0F);
     for (std::size_t half = 0; half < 2; ++half) {
         near.find(raw_, i, j, [&](const MultipleNode& other) -> std::optional<FitNode> {
-            if (!other.surface || other.surface->object_id != own.surface->object_id ||
-                other.surface->is_glossy != own.surface->is_glossy ||
-                glm::dot(other.surface->normal, own.surface->normal) < k_least_node_cosine)
-                return std::nullopt;
+            if (!see_same_surface(own, other)) return std::nullopt;
             FitNode of;
             of.value = other.halves[1 - half].diffuse_mean;
             of.variance = other.diffuse_variance;
@@ -174,7 +192,8 @@ Grid2D<SmoothNode> smoothed(const Grid2D<MultipleNode>& raw, const DistanceInter
     std::size_t values = 0;
     for (const MultipleNode& node : raw) values = std::max(values, node.halves[0].water.size());
     if (values == 0) return nodes;
-    const Grid2D<MultipleNode> averaged = with_mean_variances(raw);
+    Grid2D<MultipleNode> averaged = with_mean_variances(raw);
+    share_outliers(averaged, intervals, groups);
     const NodeSmoothing smoothing(averaged, intervals, groups,
                                   values / (intervals.count() * groups));
     parallel_for(raw.size(), [&](std::size_t at) {

@@ -4,15 +4,12 @@
 #include "core/frame/distance_intervals.h"
 #include "core/frame/lattice_fit.h"
 #include "core/frame/multiple_nodes.h"
+#include "core/frame/outlier_sharing.h"
 
 namespace uw {
 
-/// The cosine of the largest angle between the normals at two places whose indirect light is
-/// alike.
-inline constexpr double k_least_node_cosine = 0.7;
-
 /// How far away the nodes are, in steps of the lattice, on which a smoothed node depends.
-inline constexpr int k_smoothing_reach = LatticeFit::k_reach + 2;
+inline constexpr int k_smoothing_reach = LatticeFit::k_reach + 2 + k_sharing_reach;
 
 /// A node whose light is smoothed over those around it.
 struct SmoothNode {
@@ -20,14 +17,14 @@ struct SmoothNode {
     /// The distance up to which the water's light is known [m], which may be beyond the node's own
     /// surface; 0: nothing is known.
     double known_to = 0;
-    NodeLight light;
+    NodeLight light;                      // that of the water divided by IntervalWeights
     double mean_light = 0, variance = 0;  // of the node's ray, and of its smoothed light
 };
 
-/// Smooths the nodes of a lattice (LatticeFit): the water's light interval by interval over the
-/// nodes whose rays reach it, the surfaces' over those that see the same surface. The neighbourhood
-/// for either half of the estimates is chosen by the other one: if a half chose its own, a rare
-/// bright path would stop the smoothing around it and be counted there once more.
+/// Smooths the nodes of a lattice (share_outliers, then LatticeFit): the water's light interval by
+/// interval over the nodes whose rays reach it, the surfaces' over those that see the same surface.
+/// The neighbourhood for either half of the estimates is chosen by the other one: if a half chose
+/// its own, a rare bright path would stop the smoothing around it and be counted there once more.
 /// `groups`: MultipleNodeOptions::groups.
 Grid2D<SmoothNode> smoothed(const Grid2D<MultipleNode>& raw, const DistanceIntervals& intervals,
                             std::size_t groups);

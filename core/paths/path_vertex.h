@@ -85,7 +85,6 @@ class PathVertex {
     const WaterSegment* segment_ = nullptr;  // of a reflection
     std::optional<SurfaceSample> sample_;
     std::optional<SurfaceReflection> reflection_;
-    double throughput_sum_ = 0;  // over the bands
     std::vector<double> phase_cumulative_;
     std::vector<Lobe> lobes_;
     std::vector<double> lobe_cumulative_;

@@ -53,6 +53,17 @@ TEST(LatticeFit, KeepsAStepThatIsGreaterThanTheNoise) {
     EXPECT_GT(fitted(fit, nodes_of(step, 1e-4), 100), 0.01);
 }
 
+TEST(LatticeFit, ListensToNodesByTheirWeights) {
+    LatticeFit fit;
+    // Every other column tells something else, and counts little.
+    const auto value = [](int x, int) { return x % 2 == 0 ? 3.0 : 100.0; };
+    std::vector<FitNode> nodes = nodes_of(value, 1e4);
+    for (FitNode& node : nodes)
+        if (node.dx % 2 != 0) node.weight = 1e-3;
+    // About as many of either.
+    EXPECT_NEAR(fitted(fit, nodes), 3 + 97e-3, 0.03);
+}
+
 TEST(LatticeFit, StatesTheVarianceOfWhatItFits) {
     LatticeFit fit;
     std::mt19937 random(1);
