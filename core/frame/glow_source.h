@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "core/frame/multiple_nodes.h"
 #include "core/frame/pixel_renderer.h"
+#include "core/multiple/multiple_nodes.h"
 
 namespace uw {
 

@@ -7,8 +7,8 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/frame/glow_source.h"
-#include "core/frame/node_kinship.h"
-#include "core/frame/node_smoothing.h"
+#include "core/multiple/node_kinship.h"
+#include "core/multiple/node_smoothing.h"
 #include "core/surfaces/surface_reflection.h"
 
 namespace uw {

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "core/base/grid2d.h"
-#include "core/frame/distance_intervals.h"
-#include "core/frame/interval_weights.h"
-#include "core/frame/multiple_nodes.h"
-#include "core/frame/node_smoothing.h"
 #include "core/frame/pixel_layers.h"
 #include "core/frame/pixel_renderer.h"
-#include "core/frame/surface_glow.h"
 #include "core/image/film.h"
+#include "core/multiple/distance_intervals.h"
+#include "core/multiple/interval_weights.h"
+#include "core/multiple/multiple_nodes.h"
+#include "core/multiple/node_smoothing.h"
+#include "core/multiple/surface_glow.h"
 
 namespace uw {
 

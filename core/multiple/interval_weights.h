@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/base/ray.h"
-#include "core/frame/distance_intervals.h"
 #include "core/integrators/lit_scene.h"
+#include "core/multiple/distance_intervals.h"
 #include "core/optics/optical_depth.h"
 
 namespace uw {

@@ -1,4 +1,4 @@
-#include "core/frame/lattice_fit.h"
+#include "core/multiple/lattice_fit.h"
 
 #include <algorithm>
 #include <array>

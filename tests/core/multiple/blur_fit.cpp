@@ -1,12 +1,12 @@
 // ctest labels: unit analytic
-#include "core/frame/blur_fit.h"
+#include "core/multiple/blur_fit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/frame/blur_pyramid.h"
+#include "core/multiple/blur_pyramid.h"
 
 namespace uw::test {
 namespace {

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/frame/blur_pyramid.h"
+#include "core/multiple/blur_pyramid.h"
 
 #include <gtest/gtest.h>
 

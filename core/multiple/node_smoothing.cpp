@@ -1,11 +1,11 @@
-#include "core/frame/node_smoothing.h"
+#include "core/multiple/node_smoothing.h"
 
 #include <algorithm>
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "core/frame/lattice_fit.h"
-#include "core/frame/node_kinship.h"
+#include "core/multiple/lattice_fit.h"
+#include "core/multiple/node_kinship.h"
 
 namespace uw {
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 
 #include "core/base/grid2d.h"
-#include "core/frame/distance_intervals.h"
-#include "core/frame/multiple_nodes.h"
+#include "core/multiple/distance_intervals.h"
+#include "core/multiple/multiple_nodes.h"
 
 namespace uw {
 

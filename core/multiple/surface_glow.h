@@ -8,10 +8,10 @@
 
 #include "core/base/grid2d.h"
 #include "core/base/ray_source.h"
-#include "core/frame/distance_intervals.h"
-#include "core/frame/point_spread.h"
 #include "core/integrators/lit_scene.h"
 #include "core/integrators/surface_lighting.h"
+#include "core/multiple/distance_intervals.h"
+#include "core/multiple/point_spread.h"
 
 namespace uw {
 

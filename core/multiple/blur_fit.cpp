@@ -1,10 +1,10 @@
-#include "core/frame/blur_fit.h"
+#include "core/multiple/blur_fit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/frame/blur_pyramid.h"
+#include "core/multiple/blur_pyramid.h"
 
 namespace uw {
 

@@ -1,4 +1,4 @@
-#include "core/frame/outlier_sharing.h"
+#include "core/multiple/outlier_sharing.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "core/frame/node_kinship.h"
+#include "core/multiple/node_kinship.h"
 
 namespace uw {
 

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "core/frame/distance_intervals.h"
-#include "core/frame/multiple_nodes.h"
+#include "core/multiple/distance_intervals.h"
+#include "core/multiple/multiple_nodes.h"
 
 namespace uw {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/frame/distance_intervals.h"
+#include "core/multiple/distance_intervals.h"
 #include "core/optics/medium.h"
 
 namespace uw {

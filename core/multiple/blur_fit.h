@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/cholesky.h"
-#include "core/frame/point_spread.h"
+#include "core/multiple/point_spread.h"
 
 namespace uw {
 

@@ -7,9 +7,9 @@
 
 #include "core/base/grid2d.h"
 #include "core/base/ray_source.h"
-#include "core/frame/interval_weights.h"
 #include "core/integrators/light_transport.h"
 #include "core/integrators/lit_scene.h"
+#include "core/multiple/interval_weights.h"
 #include "core/paths/path_tracer.h"
 
 namespace uw {

@@ -1,4 +1,4 @@
-#include "core/frame/multiple_nodes.h"
+#include "core/multiple/multiple_nodes.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/frame/interval_weights.h"
+#include "core/multiple/interval_weights.h"
 
 #include <gtest/gtest.h>
 

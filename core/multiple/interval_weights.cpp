@@ -1,4 +1,4 @@
-#include "core/frame/interval_weights.h"
+#include "core/multiple/interval_weights.h"
 
 #include <algorithm>
 

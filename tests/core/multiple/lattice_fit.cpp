@@ -1,5 +1,5 @@
 // ctest labels: unit statistical
-#include "core/frame/lattice_fit.h"
+#include "core/multiple/lattice_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/frame/distance_intervals.h"
+#include "core/multiple/distance_intervals.h"
 
 #include <gtest/gtest.h>
 

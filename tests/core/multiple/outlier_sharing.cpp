@@ -1,12 +1,12 @@
 // ctest labels: unit
-#include "core/frame/outlier_sharing.h"
+#include "core/multiple/outlier_sharing.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "core/frame/node_kinship.h"
 #include "core/integrators/integrator.h"
+#include "core/multiple/node_kinship.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {

@@ -1,4 +1,4 @@
-#include "core/frame/distance_intervals.h"
+#include "core/multiple/distance_intervals.h"
 
 #include <algorithm>
 #include <cmath>

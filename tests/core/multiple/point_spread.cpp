@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/frame/point_spread.h"
+#include "core/multiple/point_spread.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/frame/point_spread.h"
+#include "core/multiple/point_spread.h"
 
 #include <algorithm>
 #include <cmath>

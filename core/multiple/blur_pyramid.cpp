@@ -1,4 +1,4 @@
-#include "core/frame/blur_pyramid.h"
+#include "core/multiple/blur_pyramid.h"
 
 #include <algorithm>
 #include <bit>

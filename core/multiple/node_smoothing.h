@@ -1,10 +1,10 @@
 #pragma once
 
 #include "core/base/grid2d.h"
-#include "core/frame/distance_intervals.h"
-#include "core/frame/lattice_fit.h"
-#include "core/frame/multiple_nodes.h"
-#include "core/frame/outlier_sharing.h"
+#include "core/multiple/distance_intervals.h"
+#include "core/multiple/lattice_fit.h"
+#include "core/multiple/multiple_nodes.h"
+#include "core/multiple/outlier_sharing.h"
 
 namespace uw {
 

@@ -1,4 +1,4 @@
-#include "core/frame/surface_glow.h"
+#include "core/multiple/surface_glow.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "core/base/parallel.h"
-#include "core/frame/blur_fit.h"
-#include "core/frame/blur_pyramid.h"
+#include "core/multiple/blur_fit.h"
+#include "core/multiple/blur_pyramid.h"
 
 namespace uw {
 
