@@ -19,8 +19,8 @@ constexpr int k_expecting_reach = 2, k_taking_reach = 4;
 static_assert(k_expecting_reach + k_taking_reach == k_sharing_reach);
 // A half is limited to so many standard deviations above the nodes around, or to so many times the
 // other half.
-constexpr double k_most_deviations = 3, k_most_of_other_half = 1.5;
-constexpr int k_fewest_values = 8;  // that say what to expect
+constexpr double k_most_deviations = 4, k_most_of_other_half = 1.5;
+constexpr std::size_t k_fewest_values = 8;  // that say what to expect
 
 /// Light of one kind that nodes hold, in values that are alike from node to node.
 class NodeQuantity {
@@ -28,8 +28,6 @@ class NodeQuantity {
     virtual ~NodeQuantity() = default;
     /// Whether node `other` says something about `node`, which may be the same.
     virtual bool is_alike(const MultipleNode& node, const MultipleNode& other) const = 0;
-    /// How well a node knows its value.
-    virtual double weight(const MultipleNode& node) const = 0;
     virtual double value(const MultipleNode& node, std::size_t half) const = 0;
     /// The light itself by group and band, and what an even value of 1 is of it, by band.
     virtual std::span<float> light(NodeLight& half) const = 0;
@@ -48,11 +46,9 @@ class WaterQuantity final : public NodeQuantity {
         return shows_interval(node, intervals_, interval_) &&
                shows_interval(other, intervals_, interval_);
     }
-    double weight(const MultipleNode& node) const override {
-        return static_cast<double>(node.mean_weights[interval_]);
-    }
     double value(const MultipleNode& node, std::size_t half) const override {
-        return static_cast<double>(node.halves[half].water_mean[interval_]) / weight(node);
+        return static_cast<double>(node.halves[half].water_mean[interval_]) /
+               static_cast<double>(node.mean_weights[interval_]);
     }
     std::span<float> light(NodeLight& half) const override {
         return std::span(half.water).subspan(interval_ * values_, values_);
@@ -74,7 +70,6 @@ class SurfaceQuantity final : public NodeQuantity {
     bool is_alike(const MultipleNode& node, const MultipleNode& other) const override {
         return see_same_surface(node, other);
     }
-    double weight(const MultipleNode&) const override { return 1; }
     double value(const MultipleNode& node, std::size_t half) const override {
         return node.halves[half].diffuse_mean;
     }
@@ -93,26 +88,27 @@ void for_alike(const NodeQuantity& quantity, const Grid2D<MultipleNode>& nodes, 
             if (quantity.is_alike(nodes[at], nodes(u, v))) visit(nodes.index(u, v));
 }
 
-// The most that a half of a node may hold, as a value; infinity if too little is known.
+// The most that a half of a node may hold, as a value; infinity if too little is known. By median
+// and median deviation, which other outliers among the nodes around hardly move.
 double limit_of(const NodeQuantity& quantity, const Grid2D<MultipleNode>& nodes, std::size_t at,
                 std::size_t half) {
-    double weights = 0, sum = 0, squares = 0;
-    int count = 0;
+    constexpr double k_deviation_of_median = 1.4826;  // of a normal distribution
+    thread_local std::vector<double> values;
+    values.clear();
     for_alike(quantity, nodes, at, k_expecting_reach, [&](std::size_t other) {
         if (other == at) return;
-        const double weight = quantity.weight(nodes[other]);
-        for (const std::size_t h : {0U, 1U}) {
-            const double value = quantity.value(nodes[other], h);
-            weights += weight;
-            sum += weight * value;
-            squares += weight * value * value;
-            ++count;
-        }
+        for (const std::size_t h : {0U, 1U}) values.push_back(quantity.value(nodes[other], h));
     });
-    if (count < k_fewest_values) return std::numeric_limits<double>::infinity();
-    const double mean = sum / weights;
-    const double deviation = std::sqrt(std::max(0.0, squares / weights - mean * mean));
-    return std::max({0.0, mean + k_most_deviations * deviation,
+    if (values.size() < k_fewest_values) return std::numeric_limits<double>::infinity();
+    const auto median_of_values = [] {
+        const auto middle = values.begin() + std::ssize(values) / 2;
+        std::ranges::nth_element(values, middle);
+        return *middle;
+    };
+    const double median = median_of_values();
+    for (double& value : values) value = std::abs(value - median);
+    const double deviation = k_deviation_of_median * median_of_values();
+    return std::max({0.0, median + k_most_deviations * deviation,
                      k_most_of_other_half * quantity.value(nodes[at], 1 - half)});
 }
 
