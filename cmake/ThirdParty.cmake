@@ -41,3 +41,8 @@ target_include_directories(uwvdb_nanovdb SYSTEM INTERFACE ${NANOVDB_INCLUDE_DIR}
 target_link_libraries(uwvdb_nanovdb INTERFACE OpenVDB::openvdb)
 # Its conversions and checksums run on all threads; one setting for all files, unity or not.
 target_compile_definitions(uwvdb_nanovdb INTERFACE NANOVDB_USE_TBB)
+
+# cpp-httplib as the distributions build it; what its header declares depends on flags that its
+# pkg-config file alone names.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)

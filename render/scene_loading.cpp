@@ -21,10 +21,7 @@ void calibrate(CameraDesc& camera, SceneDesc& scene) {
     scene.hash = config_hash(both);
 }
 
-}  // namespace
-
-SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-    SceneDesc scene = read_scene(file, overrides);
+SceneDesc calibrated(SceneDesc scene) {
     if (scene.cameras.empty()) {
         calibrate(scene.camera, scene);
         return scene;
@@ -32,6 +29,16 @@ SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::s
     for (RigCameraDesc& entry : scene.cameras) calibrate(entry.camera, scene);
     scene.camera = scene.cameras.front().camera;
     return scene;
+}
+
+}  // namespace
+
+SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+    return calibrated(read_scene(file, overrides));
+}
+
+SceneDesc load_scene_text(std::string_view text, const std::filesystem::path& file) {
+    return calibrated(read_scene_text(text, file));
 }
 
 }  // namespace uw

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scene/scene_desc.h"
@@ -12,5 +13,8 @@ namespace uw {
 /// its cameras name, whose content is part of the scene's hash. Throws as read_scene and
 /// read_calibration do.
 SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+/// The same for a scene whose text is at hand (read_scene_text).
+SceneDesc load_scene_text(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace uw

@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "cli/json.h"
 #include "cli/version.h"
+#include "core/json/json.h"
 
 namespace uw {
 namespace {

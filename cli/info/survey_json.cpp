@@ -1,9 +1,9 @@
 #include "cli/info/survey_json.h"
 
-#include "cli/json.h"
 #include "cli/version.h"
 #include "cli/word_of.h"
 #include "core/integrators/integrator_table.h"
+#include "core/json/json.h"
 
 namespace uw {
 

@@ -1,8 +1,8 @@
 #include "cli/info/vdb_json.h"
 
 #include "cli/info/vdb_text.h"
-#include "cli/json.h"
 #include "cli/version.h"
+#include "core/json/json.h"
 
 namespace uw {
 

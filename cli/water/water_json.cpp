@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "cli/json.h"
 #include "cli/version.h"
+#include "core/json/json.h"
 
 namespace uw {
 

@@ -21,10 +21,6 @@ namespace fs = std::filesystem;
     throw IoError(fmt::format("{}: cannot write: {}", target.string(), why));
 }
 
-void refuse_input(const fs::path& resolved, const fs::path& target) {
-    if (is_input(resolved)) fail(target, "it is a file that this run reads; choose another name");
-}
-
 /// Rejects targets that a rename must not replace, and resolves a symbolic link to its target.
 fs::path checked(const fs::path& target) {
     if (!target.has_filename()) fail(target, "not a file name; add one");
@@ -43,7 +39,6 @@ fs::path checked(const fs::path& target) {
     if (fs::exists(status) && !fs::is_regular_file(status)) {
         fail(target, "it is not a regular file; choose another name");
     }
-    refuse_input(resolved, target);
     return resolved;
 }
 
@@ -69,7 +64,9 @@ std::string why_not_created(const fs::path& folder, int error) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& target) : target_(checked(target)) {
+AtomicFile::AtomicFile(const fs::path& target, ReadTarget read_target)
+    : read_target_(read_target), target_(checked(target)) {
+    refuse_input(target);
     static std::atomic<unsigned> counter{0};
     const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
     // The process id alone is not unique among machines that share a folder; O_EXCL is.
@@ -92,8 +89,22 @@ AtomicFile::~AtomicFile() {
     if (!temporary_.empty()) fs::remove(temporary_, ignored);
 }
 
+void AtomicFile::refuse_input(const fs::path& name) const {
+    if (read_target_ == ReadTarget::refuse && is_input(target_))
+        fail(name, "it is a file that this run reads; choose another name");
+}
+
+void AtomicFile::keep_permissions() const {
+    std::error_code error;
+    const fs::file_status status = fs::status(target_, error);
+    if (!fs::is_regular_file(status)) return;
+    fs::permissions(temporary_, status.permissions(), error);
+    if (error) fail(target_, error.message());
+}
+
 void AtomicFile::commit() {
-    refuse_input(target_, target_);  // it may have been read in the meantime
+    refuse_input(target_);  // it may have been read in the meantime
+    if (read_target_ == ReadTarget::replace) keep_permissions();
     std::error_code error;
     fs::rename(temporary_, target_, error);
     if (error) fail(target_, error.message());

@@ -4,6 +4,11 @@
 
 namespace uw {
 
+/// What to do with a target that the program has read (remember_input): outputs never replace such
+/// a file; a document that its user has changed and saves is the next version of it, and keeps its
+/// permissions.
+enum class ReadTarget { refuse, replace };
+
 /// Writes a file such that its name only ever refers to a complete one: write to `temporary_path`,
 /// beside the target, then `commit`. A file that is not committed is removed. Constructing and
 /// destroying one checks, before any work is done, whether the target can be written.
@@ -11,8 +16,9 @@ class AtomicFile {
   public:
     /// Creates the empty temporary file. A target that is a symbolic link is written through.
     /// Throws IoError if this is impossible: the folder is missing or not writable, or the target
-    /// is a folder, a device, or a file that the program has read (remember_input).
-    explicit AtomicFile(const std::filesystem::path& target);
+    /// is a folder, a device, or a file that `read_target` refuses.
+    explicit AtomicFile(const std::filesystem::path& target,
+                        ReadTarget read_target = ReadTarget::refuse);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
@@ -25,6 +31,10 @@ class AtomicFile {
     void commit();
 
   private:
+    void refuse_input(const std::filesystem::path& name) const;
+    void keep_permissions() const;
+
+    ReadTarget read_target_;
     std::filesystem::path target_;
     std::filesystem::path temporary_;
 };

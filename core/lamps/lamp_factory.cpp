@@ -86,8 +86,7 @@ Spectrum axis_intensity(const LampDesc& desc, const LampProfile& profile, std::s
 Lamp make_lamp(const LampDesc& given, const Affine& world_from_camera,
                std::span<const double> bands_nm, std::vector<std::string>& warnings) {
     LampDesc desc = given;
-    const Affine& world_from_frame =
-        desc.fixed_to_camera ? world_from_camera : desc.world_from_mount;
+    const Affine& world_from_frame = desc.world_from_frame(world_from_camera);
     LampProfile profile =
         make_lamp_profile(desc.profile, {world_from_frame, desc.direction}, warnings);
     resolve_output(desc, profile, bands_nm, warnings);

@@ -28,6 +28,11 @@ struct LampDesc {
     bool fixed_to_camera = true;  ///< its frame is the camera's, else world_from_mount
     Affine world_from_mount;      ///< rigid
     SourceLocation where;
+
+    /// Maps the lamp's frame to the world.
+    const Affine& world_from_frame(const Affine& world_from_camera) const {
+        return fixed_to_camera ? world_from_camera : world_from_mount;
+    }
 };
 
 }  // namespace uw

@@ -45,6 +45,16 @@ TEST_F(SceneLoading, WithoutACalibrationIsAsRead) {
     EXPECT_NE(scene.hash, load(text).hash);
 }
 
+TEST_F(SceneLoading, FromTextIsAsFromTheFileThatItBelongsTo) {
+    folder_.write("rig.yaml", test::k_calibmar_dome);
+    const std::string hash = load(k_calibrated_scene).hash;
+    const std::filesystem::path file = folder_.write("scene.yaml", "something else");
+    const SceneDesc scene = load_scene_text(k_calibrated_scene, file);
+    EXPECT_EQ(scene.hash, hash);
+    EXPECT_EQ(scene.file, file);
+    EXPECT_EQ(scene.camera.width, 1280);
+}
+
 TEST_F(SceneLoading, ThrowsWhatItsReadersThrow) {
     EXPECT_THROW(load(k_calibrated_scene), InputError);  // there is no rig.yaml
     folder_.write("rig.yaml", "no calibration");

@@ -30,6 +30,8 @@ struct ConfigNode {
     std::vector<ConfigNode> items;  // sequence
     std::vector<Entry> entries;     // map, in the order of the file; no key twice
     ConfigPosition position;
+    /// Where an alias stands for this value, which is written at `position`; line 0: nowhere.
+    ConfigPosition alias;
 
     /// The value at `key` of a map; nullptr if there is none or this is not a map.
     const ConfigNode* find(std::string_view key) const;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
-#include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -20,49 +20,26 @@ namespace {
 constexpr std::size_t k_longest_origin = 80;
 constexpr std::size_t k_most_steps = 32;  // deeper than any key; the tree is walked recursively
 
-/// One step of a path: a key of a map (or name of a list's entry), or an index into a list.
-struct Step {
-    std::string key;
-    std::optional<std::size_t> index;
-
-    std::string text() const { return index ? fmt::format("[{}]", *index) : key; }
-};
+/// Reads the indices of "[0][1]" after a key; false if they are not of that form.
+bool append_indices(std::string_view text, std::vector<KeyStep>& steps) {
+    while (!text.empty()) {
+        const std::size_t close = text.find(']');
+        if (text.front() != '[' || close == std::string_view::npos) return false;
+        std::size_t index = 0;
+        const char* const end = text.data() + close;
+        const auto [stop, error] = std::from_chars(text.data() + 1, end, index);
+        if (error != std::errc() || stop != end) return false;
+        steps.push_back({"", index});
+        text.remove_prefix(close + 1);
+    }
+    return true;
+}
 
 [[noreturn]] void fail_path(const std::string& origin) {
     throw UsageError(
         fmt::format("{}: not of the form key.path=value; for example --set "
                     "lamps[0].power=20",
                     origin));
-}
-
-/// Reads the indices of "[0][1]" after a key.
-void append_indices(std::string_view text, const std::string& origin, std::vector<Step>& steps) {
-    while (!text.empty()) {
-        const std::size_t close = text.find(']');
-        if (text.front() != '[' || close == std::string_view::npos) fail_path(origin);
-        std::size_t index = 0;
-        const char* const end = text.data() + close;
-        const auto [stop, error] = std::from_chars(text.data() + 1, end, index);
-        if (error != std::errc() || stop != end) fail_path(origin);
-        steps.push_back({"", index});
-        text.remove_prefix(close + 1);
-    }
-}
-
-std::vector<Step> parse_path(std::string_view path, const std::string& origin) {
-    std::vector<Step> steps;
-    std::size_t start = 0;
-    while (start <= path.size()) {
-        const std::size_t dot = std::min(path.find('.', start), path.size());
-        const std::string_view segment = path.substr(start, dot - start);
-        const std::size_t bracket = std::min(segment.find('['), segment.size());
-        if (bracket == 0) fail_path(origin);
-        steps.push_back({std::string(segment.substr(0, bracket)), std::nullopt});
-        append_indices(segment.substr(bracket), origin, steps);
-        start = dot + 1;
-    }
-    if (steps.size() > k_most_steps) fail_path(origin);
-    return steps;
 }
 
 /// A walk down the tree along an override's path.
@@ -73,24 +50,14 @@ class Walk {
           origin_(std::move(origin)),
           position_{std::make_shared<const std::string>(origin_), 0, 0} {}
 
-    void go(const std::vector<Step>& steps) {
+    void go(const std::vector<KeyStep>& steps) {
         for (std::size_t i = 0; i < steps.size(); ++i) {
             if (steps[i].index) {
                 to_index(*steps[i].index);
                 path_ += steps[i].text();
-                continue;
+            } else {
+                to_key(joined_key(*node_, steps, i));
             }
-            // a grid may be called density[1]
-            if (i + 1 < steps.size() && steps[i + 1].index &&
-                node_->kind == ConfigNode::Kind::map) {
-                const std::string joined = steps[i].key + steps[i + 1].text();
-                if (node_->find(joined) != nullptr) {
-                    to_key(joined);
-                    ++i;
-                    continue;
-                }
-            }
-            to_key(steps[i].key);
         }
     }
     void set(ConfigNode value) { *node_ = std::move(value); }
@@ -125,7 +92,7 @@ class Walk {
     void to_named_item(const std::string& name) {
         std::string names;
         for (std::size_t i = 0; i < node_->items.size(); ++i) {
-            const std::string item = item_name(i);
+            const std::string item = entry_name(*node_, i, path_);
             if (item == name) {
                 node_ = &node_->items[i];
                 return;
@@ -136,13 +103,6 @@ class Walk {
                          node_->items.size(), printable(name),
                          names.empty() ? fmt::format("write {}[0] for the first", path_)
                                        : "there are: " + names));
-    }
-
-    /// The name of an entry; a lamp without one is named after its index.
-    std::string item_name(std::size_t i) const {
-        const ConfigNode* const name = node_->items[i].find("name");
-        if (name != nullptr) return name->scalar;
-        return path_ == "lamps" ? fmt::format("lamp{}", i + 1) : "";
     }
 
     void to_index(std::size_t index) {
@@ -167,12 +127,51 @@ class Walk {
 
 }  // namespace
 
+std::vector<KeyStep> parse_key_path(std::string_view path) {
+    std::vector<KeyStep> steps;
+    std::size_t start = 0;
+    while (start <= path.size()) {
+        const std::size_t dot = std::min(path.find('.', start), path.size());
+        const std::string_view segment = path.substr(start, dot - start);
+        const std::size_t bracket = std::min(segment.find('['), segment.size());
+        if (bracket == 0) return {};
+        steps.push_back({std::string(segment.substr(0, bracket)), std::nullopt});
+        if (!append_indices(segment.substr(bracket), steps)) return {};
+        start = dot + 1;
+    }
+    if (steps.size() > k_most_steps) return {};
+    return steps;
+}
+
+std::string joined_key(const ConfigNode& map, const std::vector<KeyStep>& steps, std::size_t& i) {
+    if (i + 1 < steps.size() && steps[i + 1].index && map.kind == ConfigNode::Kind::map) {
+        std::string joined = steps[i].key + steps[i + 1].text();
+        if (map.find(joined) != nullptr) {
+            ++i;
+            return joined;
+        }
+    }
+    return steps[i].key;
+}
+
+std::string entry_name(const ConfigNode& list, std::size_t entry, std::string_view list_path) {
+    const ConfigNode* const name = list.items[entry].find("name");
+    if (name != nullptr) return name->scalar;
+    return list_path == "lamps" ? fmt::format("lamp{}", entry + 1) : "";
+}
+
 void apply_override(ConfigNode& root, const std::string& text) {
     const std::string origin = "--set " + printable(text, k_longest_origin);
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0) fail_path(origin);
-    const std::vector<Step> steps = parse_path(std::string_view(text).substr(0, equals), origin);
-    ConfigNode value = parse_yaml_value(std::string_view(text).substr(equals + 1), origin);
+    set_value(root, std::string_view(text).substr(0, equals),
+              parse_yaml_value(std::string_view(text).substr(equals + 1), origin), origin);
+}
+
+void set_value(ConfigNode& root, std::string_view path, ConfigNode value,
+               const std::string& origin) {
+    const std::vector<KeyStep> steps = parse_key_path(path);
+    if (steps.empty()) fail_path(origin);
     Walk walk(root, origin);
     walk.go(steps);
     walk.set(std::move(value));

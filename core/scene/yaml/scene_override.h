@@ -1,10 +1,36 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/scene/yaml/config_node.h"
 
 namespace uw {
+
+/// One step of a key path: a key of a map (or the name of a list's entry), or an index into a list.
+struct KeyStep {
+    std::string key;
+    std::optional<std::size_t> index;
+
+    /// As it is written in a path: "position" or "[0]".
+    std::string text() const { return index ? "[" + std::to_string(*index) + "]" : key; }
+    friend bool operator==(const KeyStep&, const KeyStep&) = default;
+};
+
+/// The steps of "lamps[0].position" or "lamps.left.position". Empty if `path` is not of that form,
+/// or deeper than any key.
+std::vector<KeyStep> parse_key_path(std::string_view path);
+
+/// Joins the step `i` of a path with the index after it if `map` has such a key: a grid may be
+/// called density[1]. `i` is then that of the index.
+std::string joined_key(const ConfigNode& map, const std::vector<KeyStep>& steps, std::size_t& i);
+
+/// The name by which paths know an entry of the list at the path `list_path`: its `name`; a lamp
+/// without one is named after its index. Empty if it has none.
+std::string entry_name(const ConfigNode& list, std::size_t entry, std::string_view list_path);
 
 /// Applies one "key.path=value" of --set to a scene's tree: `lamps[0].intensity=[1, 2, 3]`,
 /// `lamps.left.power=20` (a list's entry by its name), `camera.pose.position=[0, 0, 1]`. The value
@@ -12,5 +38,9 @@ namespace uw {
 /// mistyped key is caught by the same checks as in the file. Throws UsageError if `text` is not of
 /// that form, InputError if the path does not exist.
 void apply_override(ConfigNode& root, const std::string& text);
+
+/// The same for a path and a value that has been parsed; messages begin with `origin`.
+void set_value(ConfigNode& root, std::string_view path, ConfigNode value,
+               const std::string& origin);
 
 }  // namespace uw

@@ -22,6 +22,11 @@
 namespace uw {
 namespace {
 
+/// A scene file's name in messages.
+std::string origin_of(const std::filesystem::path& file) {
+    return printable(file.string(), 300);
+}
+
 /// Checked first: another version may have other keys.
 void check_version(const ConfigValue& scene) {
     const ConfigNode* const version = scene.node().find("uwvdb");
@@ -116,9 +121,14 @@ void open_shutter(SceneDesc& desc) {
 }  // namespace
 
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-    const std::string origin = printable(file.string(), 300);
-    ConfigNode root = parse_yaml(read_text_file(file, origin, YamlLimits{}.bytes, "scene"), origin);
-    for (const std::string& text : overrides) apply_override(root, text);
+    return read_scene_text(read_text_file(file, origin_of(file), YamlLimits{}.bytes, "scene"), file,
+                           overrides);
+}
+
+SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& file,
+                          const std::vector<std::string>& overrides) {
+    ConfigNode root = parse_yaml(text, origin_of(file));
+    for (const std::string& change : overrides) apply_override(root, change);
 
     const ConfigValue scene(root, "");
     check_version(scene);

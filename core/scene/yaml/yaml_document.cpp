@@ -82,6 +82,7 @@ class TreeBuilder : public YAML::EventHandler {
             fail(mark, "an alias inside the value it refers to; write the value out");
         count(mark, weight(found->second));
         ConfigNode copy = found->second;
+        copy.alias = source_.position(mark.line, mark.column);
         add(std::move(copy), YAML::NullAnchor);
     }
     void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/calibration/calibration_report.h"
-#include "cli/json.h"
+#include "core/json/json.h"
 
 namespace uw {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/json.h"
 #include "cli/water/water_report.h"
+#include "core/json/json.h"
 #include "tests/support/water_reports.h"
 
 namespace uw {

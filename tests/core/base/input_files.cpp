@@ -88,5 +88,19 @@ TEST_F(InputFiles, AreNeverReplaced) {
     EXPECT_EQ(read_text_file(late, "late", 100, "file"), "precious");
 }
 
+TEST_F(InputFiles, AreReplacedByTheirNextVersionAlone) {
+    const fs::path file = write("scene.yaml", "old");
+    remember_input(file);
+    fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read);
+    AtomicFile output(file, ReadTarget::replace);
+    std::ofstream(output.temporary_path()) << "new";
+    EXPECT_EQ(read_text_file(file, "", 100, "file"), "old");
+    output.commit();
+    EXPECT_EQ(read_text_file(file, "", 100, "file"), "new");
+    EXPECT_EQ(fs::status(file).permissions(),
+              fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read);
+    EXPECT_THROW(AtomicFile{file}, IoError) << "it has been read again";
+}
+
 }  // namespace
 }  // namespace uw

@@ -72,6 +72,17 @@ TEST(YamlDocument, refusesWhatHasNoOneMeaning) {
     expect_error("a: &x [*x]\n", "s.yaml:1:8: an alias inside the value it refers to");
 }
 
+TEST(YamlDocument, aliasesHaveThePlaceOfTheirValueAndTheirOwn) {
+    const ConfigNode root = parse_yaml("a: &x {b: 1}\nc: [*x]\n", "s.yaml");
+    const ConfigNode& written = *root.find("a");
+    const ConfigNode& copy = root.find("c")->items[0];
+    EXPECT_EQ(written.position.text(), "s.yaml:1:4");
+    EXPECT_EQ(written.alias.line, 0);
+    EXPECT_EQ(copy.position.text(), "s.yaml:1:4");
+    EXPECT_EQ(copy.alias.text(), "s.yaml:2:5");
+    EXPECT_EQ(copy.find("b")->alias.line, 0);
+}
+
 TEST(YamlDocument, syntaxErrorsHaveAPlace) {
     expect_error("a: [1, 2\nb: 3\n", "s.yaml:2:2: ");
     expect_error("a:\n\t- 1\n", "s.yaml:2:2: illegal block entry");

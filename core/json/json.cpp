@@ -1,4 +1,4 @@
-#include "cli/json.h"
+#include "core/json/json.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/json.h"
+#include "core/json/json.h"
 
 #include <gtest/gtest.h>
 

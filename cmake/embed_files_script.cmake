@@ -1,0 +1,21 @@
+# Run as a script: writes OUTPUT, a C++ source that holds each file of FILES as a raw string, as
+# uwvdb_embed_files says.
+set(code "#include \"${HEADER}\"\n\nnamespace uw {\n\n")
+string(APPEND code "const std::vector<${TYPE}>& ${FUNCTION}() {\n")
+string(APPEND code "    static const std::vector<${TYPE}> files = {\n")
+foreach(file IN LISTS FILES)
+    file(RELATIVE_PATH name ${FOLDER} ${file})
+    file(READ ${file} text)
+    # Compilers limit one literal to 64 KiB; adjacent literals are joined, 8 KiB each.
+    string(LENGTH "${text}" length)
+    string(APPEND code "        {\"${name}\",\n\"\"\n")
+    set(at 0)
+    while(at LESS length)
+        string(SUBSTRING "${text}" ${at} 8000 piece)
+        string(APPEND code "R\"uwfile(${piece})uwfile\"\n")
+        math(EXPR at "${at} + 8000")
+    endwhile()
+    string(APPEND code "},\n")
+endforeach()
+string(APPEND code "    };\n    return files;\n}\n\n}  // namespace uw\n")
+file(WRITE ${OUTPUT} "${code}")
