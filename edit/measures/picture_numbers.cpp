@@ -1,0 +1,201 @@
+#include "edit/measures/picture_numbers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace uw {
+namespace {
+
+/// The mean of a pixel's bands in a sum of layers.
+class GreyLayers {
+  public:
+    GreyLayers(const std::vector<PicturePlane>& planes, std::size_t bands)
+        : planes_(planes), bands_(bands) {}
+
+    bool empty() const { return planes_.empty(); }
+    double at(std::size_t pixel) const {
+        double sum = 0;
+        for (const PicturePlane& plane : planes_)
+            for (std::size_t b = 0; b < bands_; ++b)
+                sum += plane.gain[b] * static_cast<double>(plane.values[pixel * plane.stride + b]);
+        return sum / static_cast<double>(bands_);
+    }
+
+  private:
+    const std::vector<PicturePlane>& planes_;
+    std::size_t bands_;
+};
+
+double mean_of(std::span<const double> values) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+
+/// The mean of the values between two shares of their number, from the least on; the value in the
+/// middle of the two if there is none between them. Orders the values as it needs.
+double mean_between(std::span<double> values, double low, double high) {
+    const auto count = static_cast<double>(values.size());
+    const auto begin = static_cast<std::ptrdiff_t>(std::ceil(low * count));
+    const auto end = static_cast<std::ptrdiff_t>(std::floor(high * count));
+    if (begin >= end) {
+        const auto middle = std::min(static_cast<std::ptrdiff_t>(0.5 * (low + high) * count),
+                                     static_cast<std::ptrdiff_t>(values.size()) - 1);
+        std::nth_element(values.begin(), values.begin() + middle, values.end());
+        return values[static_cast<std::size_t>(middle)];
+    }
+    std::nth_element(values.begin(), values.begin() + begin, values.end());
+    std::nth_element(values.begin() + begin, values.begin() + end, values.end());
+    return mean_of({values.begin() + begin, values.begin() + end});
+}
+
+/// The value below which a share of the values lies, between its neighbours. Orders the values as
+/// it needs.
+double percentile(std::span<double> values, double share) {
+    const double place = share * static_cast<double>(values.size() - 1);
+    const auto below = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(values.begin(), below, values.end());
+    const double low = *below;
+    if (below + 1 == values.end()) return low;
+    return std::lerp(low, *std::min_element(below + 1, values.end()), place - std::floor(place));
+}
+
+double ratio_of(double signal, double backscatter) {
+    if (backscatter > 0) return signal / backscatter;
+    return signal > 0 ? std::numeric_limits<double>::infinity() : 0;
+}
+
+double contrast_of(std::span<double> values) {
+    const double dark = mean_between(values, 0.05, 0.25), bright = mean_between(values, 0.75, 0.95);
+    return bright + dark > 0 ? (bright - dark) / (bright + dark) : 0;
+}
+
+std::vector<std::size_t> pixels_of(const PictureLayers& picture, const PixelWindow& part) {
+    std::vector<std::size_t> pixels;
+    for (int y = part.y0; y < part.y1; ++y)
+        for (int x = part.x0; x < part.x1; ++x)
+            pixels.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                             static_cast<std::size_t>(x));
+    return pixels;
+}
+
+/// `seen`: the irradiance where there is a surface.
+Evenness evenness_of(std::vector<double> seen) {
+    Evenness even;
+    even.pixels = seen.size();
+    if (seen.empty()) return even;
+    even.mean = mean_of(seen);
+    even.least = *std::ranges::min_element(seen);
+    even.greatest = *std::ranges::max_element(seen);
+    even.percentile5 = percentile(seen, 0.05);
+    even.median = percentile(seen, 0.5);
+    even.percentile95 = percentile(seen, 0.95);
+    if (even.mean > 0) {
+        even.least_to_mean = even.least / even.mean;
+        even.percentile5_to_mean = even.percentile5 / even.mean;
+    }
+    return even;
+}
+
+PicturePlane plane_of(const Film& film, int first_channel, std::size_t bands) {
+    PicturePlane plane{film.values().subspan(static_cast<std::size_t>(first_channel)),
+                       film.channel_names().size(),
+                       {}};
+    plane.gain = per_band(bands, [](std::size_t) { return 1.0; });
+    return plane;
+}
+
+}  // namespace
+
+PictureLayers picture_layers(const Film& film, const LayerPlan& plan) {
+    PictureLayers picture{
+        film.window().width(), film.window().height(), plan.band_count(), {}, {}, {}, {}, {}};
+    const auto add = [&](Layer layer, std::vector<PicturePlane>& planes) {
+        if (plan.has(layer))
+            planes.push_back(plane_of(film, plan.first_channel(layer), plan.band_count()));
+    };
+    add(Layer::direct, picture.signal);
+    add(Layer::forward, picture.signal);
+    add(Layer::multiple_surface, picture.signal);
+    add(Layer::backscatter, picture.backscatter);
+    add(Layer::multiple_volume, picture.backscatter);
+    add(Layer::clean, picture.clean);
+    add(Layer::irradiance, picture.irradiance);
+    add(Layer::albedo, picture.albedo);
+    return picture;
+}
+
+PictureNumbers measure_picture(const PictureLayers& picture, const PixelWindow& part,
+                               double ratio) {
+    const GreyLayers signal(picture.signal, picture.bands);
+    const GreyLayers backscatter(picture.backscatter, picture.bands);
+    const GreyLayers clean(picture.clean, picture.bands);
+    const GreyLayers irradiance(picture.irradiance, picture.bands);
+    const GreyLayers albedo(picture.albedo, picture.bands);
+    std::vector<double> totals, signals, scattered, cleans, lit;
+    std::size_t above = 0;
+    for (const std::size_t pixel : pixels_of(picture, part)) {
+        signals.push_back(signal.at(pixel));
+        scattered.push_back(backscatter.at(pixel));
+        totals.push_back(signals.back() + scattered.back());
+        above += signals.back() > 0 && signals.back() >= ratio * scattered.back() ? 1U : 0U;
+        cleans.push_back(clean.at(pixel));
+        const double light = irradiance.at(pixel);
+        if (light > 0 || albedo.at(pixel) > 0) lit.push_back(light);
+    }
+    PictureNumbers numbers;
+    numbers.signal = mean_of(signals);
+    numbers.backscatter = mean_of(scattered);
+    numbers.signal_to_backscatter = ratio_of(numbers.signal, numbers.backscatter);
+    numbers.share_above = static_cast<double>(above) / static_cast<double>(totals.size());
+    numbers.contrast = contrast_of(totals);
+    if (!clean.empty()) {
+        const double without_water = mean_of(cleans);
+        if (without_water > 0) numbers.lost_to_water = 1 - numbers.signal / without_water;
+        numbers.clean_contrast = contrast_of(cleans);
+    }
+    if (!irradiance.empty()) numbers.evenness = evenness_of(std::move(lit));
+    return numbers;
+}
+
+std::optional<PixelWindow> patterned_part(const PictureLayers& picture, int side) {
+    const GreyLayers albedo(picture.albedo, picture.bands);
+    const int width = picture.width, height = picture.height;
+    if (albedo.empty() || side < 2 || side > std::min(width, height)) return std::nullopt;
+    // Sums of the values and of their squares over all pixels above and to the left.
+    const auto columns = static_cast<std::size_t>(width) + 1;
+    std::vector<double> sums(columns * (static_cast<std::size_t>(height) + 1)), squares = sums;
+    const auto at = [columns](int x, int y) {
+        return static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x);
+    };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double value = albedo.at(static_cast<std::size_t>(y) * (columns - 1) +
+                                           static_cast<std::size_t>(x));
+            for (auto [table, term] : {std::pair{&sums, value}, std::pair{&squares, value * value}})
+                (*table)[at(x + 1, y + 1)] =
+                    term + (*table)[at(x, y + 1)] + (*table)[at(x + 1, y)] - (*table)[at(x, y)];
+        }
+    const auto sum_within = [&](const std::vector<double>& table, int x, int y) {
+        return table[at(x + side, y + side)] - table[at(x, y + side)] - table[at(x + side, y)] +
+               table[at(x, y)];
+    };
+    // Of equal surfaces it is 0 but for rounding, which is far below this; no surface that anyone
+    // would call patterned varies so little.
+    constexpr double k_least_deviation = 0.01;
+    double most = k_least_deviation * k_least_deviation;
+    std::optional<PixelWindow> best;
+    const double count = static_cast<double>(side) * side;
+    for (int y = 0; y + side <= height; ++y)
+        for (int x = 0; x + side <= width; ++x) {
+            const double mean = sum_within(sums, x, y) / count;
+            const double variance = sum_within(squares, x, y) / count - mean * mean;
+            if (variance <= most) continue;
+            most = variance;
+            best = PixelWindow{x, y, x + side, y + side};
+        }
+    return best;
+}
+
+}  // namespace uw
