@@ -7,6 +7,7 @@
 #include "cli/calibration/calibration_command.h"
 #include "cli/command_line.h"
 #include "cli/console.h"
+#include "cli/edit/edit_command.h"
 #include "cli/info/info_command.h"
 #include "cli/render/render_command.h"
 #include "cli/shell/completion_command.h"
@@ -31,6 +32,7 @@ void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::info_command());
     commands.push_back(uw::water_command());
     commands.push_back(uw::validate_command());
+    commands.push_back(uw::edit_command());
     commands.push_back(uw::calibration_command());
     commands.push_back(uw::completion_command(commands));
     commands.push_back(uw::manual_command(commands));

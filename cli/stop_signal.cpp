@@ -15,6 +15,14 @@ volatile std::sig_atomic_t g_orderly = 0;
 volatile std::sig_atomic_t g_stop = 0;
 volatile std::sig_atomic_t g_skip = 1;  // 0 on a terminal, where "^C" or a bar fills the line
 
+sigset_t stop_signals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    return signals;
+}
+
 // Only async-signal-safe calls: write(2), _exit(2).
 void on_signal(int signal) {
     if (g_orderly == 0) {
@@ -41,6 +49,18 @@ void begin_orderly_stop() {
 
 bool stop_requested() {
     return g_stop != 0;
+}
+
+void hold_stop_signal() {
+    const sigset_t signals = stop_signals();
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
+void wait_for_stop_signal() {
+    const sigset_t signals = stop_signals();
+    int received = 0;
+    while (sigwait(&signals, &received) != 0) {
+    }
 }
 
 }  // namespace uw

@@ -13,4 +13,9 @@ void begin_orderly_stop();
 /// Whether an orderly stop has been requested.
 bool stop_requested();
 
+/// For a program that has nothing to do until it is stopped, instead of the above: Ctrl-C waits for
+/// wait_for_stop_signal(). To be called before any thread is started.
+void hold_stop_signal();
+void wait_for_stop_signal();
+
 }  // namespace uw

@@ -116,6 +116,10 @@ void Program::signal(int number) const {
     if (!ended_) ::kill(process_, number);
 }
 
+std::string Program::output() const {
+    return text_of(streams_ / "out");
+}
+
 ProgramResult Program::wait() {
     while (!ended()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     collect_terminal();

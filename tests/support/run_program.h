@@ -36,6 +36,8 @@ class Program {
     /// Waits until stderr contains `text`; fails the test if the program ends first.
     void wait_for(const std::string& text);
     void signal(int number) const;
+    /// What it has written to stdout so far.
+    std::string output() const;
     ProgramResult wait();
 
   private:

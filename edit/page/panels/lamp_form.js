@@ -1,0 +1,123 @@
+// Everything about the chosen lamp, to be typed.
+
+import { h } from "../base/dom.js";
+import { add } from "../base/vec.js";
+import { newGroup } from "../server/editing.js";
+import { brightnessFields } from "./brightness_fields.js";
+import { numberField, numbersField, selectField, textField } from "./fields.js";
+import { bound, Form } from "./form.js";
+
+const PROFILES = {
+    isotropic: { label: "isotropic", keys: [], start: () => ({}) },
+    spot: { label: "spot", keys: ["beam", "edge"], start: () => ({ beam: 60, edge: 5 }) },
+    cosine: { label: "cosine", keys: ["fwhm"], start: () => ({ fwhm: 120 }) },
+    ies: {
+        label: "IES file", keys: ["rotate", "tilt"],
+        start: (scene) => ({ file: scene.ies_files[0] }),
+    },
+};
+
+const KEY_LABELS = {
+    beam: "Beam", edge: "Edge", fwhm: "Full width at half", rotate: "Rotate", tilt: "Tilt",
+};
+
+export class LampForm {
+    #form;
+    #settings;
+    #editing;
+    #picture;
+
+    constructor(place, settings, editing, picture) {
+        this.#settings = settings;
+        this.#editing = editing;
+        this.#picture = picture;
+        this.#form = new Form(place, (subject) => this.#signature(subject),
+            (subject) => this.#build(subject));
+    }
+
+    update(scene, lamp) {
+        this.#form.update({ scene, lamp });
+    }
+
+    #signature({ scene, lamp }) {
+        return lamp && [lamp.name, lamp.name, lamp.profile.type, lamp.why_not, lamp.brightness.kind,
+            lamp.brightness.spectrum, Array.isArray(lamp.brightness.value), scene.ies_files,
+            scene.image.bands, scene.rig];
+    }
+
+    #build({ scene, lamp }) {
+        if (!lamp) {
+            const element = h("p", { class: "hint" }, "No lamp is chosen. Add one, or choose one above.");
+            return [{ element, update: () => {} }];
+        }
+        const locked = ({ lamp: now }) => !now.editable;
+        const path = (key) => `lamps.${lamp.name}.${key}`;
+        const set = (label, key) => (value, onRefusal) => this.#editing.edit(
+            `${label} of ${lamp.name}`, [{ op: "set", path: path(key), value }],
+            { group: `typed-${lamp.name}-${key}`, onRefusal });
+        const field = (made, read) => bound(made, ({ lamp: now }) => read(now), locked);
+        const parts = [];
+        if (lamp.why_not) {
+            parts.push({ element: h("p", { class: "hint locked" }, lamp.why_not), update: () => {} });
+        }
+        parts.push(
+            field(textField({ label: "Name", key: "name", commit:
+                (value, refuse) => this.#rename(lamp.name, value, refuse) }), (now) => now.name),
+            field(selectField({ label: "Frame", key: "frame",
+                options: ["camera", ...(scene.rig ? ["rig"] : []), "world"]
+                    .map((frame) => ({ value: frame, label: frame })),
+                commit: (frame, refuse) => this.#setFrame(lamp, frame, refuse) }), (now) => now.frame),
+            field(numbersField({ label: "Position", unit: "m", key: "position", names: ["x", "y", "z"],
+                step: 0.01, commit: set("position", "position") }), (now) => now.position),
+            field(numbersField({ label: "Direction", key: "direction", names: ["x", "y", "z"],
+                step: 0.01, commit: set("direction", "direction") }), (now) => now.direction),
+            "Profile", ...this.#profileParts(scene, lamp, field, set),
+            "Brightness", ...brightnessFields(scene, lamp, this.#editing, this.#picture));
+        return parts;
+    }
+
+    async #rename(from, to, onRefusal) {
+        const renamed = await this.#editing.edit(`rename ${from}`,
+            [{ op: "rename_lamp", lamp: from, name: to }], { onRefusal });
+        if (!renamed) return;
+        const { selected, solo, onlyLamp } = this.#settings.value;
+        const now = (name) => (name === from ? to : name);
+        this.#settings.update({ selected: now(selected), solo: now(solo), onlyLamp: now(onlyLamp) });
+    }
+
+    /** Another frame; the lamp stays where it is and shines as it did. */
+    async #setFrame({ name, world_position: at, world_direction: direction }, frame, onRefusal) {
+        const group = newGroup("frame");
+        const label = `frame of ${name}`;
+        const path = `lamps.${name}.frame`;
+        const done = await this.#editing.edit(label, [{ op: "set", path, value: frame }],
+            { group, onRefusal });
+        if (!done) return;
+        await this.#editing.edit(label, [
+            { op: "move_lamp", lamp: name, world: at },
+            { op: "aim_lamp", lamp: name, world: add(at, direction) },
+        ], { group, onRefusal });
+    }
+
+    #profileParts(scene, lamp, field, set) {
+        const { type } = lamp.profile;
+        const replace = set("profile", "profile");
+        const options = Object.entries(PROFILES)
+            .filter(([name]) => name !== "ies" || scene.ies_files.length > 0 || type === "ies")
+            .map(([value, { label }]) => ({ value, label }));
+        const parts = [field(selectField({ label: "Type", key: "profile.type", options,
+            commit: (chosen, refuse) =>
+                replace({ type: chosen, ...PROFILES[chosen].start(scene) }, refuse) }),
+        (now) => now.profile.type)];
+        if (type === "ies") {
+            parts.push(field(selectField({ label: "File", key: "profile.file",
+                options: scene.ies_files.map((file) => ({ value: file, label: file })),
+                commit: set("IES file", "profile.file") }), (now) => now.profile.file));
+        }
+        for (const key of PROFILES[type].keys) {
+            parts.push(field(numberField({ label: KEY_LABELS[key], unit: "°", key: `profile.${key}`,
+                step: 1, commit: set(key, `profile.${key}`) }), (now) => now.profile[key]));
+        }
+        return parts;
+    }
+}

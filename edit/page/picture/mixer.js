@@ -1,0 +1,89 @@
+// Mixes planes into the picture on a canvas, by WebGL 2.
+
+import { RAMP } from "./false_colour.js";
+import { PlaneTexture } from "./plane_texture.js";
+import { FRAGMENT, VERTEX } from "./shaders.js";
+
+function compile(gl, type, source) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) {
+        throw new Error(`the picture's shader: ${gl.getShaderInfoLog(shader)}`);
+    }
+    return shader;
+}
+
+export class Mixer {
+    #gl;
+    #uniforms;
+    #table;
+
+    /** Throws if the browser has no WebGL 2. */
+    constructor(canvas) {
+        // What was drawn is kept, for the picture is exported as it is seen.
+        this.#gl = canvas.getContext("webgl2", {
+            alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true,
+        });
+        if (!this.#gl) throw new Error("this browser has no WebGL 2, which mixes the lamps' light");
+        this.#build();
+    }
+
+    #build() {
+        const gl = this.#gl;
+        const program = gl.createProgram();
+        gl.attachShader(program, compile(gl, gl.VERTEX_SHADER, VERTEX));
+        gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, FRAGMENT));
+        gl.linkProgram(program);
+        gl.useProgram(program);
+        const names = ["planes", "mix_table", "mix_count", "exposure", "false_colour", "ramp"];
+        this.#uniforms = Object.fromEntries(
+            names.map((name) => [name, gl.getUniformLocation(program, name)]));
+        gl.uniform1i(this.#uniforms.planes, 0);
+        gl.uniform1i(this.#uniforms.mix_table, 1);
+        gl.uniform3fv(this.#uniforms.ramp, RAMP.flat());
+        gl.activeTexture(gl.TEXTURE1);
+        this.#table = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_2D, this.#table);
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+        gl.activeTexture(gl.TEXTURE0);
+    }
+
+    /** After the graphics card was reset: textures made before are gone. */
+    rebuild() {
+        this.#build();
+    }
+
+    newTexture() {
+        return new PlaneTexture(this.#gl);
+    }
+
+    clear() {
+        const gl = this.#gl;
+        gl.disable(gl.SCISSOR_TEST);
+        gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
+        gl.clearColor(0, 0, 0, 1);
+        gl.clear(gl.COLOR_BUFFER_BIT);
+    }
+
+    /** Draws the columns from `from` to `to` (fractions of the width). */
+    draw(texture, mix, { exposure, falseColour = false, from = 0, to = 1 }) {
+        const gl = this.#gl;
+        const width = gl.drawingBufferWidth;
+        const first = Math.round(from * width);
+        gl.enable(gl.SCISSOR_TEST);
+        gl.scissor(first, 0, Math.round(to * width) - first, gl.drawingBufferHeight);
+        const table = new Float32Array(Math.max(mix.length, 1) * 4);
+        mix.forEach(({ plane, weight }, index) => table.set([plane, ...weight], index * 4));
+        gl.activeTexture(gl.TEXTURE1);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, table.length / 4, 1, 0, gl.RGBA, gl.FLOAT,
+            table);
+        gl.activeTexture(gl.TEXTURE0);
+        gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture.texture);
+        gl.uniform1i(this.#uniforms.mix_count, mix.length);
+        gl.uniform1f(this.#uniforms.exposure, exposure);
+        gl.uniform1i(this.#uniforms.false_colour, falseColour ? 1 : 0);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+}

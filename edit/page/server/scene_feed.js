@@ -1,0 +1,54 @@
+// The scene as the server has it: fetched when the server says that it changed, and with it, when
+// they are others, the outlines of the surfaces.
+
+import { get, Refusal, Unreachable } from "./api.js";
+
+export class SceneFeed {
+    #scene;
+    #outlines;
+    #editing;
+    #onUnreadable;
+    #fetching = false;
+    #stale = false;
+    #outlinesKey = null;
+
+    /** `onUnreadable(state)`: the file could not be read yet, and there is nothing to show. */
+    constructor(scene, outlines, editing, onUnreadable) {
+        this.#scene = scene;
+        this.#outlines = outlines;
+        this.#editing = editing;
+        this.#onUnreadable = onUnreadable;
+        scene.observe(({ outlines: { key } }) => this.#fetchOutlines(key));
+    }
+
+    async fetch() {
+        this.#stale = this.#fetching;
+        if (this.#fetching) return;
+        this.#fetching = true;
+        do {
+            // What is being changed here comes with the answers to the edits, and is newer.
+            await this.#editing.settled();
+            this.#stale = false;
+            try {
+                const state = await get("state");
+                if (this.#editing.isBusy) this.#stale = true;
+                else if (state.lamps) this.#scene.set(state);
+                else this.#onUnreadable(state);
+            } catch (error) {
+                if (!(error instanceof Refusal || error instanceof Unreachable)) throw error;
+            }
+        } while (this.#stale);
+        this.#fetching = false;
+    }
+
+    async #fetchOutlines(key) {
+        if (key === this.#outlinesKey) return;
+        this.#outlinesKey = key;
+        try {
+            this.#outlines.set((await get("outlines")).segments);
+        } catch (error) {
+            this.#outlinesKey = null;
+            if (!(error instanceof Refusal || error instanceof Unreachable)) throw error;
+        }
+    }
+}

@@ -1,0 +1,288 @@
+#include "edit/session/edit_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <tuple>
+#include <utility>
+
+#include "core/base/error.h"
+#include "edit/session/conflict_error.h"
+#include "edit/session/located_message.h"
+#include "edit/session/request_members.h"
+#include "edit/session/scene_changes.h"
+
+namespace uw {
+
+namespace {
+
+constexpr std::chrono::milliseconds k_progress_interval{100};
+constexpr std::size_t k_most_changes = 100;
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+// Whether a change of one of these paths concerns the other: "lamps.left" is all of that lamp.
+bool overlap(const std::string& a, const std::string& b) {
+    const auto& [shorter, longer] = a.size() < b.size() ? std::tie(a, b) : std::tie(b, a);
+    return longer.starts_with(shorter) &&
+           (longer.size() == shorter.size() || longer[shorter.size()] == '.' ||
+            longer[shorter.size()] == '[');
+}
+
+}  // namespace
+
+EditSession::EditSession(std::filesystem::path file)
+    : file_(std::move(file)),
+      pictures_(picture_callbacks()),
+      watch_(folder_of(file_), [this] { file_changed(); }) {
+    if (!std::filesystem::exists(file_))
+        throw IoError(fmt::format("{}: no such file; name a scene", file_.string()));
+    const std::lock_guard lock(mutex_);
+    open();
+}
+
+EditSession::~EditSession() {
+    events_.close();
+}
+
+// Reads the file, for the first time or again.
+void EditSession::open() {
+    try {
+        SceneDocument fresh(file_);
+        auto scene = make_edited_scene(fresh.scene().text(), fresh.scene().tree(), file_, off_,
+                                       revision_ + 1);
+        if (document_)
+            document_->reload();
+        else
+            document_.emplace(std::move(fresh));
+        error_.clear();
+        is_changed_on_disk_ = false;
+        all_touched_ = revision_ + 1;
+        take(std::move(scene));
+    } catch (const std::exception& error) {
+        error_ = error.what();
+        announce();
+    }
+}
+
+void EditSession::file_changed() {
+    const std::lock_guard lock(mutex_);
+    if (!document_) return open();
+    const bool is_changed = document_->disk_state() != DiskState::same;
+    if (!is_changed && !is_changed_on_disk_ && error_.empty()) return;
+    is_changed_on_disk_ = is_changed;
+    if (!is_changed) error_.clear();
+    if (is_changed && !document_->is_unsaved()) return open();
+    announce();
+}
+
+// The scene from now on. Its revision is the next one.
+void EditSession::take(std::shared_ptr<const EditedScene> scene) {
+    scene_ = std::move(scene);
+    revision_ = scene_->revision;
+    picture_error_.clear();
+    pictures_.show(scene_);
+    announce();
+}
+
+// After the document's text has changed by itself: undo, redo.
+void EditSession::read_document() {
+    all_touched_ = revision_ + 1;
+    take(make_edited_scene(document().scene().text(), document().scene().tree(), file_, off_,
+                           revision_ + 1));
+}
+
+const SceneDocument& EditSession::document() const {
+    if (!document_)
+        throw ConflictError(fmt::format("the scene cannot be read; mend it first: {}", error_));
+    return *document_;
+}
+
+std::shared_ptr<const EditedScene> EditSession::scene() const {
+    const std::lock_guard lock(mutex_);
+    return scene_;
+}
+
+void EditSession::announce() {
+    events_.publish("state", Json{{"revision", revision_}}.dump());
+}
+
+Json EditSession::error_json() const {
+    const std::string& error = error_.empty() ? picture_error_ : error_;
+    if (error.empty()) return nullptr;
+    return located_message(error, file_.filename().string());
+}
+
+Json EditSession::state() const {
+    const std::lock_guard lock(mutex_);
+    const auto label = [](const std::string& text) {
+        return text.empty() ? Json(nullptr) : Json(text);
+    };
+    Json state = {
+        {"revision", revision_},
+        {"scene", file_.filename().string()},
+        {"folder", std::filesystem::absolute(folder_of(file_)).lexically_normal().string()},
+        {"unsaved", document_ && document_->is_unsaved()},
+        {"changed_on_disk", is_changed_on_disk_},
+        {"can_undo", document_ && document_->history().can_undo()},
+        {"can_redo", document_ && document_->history().can_redo()},
+        {"undo_label", document_ ? label(document_->history().undo_label()) : nullptr},
+        {"redo_label", document_ ? label(document_->history().redo_label()) : nullptr},
+        {"error", error_json()}};
+    if (!scene_) return state;
+    state.update(scene_json(*scene_, document_->scene().tree(), has_shapes_ ? &shapes_ : nullptr));
+    state["outlines"] = {{"key", outlines_key_}, {"count", shapes_.outlines.size()}};
+    return state;
+}
+
+Json EditSession::outlines() const {
+    const std::lock_guard lock(mutex_);
+    return {{"key", outlines_key_}, {"segments", outline_segments_json(shapes_.outlines)}};
+}
+
+// Refuses what a window asks for that has not seen another one's change of the same.
+void EditSession::check_conflicts(std::int64_t revision, const std::string& group,
+                                  const std::vector<std::string>& touched) const {
+    if (revision > revision_)
+        throw ConflictError("revision: of another session; fetch the state again");
+    bool is_late = revision < all_touched_;
+    for (const auto& [path, touch] : touches_) {
+        const bool is_own = !group.empty() && touch.group == group;
+        is_late = is_late || (revision < touch.revision && !is_own &&
+                              std::ranges::any_of(touched, [&](const std::string& other) {
+                                  return overlap(path, other);
+                              }));
+    }
+    if (is_late)
+        throw ConflictError("this has been changed in another window; look at it and try again");
+}
+
+void EditSession::edit(const Json& request) {
+    const std::lock_guard lock(mutex_);
+    const Json revision = request.value("revision", Json());
+    if (!revision.is_number_integer()) throw UsageError("revision: expected that of the state");
+    const Json changes = request.value("changes", Json());
+    if (!changes.is_array() || changes.empty() || changes.size() > k_most_changes)
+        throw UsageError(fmt::format("changes: expected a list of 1 to {}", k_most_changes));
+    const std::string label = optional_text_member(request, "label"),
+                      group = optional_text_member(request, "group");
+
+    SceneChanges made(document().scene(), file_, scene_, off_);
+    for (const Json& change : changes) made.apply(change);
+    const std::vector<std::string> touched(made.touched().begin(), made.touched().end());
+    check_conflicts(revision.get<std::int64_t>(), group, touched);
+
+    auto scene = std::make_shared<EditedScene>(*made.scene());
+    scene->revision = revision_ + 1;
+    document_->record(made.text(), label.empty() ? "change" : label, group);
+    off_ = made.off();
+    for (const std::string& path : touched) touches_[path] = {revision_ + 1, group};
+    take(std::move(scene));
+}
+
+void EditSession::undo() {
+    const std::lock_guard lock(mutex_);
+    if (!document().history().can_undo()) throw ConflictError("there is nothing to undo");
+    document_->undo();
+    read_document();
+}
+
+void EditSession::redo() {
+    const std::lock_guard lock(mutex_);
+    if (!document().history().can_redo()) throw ConflictError("there is nothing to redo");
+    document_->redo();
+    read_document();
+}
+
+void EditSession::reload() {
+    const std::lock_guard lock(mutex_);
+    open();
+}
+
+void EditSession::save(const Json& request) {
+    const std::lock_guard lock(mutex_);
+    const bool overwrites = flag_member(request, "overwrite", false);
+    is_changed_on_disk_ = document().is_unsaved() && document_->disk_state() != DiskState::same;
+    if (is_changed_on_disk_ && !overwrites)
+        throw ConflictError(fmt::format(
+            "{}: changed on disk since it was read; reload it, overwrite it, or save as another",
+            file_.filename().string()));
+    document_->save(overwrites ? Overwrite::yes : Overwrite::no);
+    document_->end_group();
+    is_changed_on_disk_ = false;
+    error_.clear();
+    announce();
+}
+
+void EditSession::save_as(const Json& request) {
+    const std::lock_guard lock(mutex_);
+    const bool overwrites = flag_member(request, "overwrite", false);
+    const std::filesystem::path file = file_.parent_path() / new_file_member(request);
+    if (!overwrites && std::filesystem::exists(file))
+        throw ConflictError(fmt::format("{}: exists; choose another name, or overwrite it",
+                                        file.filename().string()));
+    document();
+    document_->save_as(file, overwrites ? Overwrite::yes : Overwrite::no);
+    document_->end_group();
+    file_ = file;
+    is_changed_on_disk_ = false;
+    error_.clear();
+    read_document();
+}
+
+PictureCallbacks EditSession::picture_callbacks() {
+    PictureCallbacks callbacks;
+    callbacks.done = [this](const Picture& picture) {
+        events_.publish("image", Json{{"key", picture.number},
+                                      {"revision", picture.scene->revision},
+                                      {"width", picture.width},
+                                      {"height", picture.height},
+                                      {"quality", name_of(picture.quality)}}
+                                     .dump());
+    };
+    callbacks.progress = [this](PictureQuality quality, double fraction) {
+        const Clock::time_point now = Clock::now();
+        const std::lock_guard lock(progress_mutex_);
+        if (now - last_progress_ < k_progress_interval) return;
+        last_progress_ = now;
+        events_.publish("progress",
+                        Json{{"stage", name_of(quality)}, {"fraction", fraction}}.dump());
+    };
+    callbacks.failed = [this](const std::string& message) {
+        const std::lock_guard lock(mutex_);
+        picture_error_ = message;
+        events_.publish("error", Json{{"message", message}}.dump(-1, ' ', false,
+                                                                 Json::error_handler_t::replace));
+        announce();
+    };
+    callbacks.assembled = [this](const Renderer& renderer) { take_shapes(renderer); };
+    return callbacks;
+}
+
+void EditSession::take_shapes(const Renderer& renderer) {
+    const AssembledScene& assembled = renderer.assembled();
+    const std::vector<GeometryDesc>& geometry = assembled.desc.geometry;
+    const bool is_other = !has_shapes_ || shapes_geometry_ != geometry;
+    std::vector<OutlineSegment> outlines;
+    if (is_other) outlines = scene_outlines(geometry);
+    std::vector<Bounds> volumes;
+    for (const LoadedVolume& volume : assembled.volumes) {
+        Bounds bounds;
+        for (const VolumeReport& report : volume.reports) bounds.extend(report.bounds);
+        volumes.push_back(bounds);
+    }
+    const std::lock_guard lock(mutex_);
+    if (is_other) {
+        shapes_.outlines = std::move(outlines);
+        shapes_geometry_ = geometry;
+        ++outlines_key_;
+    }
+    shapes_.volumes = std::move(volumes);
+    has_shapes_ = true;
+    announce();
+}
+
+}  // namespace uw

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/json/json.h"
+#include "edit/document/scene_document.h"
+#include "edit/session/edited_scene.h"
+#include "edit/session/event_log.h"
+#include "edit/session/file_watch.h"
+#include "edit/session/picture_renderer.h"
+#include "edit/session/state_json.h"
+
+namespace uw {
+
+/// A scene that is being edited, by any number of windows: its document, its pictures, and what the
+/// windows are told. Thread safe; changes are made one after the other.
+///
+/// A scene that cannot be read is no end: the state says why, and it is read again when its file
+/// has changed. Once it has been read, the last good one stays.
+class EditSession {
+  public:
+    /// Throws IoError if there is no such file.
+    explicit EditSession(std::filesystem::path file);
+    ~EditSession();
+    EditSession(const EditSession&) = delete;
+    EditSession& operator=(const EditSession&) = delete;
+    EditSession(EditSession&&) = delete;
+    EditSession& operator=(EditSession&&) = delete;
+
+    /// @name As docs/edit-api.md says
+    /// What is refused changes nothing: InputError and UsageError of one line, IoError, and
+    /// ConflictError for a request that another window, or another program, has outrun.
+    /// @{
+    Json state() const;
+    Json outlines() const;
+    /// {"revision", "label", "group", "changes": [...]}
+    void edit(const Json& request);
+    void undo();
+    void redo();
+    /// Takes the scene from its file again.
+    void reload();
+    /// {"overwrite": false}
+    void save(const Json& request);
+    /// {"file": "x.yaml", "overwrite": false}
+    void save_as(const Json& request);
+    /// @}
+
+    /// The newest picture; null before the first.
+    std::shared_ptr<const Picture> picture() const { return pictures_.picture(); }
+    /// The scene as it is now; null if none could be read yet.
+    std::shared_ptr<const EditedScene> scene() const;
+    const PictureRenderer& pictures() const { return pictures_; }
+    EventLog& events() { return events_; }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    void open();
+    void file_changed();
+    void take(std::shared_ptr<const EditedScene> scene);
+    void read_document();
+    void check_conflicts(std::int64_t revision, const std::string& group,
+                         const std::vector<std::string>& touched) const;
+    const SceneDocument& document() const;
+    Json error_json() const;
+    void announce();
+    PictureCallbacks picture_callbacks();
+    void take_shapes(const Renderer& renderer);
+
+    mutable std::mutex mutex_;
+    std::filesystem::path file_;
+    std::optional<SceneDocument> document_;  // none: the file could not be read yet
+    std::shared_ptr<const EditedScene> scene_;
+    std::vector<std::string> off_;  // names of lamps
+    std::string error_;             // why the file on disk cannot be read; empty: it can
+    std::string picture_error_;     // why its picture cannot be rendered
+    std::int64_t revision_ = 0;
+    bool is_changed_on_disk_ = false;
+
+    // Who changed what last, by path.
+    struct Touch {
+        std::int64_t revision = 0;
+        std::string group;
+    };
+    std::map<std::string, Touch> touches_;
+    std::int64_t all_touched_ = 0;  // by undo, redo, reload
+
+    SceneShapes shapes_;
+    std::vector<GeometryDesc> shapes_geometry_;  // of which they are
+    bool has_shapes_ = false;
+    std::int64_t outlines_key_ = 0;
+
+    EventLog events_;
+    std::mutex progress_mutex_;
+    Clock::time_point last_progress_;
+    PictureRenderer pictures_;
+    FileWatch watch_;  // last: calls back
+};
+
+}  // namespace uw

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/image/film.h"
+#include "core/image/layers.h"
+#include "edit/session/edited_scene.h"
+
+namespace uw {
+
+/// The steps in which a picture gets better.
+enum class PictureQuality { small, draft, full_draft, final };
+
+/// "small", "draft", "full-draft", "final".
+std::string_view name_of(PictureQuality quality);
+
+/// The size of a step's picture [pixels] of a scene of `width` x `height`.
+std::pair<int, int> picture_size(PictureQuality quality, int width, int height);
+
+/// What one lamp, or what none of them, contributes to a picture.
+struct LightLayers {
+    std::string key;  // EditedLamp::key
+    Film film;
+    LayerPlan plan;
+    Spectrum brightness;  // with which it was rendered, EditedLamp::brightness
+};
+
+/// A picture of a scene, taken apart by lamps.
+struct Picture {
+    std::int64_t number = 0;  // in the order made: its identity
+    PictureQuality quality = PictureQuality::small;
+    int width = 0, height = 0;
+    std::shared_ptr<const EditedScene> scene;               // the one that it was made for
+    std::vector<std::shared_ptr<const LightLayers>> lamps;  // in the order of the scene's
+    std::shared_ptr<const LightLayers> unlit;  // what emits light by itself, depth and albedo
+};
+
+/// How values are sent: as IEEE 754 halves, times a power of two for each plane, or singles.
+enum class SampleType { f16, f32 };
+
+/// The planes of a picture as bytes for the page, docs/edit-api.md.
+std::string picture_bytes(const Picture& picture, SampleType type);
+
+}  // namespace uw

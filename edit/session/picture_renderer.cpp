@@ -1,0 +1,223 @@
+#include "edit/session/picture_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <utility>
+
+#include "camera/image_size.h"
+#include "core/base/error.h"
+#include "core/integrators/integrator_table.h"
+#include "edit/session/picture_mix.h"
+
+namespace uw {
+
+namespace {
+
+constexpr std::array k_steps{PictureQuality::small, PictureQuality::draft,
+                             PictureQuality::full_draft, PictureQuality::final};
+// The key of what no lamp lights; no lamp has it.
+constexpr const char* k_unlit = "unlit";
+
+// A lamp's image serves any brightness of it, unless it is rendered in the dark.
+void light_up(LampDesc& lamp, const Spectrum& brightness, std::size_t bands) {
+    if (brightness.least(bands) > 0) return;
+    lamp.spectrum.reset();
+    lamp.power.reset();
+    lamp.lumens.reset();
+    lamp.intensity.reset();
+    if (!std::visit([](const auto& profile) { return profile.k_is_absolute; }, lamp.profile))
+        lamp.intensity = PerBand(bands, 1);
+}
+
+std::string layers_of(const SceneDesc& scene, bool is_lit) {
+    std::string layers = "direct,clean";
+    layers += is_lit ? ",backscatter,irradiance" : ",depth,albedo";
+    if (scene.water.forward_scatter.K > 0) layers += ",forward";
+    if (scattering_of(scene.render) == RenderDesc::Scattering::multiple)
+        layers += ",multiple,multiple.volume,multiple.surface";
+    return layers;
+}
+
+ResolvedScene scene_of_part(const EditedScene& edited, PictureQuality quality,
+                            std::optional<std::size_t> lamp) {
+    ResolvedScene scene = edited.scene;
+    SceneDesc& desc = scene.edit();
+    LampDesc only;
+    if (lamp) only = desc.lamps[*lamp];
+    desc.lamps.clear();
+    if (lamp) {
+        light_up(only, edited.lamps[*lamp].brightness, edited.bands());
+        desc.lamps.push_back(std::move(only));
+    }
+    const auto [width, height] = picture_size(quality, desc.camera.width, desc.camera.height);
+    resize_image(desc.camera, width, height);
+    if (quality != PictureQuality::final) {
+        desc.render.quality = RenderDesc::Quality::draft;
+        desc.render.samples = integrator_kind(desc.render.integrator).draft_samples;
+    }
+    return scene;
+}
+
+}  // namespace
+
+PictureRenderer::PictureRenderer(PictureCallbacks callbacks)
+    : callbacks_(std::move(callbacks)),
+      renderer_([this](const std::string& stage, double fraction) {
+          if (stage == "render" && callbacks_.progress)
+              callbacks_.progress(
+                  quality_, (static_cast<double>(part_) + fraction) / static_cast<double>(parts_));
+          return !is_stopping_ && !(is_outdated_ && quality_ != PictureQuality::small);
+      }),
+      thread_([this] { run(); }) {}
+
+PictureRenderer::~PictureRenderer() {
+    {
+        const std::lock_guard lock(mutex_);
+        is_stopping_ = true;
+        changed_.notify_all();
+    }
+    thread_.join();
+}
+
+void PictureRenderer::show(std::shared_ptr<const EditedScene> scene) {
+    const std::lock_guard lock(mutex_);
+    if (current_ && !is_same_picture(*current_, *scene)) is_outdated_ = true;
+    next_ = std::move(scene);
+    changed_.notify_all();
+}
+
+std::shared_ptr<const Picture> PictureRenderer::picture() const {
+    const std::lock_guard lock(mutex_);
+    return picture_;
+}
+
+void PictureRenderer::run() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        changed_.wait(lock, [&] { return is_stopping_ || next_; });
+        if (is_stopping_) return;
+        current_ = std::exchange(next_, nullptr);
+        is_outdated_ = false;
+        const std::shared_ptr<const EditedScene> scene = current_;
+        lock.unlock();
+        try {
+            render_all(scene);
+        } catch (const Interrupted&) {
+            // There is a newer scene, or no further one.
+        } catch (const std::exception& error) {
+            callbacks_.failed(error.what());
+        }
+        lock.lock();
+    }
+}
+
+bool PictureRenderer::has_next() const {
+    const std::lock_guard lock(mutex_);
+    return is_stopping_ || next_;
+}
+
+void PictureRenderer::render_all(const std::shared_ptr<const EditedScene>& scene) {
+    forget(*scene);
+    std::size_t step = k_steps.size();
+    while (step > 0 && !is_known(*scene, k_steps[step - 1])) --step;
+    if (step > 0) publish(scene, k_steps[step - 1]);
+    const CameraDesc& camera = scene->scene.desc().camera;
+    for (; step < k_steps.size() && !has_next(); ++step) {
+        const PictureQuality quality = k_steps[step];
+        // A small image needs no smaller ones before it.
+        if (step + 2 < k_steps.size() &&
+            picture_size(quality, camera.width, camera.height) ==
+                picture_size(k_steps[step + 1], camera.width, camera.height))
+            continue;
+        make(scene, quality);
+        publish(scene, quality);
+    }
+}
+
+// Keeps what the scene's pictures are made of, and no more: memory stays the same however long a
+// lamp is dragged.
+void PictureRenderer::forget(const EditedScene& scene) {
+    const bool is_other = surrounding_ != scene.surrounding;
+    surrounding_ = scene.surrounding;
+    is_announced_ = is_announced_ && !is_other;
+    for (auto& layers : known_) {
+        std::erase_if(layers, [&](const Layers& known) {
+            return is_other || (known->key != k_unlit &&
+                                std::ranges::find(scene.lamps, known->key, &EditedLamp::key) ==
+                                    scene.lamps.end());
+        });
+    }
+}
+
+PictureRenderer::Layers PictureRenderer::find(PictureQuality quality,
+                                              const std::string& key) const {
+    const auto& layers = known_[static_cast<std::size_t>(quality)];
+    const auto found =
+        std::ranges::find_if(layers, [&](const Layers& known) { return known->key == key; });
+    if (found != layers.end()) return *found;
+    // A lamp that has not changed is final already while the others' drafts are rendered.
+    return quality == PictureQuality::full_draft ? find(PictureQuality::final, key) : nullptr;
+}
+
+bool PictureRenderer::is_known(const EditedScene& scene, PictureQuality quality) const {
+    return find(quality, k_unlit) && std::ranges::all_of(scene.lamps, [&](const EditedLamp& lamp) {
+               return find(quality, lamp.key) != nullptr;
+           });
+}
+
+PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, PictureQuality quality,
+                                                std::optional<std::size_t> lamp) {
+    renderer_.set_scene(scene_of_part(scene, quality, lamp));
+    const std::string layers = layers_of(renderer_.scene(), lamp.has_value());
+    LayerPlan plan = layer_plan(renderer_.scene(), layers);
+    renderer_.render({.layers = layers});
+    const Spectrum brightness =
+        lamp ? renderer_.assembled().lamps.front().axis_intensity() : Spectrum{};
+    if (!std::exchange(is_announced_, true)) callbacks_.assembled(renderer_);
+    if (lamp) ++rendered_;
+    return std::make_shared<LightLayers>(LightLayers{lamp ? scene.lamps[*lamp].key : k_unlit,
+                                                     renderer_.release_film(), std::move(plan),
+                                                     brightness});
+}
+
+void PictureRenderer::make(const std::shared_ptr<const EditedScene>& scene,
+                           PictureQuality quality) {
+    quality_ = quality;
+    std::vector<std::optional<std::size_t>> missing;
+    for (std::size_t i = 0; i < scene->lamps.size(); ++i)
+        if (!find(quality, scene->lamps[i].key)) missing.push_back(i);
+    if (!find(quality, k_unlit)) missing.push_back(std::nullopt);
+    parts_ = missing.size();
+    for (part_ = 0; part_ < parts_; ++part_) {
+        const auto lamp = missing[part_];
+        // Two lamps may be alike.
+        if (lamp && find(quality, scene->lamps[*lamp].key)) continue;
+        known_[static_cast<std::size_t>(quality)].push_back(render(*scene, quality, lamp));
+    }
+    if (quality == PictureQuality::final)
+        known_[static_cast<std::size_t>(PictureQuality::full_draft)].clear();
+}
+
+void PictureRenderer::publish(const std::shared_ptr<const EditedScene>& scene,
+                              PictureQuality quality) {
+    auto made = std::make_shared<Picture>();
+    made->quality = quality;
+    made->scene = scene;
+    for (const EditedLamp& lamp : scene->lamps) made->lamps.push_back(find(quality, lamp.key));
+    made->unlit = find(quality, k_unlit);
+    made->width = made->unlit->film.width();
+    made->height = made->unlit->film.height();
+    {
+        const std::lock_guard lock(mutex_);
+        // The same light is the same picture, whatever its lamps are called now.
+        const bool is_same =
+            picture_ && picture_->lamps == made->lamps && picture_->unlit == made->unlit;
+        made->number = is_same ? last_number_ : ++last_number_;
+        picture_ = made;
+        if (is_same) return;
+    }
+    callbacks_.done(*made);
+}
+
+}  // namespace uw

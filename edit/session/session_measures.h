@@ -1,0 +1,66 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "core/base/ray.h"
+#include "core/json/json.h"
+#include "edit/measures/suggest.h"
+#include "edit/measures/target_probe.h"
+#include "edit/session/edit_session.h"
+
+namespace uw {
+
+/// What a window asks of the numbers of the picture.
+struct NumbersRequest {
+    std::optional<PixelWindow> part;  // of the full image; none: the whole image
+    double ratio = 1;                 // of PictureNumbers::share_above
+    bool with_curves = false;
+};
+
+/// Numbers of a session's scene, and the search for better places of its lamps. Thread safe.
+class SessionMeasures {
+  public:
+    /// `session` outlives this.
+    explicit SessionMeasures(EditSession& session) : session_(session) {}
+    ~SessionMeasures();
+    SessionMeasures(const SessionMeasures&) = delete;
+    SessionMeasures& operator=(const SessionMeasures&) = delete;
+    SessionMeasures(SessionMeasures&&) = delete;
+    SessionMeasures& operator=(SessionMeasures&&) = delete;
+
+    /// Of the newest picture, and what a target at 0.5 to 10 m looks like, as docs/edit-api.md
+    /// says. Throws UsageError for a part outside the image, ConflictError before the first picture
+    /// and, with curves, if a newer request has come.
+    Json numbers(const NumbersRequest& request);
+    /// All of that as CSV.
+    std::string numbers_csv(const NumbersRequest& request);
+    /// The whole scene as uwvdb render makes it, without the lamps that are off: a PNG. An exposure
+    /// of none is its automatic one.
+    std::string picture_png(std::optional<double> exposure);
+
+    /// Begins a search, ends one under way; events tell of it. Throws UsageError.
+    Json suggest(const Json& request);
+    void cancel_suggest();
+
+  private:
+    Json curves(const EditedScene& scene);
+    void search(std::int64_t id, const ResolvedScene& scene, const SuggestRequest& request);
+    void tell(Json event);
+
+    EditSession& session_;
+    std::mutex probe_mutex_;
+    TargetProbe probe_;
+    std::atomic<std::int64_t> newest_curves_ = 0;
+
+    std::mutex search_mutex_;
+    std::int64_t last_search_ = 0;
+    std::atomic<bool> is_cancelled_ = false;
+    std::thread searching_;
+};
+
+}  // namespace uw
