@@ -322,6 +322,9 @@ class EditingSteps(unittest.TestCase):
         other.page.wait("document.querySelector('[data-key=\"position.1\"]').value === '0.4'", 5)
         other.page.close()
         self.page.click('[title="See irradiance"]')
+        # The other window may know first.
+        self.page.wait("![...document.querySelectorAll('button')]"
+                       ".find(button => button.textContent === 'Save').disabled")
         self.view.open()
         self.assertEqual(self.page.questions, ["beforeunload"])  # for there are unsaved changes
         self.view.wait_final()
