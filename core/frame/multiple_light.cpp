@@ -94,6 +94,7 @@ void MultipleLight::prepare(const PixelWindow& window, const Progress& progress)
             throw Interrupted();
     });
     take_away_glow(raw);
+    find_weights(window);
     nodes_ = smoothed(raw, intervals_, estimator_.options().groups);
     double variance = 0, light = 0;
     for (const SmoothNode& node : nodes_) {
@@ -102,6 +103,53 @@ void MultipleLight::prepare(const PixelWindow& window, const Progress& progress)
     }
     const auto all = static_cast<double>(nodes_.size());
     error_ = light > 0 ? std::sqrt(variance * all) / light : 0;
+}
+
+void MultipleLight::find_weights(const PixelWindow& window) {
+    if (!weights_.vary()) return;
+    constexpr int k_least_spacing = 4;
+    constexpr double k_most_numbers = 1e7;  // of the whole image
+    const RaySource& rays = pixels_.rays();
+    const double numbers = static_cast<double>(rays.width()) * rays.height() *
+                           static_cast<double>(intervals_.count() * bands_);
+    weights_spacing_ = std::max({k_least_spacing, spacing_ / 2,
+                                 static_cast<int>(std::ceil(std::sqrt(numbers / k_most_numbers)))});
+    weights_column_ = window.x0 / weights_spacing_;
+    weights_row_ = window.y0 / weights_spacing_;
+    const int columns = (window.x1 + weights_spacing_ - 1) / weights_spacing_ - weights_column_ + 1;
+    const int rows = (window.y1 + weights_spacing_ - 1) / weights_spacing_ - weights_row_ + 1;
+    ray_weights_.assign(columns, rows);
+    parallel_for(ray_weights_.size(), [&](std::size_t at) {
+        const int i = static_cast<int>(at) % columns, j = static_cast<int>(at) / columns;
+        const auto ray =
+            rays.refracted_ray((weights_column_ + i) * static_cast<double>(weights_spacing_),
+                               (weights_row_ + j) * static_cast<double>(weights_spacing_));
+        if (ray)
+            weights_.find(*ray, ray_weights_[at]);
+        else
+            ray_weights_[at] = weights_.of_uniform_water();
+    });
+}
+
+// Linearly between the rays around.
+void MultipleLight::weights_at(double x, double y, std::vector<float>& weights) const {
+    if (!weights_.vary()) {
+        weights = weights_.of_uniform_water();
+        return;
+    }
+    const double u = x / weights_spacing_ - weights_column_,
+                 v = y / weights_spacing_ - weights_row_;
+    const int i = std::clamp(static_cast<int>(u), 0, ray_weights_.width() - 2);
+    const int j = std::clamp(static_cast<int>(v), 0, ray_weights_.height() - 2);
+    weights.assign(intervals_.count() * bands_, 0.0F);
+    for (const int below : {0, 1}) {
+        for (const int right : {0, 1}) {
+            const auto share =
+                static_cast<float>(lerp_weight(u - i, right) * lerp_weight(v - j, below));
+            const std::vector<float>& corner = ray_weights_(i + right, j + below);
+            for (std::size_t k = 0; k < weights.size(); ++k) weights[k] += share * corner[k];
+        }
+    }
 }
 
 // Computes the glow, and leaves in the nodes what they hold beside it.
@@ -157,11 +205,11 @@ void MultipleLight::give(std::size_t group, std::size_t band, double radiance,
 void MultipleLight::add_water(const PixelView& view, PixelResult& result) const {
     thread_local std::vector<Corner> corners;
     thread_local std::vector<float> weights;
+    weights_at(view.x, view.y, weights);
     find_corners(view.x, view.y, corners);
     const std::size_t intervals = intervals_.count();
     const std::size_t groups = estimator_.options().groups;
     for (std::size_t d = 0; d < view.distances.size(); ++d) {
-        weights_.find(*view.ray, view.distances[d], weights);
         for (std::size_t interval = 0; interval < intervals; ++interval) {
             const double begin = intervals_.begin(interval);
             if (begin >= view.distances[d]) break;
@@ -170,8 +218,9 @@ void MultipleLight::add_water(const PixelView& view, PixelResult& result) const 
                 if (corner.node->known_to > begin) total += corner.weight;
             if (!(total > 0)) break;
             for (std::size_t b = 0; b < bands_; ++b) {
-                const double share =
-                    view.weights[d] / total * static_cast<double>(weights[interval * bands_ + b]);
+                const double share = view.weights[d] / total *
+                                     static_cast<double>(weights[interval * bands_ + b]) *
+                                     intervals_.share(interval, b, view.distances[d]);
                 for (std::size_t group = 0; group < groups; ++group) {
                     double sum = 0;
                     for (const Corner& corner : corners)

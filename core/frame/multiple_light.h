@@ -62,6 +62,8 @@ class MultipleLight {
     };
 
     void limit_paths(double error);
+    void find_weights(const PixelWindow& window);
+    void weights_at(double x, double y, std::vector<float>& weights) const;
     void take_away_glow(Grid2D<MultipleNode>& raw);
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
@@ -79,6 +81,9 @@ class MultipleLight {
     DistanceIntervals intervals_;
     IntervalWeights weights_;
     MultipleNodes estimator_;
+    // IntervalWeights at every so many pixels, of rays that meet particles.
+    int weights_spacing_ = 1, weights_column_ = 0, weights_row_ = 0;
+    Grid2D<std::vector<float>> ray_weights_;
     Grid2D<SmoothNode> nodes_;
     int cells_ = 0;
     std::optional<SurfaceGlow> glow_;  // from prepare on

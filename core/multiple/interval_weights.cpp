@@ -3,13 +3,14 @@
 #include <algorithm>
 
 #include "core/base/fast_exp.h"
+#include "core/integrators/integrator.h"
 
 namespace uw {
 
 namespace {
 
 // Of the concentrations along a ray.
-constexpr double k_depth_tolerance = 1e-3;
+constexpr double k_depth_tolerance = 5e-3;
 
 // int_0^1 e^-(t x) dt, where e^-x is `transmittance`.
 double mean_transmittance(double x, double transmittance) {
@@ -32,10 +33,10 @@ IntervalWeights::IntervalWeights(const LitScene& scene, const DistanceIntervals&
         add_uniform(intervals.begin(i), intervals.end(i), i, whole_);
 }
 
-void IntervalWeights::find(const Ray& ray, double distance, std::vector<float>& weights) const {
+void IntervalWeights::find(const Ray& ray, std::vector<float>& weights) const {
     thread_local ConcentrationProfile profile;
-    if (!scene_.field->bounds().empty()) {
-        scene_.field->profile_within(tolerance_, ray, distance, profile);
+    if (vary()) {
+        scene_.field->profile_within(tolerance_, ray, k_far, profile);
         if (profile.s.size() > 2 || !profile.empty_between(0)) {
             weights.assign(whole_.size(), 0.0F);
             add_profile(profile, weights);
@@ -43,9 +44,6 @@ void IntervalWeights::find(const Ray& ray, double distance, std::vector<float>& 
         }
     }
     weights = whole_;
-    const std::size_t last = intervals_.at(distance);
-    std::fill(weights.begin() + static_cast<std::ptrdiff_t>(last * bands_), weights.end(), 0.0F);
-    add_uniform(intervals_.begin(last), distance, last, weights);
 }
 
 void IntervalWeights::add_uniform(double begin, double end, std::size_t interval,

@@ -21,8 +21,13 @@ class IntervalWeights {
 
     const DistanceIntervals& intervals() const { return intervals_; }
 
-    /// Of the water before `distance` [m], all intervals: [interval * bands + band]. Thread safe.
-    void find(const Ray& ray, double distance, std::vector<float>& weights) const;
+    /// Whether they differ from ray to ray.
+    bool vary() const { return !scene_.field->bounds().empty(); }
+    /// Of all water along a ray, whatever surfaces it meets: [interval * bands + band]. Of an
+    /// interval that a surface cuts, DistanceIntervals::share lies before it. Thread safe.
+    void find(const Ray& ray, std::vector<float>& weights) const;
+    /// Those of uniform water, which are the same on all rays.
+    const std::vector<float>& of_uniform_water() const { return whole_; }
 
   private:
     void add_uniform(double begin, double end, std::size_t interval,

@@ -159,7 +159,9 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
     const auto bands = static_cast<std::size_t>(scene_.medium->band_count());
     node.has_ray = true;
     node.reach = has_hit ? sample.hit.distance : k_far;
-    weights_.find(sample.ray, node.reach, node.weights);
+    weights_.find(sample.ray, node.weights);
+    for (std::size_t k = 0; k < node.weights.size(); ++k)
+        node.weights[k] *= static_cast<float>(intervals_.share(k / bands, k % bands, node.reach));
     node.mean_weights.assign(intervals_.count(), 0.0F);
     for (std::size_t k = 0; k < node.weights.size(); ++k)
         node.mean_weights[k / bands] += node.weights[k] / static_cast<float>(bands);

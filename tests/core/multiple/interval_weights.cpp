@@ -51,9 +51,9 @@ class IntervalWeightsTest : public testing::Test {
 TEST_F(IntervalWeightsTest, OfUniformWaterHaveAClosedForm) {
     const IntervalWeights weights(lit_, *intervals_);
     std::vector<float> found;
+    weights.find(ray_, found);
+    ASSERT_EQ(found.size(), intervals_->count() * 2);
     for (const double reach : {0.7, 2.9, k_far}) {
-        weights.find(ray_, reach, found);
-        ASSERT_EQ(found.size(), intervals_->count() * 2);
         for (std::size_t i = 0; i < intervals_->count(); ++i) {
             const double end = std::min(reach, intervals_->end(i));
             const double begin = std::min(reach, intervals_->begin(i));
@@ -61,7 +61,8 @@ TEST_F(IntervalWeightsTest, OfUniformWaterHaveAClosedForm) {
                 const double c = k_absorption[b] + k_scattering[b];
                 const double truth =
                     k_scattering[b] / c * (std::exp(-c * begin) - std::exp(-c * end));
-                EXPECT_NEAR(found[i * 2 + b], truth, 1e-6 * truth + 1e-12)
+                EXPECT_NEAR(found[i * 2 + b] * intervals_->share(i, b, reach), truth,
+                            1e-6 * truth + 1e-12)
                     << i;  // single precision
             }
         }
@@ -73,11 +74,10 @@ TEST_F(IntervalWeightsTest, OfACloudAgreeWithQuadrature) {
     lit_.field = &cloud;
     const IntervalWeights weights(lit_, *intervals_);
     std::vector<float> found;
-    constexpr double k_reach = 1.6;  // behind a surface within the cloud
-    weights.find(ray_, k_reach, found);
+    weights.find(ray_, found);
     for (std::size_t i = 0; i < intervals_->count(); ++i) {
-        const double end = std::min(k_reach, intervals_->end(i));
-        const double begin = std::min(k_reach, intervals_->begin(i));
+        const double end = std::min(100.0, intervals_->end(i));
+        const double begin = std::min(100.0, intervals_->begin(i));
         for (const std::size_t b : {0U, 1U}) {
             constexpr int k_steps = 400;
             double truth = 0;
