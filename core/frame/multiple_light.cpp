@@ -24,6 +24,7 @@ constexpr double k_least_share_of_paths = 0.2;
 // Nodes see the same surface as a pixel if its normal agrees with theirs (k_least_node_cosine) and
 // it lies no farther from their tangent plane than this, relative to its distance.
 constexpr double k_most_slope = 0.35;
+constexpr double k_least_cosine_of_match = 0.7;  // of normals, where no node agrees better
 constexpr int k_search = 3;            // cells around a pixel without a match at its corners
 constexpr int k_paths_of_sample = 64;  // where there is none at all
 constexpr int k_mirrored_paths = 8;    // of a pixel whose surfaces are glossy
@@ -94,7 +95,7 @@ void MultipleLight::prepare(const PixelWindow& window, const Progress& progress)
             throw Interrupted();
     });
     take_away_glow(raw);
-    find_weights(window);
+    weight_lattice_ = WeightLattice(rays, weights_, window);
     nodes_ = smoothed(raw, intervals_, estimator_.options().groups);
     double variance = 0, light = 0;
     for (const SmoothNode& node : nodes_) {
@@ -103,53 +104,6 @@ void MultipleLight::prepare(const PixelWindow& window, const Progress& progress)
     }
     const auto all = static_cast<double>(nodes_.size());
     error_ = light > 0 ? std::sqrt(variance * all) / light : 0;
-}
-
-void MultipleLight::find_weights(const PixelWindow& window) {
-    if (!weights_.vary()) return;
-    constexpr int k_least_spacing = 4;
-    constexpr double k_most_numbers = 1e7;  // of the whole image
-    const RaySource& rays = pixels_.rays();
-    const double numbers = static_cast<double>(rays.width()) * rays.height() *
-                           static_cast<double>(intervals_.count() * bands_);
-    weights_spacing_ = std::max({k_least_spacing, spacing_ / 2,
-                                 static_cast<int>(std::ceil(std::sqrt(numbers / k_most_numbers)))});
-    weights_column_ = window.x0 / weights_spacing_;
-    weights_row_ = window.y0 / weights_spacing_;
-    const int columns = (window.x1 + weights_spacing_ - 1) / weights_spacing_ - weights_column_ + 1;
-    const int rows = (window.y1 + weights_spacing_ - 1) / weights_spacing_ - weights_row_ + 1;
-    ray_weights_.assign(columns, rows);
-    parallel_for(ray_weights_.size(), [&](std::size_t at) {
-        const int i = static_cast<int>(at) % columns, j = static_cast<int>(at) / columns;
-        const auto ray =
-            rays.refracted_ray((weights_column_ + i) * static_cast<double>(weights_spacing_),
-                               (weights_row_ + j) * static_cast<double>(weights_spacing_));
-        if (ray)
-            weights_.find(*ray, ray_weights_[at]);
-        else
-            ray_weights_[at] = weights_.of_uniform_water();
-    });
-}
-
-// Linearly between the rays around.
-void MultipleLight::weights_at(double x, double y, std::vector<float>& weights) const {
-    if (!weights_.vary()) {
-        weights = weights_.of_uniform_water();
-        return;
-    }
-    const double u = x / weights_spacing_ - weights_column_,
-                 v = y / weights_spacing_ - weights_row_;
-    const int i = std::clamp(static_cast<int>(u), 0, ray_weights_.width() - 2);
-    const int j = std::clamp(static_cast<int>(v), 0, ray_weights_.height() - 2);
-    weights.assign(intervals_.count() * bands_, 0.0F);
-    for (const int below : {0, 1}) {
-        for (const int right : {0, 1}) {
-            const auto share =
-                static_cast<float>(lerp_weight(u - i, right) * lerp_weight(v - j, below));
-            const std::vector<float>& corner = ray_weights_(i + right, j + below);
-            for (std::size_t k = 0; k < weights.size(); ++k) weights[k] += share * corner[k];
-        }
-    }
 }
 
 // Computes the glow, and leaves in the nodes what they hold beside it.
@@ -205,7 +159,7 @@ void MultipleLight::give(std::size_t group, std::size_t band, double radiance,
 void MultipleLight::add_water(const PixelView& view, PixelResult& result) const {
     thread_local std::vector<Corner> corners;
     thread_local std::vector<float> weights;
-    weights_at(view.x, view.y, weights);
+    weight_lattice_.find(view.x, view.y, weights);
     find_corners(view.x, view.y, corners);
     const std::size_t intervals = intervals_.count();
     const std::size_t groups = estimator_.options().groups;
@@ -250,13 +204,22 @@ void MultipleLight::add_glow(const PixelView& view, PixelResult& result) const {
     }
 }
 
-// The corners that see the surface; if none does, nodes around them, by nearness.
+// The corners that see the surface; if none does, nodes around them, by nearness. Normals that
+// differ more will do where none agrees better: on rough ground nodes cannot have them all.
 void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit,
+                                 std::vector<Corner>& matches) const {
+    for (const double least_cosine : {k_least_node_cosine, k_least_cosine_of_match}) {
+        find_matches(x, y, hit, least_cosine, matches);
+        if (!matches.empty()) return;
+    }
+}
+
+void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit, double least_cosine,
                                  std::vector<Corner>& matches) const {
     const auto sees = [&](const SmoothNode& node) {
         if (!node.surface || node.surface->object_id != hit.object_id) return false;
         const NodeSurface& surface = *node.surface;
-        if (glm::dot(surface.normal, hit.normal) < k_least_node_cosine) return false;
+        if (glm::dot(surface.normal, hit.normal) < least_cosine) return false;
         const Vector3 between = hit.position - surface.position;
         return std::abs(glm::dot(between, surface.normal)) <= k_most_slope * glm::length(between);
     };

@@ -8,6 +8,7 @@
 #include "core/base/grid2d.h"
 #include "core/frame/pixel_layers.h"
 #include "core/frame/pixel_renderer.h"
+#include "core/frame/weight_lattice.h"
 #include "core/image/film.h"
 #include "core/multiple/distance_intervals.h"
 #include "core/multiple/interval_weights.h"
@@ -62,11 +63,11 @@ class MultipleLight {
     };
 
     void limit_paths(double error);
-    void find_weights(const PixelWindow& window);
-    void weights_at(double x, double y, std::vector<float>& weights) const;
     void take_away_glow(Grid2D<MultipleNode>& raw);
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
+                      std::vector<Corner>& matches) const;
+    void find_matches(double x, double y, const SurfaceHit& hit, double least_cosine,
                       std::vector<Corner>& matches) const;
     void add_water(const PixelView& view, PixelResult& result) const;
     void add_glow(const PixelView& view, PixelResult& result) const;
@@ -81,12 +82,10 @@ class MultipleLight {
     DistanceIntervals intervals_;
     IntervalWeights weights_;
     MultipleNodes estimator_;
-    // IntervalWeights at every so many pixels, of rays that meet particles.
-    int weights_spacing_ = 1, weights_column_ = 0, weights_row_ = 0;
-    Grid2D<std::vector<float>> ray_weights_;
+    WeightLattice weight_lattice_;  // from prepare on, as the following
     Grid2D<SmoothNode> nodes_;
     int cells_ = 0;
-    std::optional<SurfaceGlow> glow_;  // from prepare on
+    std::optional<SurfaceGlow> glow_;
     double error_ = 0;
 };
 
