@@ -18,8 +18,16 @@ constexpr double k_least_pivot = 1e-6;
 
 using Terms = std::array<double, k_most_terms>;
 
-Terms terms_at(double x, double y) {
-    return {1, x, y, x * x, x * y, y * y};
+// Calls visit(node, weight, terms) for the nodes nearer than reach + 1, with a weight that falls to
+// 0 there, and terms of x and y in units of it.
+template <class Visit>
+void visit_near(std::span<const FitNode> nodes, int reach, const Visit& visit) {
+    const double scale = 1.0 / (reach + 1);
+    for (const FitNode& node : nodes) {
+        const double x = node.dx * scale, y = node.dy * scale;
+        const double near = 1 - x * x - y * y;
+        if (near > 0) visit(node, near * node.weight, Terms{1, x, y, x * x, x * y, y * y});
+    }
 }
 
 }  // namespace
@@ -28,29 +36,18 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms
     const auto size = static_cast<std::size_t>(terms);
     normal_.assign(size * size, 0.0);
     tried_.clear();
-    const double scale = 1.0 / (reach + 1);
     int used = 0;
-    for (const FitNode& node : nodes) {
-        const double x = node.dx * scale, y = node.dy * scale;
-        const double near = 1 - x * x - y * y;
-        if (near <= 0) continue;
-        const double rest = near * node.weight;
+    visit_near(nodes, reach, [&](const FitNode&, double rest, const Terms& t) {
         ++used;
-        const Terms t = terms_at(x, y);
         for (std::size_t i = 0; i < size; ++i)
             for (std::size_t j = 0; j <= i; ++j) normal_[i * size + j] += rest * t[i] * t[j];
-    }
+    });
     if (used < 2 * terms - 1 || !cholesky_.factor(normal_, size, k_least_pivot)) return false;
     Terms solution{1};  // of which the first term is the value at (0, 0)
     cholesky_.solve(std::span(solution).first(size));
     tried_value_ = tried_variance_ = 0;
     double amplification = 0;
-    for (const FitNode& node : nodes) {
-        const double x = node.dx * scale, y = node.dy * scale;
-        const double near = 1 - x * x - y * y;
-        if (near <= 0) continue;
-        const double rest = near * node.weight;
-        const Terms t = terms_at(x, y);
+    visit_near(nodes, reach, [&](const FitNode& node, double rest, const Terms& t) {
         double weight = 0;
         for (std::size_t i = 0; i < size; ++i) weight += solution[i] * t[i];
         weight *= rest;
@@ -58,7 +55,7 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms
         tried_value_ += weight * node.value;
         tried_variance_ += weight * weight * node.variance;
         amplification += weight * weight;
-    }
+    });
     // An extrapolation that makes noise greater is left to a lower degree.
     return terms == 1 || amplification <= 1;
 }

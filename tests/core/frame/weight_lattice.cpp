@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/integrators/integrator.h"
-#include "media/phase/henyey_greenstein.h"
 #include "tests/support/gaussian_field.h"
+#include "tests/support/hg_medium.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {
@@ -21,22 +21,14 @@ class WeightLattices : public testing::Test {
         const AssembledScene& scene = renderer_.assemble();
         rays_ = scene.camera.get();
         lit_ = scene.lit();
-        medium_.wavelengths_nm = {550};
-        medium_.phase_functions = {std::make_shared<HenyeyGreenstein>(0.9)};
-        medium_.uniform.scattering.resize(1);
-        medium_.uniform.absorption[0] = 0.1;
-        medium_.uniform.scattering[0][0] = 0.2;
-        Constituent particles{"small", "ppm", {}};
-        particles.per_unit.scattering.resize(1);
-        particles.per_unit.scattering[0][0] = 0.5;
-        medium_.constituents = {particles};
+        add_particles(medium_, {0}, {0.5});
         lit_.medium = &medium_;
     }
 
     const RaySource* rays_ = nullptr;
     const GaussianField cloud_{{0.1, 0, 1.5}, 0.4, 4.0, 0.02};
     Renderer renderer_;
-    Medium medium_;
+    Medium medium_ = hg_medium(0.9, {0.1}, {0.2});
     LitScene lit_;
 };
 

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "core/integrators/integrator.h"
-#include "media/phase/henyey_greenstein.h"
 #include "tests/support/gaussian_field.h"
+#include "tests/support/hg_medium.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {
@@ -18,32 +18,23 @@ namespace {
 class IntervalWeightsTest : public testing::Test {
   protected:
     IntervalWeightsTest() {
+        add_particles(medium_, {0.01, 0.1}, {0.5, 1.0});
         SceneDesc desc = pinhole_scene(12, 9);
         desc.geometry = {plane_at_z(3)};
         renderer_.set_scene(std::move(desc));
         const AssembledScene& scene = renderer_.assemble();
         lit_ = scene.lit();
-        medium_.wavelengths_nm = {550, 450};
-        medium_.phase_functions = {std::make_shared<HenyeyGreenstein>(0.9)};
-        medium_.uniform.scattering.resize(1);
-        Constituent particles{"small", "ppm", {}};
-        particles.per_unit.scattering.resize(1);
-        for (const std::size_t b : {0U, 1U}) {
-            medium_.uniform.absorption[b] = k_absorption[b];
-            medium_.uniform.scattering[0][b] = k_scattering[b];
-            particles.per_unit.absorption[b] = k_absorption_per_ppm[b];
-            particles.per_unit.scattering[0][b] = k_scattering_per_ppm[b];
-        }
-        medium_.constituents = {particles};
         lit_.medium = &medium_;
         intervals_ = std::make_unique<DistanceIntervals>(*scene.camera, lit_);
     }
 
-    static constexpr std::array k_absorption{0.1, 0.3}, k_scattering{0.2, 0.0},
-        k_absorption_per_ppm{0.01, 0.1}, k_scattering_per_ppm{0.5, 1.0};
+    double absorption(std::size_t b) const { return medium_.uniform.absorption[b]; }
+    double scattering(std::size_t b) const { return medium_.uniform.scattering[0][b]; }
+    const OpticalCoefficients& per_ppm() const { return medium_.constituents[0].per_unit; }
+
     const Ray ray_{{0, 0, 0}, {0, 0, 1}};
     Renderer renderer_;
-    Medium medium_;
+    Medium medium_ = hg_medium(0.9, {0.1, 0.3}, {0.2, 0.0});
     LitScene lit_;
     std::unique_ptr<DistanceIntervals> intervals_;
 };
@@ -58,9 +49,9 @@ TEST_F(IntervalWeightsTest, OfUniformWaterHaveAClosedForm) {
             const double end = std::min(reach, intervals_->end(i));
             const double begin = std::min(reach, intervals_->begin(i));
             for (const std::size_t b : {0U, 1U}) {
-                const double c = k_absorption[b] + k_scattering[b];
+                const double c = absorption(b) + scattering(b);
                 const double truth =
-                    k_scattering[b] / c * (std::exp(-c * begin) - std::exp(-c * end));
+                    scattering(b) / c * (std::exp(-c * begin) - std::exp(-c * end));
                 EXPECT_NEAR(found[i * 2 + b] * intervals_->share(i, b, reach), truth,
                             1e-6 * truth + 1e-12)
                     << i;  // single precision
@@ -86,9 +77,10 @@ TEST_F(IntervalWeightsTest, OfACloudAgreeWithQuadrature) {
                 double concentration = 0, column = 0;
                 cloud.sample(ray_.at(s), std::span(&concentration, 1));
                 cloud.column(ray_.origin, ray_.at(s), std::span(&column, 1));
-                const double depth = (k_absorption[b] + k_scattering[b]) * s +
-                                     (k_absorption_per_ppm[b] + k_scattering_per_ppm[b]) * column;
-                truth += (k_scattering[b] + k_scattering_per_ppm[b] * concentration) *
+                const double depth =
+                    (absorption(b) + scattering(b)) * s +
+                    (per_ppm().absorption[b] + per_ppm().scattering[0][b]) * column;
+                truth += (scattering(b) + per_ppm().scattering[0][b] * concentration) *
                          std::exp(-depth) * (end - begin) / k_steps;
             }
             // Knots a twentieth of the cloud's sigma apart, linear in between: h^2 / 8 of its

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "media/phase/henyey_greenstein.h"
+#include "tests/support/hg_medium.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {
@@ -25,12 +26,6 @@ class PointSpreads : public testing::Test {
         renderer_.set_scene(std::move(desc));
         const AssembledScene& scene = renderer_.assemble();
         intervals_ = std::make_unique<DistanceIntervals>(*scene.camera, scene.lit());
-        medium_.wavelengths_nm = {550, 450};
-        medium_.phase_functions = {std::make_shared<HenyeyGreenstein>(k_g)};
-        medium_.uniform.absorption[0] = medium_.uniform.absorption[1] = 0.1;
-        medium_.uniform.scattering.resize(1);
-        medium_.uniform.scattering[0][0] = 0.2;
-        medium_.uniform.scattering[0][1] = 1;
     }
 
     // The transfer function of all intervals from `first` on.
@@ -45,7 +40,7 @@ class PointSpreads : public testing::Test {
 
     Renderer renderer_;
     std::unique_ptr<DistanceIntervals> intervals_;
-    Medium medium_;
+    Medium medium_ = hg_medium(k_g, {0.1, 0.1}, {0.2, 1});
 };
 
 // b int_0^T p^(k (T - s) / T) ds by the midpoint rule, b T = `depth`, with Bessel's function itself
