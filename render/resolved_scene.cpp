@@ -8,6 +8,7 @@
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
 #include "core/meshes/gltf/gltf_import.h"
+#include "core/scene/scene_limits.h"
 
 namespace uw {
 
@@ -54,6 +55,7 @@ SceneDesc scene_of_image(const SceneDesc& scene, const ImageChoice& choice) {
 ResolvedScene::ResolvedScene(SceneDesc&& scene) : desc_(std::move(scene)) {
     refuse_open_sequences(desc_);
     import_gltf(desc_);
+    check_limits(desc_);
 }
 
 }  // namespace uw

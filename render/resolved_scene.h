@@ -26,7 +26,7 @@ SceneDesc scene_of_image(const SceneDesc& scene, const ImageChoice& choice);
 class ResolvedScene {
   public:
     /// Consumes the description; a caller that needs it afterwards makes an explicit copy. Throws
-    /// InputError for a sequence without a frame, and as import_gltf.
+    /// InputError for a sequence without a frame, and as import_gltf and check_limits.
     ResolvedScene(SceneDesc&& scene);
 
     const SceneDesc& desc() const { return desc_; }

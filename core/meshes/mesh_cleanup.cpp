@@ -72,7 +72,7 @@ void DroppedTriangles::report(const std::string& name, std::vector<std::string>&
         if (count > 0) warnings.push_back(fmt::format("{}: {} {}; dropped", name, count, what));
     };
     line(missing_corner, "triangles refer to vertices that do not exist");
-    line(not_finite, "triangles have corners that are NaN, infinite or beyond 1e15 m");
+    line(not_finite, "triangles have corners that are NaN, infinite or beyond 1e10");
     line(no_area, "triangles have no area");
 }
 

@@ -8,8 +8,9 @@
 
 namespace uw {
 
-/// Largest coordinate a surface may have [m]; beyond it squares and products overflow float.
-inline constexpr double k_max_coordinate = 1e15;
+/// Largest coordinate of a mesh in its file's units; products of three such numbers, which tracing
+/// forms, are far from float's largest, 3e38.
+inline constexpr double k_max_coordinate = 1e10;
 
 /// How many triangles of a file were dropped, and why.
 struct DroppedTriangles {

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/meshes/files/mesh_reader.h"
 #include "core/meshes/mesh_cleanup.h"
+#include "core/scene/scene_limits.h"
 #include "core/surfaces/embree_surfaces.h"
 #include "core/surfaces/scene_objects.h"
 
@@ -143,9 +144,10 @@ class Builder {
 
     void extend_bounds(const GeometryDesc& desc, const Bounds& bounds) {
         for (int axis = 0; axis < 3; ++axis) {
-            if (!(bounds.min[axis] >= -k_max_coordinate && bounds.max[axis] <= k_max_coordinate)) {
-                throw InputError(
-                    fmt::format("{}: extends beyond 1e15 m; check its transform", desc.where));
+            if (!(bounds.min[axis] >= -k_largest_coordinate &&
+                  bounds.max[axis] <= k_largest_coordinate)) {
+                throw InputError(fmt::format("{}: extends beyond {:g} m; check its transform",
+                                             desc.where, k_largest_coordinate));
             }
         }
         objects_.bounds.extend(bounds);

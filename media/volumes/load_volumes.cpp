@@ -1,15 +1,24 @@
 #include "media/volumes/load_volumes.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/scene/scene_limits.h"
 #include "media/vdb/moving_grid.h"
 #include "media/vdb/vdb_header_reader.h"
 #include "media/volumes/grid_field.h"
 
 namespace uw {
 namespace {
+
+// Of grids: a value, and what it means in ppm, or in units of its own coefficients.
+constexpr double k_largest_value = 1e30, k_largest_concentration = 1e12;
+constexpr double k_smallest_voxel = 1e-9;  // m
 
 /// Integrals along the world's axes through the centre of `bounds`.
 std::array<double, 3> columns_through_middle(const GridVolume& volume) {
@@ -49,6 +58,30 @@ VolumeReport report_on(const VolumeDesc& desc, const LoadedGrid& loaded, const G
     return report;
 }
 
+// Whether rays can be traced to the volume and sums along them can hold its values.
+void check_limits(const VolumeReport& report, const VolumeDesc& desc,
+                  const GridMappingDesc& mapping) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!report.bounds.empty() && !(report.bounds.min[axis] >= -k_largest_coordinate &&
+                                        report.bounds.max[axis] <= k_largest_coordinate))
+            throw InputError(fmt::format("{}: grid '{}' extends beyond {:g} m; check its transform",
+                                         desc.where, printable(report.grid), k_largest_coordinate));
+    const Vector3& voxel = report.metres_per_voxel;
+    if (!(std::min({voxel.x, voxel.y, voxel.z}) >= k_smallest_voxel))
+        throw InputError(
+            fmt::format("{}: grid '{}' has voxels of {:g} x {:g} x {:g} m; scale it to "
+                        "metres by its transform",
+                        desc.where, printable(report.grid), voxel.x, voxel.y, voxel.z));
+    double largest = 0;
+    for (const ConstituentReport& part : report.constituents) largest = std::max(largest, part.max);
+    if (!(report.statistics.max <= k_largest_value && largest <= k_largest_concentration))
+        throw InputError(fmt::format(
+            "{}: the largest value of grid '{}', {:g}, makes a concentration of {:g}: over {:g}, "
+            "or values over {:g}, are no water; check the file (uwvdb info) and the mapping",
+            mapping.where, printable(report.grid), report.statistics.max, largest,
+            k_largest_concentration, k_largest_value));
+}
+
 }  // namespace
 
 LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
@@ -71,6 +104,7 @@ LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<G
         volume.grids.emplace_back(std::move(loaded.bricks), place, placement.centering,
                                   loads.at(g));
         volume.reports.push_back(report_on(desc, loaded, volume.grids.back(), placement));
+        check_limits(volume.reports.back(), desc, mapping);
     }
     return volume;
 }

@@ -90,6 +90,14 @@ TEST_F(OddScenes, WaterThatDoesNothing) {
                      0.02);  // the reference stops where the fast one goes on to infinity
 }
 
+TEST_F(OddScenes, SlabsThatHoldHardlyAnyLight) {
+    const ImageFile image = render({"--samples", "1", "--layers", "backscatter_first", "--set",
+                                    "render.planes={near: 3.9999999, far: 4}"});
+    for (const char* band : {"R", "G", "B"})
+        for (const float value : image.channels.at(std::string("backscatter_first.") + band))
+            ASSERT_GE(value, 0) << band;
+}
+
 TEST_F(OddScenes, CameraOrLampInsideTheCloud) {
     expect_agreement("cloud.yaml", {}, k_through_cloud);
     expect_agreement(

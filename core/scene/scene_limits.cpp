@@ -1,0 +1,160 @@
+#include "core/scene/scene_limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+
+#include "core/base/error.h"
+
+namespace uw {
+
+namespace {
+
+/// One entry of the scene, for its messages.
+class Checked {
+  public:
+    explicit Checked(const SourceLocation& where) : where_(where) {}
+
+    // Also for NaN.
+    void at_most(double limit, std::string_view name, std::initializer_list<double> values,
+                 std::string_view mend) const {
+        for (const double value : values)
+            if (!(std::abs(value) <= limit)) fail(name, value, limit, mend);
+    }
+    void place(std::string_view name, const Vector3& v) const {
+        at_most(k_largest_coordinate, name, {v.x, v.y, v.z},
+                "lengths are in metres; scale the scene or move it nearer to the origin");
+    }
+    void place(std::string_view name, const Point3& p) const { place(name, from_origin(p)); }
+    void length(std::string_view name, double value) const {
+        at_most(k_largest_coordinate, name, {value}, "lengths are in metres");
+    }
+    void matrix(std::string_view name, const Matrix3& m) const {
+        for (int column = 0; column < 3; ++column)
+            at_most(k_largest_coordinate, name, {m[column].x, m[column].y, m[column].z},
+                    "scale the scene to metres");
+    }
+    template <class Values>
+    void all_at_most(double limit, std::string_view name, const Values& values,
+                     std::string_view mend) const {
+        for (const double value : values) at_most(limit, name, {value}, mend);
+    }
+    [[noreturn]] void fail(std::string_view what) const {
+        throw InputError(fmt::format("{}: {}", where_, what));
+    }
+
+  private:
+    [[noreturn]] void fail(std::string_view name, double value, double limit,
+                           std::string_view mend) const {
+        if (!std::isfinite(value)) fail(fmt::format("its {} is not a finite number", name));
+        fail(fmt::format("its {} of {:g} is beyond {:g}; {}", name, value, limit, mend));
+    }
+
+    const SourceLocation& where_;
+};
+
+void check(const PortDesc& port, const Checked& checked) {
+    std::visit(
+        [&]<class Port>(const Port& desc) {
+            if constexpr (std::is_same_v<Port, DomePortDesc>) {
+                checked.place("port's centre", desc.center);
+                checked.length("port's radius", desc.radius);
+            } else {
+                checked.length("port's distance", desc.distance);
+            }
+            checked.length("port's thickness", desc.thickness);
+        },
+        port);
+}
+
+void check(const CameraDesc& camera) {
+    const Checked checked(camera.where);
+    checked.place("position", camera.world_from_camera.offset());
+    checked.matrix("pose", camera.world_from_camera.linear());
+    const IntrinsicsDesc& lens = camera.intrinsics;
+    const auto check_axis = [&](char axis, double focal, double centre, int pixels) {
+        const double farthest = std::max(std::abs(centre), std::abs(pixels - centre));
+        if (!(farthest <= k_largest_slope * focal))
+            checked.fail(
+                fmt::format("f{0} = {1:g} and c{0} = {2:g} pixels show more than 89.99 degrees "
+                            "from the optical "
+                            "axis; give f{0} >= {3:g}, or a distortion of the fisheye model",
+                            axis, focal, centre, farthest / k_largest_slope));
+        if (!(1 >= k_narrowest_pixel * focal))
+            checked.fail(fmt::format("f{} = {:g} pixels is beyond {:g}; give it in pixels", axis,
+                                     focal, 1 / k_narrowest_pixel));
+    };
+    check_axis('x', lens.fx, lens.cx, camera.width);
+    check_axis('y', lens.fy, lens.cy, camera.height);
+    const auto finite = [](double value) { return std::isfinite(value); };
+    if (!std::ranges::all_of(camera.distortion.k, finite) ||
+        !std::ranges::all_of(camera.distortion.p, finite))
+        checked.fail("a coefficient of its distortion is not a finite number");
+    if (camera.port) check(*camera.port, checked);
+    if (camera.lens) checked.length("lens's focal length", camera.lens->focal_length);
+}
+
+std::optional<double> beam_of(const LampProfileDesc& profile) {
+    if (const auto* spot = std::get_if<SpotProfileDesc>(&profile)) return spot->beam;
+    if (const auto* cosine = std::get_if<CosineProfileDesc>(&profile)) return cosine->fwhm;
+    return std::nullopt;
+}
+
+void check(const LampDesc& lamp) {
+    const Checked checked(lamp.where);
+    checked.place("position", lamp.position);
+    checked.place("frame", lamp.world_from_mount.offset());
+    checked.matrix("frame", lamp.world_from_mount.linear());
+    checked.at_most(1.001, "direction", {glm::length(lamp.direction)}, "give a direction");
+    if (const auto beam = beam_of(lamp.profile); beam && !(*beam >= k_narrowest_beam))
+        checked.fail(fmt::format("its beam of {:g} degrees is narrower than {:g}; widen it", *beam,
+                                 k_narrowest_beam));
+    constexpr auto k_mend = "give W/sr, W or lm";
+    if (lamp.intensity)
+        checked.all_at_most(k_largest_brightness, "intensity", *lamp.intensity, k_mend);
+    if (lamp.power) checked.all_at_most(k_largest_brightness, "power", *lamp.power, k_mend);
+    if (lamp.lumens) checked.at_most(k_largest_brightness, "flux", {*lamp.lumens}, k_mend);
+}
+
+void check(const GeometryDesc& geometry) {
+    const Checked checked(geometry.where);
+    checked.place("transform", geometry.world_from_object.offset());
+    checked.matrix("transform", geometry.world_from_object.linear());
+    checked.place("point", geometry.point);
+    checked.place("min", geometry.min);
+    checked.place("max", geometry.max);
+    checked.place("center", geometry.center);
+    checked.length("radius", geometry.radius);
+}
+
+void check(const VolumeDesc& volume) {
+    const Checked checked(volume.where);
+    checked.place("transform", volume.world_from_upright.offset());
+    checked.matrix("transform", volume.world_from_upright.linear());
+    for (const GridMappingDesc& grid : volume.grids) {
+        const Checked mapping(grid.where);
+        constexpr auto k_mend = "values are in ppm, coefficients in 1/m per unit";
+        mapping.at_most(k_largest_per_unit, "concentration", {grid.small_ppm, grid.large_ppm},
+                        k_mend);
+        if (!grid.optics) continue;
+        mapping.all_at_most(k_largest_per_unit, "absorption", grid.optics->absorption, k_mend);
+        mapping.all_at_most(k_largest_per_unit, "scattering", grid.optics->scattering, k_mend);
+    }
+}
+
+}  // namespace
+
+void check_limits(const SceneDesc& scene) {
+    check(scene.camera);
+    for (const LampDesc& lamp : scene.lamps) check(lamp);
+    for (const GeometryDesc& geometry : scene.geometry) check(geometry);
+    for (const VolumeDesc& volume : scene.volumes) check(volume);
+}
+
+}  // namespace uw
