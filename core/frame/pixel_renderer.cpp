@@ -247,7 +247,9 @@ void PixelRenderer::add_water(std::span<const double> in_scatter, PixelResult& r
         if (!result.lamps.empty()) add(result.lamps[group].first(values.size()), values);
     }
     if (!in_scatter_.parts().first_slab) return;
-    std::ranges::copy(in_scatter_.first_slab(in_scatter), result.backscatter_first.begin());
+    // A difference of sums, which are rounded and interpolated.
+    std::ranges::transform(in_scatter_.first_slab(in_scatter), result.backscatter_first.begin(),
+                           [](double value) { return std::max(0.0, value); });
 }
 
 void PixelRenderer::finish_ground_truth(PixelView& view) const {

@@ -53,8 +53,6 @@ void RayInScatter::integrate(const Ray& ray, std::span<const double> distances,
             add(first, light_up_to(end, j));
             if (slab.begin > 0) subtract(first, light_up_to(slab.begin, j));
         }
-        // Of a slab that holds hardly any light, the difference may be rounded below 0.
-        for (double& value : first) value = std::max(0.0, value);
     }
 }
 

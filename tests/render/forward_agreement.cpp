@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/support/forward_scenes.h"
+#include "tests/support/forward/forward_scenes.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 

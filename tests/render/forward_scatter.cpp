@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "tests/support/forward_direct_sum.h"
-#include "tests/support/forward_scenes.h"
+#include "tests/support/forward/forward_direct_sum.h"
+#include "tests/support/forward/forward_scenes.h"
 
 namespace uw::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <numbers>
 
-#include "tests/support/forward_direct_sum.h"
-#include "tests/support/forward_scenes.h"
+#include "tests/support/forward/forward_direct_sum.h"
+#include "tests/support/forward/forward_scenes.h"
 
 namespace uw::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/forward/mirrored_blur.h"
-#include "tests/support/blur_shares.h"
+#include "tests/support/forward/blur_shares.h"
 
 namespace uw {
 namespace {

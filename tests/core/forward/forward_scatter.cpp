@@ -8,8 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "tests/support/blur_shares.h"
-#include "tests/support/forward_scatter_cases.h"
+#include "tests/support/forward/blur_shares.h"
+#include "tests/support/forward/forward_scatter_cases.h"
 
 namespace uw {
 namespace {

@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "core/forward/forward_scatter.h"
-#include "tests/support/blur_shares.h"
-#include "tests/support/forward_direct_sum.h"
-#include "tests/support/forward_scatter_cases.h"
+#include "tests/support/forward/blur_shares.h"
+#include "tests/support/forward/forward_direct_sum.h"
+#include "tests/support/forward/forward_scatter_cases.h"
 
 namespace uw {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/base/parallel.h"
-#include "tests/support/blur_shares.h"
+#include "tests/support/forward/blur_shares.h"
 
 namespace uw {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/support/blur_shares.h"
+#include "tests/support/forward/blur_shares.h"
 
 namespace uw::test {
 
