@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/scene/camera_desc.h"
+#include "core/scene/scene_desc.h"
 
 namespace uw {
 
@@ -13,6 +13,12 @@ inline void resize_image(CameraDesc& camera, int width, int height) {
     camera.intrinsics = {k.fx * sx, k.fy * sy, k.cx * sx, k.cy * sy};
     camera.width = width;
     camera.height = height;
+}
+
+/// The same for every camera of a scene.
+inline void resize_images(SceneDesc& scene, int width, int height) {
+    resize_image(scene.camera, width, height);
+    for (RigCameraDesc& entry : scene.cameras) resize_image(entry.camera, width, height);
 }
 
 }  // namespace uw

@@ -9,6 +9,8 @@
 #include "cli/console.h"
 #include "cli/edit/edit_command.h"
 #include "cli/info/info_command.h"
+#include "cli/points/project_command.h"
+#include "cli/points/rays_command.h"
 #include "cli/render/render_command.h"
 #include "cli/shell/completion_command.h"
 #include "cli/shell/manual_command.h"
@@ -34,6 +36,8 @@ void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::validate_command());
     commands.push_back(uw::edit_command());
     commands.push_back(uw::calibration_command());
+    commands.push_back(uw::project_command());
+    commands.push_back(uw::rays_command());
     commands.push_back(uw::completion_command(commands));
     commands.push_back(uw::manual_command(commands));
 }

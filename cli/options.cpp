@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -35,6 +36,26 @@ double number_within(const std::string& name, const std::string& text, double lo
     throw UsageError(fmt::format("{}: expected a number above {}, at most {}; found '{}'", name,
                                  low, high, printable(text)));
 }
+
+/// N whole numbers; `form` is what a message says they look like.
+template <std::size_t N>
+std::array<int, N> integers_in(const std::string& text, char separator, const std::string& option,
+                               const char* form) {
+    std::array<int, N> values{};
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (std::size_t i = 0; i < N; ++i) {
+        const auto [next, error] = std::from_chars(at, end, values[i]);
+        const bool last = i + 1 == N;
+        if (error != std::errc() || (last ? next != end : next == end || *next != separator))
+            throw UsageError(
+                fmt::format("{}: expected {}, found '{}'", option, form, printable(text)));
+        at = next + 1;
+    }
+    return values;
+}
+
+constexpr int k_longest_side = 32768;  // of an image [pixels]
 
 }  // namespace
 
@@ -120,6 +141,25 @@ void Options::set(std::vector<std::string>& overrides) {
         [&overrides](const std::string& text) { overrides.push_back(text); },
         "replace a value of the scene file; may be repeated");
     option.repeatable = true;
+}
+
+void Options::size(std::optional<std::array<int, 2>>& variable, std::string help) {
+    const auto take = [&variable](const std::string& text) {
+        const auto size = integers_in<2>(text, 'x', "--size", "WxH such as 640x360");
+        if (std::ranges::any_of(size, [](int side) { return side < 1 || side > k_longest_side; }))
+            throw UsageError(
+                fmt::format("--size: each side must be 1 to {} pixels", k_longest_side));
+        variable = size;
+    };
+    parsed("--size", "WxH", take, std::move(help));
+}
+
+void Options::window(std::string names, std::optional<std::array<int, 4>>& variable,
+                     std::string help) {
+    Option& option = parsed(std::move(names), "x0,y0,x1,y1", {}, std::move(help));
+    option.take = [name = option.name(), &variable](const std::string& text) {
+        variable = integers_in<4>(text, ',', name, "x0,y0,x1,y1");
+    };
 }
 
 void Options::threads(int& variable) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -66,6 +67,10 @@ class Options {
 
     /// `--set KEY.PATH=VALUE`, any number of times.
     void set(std::vector<std::string>& overrides);
+    /// `--size WxH`, each side 1 to 32768.
+    void size(std::optional<std::array<int, 2>>& variable, std::string help);
+    /// `NAMES X0,Y0,X1,Y1`: pixels, x1 and y1 excluded.
+    void window(std::string names, std::optional<std::array<int, 4>>& variable, std::string help);
     /// `--threads N`.
     void threads(int& variable);
 

@@ -10,7 +10,7 @@
 #include "cli/calibration/calibration_json.h"
 #include "cli/calibration/calibration_report.h"
 #include "cli/console.h"
-#include "core/base/atomic_file.h"
+#include "cli/text_files.h"
 #include "core/base/error.h"
 #include "render/scene_loading.h"
 
@@ -41,16 +41,6 @@ Calibration read_subject(const CalibrationArguments& a) {
                        : "brown-conrady";
     result.desc = scene.camera;
     return result;
-}
-
-void write_file(const std::filesystem::path& path, const std::string& content) {
-    AtomicFile file(path);
-    std::ofstream out(file.temporary_path(), std::ios::binary);
-    out << content;
-    out.close();
-    if (!out) throw IoError(fmt::format("{}: cannot write; is the disk full?", path.string()));
-    file.commit();
-    print_message(fmt::format("wrote {}\n", path.string()));
 }
 
 /// "cameras.txt" to "cameras-plain.txt".
@@ -92,11 +82,11 @@ void run_calibration(const CalibrationArguments& a, std::ostream& out) {
                 throw UsageError(
                     fmt::format("{}: would replace the calibration being read; give another name",
                                 path.string()));
-        write_file(a.output, text);
+        write_text(a.output, text);
         if (plain) {
             CameraDesc bare = calibration.desc;
             bare.port.reset();
-            write_file(plain_name(a.output), write_calibration(*a.format, bare));
+            write_text(plain_name(a.output), write_calibration(*a.format, bare));
         }
     }
     const CalibrationReport report = report_on(a.file, calibration);

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "cli/camera_choice.h"
 #include "cli/frame_list.h"
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
@@ -84,22 +85,12 @@ fs::path of_camera(const fs::path& file, const std::string& camera) {
     return name;
 }
 
-void refuse_camera_places(const FrameSequence& sequence, const std::string& only) {
-    if (!only.empty())
-        throw UsageError(fmt::format(
-            "--camera {}: the scene has one camera, which has no name; leave the option out",
-            printable(only)));
+void refuse_camera_places(const FrameSequence& sequence) {
     for (const Frame& frame : sequence.frames)
         if (frame.files.image.string().find(k_camera_place) != std::string::npos)
             throw UsageError(
                 fmt::format("-o {}: the scene has one camera, which has no name; take {} out",
                             printable(frame.files.image.string(), 300), k_camera_place));
-}
-
-std::string names_of(const std::vector<RigCameraDesc>& cameras) {
-    std::string names;
-    for (const RigCameraDesc& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
-    return names;
 }
 
 bool has_sequence(const SceneDesc& scene) {
@@ -131,14 +122,11 @@ FrameSequence frames_of(const RenderArguments& a) {
 }
 
 void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::string& only) {
+    if (!only.empty()) camera_called(only, scene.cameras);
     if (scene.cameras.empty()) {
-        refuse_camera_places(sequence, only);
+        refuse_camera_places(sequence);
         return;
     }
-    if (!only.empty() &&
-        std::ranges::find(scene.cameras, only, &RigCameraDesc::name) == scene.cameras.end())
-        throw UsageError(fmt::format("--camera: the scene has no camera '{}'; it has {}",
-                                     printable(only), names_of(scene.cameras)));
     std::vector<Frame> frames;
     for (const Frame& frame : sequence.frames) {
         bool is_first = true;

@@ -58,11 +58,7 @@ void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
             fmt::format("{}: expected 1 to {}, found {}; only integrator path takes more",
                         a.samples ? "--samples" : "render.samples", most, samples_of(render)));
     if (!a.size) return;
-    const auto [width, height] = *a.size;
-    if (width < 1 || height < 1 || width > 32768 || height > 32768)
-        throw UsageError("--size: each side must be 1 to 32768 pixels");
-    resize_image(desc.camera, width, height);
-    for (RigCameraDesc& entry : desc.cameras) resize_image(entry.camera, width, height);
+    resize_images(desc, (*a.size)[0], (*a.size)[1]);
 }
 
 std::vector<std::string> names_of(const std::vector<LampDesc>& lamps) {

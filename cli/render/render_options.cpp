@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "cli/frame_list.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -34,23 +32,6 @@ Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read 
 130 interrupted. More: docs/command-line.md)";
 
 namespace {
-
-template <std::size_t N>
-std::array<int, N> parse_integers(const std::string& text, char separator, const char* option,
-                                  const char* form) {
-    std::array<int, N> values{};
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    for (std::size_t i = 0; i < N; ++i) {
-        const auto [next, error] = std::from_chars(at, end, values[i]);
-        const bool last = i + 1 == N;
-        if (error != std::errc() || (last ? next != end : next == end || *next != separator))
-            throw UsageError(
-                fmt::format("{}: expected {}, found '{}'", option, form, printable(text)));
-        at = next + 1;
-    }
-    return values;
-}
 
 // The most layers of --orders, of either kind.
 constexpr int k_most_orders = 64;
@@ -90,18 +71,8 @@ Options render_options(RenderArguments& a) {
         "render these frames; file names contain %04d, ####, $F4 or {frame}");
     options.flag("--resume", a.resume, "with --frames: skip frames that already exist");
     options.set(a.overrides);
-    options.parsed(
-        "--size", "WxH",
-        [&a](const std::string& text) {
-            a.size = parse_integers<2>(text, 'x', "--size", "WxH such as 640x360");
-        },
-        "render at this size, the intrinsics scaled with it");
-    options.parsed(
-        "--crop", "x0,y0,x1,y1",
-        [&a](const std::string& text) {
-            a.crop = parse_integers<4>(text, ',', "--crop", "x0,y0,x1,y1");
-        },
-        "render these pixels only; x1 and y1 are excluded");
+    options.size(a.size, "render at this size, the intrinsics scaled with it");
+    options.window("--crop", a.crop, "render these pixels only; x1 and y1 are excluded");
     options.text("--camera", "NAME", a.camera, "render only this camera of a rig");
     accept_words(options.text("--integrator", "NAME", a.integrator,
                               alternatives(words_of(k_integrator_names))),

@@ -4,17 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <ostream>
 
 #include "cli/console.h"
+#include "cli/text_files.h"
 #include "cli/water/water_csv.h"
 #include "cli/water/water_json.h"
 #include "cli/water/water_plot.h"
 #include "cli/water/water_text.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/scene/yaml/scene_reader.h"
 #include "media/water/jerlov.h"
@@ -96,31 +95,6 @@ void choose_vsf_bands(const WaterArguments& a, WaterReport& report) {
     report.vsf_bands = {report.plot_band};
 }
 
-/// Files that are created together or, if one cannot be written, not at all.
-class OutputFiles {
-  public:
-    void add(const std::filesystem::path& path, const std::string& content) {
-        files_.push_back({path, std::make_unique<AtomicFile>(path)});
-        std::ofstream out(files_.back().file->temporary_path(), std::ios::binary);
-        out << content;
-        out.close();
-        if (!out) throw IoError(fmt::format("{}: cannot write; is the disk full?", path.string()));
-    }
-    void commit() {
-        for (Entry& entry : files_) {
-            entry.file->commit();
-            print_message(fmt::format("wrote {}\n", entry.path.string()));
-        }
-    }
-
-  private:
-    struct Entry {
-        std::filesystem::path path;
-        std::unique_ptr<AtomicFile> file;
-    };
-    std::vector<Entry> files_;
-};
-
 /// `prefix` with `-tail.csv` appended, without the prefix's own extension .csv if it has one.
 std::filesystem::path csv_path(std::filesystem::path prefix, const char* tail) {
     if (prefix.extension() == ".csv") prefix.replace_extension();
@@ -141,7 +115,7 @@ void run_water(const WaterArguments& a, std::ostream& out) {
         water_sources(report.water, report.volumes, report.table.small_ppm, report.table.large_ppm);
     choose_vsf_bands(a, report);
 
-    OutputFiles files;
+    TextFiles files;
     if (!a.csv.empty()) {
         files.add(csv_path(a.csv, "coefficients"), water_coefficients_csv(report));
         files.add(csv_path(a.csv, "vsf"), water_vsf_csv(report));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <system_error>
 
@@ -9,6 +10,13 @@
 #include "core/base/input_files.h"
 
 namespace uw {
+
+namespace {
+
+// Files are read in parts, each as long as all before.
+constexpr std::size_t k_first_part = std::size_t{1} << 18;
+
+}  // namespace
 
 std::string read_text_file(const std::filesystem::path& file, const std::string& subject,
                            std::size_t most_bytes, std::string_view noun) {
@@ -22,11 +30,15 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
         throw IoError(fmt::format("{}: is a device; name the {}", subject, noun));
     remember_input(file);
     std::ifstream stream(file, std::ios::binary);
-    std::string text(most_bytes + 1, '\0');
-    if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    std::string text;
+    while (stream && text.size() <= most_bytes) {
+        const std::size_t had = text.size();
+        text.resize(std::min(had + std::max(had, k_first_part), most_bytes + 1));
+        stream.read(&text[had], static_cast<std::streamsize>(text.size() - had));
+        text.resize(had + static_cast<std::size_t>(stream.gcount()));
+    }
     if (!stream.is_open() || stream.bad())
         throw IoError(fmt::format("{}: cannot be read; check its permissions", subject));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > most_bytes)
         throw InputError(fmt::format("{}: is larger than {} MiB; this is not a valid {}", subject,
                                      most_bytes >> 20, noun));

@@ -8,47 +8,20 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/tables/csv_cells.h"
 #include "core/tables/embedded_tables.h"
 
 namespace uw {
 
-namespace {
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view k_blank = " \t\r";
-    const std::size_t first = text.find_first_not_of(k_blank);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(k_blank) - first + 1);
-}
-
-std::vector<std::string> split(std::string_view line) {
-    std::vector<std::string> cells;
-    for (;;) {
-        const std::size_t comma = line.find(',');
-        cells.emplace_back(trimmed(line.substr(0, comma)));
-        if (comma == std::string_view::npos) return cells;
-        line.remove_prefix(comma + 1);
-    }
-}
-
-/// What a message may quote of a user's file: short and printable, so that it stays one line.
-std::string in_quotes(std::string_view text) {
-    constexpr std::size_t k_longest = 40;
-    std::string shown = "'";
-    for (const char c : text.substr(0, k_longest)) shown += (c >= ' ' && c <= '~') ? c : '?';
-    return shown + (text.size() > k_longest ? "...'" : "'");
-}
-
-}  // namespace
-
 CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(name)) {
-    constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(k_byte_order_mark)) text.remove_prefix(k_byte_order_mark.size());
+    const auto split = [](std::string_view line) {
+        const std::vector<std::string_view> cells = csv_cells(line);
+        return std::vector<std::string>(cells.begin(), cells.end());
+    };
+    skip_byte_order_mark(text);
     int line_number = 0;
     while (!text.empty()) {
-        const std::size_t end = text.find('\n');
-        const std::string_view line = trimmed(text.substr(0, end));
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+        const std::string_view line = take_csv_line(text);
         ++line_number;
         if (line.empty() || line.front() == '#') continue;
         if (std::count(line.begin(), line.end(), ',') >= static_cast<std::ptrdiff_t>(k_max_columns))
@@ -81,7 +54,7 @@ std::size_t CsvTable::column_index(std::string_view column) const {
         if (columns_[i] == column) return i;
     std::string present;
     for (const std::string& name : columns_)
-        if (present.size() < 200) present += (present.empty() ? "" : ", ") + in_quotes(name);
+        if (present.size() < 200) present += (present.empty() ? "" : ", ") + quoted_cell(name);
     throw InputError(
         fmt::format("{}: no column '{}'; the header names {}", name_, column, present));
 }
@@ -95,7 +68,7 @@ double CsvTable::number(const Row& row, std::size_t column) const {
         throw InputError(
             fmt::format("{}:{}: {} in column {} is not a number; write it like 0.25 "
                         "or 1.5e-3",
-                        name_, row.line, in_quotes(cell), in_quotes(columns_[column])));
+                        name_, row.line, quoted_cell(cell), quoted_cell(columns_[column])));
     return value;
 }
 
@@ -126,7 +99,7 @@ SampledCurve CsvTable::curve(std::string_view x_column, std::string_view y_colum
             throw InputError(
                 fmt::format("{}:{}: {} = {} does not ascend; sort the rows and give "
                             "each value once",
-                            name_, row.line, in_quotes(x_column), x));
+                            name_, row.line, quoted_cell(x_column), x));
         result.x.push_back(x);
         result.y.push_back(number(row, y_index));
     }
