@@ -12,8 +12,8 @@
 
 namespace uw {
 
-/// The profile of a spot: 1 within beam/2 - edge/2 of its axis, 0 outside beam/2 + edge/2, and a
-/// smoothstep of the angle or glTF's falloff between (IsALampProfile).
+/// The profile of a spot: full in its core, 0 outside beam/2 + edge/2 of its axis, and with one of
+/// several falloffs between (SpotProfileDesc::Falloff, IsALampProfile).
 class SpotProfile {
   public:
     static constexpr std::string_view k_name = "spot";
@@ -23,15 +23,15 @@ class SpotProfile {
     double relative_intensity(const Vector3& v) const;
     double solid_angle() const;
     std::optional<double> peak_candelas() const { return std::nullopt; }
-    bool has_even_core() const { return true; }
+    bool has_even_core() const { return falloff_ != SpotProfileDesc::Falloff::blender_3_4; }
     DirectionCone cone() const { return {axis_, cos_dark_}; }
     void append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const;
 
   private:
     Vector3 axis_;
     SpotProfileDesc::Falloff falloff_;
-    double full_angle_, cos_full_;  // the spot shines fully inside this angle [rad]
-    double dark_angle_, cos_dark_;  // and is dark outside this one
+    double dark_angle_, cos_dark_;  // the spot is dark outside this angle [rad]
+    double full_angle_, cos_full_;  // and shines fully inside this one
     std::vector<double> cones_;     // cosines of the cones at which the profile has breaks
 };
 

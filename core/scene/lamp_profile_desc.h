@@ -16,11 +16,17 @@ struct IsotropicProfileDesc {
 /// Constant within a cone, falling to zero across its edge.
 struct SpotProfileDesc {
     static constexpr bool k_is_absolute = false;
-    /// The falloff across the edge: a smoothstep of the angle, or, as for glTF's spots, the square
-    /// of the linear ramp in the cosine (KHR_lights_punctual).
-    enum class Falloff { smooth, gltf };
+    /// The falloff across the edge, from beam/2 - edge/2 to beam/2 + edge/2 of the axis:
+    ///
+    /// - smooth: a smoothstep of the angle.
+    /// - gltf: the square of the linear ramp in the cosine (KHR_lights_punctual).
+    /// - blender: as Cycles shades Blender's spots since 3.5, a smoothstep of the cosine. With
+    ///   Blender's Size and Blend, beam/2 + edge/2 = Size/2 = h and edge = h Blend; the ramp begins
+    ///   at the cosine cos h + (1 - cos h) Blend.
+    /// - blender_3_4: as it did up to 3.4, times the cosine of the angle to the axis.
+    enum class Falloff { smooth, gltf, blender, blender_3_4 };
 
-    double beam = 0;  ///< full angle at half intensity [degrees], 0 < beam <= 180
+    double beam = 0;  ///< full angle at half intensity if smooth [degrees], 0 < beam <= 180
     double edge = 0;  ///< angle over which it falls from full to zero [degrees], 0..beam
     Falloff falloff = Falloff::smooth;
 };

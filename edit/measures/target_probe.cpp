@@ -77,7 +77,7 @@ std::string profile_key(const LampProfileDesc& profile) {
             using Desc = std::decay_t<decltype(desc)>;
             if constexpr (std::is_same_v<Desc, SpotProfileDesc>)
                 return fmt::format("spot {} {} {}", desc.beam, desc.edge,
-                                   desc.falloff == SpotProfileDesc::Falloff::gltf);
+                                   static_cast<int>(desc.falloff));
             else if constexpr (std::is_same_v<Desc, CosineProfileDesc>)
                 return fmt::format("cosine {}", desc.fwhm);
             else if constexpr (std::is_same_v<Desc, IesProfileDesc>)

@@ -124,8 +124,16 @@ double intensity_of_one(LightUnits units) {
     return 1 / (4 * std::numbers::pi);
 }
 
-LampDesc lamp_of(const GltfLight& source, const GeometryDesc& object,
-                 const ReflectanceBands& bands) {
+/// As the program that wrote the file shades its spots.
+SpotProfileDesc::Falloff falloff_of(const GltfItems& items) {
+    using Falloff = SpotProfileDesc::Falloff;
+    if (!items.written_by_blender) return Falloff::gltf;
+    return *items.written_by_blender < BlenderVersion{3, 5} ? Falloff::blender_3_4
+                                                            : Falloff::blender;
+}
+
+LampDesc lamp_of(const GltfLight& source, const GeometryDesc& object, const ReflectanceBands& bands,
+                 SpotProfileDesc::Falloff falloff) {
     const Affine world_from_light = object.world_from_object * source.file_from_light;
     LampDesc lamp;
     lamp.where = object.import.lamps_where;
@@ -134,9 +142,9 @@ LampDesc lamp_of(const GltfLight& source, const GeometryDesc& object,
     lamp.direction = direction(world_from_light, {0, 0, -1}, lamp.where);
     if (source.type == GltfLight::Type::spot) {
         constexpr double k_degrees = 180 / std::numbers::pi;
-        lamp.profile = SpotProfileDesc{(source.outer_cone + source.inner_cone) * k_degrees,
-                                       (source.outer_cone - source.inner_cone) * k_degrees,
-                                       SpotProfileDesc::Falloff::gltf};
+        lamp.profile =
+            SpotProfileDesc{(source.outer_cone + source.inner_cone) * k_degrees,
+                            (source.outer_cone - source.inner_cone) * k_degrees, falloff};
     }
     const Spectrum color = bands.from_rgb(source.color);
     const double watts_per_sr = source.intensity * intensity_of_one(object.import.units);
@@ -196,7 +204,7 @@ void import_lamps(const GltfItems& items, const GeometryDesc& object, SceneDesc&
     const ReflectanceBands bands(scene.water.bands_nm);
     const std::vector<const GltfLight*> lights = chosen_lights(items, object, scene.warnings);
     for (const GltfLight* light : lights) {
-        LampDesc lamp = lamp_of(*light, object, bands);
+        LampDesc lamp = lamp_of(*light, object, bands, falloff_of(items));
         lamp.name = lamp_name(light->name, scene.lamps);
         scene.lamps.push_back(std::move(lamp));
     }

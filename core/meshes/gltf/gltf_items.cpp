@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <system_error>
 
 #include "core/base/error.h"
 #include "core/meshes/gltf/gltf_nodes.h"
@@ -77,9 +80,29 @@ GltfLight read_light(const GltfDocument& document, const Json& json) {
     return light;
 }
 
+// Blender's exporter has the version of the Blender that it is part of: "Khronos glTF Blender I/O
+// v3.4.50". The first ones, of 2.8, had numbers of their own, or none.
+std::optional<BlenderVersion> blender_version(const GltfDocument& document) {
+    const std::string generator =
+        document.object(document.root(), "asset").value("generator", std::string());
+    if (generator.find("Blender") == std::string::npos) return std::nullopt;
+    BlenderVersion version{2, 8};
+    const std::size_t v = generator.rfind(" v");
+    if (v != std::string::npos) {
+        const char* const end = generator.data() + generator.size();
+        BlenderVersion read;
+        const auto [point, fault] = std::from_chars(generator.data() + v + 2, end, read.first);
+        if (fault == std::errc() && point != end && *point == '.' &&
+            std::from_chars(point + 1, end, read.second).ec == std::errc())
+            version = std::max(version, read);
+    }
+    return version;
+}
+
 GltfItems read_items(const GltfDocument& document) {
     const Json& lights = document.list(document.extension(document.root(), k_lights), "lights");
     GltfItems items;
+    items.written_by_blender = blender_version(document);
     for (const GltfNode& node : gltf_nodes(document)) {
         if (node.json->contains("camera")) {
             const Json& json = document.element("cameras", *node.json, "camera");

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/affine.h"
@@ -30,10 +32,14 @@ struct GltfLight {
     Affine file_from_light;
 };
 
+/// Major and minor version of Blender: 3.4 is {3, 4}.
+using BlenderVersion = std::pair<int, int>;
+
 /// What a glTF file has besides its meshes, in the order of its scene's nodes.
 struct GltfItems {
     std::vector<GltfCamera> cameras;
     std::vector<GltfLight> lights;
+    std::optional<BlenderVersion> written_by_blender;  // the version, of a file that Blender wrote
 };
 
 /// Reads the cameras and lights of a glTF file; no mesh or image is loaded. Throws IoError,

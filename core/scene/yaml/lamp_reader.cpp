@@ -40,8 +40,11 @@ LampProfileDesc read_spot(ConfigMap& map, const SceneContext& /*context*/) {
     }
     if (const auto falloff = map.find("falloff")) {
         using Falloff = SpotProfileDesc::Falloff;
-        constexpr std::array<std::pair<std::string_view, Falloff>, 2> k_falloffs{
-            {{"smooth", Falloff::smooth}, {"gltf", Falloff::gltf}}};
+        constexpr auto k_falloffs = std::to_array<std::pair<std::string_view, Falloff>>(
+            {{"smooth", Falloff::smooth},
+             {"gltf", Falloff::gltf},
+             {"blender", Falloff::blender},
+             {"blender-3.4", Falloff::blender_3_4}});
         profile.falloff = falloff->choice(k_falloffs);
     }
     return profile;

@@ -15,7 +15,7 @@ constexpr int k_width = 160, k_height = 120, k_step = 8;
 const std::filesystem::path k_seabed =
     std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/meshes/seabed.glb";
 
-/// Blender's watts, and what KHR_lights_punctual makes of the direction.
+/// Blender's watts, and how it shades spots.
 struct Lamp {
     const char* name;
     double watts;
@@ -27,11 +27,11 @@ const Lamp k_lamps[] = {{"SpotLeft", 120, {1, 0.96, 0.9}, true},
                         {"SpotRight", 80, {1, 1, 1}, true},
                         {"PointFill", 30, {0.8, 0.9, 1}, false}};
 
+// As Cycles shades it in Blender 3.4, which wrote the file (kernel/light/common.h).
 double spot_falloff(double cosine) {
-    const double half = 35 * std::numbers::pi / 180;
-    const double outer = std::cos(half), inner = std::cos(0.8 * half);
-    const double way = std::min(1.0, std::max(0.0, (cosine - outer) / (inner - outer)));
-    return way * way;
+    const double outer = std::cos(35 * std::numbers::pi / 180);
+    const double t = std::min(1.0, std::max(0.0, (cosine - outer) / ((1 - outer) * 0.2)));
+    return cosine * t * t * (3 - 2 * t);
 }
 
 class GltfScene : public test::CliTest {

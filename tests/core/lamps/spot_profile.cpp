@@ -17,6 +17,9 @@ namespace {
 using std::numbers::pi;
 using Falloff = SpotProfileDesc::Falloff;
 
+constexpr Falloff k_falloffs[] = {Falloff::smooth, Falloff::gltf, Falloff::blender,
+                                  Falloff::blender_3_4};
+
 constexpr double radians(double degrees) {
     return degrees * pi / 180;
 }
@@ -34,7 +37,7 @@ struct Spot {
 
 TEST(SpotProfile, ObeysTheLaws) {
     const LampPlacement placement{Affine::rotation_xyz_degrees({20, -70, 110}), {0.6, 0, 0.8}};
-    for (const Falloff falloff : {Falloff::smooth, Falloff::gltf})
+    for (const Falloff falloff : k_falloffs)
         for (const auto& [beam, edge] :
              {std::pair{60.0, 0.0}, std::pair{60.0, 20.0}, std::pair{4.0, 4.0},
               std::pair{179.0, 0.0}, std::pair{180.0, 180.0}})
@@ -65,10 +68,40 @@ TEST(SpotProfile, FallsAsTheGltfExtensionSays) {
     }
 }
 
+// Cycles' spot (kernel/light/spot.h and, up to 3.4, kernel/light/common.h) in Blender's own terms:
+// a smoothstep of (cos - cos(size/2)) / ((1 - cos(size/2)) blend); up to 3.4 times the cosine.
+TEST(SpotProfile, FallsAsBlenderShadesIt) {
+    for (const auto& [size, blend] :
+         {std::pair{70.0, 0.2}, std::pair{45.0, 0.15}, std::pair{75.0, 1.0}, std::pair{120.0, 0.5},
+          std::pair{180.0, 0.3}}) {
+        // What Blender exports: the outer cone is size/2, the inner one that times 1 - blend.
+        const double beam = size / 2 * (2 - blend), edge = size / 2 * blend;
+        const Spot spot({beam, edge, Falloff::blender});
+        const Spot old({beam, edge, Falloff::blender_3_4});
+        const double outer = std::cos(radians(size / 2));
+        for (double degrees = 0; degrees < 90; degrees += 0.25) {
+            const double cosine = std::cos(radians(degrees));
+            const double t = std::clamp((cosine - outer) / ((1 - outer) * blend), 0.0, 1.0);
+            const double smooth = t * t * (3 - 2 * t);
+            EXPECT_NEAR(spot.at(degrees), smooth, 1e-9) << size << " " << blend << " " << degrees;
+            EXPECT_NEAR(old.at(degrees), cosine * smooth, 1e-9)
+                << size << " " << blend << " " << degrees;
+        }
+    }
+}
+
+TEST(SpotProfile, WithoutBlendBlendersEdgeIsHard) {
+    const Spot spot({60, 0, Falloff::blender}), old({60, 0, Falloff::blender_3_4});
+    EXPECT_EQ(spot.at(29.99), 1);
+    EXPECT_NEAR(old.at(29.99), std::cos(radians(29.99)), 1e-12);
+    EXPECT_EQ(spot.at(30.01), 0);
+    EXPECT_EQ(old.at(30.01), 0);
+}
+
 TEST(SpotProfile, SolidAngleIsTheIntegral) {
     // A hard edge in closed form: a cone of 2 pi (1 - cos 30 deg).
     EXPECT_NEAR(Spot({60, 0}).profile.solid_angle(), 2 * pi * (1 - std::cos(radians(30))), 1e-12);
-    for (const Falloff falloff : {Falloff::smooth, Falloff::gltf})
+    for (const Falloff falloff : k_falloffs)
         for (const auto& [beam, edge] :
              {std::pair{63.0, 7.0}, std::pair{60.0, 60.0}, std::pair{120.0, 20.0}}) {
             const SpotProfile spot({beam, edge, falloff}, {});

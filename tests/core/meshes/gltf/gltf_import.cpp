@@ -97,7 +97,7 @@ TEST(GltfImportOfBlender, LampsAreWattsOverFourPiInAllThreeUnits) {
         const auto& spot = std::get<SpotProfileDesc>(scene.lamps[0].profile);
         EXPECT_NEAR(spot.beam, 63, 1e-5);
         EXPECT_NEAR(spot.edge, 7, 1e-5);
-        EXPECT_EQ(spot.falloff, SpotProfileDesc::Falloff::gltf);
+        EXPECT_EQ(spot.falloff, SpotProfileDesc::Falloff::blender_3_4);  // who wrote them
         EXPECT_TRUE(std::holds_alternative<IsotropicProfileDesc>(scene.lamps[2].profile));
         // yfov of a camera of 65.47 x 51.48 degrees, 4 : 3.
         EXPECT_NEAR(scene.camera.intrinsics.fy, 1.5 / std::tan(0.8985201936400519 / 2), 1e-9);
@@ -169,6 +169,25 @@ TEST_F(GltfImport, AllLampsButTheDirectionalWithNamesOfTheirOwn) {
     EXPECT_NEAR(std::get<SpotProfileDesc>(desc.lamps[1].profile).beam, 45, 1e-12);
     EXPECT_NEAR(std::get<SpotProfileDesc>(desc.lamps[1].profile).edge, 45, 1e-12);
     EXPECT_NEAR(desc.lamps[1].intensity->at(2), 1 / 683.0, 1e-15);
+}
+
+TEST_F(GltfImport, SpotsFallOffAsTheFilesWriterShadesThem) {
+    using Falloff = SpotProfileDesc::Falloff;
+    for (const auto& [generator, falloff] :
+         {std::pair{"", Falloff::gltf},
+          {"babylon.js 3.4", Falloff::gltf},
+          {"Khronos Blender glTF 2.0 exporter", Falloff::blender_3_4},
+          {"Khronos glTF Blender I/O v1.2.75", Falloff::blender_3_4},
+          {"Khronos glTF Blender I/O v3.4.50", Falloff::blender_3_4},
+          {"Khronos glTF Blender I/O v3.5.30", Falloff::blender},
+          {"Khronos glTF Blender I/O v4.0.43", Falloff::blender},
+          {"Khronos glTF Blender I/O v10.2.1", Falloff::blender}}) {
+        const SceneDesc desc = scene(
+            ", lamps: ['Bulb.1']", ", intrinsics: {fx: 77}",
+            {{"asset", std::string(R"({"version":"2.0","generator":")") + generator + "\"}"}});
+        EXPECT_EQ(std::get<SpotProfileDesc>(desc.lamps.at(0).profile).falloff, falloff)
+            << generator;
+    }
 }
 
 TEST_F(GltfImport, RefusesInOneLine) {

@@ -37,6 +37,10 @@ TEST_F(LampReader, ReadsEachProfile) {
     EXPECT_EQ(spot.beam, 60);
     EXPECT_EQ(spot.edge, 5);
     EXPECT_EQ(spot.falloff, SpotProfileDesc::Falloff::gltf);
+    EXPECT_EQ(profile<SpotProfileDesc>("{type: spot, beam: 60, falloff: blender}").falloff,
+              SpotProfileDesc::Falloff::blender);
+    EXPECT_EQ(profile<SpotProfileDesc>("{type: spot, beam: 60, falloff: blender-3.4}").falloff,
+              SpotProfileDesc::Falloff::blender_3_4);
     EXPECT_EQ(profile<SpotProfileDesc>("{type: spot, beam: 60}").falloff,
               SpotProfileDesc::Falloff::smooth);
     EXPECT_EQ(profile<CosineProfileDesc>("{type: cosine, fwhm: 70}").fwhm, 70);
