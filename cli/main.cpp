@@ -14,6 +14,7 @@
 #include "cli/render/render_command.h"
 #include "cli/shell/completion_command.h"
 #include "cli/shell/manual_command.h"
+#include "cli/sweep/sweep_command.h"
 #include "cli/validate/validate_command.h"
 #include "cli/water/water_command.h"
 #include "core/base/error.h"
@@ -33,6 +34,7 @@ void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::render_command());
     commands.push_back(uw::info_command());
     commands.push_back(uw::water_command());
+    commands.push_back(uw::sweep_command());
     commands.push_back(uw::validate_command());
     commands.push_back(uw::edit_command());
     commands.push_back(uw::calibration_command());

@@ -97,6 +97,11 @@ bool FrameRenderer::proceed(const std::string& stage, double fraction) {
 void FrameRenderer::begin_stage(const std::string& stage) {
     stage_ = stage;
     progress_.reset();  // ends the line of the previous stage
+    if (!measuring_.empty()) {
+        progress_ = std::make_unique<Progress>(clock_.label(measuring_ + ": " + stage), "", 1,
+                                               arguments_.quiet, clock_.seconds_left());
+        return;
+    }
     const auto show = [&](const char* unit, double scale) {
         progress_ = std::make_unique<Progress>(clock_.label(stage), unit, scale, arguments_.quiet,
                                                clock_.seconds_left());
@@ -151,8 +156,14 @@ void FrameRenderer::write_irradiance(const std::filesystem::path& file) {
 void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats stats) {
     const OutputFiles& files = frame.files;
     const bool with_irradiance = !files.irradiance_vdb.empty();
-    const RenderOptions options{
+    RenderOptions options{
         .layers = arguments_.layers, .window = windows_[frame.camera], .paths = arguments_.paths()};
+    if (!arguments_.numbers.empty())
+        options.layers = (options.layers.empty() ? "default" : options.layers) + "," +
+                         layers_to_measure(scene.desc()) +
+                         (arguments_.parts.object.empty() ? "" : ",id");
+    std::optional<ResolvedScene> measured;
+    if (!arguments_.numbers.empty()) measured = scene;
     stats_ = &stats;
     stage_.clear();
     renderer_.set_scene(std::move(scene));
@@ -180,16 +191,45 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
     }
     stats.end_stage();
     stats.set_output(files.image.filename().string(), frame.number);
-    begin_writing(frame, options, std::move(stats));
+    ImageMetadata metadata =
+        metadata_of(renderer_.assembled(), frame.number, options.paths, report);
+    Film film = renderer_.release_film();
+    if (!arguments_.numbers.empty()) {
+        const LayerPlan written =
+            layer_plan(renderer_.scene(), arguments_.layers, arguments_.paths());
+        stats.begin_stage("numbers");
+        stats.set_numbers(measure(*measured, film, options));
+        stats.end_stage();
+        if (written.channel_names() != film.channel_names())
+            film = with_channels(film, written.channel_names());
+    }
+    begin_writing(frame, std::move(film), std::move(metadata), std::move(stats));
 }
 
-void FrameRenderer::begin_writing(const Frame& frame, const RenderOptions& options,
+std::vector<PartNumbers> FrameRenderer::measure(const ResolvedScene& scene, const Film& film,
+                                                const RenderOptions& options) {
+    const LayerPlan plan = layer_plan(scene.desc(), options.layers, options.paths);
+    const std::vector<PicturePart> parts =
+        picture_parts(arguments_.parts, scene.desc(), film, plan);
+    std::vector<PartNumbers> numbers = part_numbers({film, plan}, parts);
+    const std::size_t lamps = scene.desc().lamps.size();
+    for (PartNumbers& of_lamp :
+         lamp_numbers(renderer_, scene, options, parts, [&](std::size_t image) {
+             stage_.clear();
+             measuring_ = image == 0 ? "numbers without lamps"
+                                     : fmt::format("numbers of lamp {} of {}", image, lamps);
+         }))
+        numbers.push_back(std::move(of_lamp));
+    measuring_.clear();
+    progress_.reset();
+    return numbers;
+}
+
+void FrameRenderer::begin_writing(const Frame& frame, Film film, ImageMetadata metadata,
                                   RunStats stats) {
     finish();
     std::string label = clock_.is_sequence() ? clock_.label("done in ") : "";
-    ImageMetadata metadata =
-        metadata_of(renderer_.assembled(), frame.number, options.paths, renderer_.report());
-    written_.reset(new Written{frame, is_first(), renderer_.release_film(), std::move(metadata),
+    written_.reset(new Written{frame, is_first(), std::move(film), std::move(metadata),
                                std::move(stats), std::move(label)});
     clock_.finish_image();
     writing_ = std::make_unique<BackgroundTask>([&written = *written_, exr = arguments_.exr()] {

@@ -14,6 +14,7 @@
 #include "cli/render/render_arguments.h"
 #include "cli/render/sequence_clock.h"
 #include "cli/render/stats.h"
+#include "core/image/image_metadata.h"
 #include "render/renderer.h"
 
 namespace uw {
@@ -54,7 +55,10 @@ class FrameRenderer {
     void prepare(const Frame& frame, const RenderOptions& options);
     void count_work(RunStats& stats) const;
     void write_irradiance(const std::filesystem::path& file);
-    void begin_writing(const Frame& frame, const RenderOptions& options, RunStats stats);
+    void begin_writing(const Frame& frame, Film film, ImageMetadata metadata, RunStats stats);
+    /// Measures the image, lamp by lamp; the renderer's scene is then another.
+    std::vector<PartNumbers> measure(const ResolvedScene& scene, const Film& film,
+                                     const RenderOptions& options);
     void say(const std::string& line) const;
     /// `is_first`: of the run's frames, whose warnings need not say which.
     void warn(const Frame& frame, bool is_first, const std::string& line);
@@ -70,6 +74,7 @@ class FrameRenderer {
     std::mutex mutex_;
     std::string stage_;
     std::unique_ptr<Progress> progress_;
+    std::string measuring_;  // what is rendered for its numbers only; empty: nothing
     RunStats* stats_ = nullptr;
     Done done_;
     std::unique_ptr<Written> written_;

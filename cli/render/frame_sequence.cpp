@@ -102,12 +102,17 @@ bool has_sequence(const SceneDesc& scene) {
 
 FrameSequence frames_of(const RenderArguments& a) {
     const OutputFiles names = output_files(a);
-    if (a.frames.empty()) return {{{std::nullopt, names, 0, ""}}, {}};
+    if (a.frames.empty()) {
+        OutputFiles files = names;
+        files.numbers.clear();
+        return {{{std::nullopt, std::move(files), 0, ""}}, {}, names.numbers};
+    }
     if (a.frames.size() > 1) {
         require_place("-o", names.image);
         require_place("--irradiance-vdb", names.irradiance_vdb);
     }
     FrameSequence sequence;
+    sequence.numbers = names.numbers;
     const bool one_each = !names.stats.empty() && differs_by_frame(names.stats);
     if (!one_each) sequence.stats = names.stats;
     for (const int number : a.frames) {
@@ -167,7 +172,10 @@ void check_frames(const FrameSequence& sequence, const SceneDesc& scene) {
     for (const Frame& frame : sequence.frames)
         outputs.take_inputs(input_files(scene_of_image(scene, frame.choice()), known));
     for (const Frame& frame : sequence.frames) outputs.take_outputs(frame.files);
-    if (!sequence.stats.empty()) outputs.take_outputs({{}, {}, sequence.stats, {}});
+    OutputFiles about_all;
+    about_all.stats = sequence.stats;
+    about_all.numbers = sequence.numbers;
+    outputs.take_outputs(about_all);
 }
 
 bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,

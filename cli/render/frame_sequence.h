@@ -27,7 +27,8 @@ struct Frame {
 /// The images of a run, in the order they are rendered.
 struct FrameSequence {
     std::vector<Frame> frames;
-    std::filesystem::path stats;  // one file about all of them; empty: none, or one each
+    std::filesystem::path stats;      // one file about all of them; empty: none, or one each
+    std::filesystem::path numbers{};  // one file about all of them; empty: none
 };
 
 /// The images that the arguments request. Throws UsageError for several frames with one name, and

@@ -25,6 +25,7 @@ std::vector<NamedFile> named(const OutputFiles& files) {
     if (!files.image.empty()) result.push_back({"the image", files.image});
     if (!files.preview.empty()) result.push_back({"the preview", files.preview});
     if (!files.stats.empty()) result.push_back({"--stats", files.stats});
+    if (!files.numbers.empty()) result.push_back({"--numbers", files.numbers});
     if (!files.irradiance_vdb.empty()) result.push_back({"--irradiance-vdb", files.irradiance_vdb});
     return result;
 }
@@ -53,6 +54,10 @@ OutputFiles output_files(const RenderArguments& a) {
     files.preview = files.image;
     files.preview.replace_extension(".png");
     files.stats = a.stats;
+    if (!a.numbers.empty() && !a.prints_numbers()) {
+        refuse_other_ending("--numbers", a.numbers, ".csv", "CSV");
+        files.numbers = a.numbers;
+    }
     files.irradiance_vdb = a.irradiance_vdb;
     if (!a.irradiance_vdb.empty())
         refuse_other_ending("--irradiance-vdb", a.irradiance_vdb, ".vdb", "OpenVDB");

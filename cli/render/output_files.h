@@ -16,6 +16,7 @@ struct OutputFiles {
     std::filesystem::path preview;         // PNG beside it
     std::filesystem::path stats;           // JSON; empty: none
     std::filesystem::path irradiance_vdb;  // empty: none
+    std::filesystem::path numbers{};       // CSV about all images; empty: none
 };
 
 /// The files that the arguments request; names keep their placeholders for the frame number, and so

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/numbers/picture_parts.h"
 #include "core/image/exr_options.h"
 #include "render/scene_rendering.h"
 
@@ -30,11 +31,14 @@ struct RenderArguments {
     std::string quality;          // draft or final; empty: final
     int threads = 0;              // 0: all
     std::filesystem::path stats;
+    std::filesystem::path numbers;  // --numbers: a CSV, or "-": standard output; empty: none
+    PartArguments parts;            // of the image, to measure
     std::filesystem::path irradiance_vdb;
     bool quiet = false;
 
     /// Throws UsageError for words that do not exist.
     ExrOptions exr() const;
+    bool prints_numbers() const { return numbers == "-"; }
     PathRequest paths() const { return {.error = error, .orders = orders.value_or(0)}; }
 };
 

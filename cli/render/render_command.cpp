@@ -18,6 +18,7 @@
 #include "cli/render/image_output.h"
 #include "cli/render/stats.h"
 #include "cli/stop_signal.h"
+#include "cli/text_files.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
@@ -165,6 +166,26 @@ class FrameScenes {
     std::vector<std::string> lamp_names_;
 };
 
+void check_measures(const RenderArguments& a, const SceneDesc& first, const PixelWindow& window) {
+    if (a.numbers.empty() && a.parts.any())
+        throw UsageError(fmt::format("--{}: says what --numbers measures; give --numbers as well",
+                                     a.parts.pixels ? "part" : "object"));
+    check_parts(a.parts, first, window);
+}
+
+// What was measured in the images done.
+void write_numbers(const RenderArguments& a, const std::filesystem::path& file,
+                   const std::vector<RunStats>& done) {
+    if (a.numbers.empty() || done.empty()) return;
+    if (a.prints_numbers()) {
+        for (const RunStats& stats : done) print_output(stats.numbers_table());
+        return;
+    }
+    std::string csv = RunStats::numbers_csv_header();
+    for (const RunStats& stats : done) csv += stats.numbers_csv();
+    write_text(file, csv, a.quiet);
+}
+
 // Renders all frames; `stats` are those of the first so far. Whatever ends the run, the frames that
 // were rendered are written, and so added to `done`.
 void render_frames(const FrameSequence& sequence, FrameScenes& scenes, FrameRenderer& renderer,
@@ -205,6 +226,7 @@ void run_render(const RenderArguments& a) {
     const LayerPlan layers = layer_plan(scenes.first(), a.layers, a.paths());
     if (a.resume) leave_out_rendered(sequence, desc, layers, a.paths(), storage, windows, a.quiet);
     if (sequence.frames.empty()) return;
+    check_measures(a, scenes.first(), windows[sequence.frames.front().camera]);
     check_frames(sequence, desc);
     std::vector<RunStats> done;
     FrameRenderer renderer(
@@ -214,6 +236,7 @@ void run_render(const RenderArguments& a) {
             done.push_back(std::move(of_frame));
         });
     const auto write_stats = [&] {
+        write_numbers(a, sequence.numbers, done);
         if (!sequence.stats.empty() && !done.empty())
             RunStats::write_json(sequence.stats, a.scene.filename().string(), done);
     };

@@ -19,6 +19,7 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.exr --resume
   uwvdb render stereo.yaml -o 'out/{camera}.exr'
   uwvdb render plume.yaml --integrator path --error 0.02 --size 320x180
+  uwvdb render plume.yaml --numbers - --object seabed
   uwvdb render houdini.yaml --set 'volumes[0].file=/data/my.vdb' --irradiance-vdb light.vdb
 
 render.scattering: single, the default, is light that the water scatters once or a surface reflects
@@ -102,6 +103,9 @@ Options render_options(RenderArguments& a) {
                  k_quality_names);
     options.threads(a.threads);
     options.path("--stats", "FILE", a.stats, "write times, rays, voxels and memory as JSON");
+    options.path("--numbers", "FILE.csv", a.numbers,
+                 "measure signal, backscatter, contrast and evenness, lamp by lamp; -: print them");
+    add_part_options(options, a.parts);
     options.path("--irradiance-vdb", "FILE", a.irradiance_vdb,
                  "write each lamp's irradiance per band as grids of a VDB");
     options.flag("--quiet", a.quiet, "print nothing but warnings and errors");

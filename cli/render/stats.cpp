@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cli/numbers/number_columns.h"
 #include "cli/version.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -66,6 +68,13 @@ struct StatsJson {
         return json;
     }
 
+    // Null for none and for infinity; counts without a decimal point.
+    static Json number_json(const std::optional<double>& value) {
+        if (!value || !std::isfinite(*value)) return {};
+        const bool is_whole = *value == std::floor(*value) && std::abs(*value) < 1e15;
+        return is_whole ? Json(static_cast<std::int64_t>(*value)) : Json(*value);
+    }
+
     static void add(const RunStats& stats, Json& json) {
         if (stats.frame_) json["frame"] = *stats.frame_;
         json["output"] = stats.output_;
@@ -73,6 +82,15 @@ struct StatsJson {
         json["seconds"]["total"] = stats.total_seconds();
         for (const auto& [name, value] : stats.counts_) json[name] = value;
         for (const auto& [name, value] : stats.measures_) json[name] = value;
+        for (const PartNumbers& row : stats.numbers_) {
+            Json& numbers = json["numbers"].emplace_back();
+            numbers["part"] = row.part;
+            numbers["lamp"] = row.lamp.empty() ? Json() : Json(row.lamp);
+            for (const NumberColumn& column : number_columns()) {
+                const std::optional<double> value = column.value(row.numbers);
+                numbers[std::string(column.name)] = number_json(value);
+            }
+        }
     }
 
     static void write(const std::filesystem::path& file, Json json) {
@@ -85,6 +103,24 @@ struct StatsJson {
         target.commit();
     }
 };
+
+std::string RunStats::numbers_csv_header() {
+    return "image,frame,part,lamp" + number_names_csv() + "\n";
+}
+
+std::string RunStats::numbers_table() const {
+    return fmt::format("{}\n{}", output_, numbers_text(numbers_));
+}
+
+std::string RunStats::numbers_csv() const {
+    std::string text;
+    for (const PartNumbers& row : numbers_)
+        text += fmt::format("{},{},{},{}{}\n", csv_text(output_),
+                            frame_ ? fmt::format("{}", *frame_) : "", csv_text(row.part),
+                            csv_text(row.lamp.empty() ? "all" : row.lamp),
+                            number_values_csv(row.numbers));
+    return text;
+}
 
 void RunStats::write_json(const std::filesystem::path& file, const std::string& scene) const {
     StatsJson::Json json = StatsJson::begin(scene);

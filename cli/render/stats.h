@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "render/measures/lamp_numbers.h"
+
 namespace uw {
 
 /// Seconds that each stage of a run took, and what it worked on: `--stats`.
@@ -33,6 +35,15 @@ class RunStats {
     /// Identifies the image: its name, and its number in a sequence.
     void set_output(const std::string& name, std::optional<int> frame);
 
+    /// Adds what was measured in the image.
+    void set_numbers(std::vector<PartNumbers> numbers) { numbers_ = std::move(numbers); }
+    /// The rows of these numbers in a CSV, each beginning with the image's name and its number.
+    std::string numbers_csv() const;
+    /// The most important of them as aligned text, under the image's name.
+    std::string numbers_table() const;
+    /// The names of the CSV's columns.
+    static std::string numbers_csv_header();
+
     /// Writes everything as JSON. Throws IoError.
     void write_json(const std::filesystem::path& file, const std::string& scene) const;
     /// Writes one JSON file about several images, which are listed under `frames`.
@@ -45,6 +56,7 @@ class RunStats {
     std::vector<std::pair<std::string, double>> stages_;
     std::vector<std::pair<std::string, std::uint64_t>> counts_;
     std::vector<std::pair<std::string, double>> measures_;
+    std::vector<PartNumbers> numbers_;
     std::string output_;
     std::optional<int> frame_;
     std::string stage_;

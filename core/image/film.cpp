@@ -49,4 +49,20 @@ Film cropped(const Film& film, const PixelWindow& window) {
     return part;
 }
 
+Film with_channels(const Film& film, const std::vector<std::string>& channel_names) {
+    std::vector<std::size_t> sources;
+    for (const std::string& name : channel_names)
+        sources.push_back(static_cast<std::size_t>(std::ranges::find(film.channel_names(), name) -
+                                                   film.channel_names().begin()));
+    const PixelWindow& window = film.window();
+    Film part(film.width(), film.height(), window, channel_names);
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) {
+            const std::span<const float> from = film.pixel(x, y);
+            const std::span<float> to = part.pixel(x, y);
+            for (std::size_t i = 0; i < sources.size(); ++i) to[i] = from[sources[i]];
+        }
+    return part;
+}
+
 }  // namespace uw

@@ -9,7 +9,7 @@
 #include "core/base/affine.h"
 #include "core/base/vec.h"
 #include "core/scene/lamp_desc.h"
-#include "edit/measures/target_probe.h"
+#include "render/measures/target_probe.h"
 
 namespace uw {
 

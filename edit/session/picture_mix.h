@@ -1,9 +1,9 @@
 #pragma once
 
 #include "core/json/json.h"
-#include "edit/measures/picture_numbers.h"
-#include "edit/measures/target_probe.h"
 #include "edit/session/picture.h"
+#include "render/measures/picture_numbers.h"
+#include "render/measures/target_probe.h"
 
 namespace uw {
 

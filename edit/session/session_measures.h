@@ -10,8 +10,8 @@
 #include "core/base/ray.h"
 #include "core/json/json.h"
 #include "edit/measures/suggest.h"
-#include "edit/measures/target_probe.h"
 #include "edit/session/edit_session.h"
+#include "render/measures/target_probe.h"
 
 namespace uw {
 

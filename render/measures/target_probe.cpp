@@ -1,4 +1,4 @@
-#include "edit/measures/target_probe.h"
+#include "render/measures/target_probe.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "edit/measures/picture_numbers.h"
+#include "render/measures/picture_numbers.h"
 
 #include <gtest/gtest.h>
 

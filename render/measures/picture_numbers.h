@@ -6,22 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "core/base/spectrum.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
+#include "render/measures/pixel_values.h"
 
 /// The numbers by which a designer of lamps judges a picture. The light of a pixel is the mean of
 /// its bands. What comes from surfaces is signal, what the water scatters on its way is
 /// backscatter.
 namespace uw {
-
-/// One layer of a picture, perhaps of a single lamp: for pixel i (row by row) and band b the value
-/// `gain[b] * values[i * stride + b]`. Lamps are mixed by their gains without being rendered again.
-struct PicturePlane {
-    std::span<const float> values;
-    std::size_t stride = 0;
-    Spectrum gain;
-};
 
 /// The layers of a picture by what they mean; those of one kind are added up.
 struct PictureLayers {
@@ -72,6 +64,12 @@ struct PictureNumbers {
     std::optional<Evenness> evenness;
 };
 
+/// The pixels of a part of a picture, by their index row by row.
+std::vector<std::size_t> pixels_within(const PixelWindow& part, int width);
+
+/// The numbers of some pixels. Precondition: there are some, and all lie within the picture.
+PictureNumbers measure_picture(const PictureLayers& picture, std::span<const std::size_t> pixels,
+                               double ratio = 1);
 /// The numbers of the pixels in `part`. Precondition: it is not empty and lies within the picture.
 PictureNumbers measure_picture(const PictureLayers& picture, const PixelWindow& part,
                                double ratio = 1);

@@ -1,65 +1,13 @@
-#include "edit/measures/picture_numbers.h"
+#include "render/measures/picture_numbers.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "render/measures/pixel_values.h"
+
 namespace uw {
 namespace {
-
-/// The mean of a pixel's bands in a sum of layers.
-class GreyLayers {
-  public:
-    GreyLayers(const std::vector<PicturePlane>& planes, std::size_t bands)
-        : planes_(planes), bands_(bands) {}
-
-    bool empty() const { return planes_.empty(); }
-    double at(std::size_t pixel) const {
-        double sum = 0;
-        for (const PicturePlane& plane : planes_)
-            for (std::size_t b = 0; b < bands_; ++b)
-                sum += plane.gain[b] * static_cast<double>(plane.values[pixel * plane.stride + b]);
-        return sum / static_cast<double>(bands_);
-    }
-
-  private:
-    const std::vector<PicturePlane>& planes_;
-    std::size_t bands_;
-};
-
-double mean_of(std::span<const double> values) {
-    double sum = 0;
-    for (const double value : values) sum += value;
-    return values.empty() ? 0 : sum / static_cast<double>(values.size());
-}
-
-/// The mean of the values between two shares of their number, from the least on; the value in the
-/// middle of the two if there is none between them. Orders the values as it needs.
-double mean_between(std::span<double> values, double low, double high) {
-    const auto count = static_cast<double>(values.size());
-    const auto begin = static_cast<std::ptrdiff_t>(std::ceil(low * count));
-    const auto end = static_cast<std::ptrdiff_t>(std::floor(high * count));
-    if (begin >= end) {
-        const auto middle = std::min(static_cast<std::ptrdiff_t>(0.5 * (low + high) * count),
-                                     static_cast<std::ptrdiff_t>(values.size()) - 1);
-        std::nth_element(values.begin(), values.begin() + middle, values.end());
-        return values[static_cast<std::size_t>(middle)];
-    }
-    std::nth_element(values.begin(), values.begin() + begin, values.end());
-    std::nth_element(values.begin() + begin, values.begin() + end, values.end());
-    return mean_of({values.begin() + begin, values.begin() + end});
-}
-
-/// The value below which a share of the values lies, between its neighbours. Orders the values as
-/// it needs.
-double percentile(std::span<double> values, double share) {
-    const double place = share * static_cast<double>(values.size() - 1);
-    const auto below = values.begin() + static_cast<std::ptrdiff_t>(place);
-    std::nth_element(values.begin(), below, values.end());
-    const double low = *below;
-    if (below + 1 == values.end()) return low;
-    return std::lerp(low, *std::min_element(below + 1, values.end()), place - std::floor(place));
-}
 
 double ratio_of(double signal, double backscatter) {
     if (backscatter > 0) return signal / backscatter;
@@ -69,15 +17,6 @@ double ratio_of(double signal, double backscatter) {
 double contrast_of(std::span<double> values) {
     const double dark = mean_between(values, 0.05, 0.25), bright = mean_between(values, 0.75, 0.95);
     return bright + dark > 0 ? (bright - dark) / (bright + dark) : 0;
-}
-
-std::vector<std::size_t> pixels_of(const PictureLayers& picture, const PixelWindow& part) {
-    std::vector<std::size_t> pixels;
-    for (int y = part.y0; y < part.y1; ++y)
-        for (int x = part.x0; x < part.x1; ++x)
-            pixels.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                             static_cast<std::size_t>(x));
-    return pixels;
 }
 
 /// `seen`: the irradiance where there is a surface.
@@ -98,35 +37,35 @@ Evenness evenness_of(std::vector<double> seen) {
     return even;
 }
 
-PicturePlane plane_of(const Film& film, int first_channel, std::size_t bands) {
-    PicturePlane plane{film.values().subspan(static_cast<std::size_t>(first_channel)),
-                       film.channel_names().size(),
-                       {}};
-    plane.gain = per_band(bands, [](std::size_t) { return 1.0; });
-    return plane;
-}
-
 }  // namespace
 
 PictureLayers picture_layers(const Film& film, const LayerPlan& plan) {
     PictureLayers picture{
         film.window().width(), film.window().height(), plan.band_count(), {}, {}, {}, {}, {}};
-    const auto add = [&](Layer layer, std::vector<PicturePlane>& planes) {
-        if (plan.has(layer))
-            planes.push_back(plane_of(film, plan.first_channel(layer), plan.band_count()));
-    };
-    add(Layer::direct, picture.signal);
-    add(Layer::forward, picture.signal);
-    add(Layer::multiple_surface, picture.signal);
-    add(Layer::backscatter, picture.backscatter);
-    add(Layer::multiple_volume, picture.backscatter);
-    add(Layer::clean, picture.clean);
-    add(Layer::irradiance, picture.irradiance);
-    add(Layer::albedo, picture.albedo);
+    picture.signal =
+        layer_planes(film, plan, {Layer::direct, Layer::forward, Layer::multiple_surface});
+    picture.backscatter = layer_planes(film, plan, {Layer::backscatter, Layer::multiple_volume});
+    picture.clean = layer_planes(film, plan, {Layer::clean});
+    picture.irradiance = layer_planes(film, plan, {Layer::irradiance});
+    picture.albedo = layer_planes(film, plan, {Layer::albedo});
     return picture;
 }
 
+std::vector<std::size_t> pixels_within(const PixelWindow& part, int width) {
+    std::vector<std::size_t> pixels;
+    for (int y = part.y0; y < part.y1; ++y)
+        for (int x = part.x0; x < part.x1; ++x)
+            pixels.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                             static_cast<std::size_t>(x));
+    return pixels;
+}
+
 PictureNumbers measure_picture(const PictureLayers& picture, const PixelWindow& part,
+                               double ratio) {
+    return measure_picture(picture, pixels_within(part, picture.width), ratio);
+}
+
+PictureNumbers measure_picture(const PictureLayers& picture, std::span<const std::size_t> pixels,
                                double ratio) {
     const GreyLayers signal(picture.signal, picture.bands);
     const GreyLayers backscatter(picture.backscatter, picture.bands);
@@ -135,7 +74,7 @@ PictureNumbers measure_picture(const PictureLayers& picture, const PixelWindow& 
     const GreyLayers albedo(picture.albedo, picture.bands);
     std::vector<double> totals, signals, scattered, cleans, lit;
     std::size_t above = 0;
-    for (const std::size_t pixel : pixels_of(picture, part)) {
+    for (const std::size_t pixel : pixels) {
         signals.push_back(signal.at(pixel));
         scattered.push_back(backscatter.at(pixel));
         totals.push_back(signals.back() + scattered.back());

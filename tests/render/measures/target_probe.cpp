@@ -1,5 +1,5 @@
 // ctest labels: unit analytic metamorphic
-#include "edit/measures/target_probe.h"
+#include "render/measures/target_probe.h"
 
 #include <gtest/gtest.h>
 
