@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/info/plume_view.h"
 #include "core/base/ray.h"
 
 namespace uw {
@@ -11,7 +13,9 @@ namespace uw {
 struct VdbAdvice {
     std::vector<std::string> lines;  // one sentence or two each
     std::vector<std::string> map;    // the grids to map, as scenes address them; empty: none is fit
-    double scale = 1;                // to apply, 1 where the file's size is plausible
+    std::optional<double> voxel_size;  // to give, where the file's is known to be wrong [m]
+    double scale = 1;                  // to apply, 1 where the file's size is plausible
+    Vector3 translate{0};  // to apply: 0, or what brings a faraway volume to the origin [m]
     double small_ppm = 0, large_ppm = 0;  // per unit of grid value
     std::vector<double> bands_nm;
     /// Of the mapped grids alone, with these concentrations, per band: through their densest part,
@@ -19,8 +23,10 @@ struct VdbAdvice {
     std::vector<double> optical_depth;
     /// YAML, ready to paste into a scene; empty where nothing can be mapped.
     std::string volumes;
-    Bounds bounds;       // of the mapped grids in the world, scaled [m]
-    Point3 eye, target;  // a camera with a field of view of 50 degrees or more sees all of them
+    Bounds bounds;  // of the mapped grids in the world, as placed by the block [m]
+    /// Camera, lamps, floor and water that show the volume, and how clearly.
+    PlumeView view;
+    std::string scene;  // YAML, a whole scene of these and the volume; empty as `volumes` is
 };
 
 }  // namespace uw

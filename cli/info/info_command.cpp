@@ -3,22 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <memory>
 #include <optional>
 #include <system_error>
 
+#include "camera/image_size.h"
 #include "cli/console.h"
+#include "cli/info/draft_contrast.h"
+#include "cli/info/grid_choice.h"
 #include "cli/info/scene_survey.h"
 #include "cli/info/survey_json.h"
 #include "cli/info/survey_text.h"
 #include "cli/info/vdb_advice.h"
 #include "cli/info/vdb_json.h"
 #include "cli/info/vdb_text.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
+#include "core/base/pointer_file.h"
 #include "core/base/text.h"
+#include "core/image/image_writer.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
 
@@ -38,7 +43,9 @@ void require_file(const fs::path& file) {
     const fs::file_status status = fs::status(file, error);
     const std::string name = printable(file.string(), 300);
     if (status.type() == fs::file_type::not_found)
-        throw IoError(fmt::format("{}: no such file; check the name", name));
+        throw IoError(stand_in_of(file).empty()
+                          ? fmt::format("{}: no such file; check the name", name)
+                          : fmt::format("{}: {}", name, stand_in_of(file)));
     // Reading a pipe would keep the program waiting; a device might never end.
     if (!fs::is_regular_file(status))
         throw IoError(fmt::format("{}: is not a file; name a VDB file or a scene", name));
@@ -67,25 +74,104 @@ SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>
                                  printable(subject.string(), 300)));
 }
 
-std::string info_on_vdb(const InfoArguments& a) {
-    if (!a.overrides.empty())
-        throw UsageError("--set: works only on scenes; a VDB file has nothing to set");
+/// The advice on the sequence that `subject` names, and which of its frames to inspect.
+VdbAdvice advise_on_frames(const InfoArguments& a, SequenceReport& sequence) {
+    const FrameSurvey frames = survey_frames(a.subject, sequence.found);
+    sequence.empty = frames.empty;
+    sequence.largest = largest_values(frames);
+    for (const SampledFrame& frame : frames.sampled) sequence.sampled.push_back(frame.frame);
+    if (frames.sampled.empty()) return {};
+    if (!a.frame) sequence.frame = frames.sampled.front().frame;
+    VdbAdvice advice = advise_on_sequence(frames, a.subject);
+    for (const std::string& fault : frames.faults)
+        advice.lines.push_back("A frame cannot be read: " + fault + ".");
+    return advice;
+}
+
+VdbReport report_on(const InfoArguments& a) {
     VdbReport report;
     report.file = a.subject.string();
     fs::path file = a.subject;
-    if (!is_there(a.subject) && has_frame_pattern(a.subject.string())) {
+    const bool is_sequence = !is_there(a.subject) && has_frame_pattern(a.subject.string());
+    if (is_sequence) {
         report.sequence = look_for_frames(a.subject, a.frame);
+        if (a.frame) require_file(file_of_frame(a.subject, *a.frame));
+        report.advice = advise_on_frames(a, report.sequence);
         file = file_of_frame(a.subject, report.sequence.frame);
     } else if (a.frame) {
         refuse_frame(a.subject);
     }
     require_file(file);
     report.inspection = inspect_vdb(file, printable(file.filename().string(), 300));
-    report.advice = advise_on_vdb(report.inspection, a.subject);
+    if (!is_sequence || report.advice.map.empty()) {
+        report.advice = advise_on_vdb(report.inspection, a.subject);
+        if (is_sequence)
+            report.advice.lines.emplace_back("No frame of the sequence holds anything to map.");
+    }
+    return report;
+}
+
+/// Renders the proposed scene, small, and writes it as a PNG.
+void write_picture(const VdbReport& report, const fs::path& file) {
+    SceneDesc desc = load_scene_text(report.advice.scene, "scene.yaml");
+    resize_image(desc.camera, k_proposed_width / 2, k_proposed_height / 2);
+    if (!report.sequence.pattern.empty()) desc = scene_of_image(desc, {report.sequence.frame});
+    Renderer renderer;
+    renderer.set_scene(std::move(desc));
+    const Film& film = renderer.render();
+    write_png(file, make_preview(film, automatic_exposure(film).value_or(1.0)), {});
+    print_message(fmt::format("wrote {}\n", printable(file.string(), 300)));
+}
+
+std::string info_on_vdb(const InfoArguments& a) {
+    if (!a.overrides.empty())
+        throw UsageError("--set: works only on scenes; a VDB file has nothing to set");
+    if (a.scene && a.json)
+        throw UsageError("--scene and --json: give one; the scene is in the JSON, too");
+    if (!a.picture.empty() && a.picture.extension() != ".png")
+        throw UsageError(fmt::format("--picture: '{}' does not end in .png",
+                                     printable(a.picture.string(), 300)));
+    if (!a.picture.empty()) const AtomicFile check(a.picture);  // before the work
+    const VdbReport report = report_on(a);
+    if ((a.scene || !a.picture.empty()) && report.advice.map.empty())
+        throw InputError(fmt::format("{}: {} There is no scene to show; see 'uwvdb info' of it",
+                                     printable(a.subject.filename().string(), 300),
+                                     report.advice.lines.front()));
+    if (!a.picture.empty()) write_picture(report, a.picture);
+    if (a.scene) return report.advice.scene;
     return a.json ? vdb_json(report) : vdb_text(report);
 }
 
+/// How clearly the volumes of a scene are seen in a draft of this width. Leaves them loaded.
+DraftContrast draft_contrast(Renderer& renderer, const SceneDesc& scene, int width) {
+    ResolvedScene with{SceneDesc(scene)};
+    make_draft(with.edit(), width);
+    ResolvedScene without = with;
+    without.edit().volumes.clear();
+    renderer.set_scene(std::move(without));
+    renderer.render();
+    const Film before = renderer.release_film();
+    renderer.set_scene(std::move(with));
+    const Film& film = renderer.render();
+    return compare_drafts(renderer.assembled(), film, before);
+}
+
+/// The same; none if the scene has no volume, or no lamp to see it by.
+std::optional<DraftContrast> draft_contrast(Renderer& renderer, const SceneDesc& scene) {
+    const bool has_lamps =
+        !scene.lamps.empty() || std::ranges::any_of(scene.geometry, [](const GeometryDesc& g) {
+            return g.import.any_lamps();
+        });
+    if (scene.volumes.empty() || !has_lamps) return std::nullopt;
+    const DraftContrast draft = draft_contrast(renderer, scene, k_draft_width);
+    if (draft.seen >= k_least_seen) return draft;
+    return draft_contrast(renderer, scene, k_fine_draft_width);
+}
+
 std::string info_on_scene(const InfoArguments& a) {
+    if (a.scene || !a.picture.empty())
+        throw UsageError(fmt::format("{}: is for volumes; a scene is rendered with 'uwvdb render'",
+                                     a.scene ? "--scene" : "--picture"));
     SceneDesc desc = load_scene(a.subject, a.overrides);
     std::vector<SequenceReport> sequences;
     std::optional<int> frame = a.frame;
@@ -99,16 +185,16 @@ std::string info_on_scene(const InfoArguments& a) {
     if (sequences.empty() && a.frame) refuse_frame(a.subject);
     if (!sequences.empty()) desc = scene_of_image(desc, {frame});
     Renderer renderer;
+    const std::optional<DraftContrast> contrast = draft_contrast(renderer, desc);
     renderer.set_scene(std::move(desc));
-    SceneSurvey survey = survey_scene(renderer.assemble());
+    SceneSurvey survey = survey_scene(renderer.assemble(), contrast);
     survey.sequences = std::move(sequences);
     return a.json ? survey_json(survey) : survey_text(survey);
 }
 
 /// Whether VDB readers should read it: by its name, or else by its first bytes.
 bool is_volume_file(const fs::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lower_case(file.extension().string());
     if (extension == ".vdb" || extension == ".nvdb") return true;
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored)) return false;

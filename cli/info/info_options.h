@@ -15,6 +15,8 @@ struct InfoArguments {
     std::vector<std::string> overrides;  // --set key.path=value, of a scene
     std::optional<int> frame;            // --frame, of a sequence; else the first that exists
     bool json = false;
+    bool scene = false;             // --scene: print a whole scene instead, of a VDB file
+    std::filesystem::path picture;  // --picture: a thumbnail of that scene; empty: none
 };
 
 /// What `uwvdb info --help` ends with.

@@ -180,8 +180,10 @@ double degrees_between(const std::optional<Ray>& a, const std::optional<Ray>& b)
 
 }  // namespace
 
-SceneSurvey survey_scene(const AssembledScene& scene) {
+SceneSurvey survey_scene(const AssembledScene& scene,
+                         const std::optional<DraftContrast>& contrast) {
     SceneSurvey survey(scene);
+    survey.contrast = contrast;
     const Reach reach(scene);
     survey.grids = survey_grids(scene, reach);
     survey.central_ray = survey_central_ray(scene);

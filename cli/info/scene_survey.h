@@ -4,7 +4,8 @@
 
 namespace uw {
 
-/// Surveys an assembled scene, which outlives the result. Deterministic.
-SceneSurvey survey_scene(const AssembledScene& scene);
+/// Surveys an assembled scene, which outlives the result. `contrast`: from drafts of it, if any
+/// were rendered. Deterministic.
+SceneSurvey survey_scene(const AssembledScene& scene, const std::optional<DraftContrast>& contrast);
 
 }  // namespace uw

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/info/draft_contrast.h"
 #include "cli/info/vdb_report.h"
 #include "render/scene_assembly.h"
 
@@ -51,6 +53,7 @@ struct SceneSurvey {
     std::vector<GridSurvey> grids;
     CentralRaySurvey central_ray;
     ViewSurvey view;
+    std::optional<DraftContrast> contrast;  // of the volumes; none without volumes or lamps
     std::array<double, 2> field_of_view{};  // in the water, through the centre [degrees]
     std::vector<std::string> warnings;      // the scene's, then what will be black or opaque
 };

@@ -91,6 +91,14 @@ Json grid_json(const GridSurvey& grid, const Medium& medium) {
     return out;
 }
 
+Json contrast_json(const std::optional<DraftContrast>& contrast) {
+    if (!contrast) return nullptr;
+    return {{"contrast", contrast->contrast},
+            {"seen", contrast->seen},
+            {"brightness", contrast->brightness},
+            {"optical_depth", contrast->depth}};
+}
+
 }  // namespace
 
 std::string survey_json(const SceneSurvey& survey) {
@@ -123,6 +131,7 @@ std::string survey_json(const SceneSurvey& survey) {
     json["view"] = {{"in_water", view.in_water}, {"on_surface", view.on_surface},
                     {"lit", view.lit},           {"hidden", view.hidden},
                     {"nearest", view.nearest},   {"farthest", view.farthest}};
+    json["contrast"] = contrast_json(survey.contrast);
     json["reach"] = k_reach;
     json["warnings"] = survey.warnings;
     return json_text(json);

@@ -138,6 +138,11 @@ std::string survey_text(const SceneSurvey& survey) {
                             percent(grid.in_reach), percent(grid.in_both));
     }
     text += describe_view(survey);
+    if (survey.contrast)
+        text += fmt::format(
+            "  contrast of the volumes {}, where they are seen ({} of the image; a draft with and "
+            "without them, 99th percentile)\n",
+            percent(survey.contrast->contrast), percent(survey.contrast->seen));
     text += fmt::format(
         "(in reach: inside a lamp's beam, behind no surface, and its light arrives with more than "
         "{:g} of what it gives at 1 m on its axis)\n",

@@ -60,6 +60,24 @@ void warn_of_surfaces(const SceneSurvey& survey, std::vector<std::string>& warni
             100 * view.hidden, k_opaque_depth));
 }
 
+/// What makes volumes in view hard to see, and the mend.
+void warn_of_contrast(const SceneSurvey& survey, std::vector<std::string>& warnings) {
+    if (!survey.contrast || survey.contrast->seen == 0) return;
+    const DraftContrast& draft = *survey.contrast;
+    if (draft.contrast >= k_hardly_seen) return;
+    constexpr double k_thin = 0.5;
+    warnings.push_back(fmt::format(
+        "the volumes change the picture by {:.2g} % where they are seen (99th percentile): they "
+        "will hardly be noticed; {}",
+        100 * draft.contrast,
+        draft.depth < k_thin
+            ? fmt::format("their optical depth there is {:.2g}: raise the ppm per unit, or check "
+                          "transform.scale",
+                          draft.depth)
+            : "move the lamps away from the camera and nearer to the volumes, so that less water "
+              "is lit before them, go nearer with the camera, or make the water clearer"));
+}
+
 }  // namespace
 
 void append_survey_warnings(SceneSurvey& survey) {
@@ -67,6 +85,7 @@ void append_survey_warnings(SceneSurvey& survey) {
     const bool has_lamps = !survey.scene.lamps.empty();
     for (const GridSurvey& grid : survey.grids) warn_of_grid(grid, has_lamps, warnings);
     warn_of_surfaces(survey, warnings);
+    warn_of_contrast(survey, warnings);
     const bool grid_in_view =
         std::ranges::any_of(survey.grids, [](const GridSurvey& grid) { return grid.in_view > 0; });
     if (survey.view.in_water > 0 && survey.view.on_surface == 0 && !grid_in_view)

@@ -4,16 +4,18 @@
 #include <string>
 
 #include "cli/info/advice.h"
+#include "cli/info/frame_survey.h"
 #include "media/vdb/vdb_inspect.h"
 
 namespace uw {
 
-/// Advice on `inspection`; reads the grids to map once more, for their optical depth. `file`: the
-/// file's name to write into the scene.
+/// Advice on one file; reads the grids to map once more and renders drafts of them. `file`: its
+/// name to write into the scene.
 VdbAdvice advise_on_vdb(const VdbInspection& inspection, const std::filesystem::path& file);
 
-/// How likely a grid of this name holds a concentration: 0 certainly not, 1 something else from
-/// which a concentration can be guessed (heat, flames), 2 unknown, 3 likely, 4 a density.
-int concentration_likelihood(const std::string& name);
+/// Advice on a whole sequence from the frames that were sampled, the same whichever of them is
+/// looked at: its bounds and camera hold all of them, its concentrations suit the frame that holds
+/// most. `pattern`: the name to write into the scene.
+VdbAdvice advise_on_sequence(const FrameSurvey& frames, const std::filesystem::path& pattern);
 
 }  // namespace uw

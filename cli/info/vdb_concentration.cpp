@@ -25,11 +25,16 @@ double round_to_two_digits(double value) {
     return std::round(value / power) * power;
 }
 
+Affine placing(const VdbAdvice& advice) {
+    return Affine::translation(advice.translate) * Affine::scale(Vector3(advice.scale));
+}
+
 VolumeDesc describe(const VdbInspection& inspection, const VdbAdvice& advice) {
     VolumeDesc desc;
     desc.file = inspection.header.file;
     desc.where = desc.file.filename().string();
-    desc.world_from_upright = Affine::scale(Vector3(advice.scale));
+    desc.world_from_upright = placing(advice);
+    desc.voxel_size = advice.voxel_size;
     for (const std::string& name : advice.map) {
         GridMappingDesc mapping;
         mapping.grid = name;
@@ -83,7 +88,7 @@ std::vector<double> deepest(const GridField& field, const Medium& medium, const 
 
 }  // namespace
 
-void choose_concentrations(const VdbInspection& inspection, VdbAdvice& advice) {
+void start_concentrations(const VdbInspection& inspection, VdbAdvice& advice) {
     const VolumeDesc desc = describe(inspection, advice);
     const WaterDesc water;
     const WaterModel model = build_water_model(water, {desc});
@@ -101,13 +106,37 @@ void choose_concentrations(const VdbInspection& inspection, VdbAdvice& advice) {
     advice.small_ppm = round_to_two_digits(k_wanted_depth / depths[1][k_wanted_band]);
     advice.large_ppm = k_large_per_small * advice.small_ppm;
     advice.bands_nm = water.bands_nm;
+    advice.optical_depth.clear();
     for (const double depth : depths[1]) advice.optical_depth.push_back(depth * advice.small_ppm);
-    advice.lines.push_back(
-        fmt::format("small: {:g} and large: {:g} ppm per unit give an optical depth of about "
-                    "{:.2g} at {:g} nm through the densest part: neither invisible nor black. Your "
-                    "own plume's concentration may differ.",
-                    advice.small_ppm, advice.large_ppm, advice.optical_depth[k_wanted_band],
-                    advice.bands_nm[k_wanted_band]));
+}
+
+void choose_concentrations(const VdbInspection& inspection, const Bounds& others,
+                           VdbAdvice& advice) {
+    start_concentrations(inspection, advice);
+    const Affine world_from_upright = placing(advice);
+    if (!others.empty())
+        for (const Point3& corner : {others.min, others.max})
+            advice.bounds.extend(world_from_upright * corner);
+    VolumeDesc desc = describe(inspection, advice);
+    for (GridMappingDesc& mapping : desc.grids) {
+        mapping.small_ppm = advice.small_ppm;
+        mapping.large_ppm = advice.large_ppm;
+    }
+    advice.view = view_plume(desc, advice.bounds);
+    const double small_ppm = round_to_two_digits(advice.view.factor * advice.small_ppm);
+    for (double& depth : advice.optical_depth) depth *= small_ppm / advice.small_ppm;
+    advice.small_ppm = small_ppm;
+    advice.large_ppm = k_large_per_small * small_ppm;
+    const double contrast = advice.view.draft.contrast;
+    advice.lines.push_back(fmt::format(
+        "small: {:g} and large: {:g} ppm per unit give an optical depth of about {:.2g} at {:g} nm "
+        "through the densest part, and a contrast of {:.0f} % in a draft of the scene that --scene "
+        "prints (in {}): {}. Your own plume's concentration may differ.",
+        advice.small_ppm, advice.large_ppm, advice.optical_depth[k_wanted_band],
+        advice.bands_nm[k_wanted_band], 100 * contrast, advice.view.proposal.water,
+        contrast >= k_plain_to_see ? "neither invisible nor black"
+                                   : "it will hardly be seen; a smaller transform.scale brings "
+                                     "camera and lamps nearer"));
 }
 
 }  // namespace uw

@@ -10,16 +10,17 @@ namespace {
 
 Json values(const ValueSummary& v) {
     Json out;
-    out["min"] = number_json(v.min);
-    out["mean"] = number_json(v.mean);
-    out["max"] = number_json(v.max);
+    const auto of_finite = [&](double x) { return v.finite > 0 ? number_json(x) : Json(nullptr); };
+    out["min"] = of_finite(v.min);
+    out["mean"] = of_finite(v.mean);
+    out["max"] = of_finite(v.max);
     out["nan"] = v.nan;
     out["infinite"] = v.infinite;
     out["negative"] = v.negative;
     out["zero"] = v.zero;
     out["background"] = v.background;
     out["histogram"] = {
-        {"from", number_json(v.min)}, {"to", number_json(v.max)}, {"counts", v.histogram}};
+        {"from", of_finite(v.min)}, {"to", of_finite(v.max)}, {"counts", v.histogram}};
     return out;
 }
 
@@ -50,7 +51,10 @@ Json sequence_json(const SequenceReport& sequence) {
     return {{"pattern", sequence.pattern},
             {"frame", sequence.frame},
             {"found", sequence.found},
-            {"missing", sequence.missing}};
+            {"missing", sequence.missing},
+            {"empty", sequence.empty},
+            {"sampled", sequence.sampled},
+            {"largest", list_json(sequence.largest)}};
 }
 
 Json advice_json(const VdbReport& report) {
@@ -63,13 +67,27 @@ Json advice_json(const VdbReport& report) {
     out["centering"] = p.centering == Centering::cell ? "cell" : "node";
     out["volumes"] = text_or_null(advice.volumes);
     if (advice.map.empty()) return out;
+    out["voxel_size"] = advice.voxel_size ? Json(*advice.voxel_size) : Json(nullptr);
     out["scale"] = advice.scale;
+    out["translate"] = vector_json(advice.translate);
     out["small_ppm"] = advice.small_ppm;
     out["large_ppm"] = advice.large_ppm;
     out["bands_nm"] = advice.bands_nm;
     out["optical_depth"] = advice.optical_depth;
     out["world_bounds"] = bounds_json(advice.bounds);
-    out["view"] = {{"position", point_json(advice.eye)}, {"look_at", point_json(advice.target)}};
+    const SceneProposal& view = advice.view.proposal;
+    out["view"] = {{"position", point_json(view.eye)},
+                   {"look_at", point_json(view.target)},
+                   {"fov_x", k_proposed_fov}};
+    out["lamps"] = Json::array();
+    for (const ProposedLamp& lamp : view.lamps)
+        out["lamps"].push_back({{"name", lamp.name},
+                                {"position", point_json(lamp.position)},
+                                {"direction", vector_json(lamp.direction)},
+                                {"beam", lamp.beam},
+                                {"intensity", lamp.intensity}});
+    out["contrast"] = advice.view.draft.contrast;
+    out["scene"] = advice.scene;
     return out;
 }
 

@@ -71,6 +71,8 @@ std::string describe_sequence(const SequenceReport& sequence) {
         sequence.found.size() == 1 ? "frame is" : "frames are", format_frame_list(sequence.found));
     if (!sequence.missing.empty())
         text += "missing between them: " + format_frame_list(sequence.missing) + "\n";
+    if (!sequence.empty.empty())
+        text += "frames that hold nothing to map: " + format_frame_list(sequence.empty) + "\n";
     return text + fmt::format("frame {}:\n", sequence.frame);
 }
 
@@ -107,12 +109,10 @@ std::string vdb_text(const VdbReport& report) {
     const VdbAdvice& advice = report.advice;
     for (const std::string& line : advice.lines) text += "- " + line + "\n";
     if (advice.volumes.empty()) return text;
-    text += fmt::format(
-        "\nTo paste into a scene; a camera {{position: [{:.4g}, {:.4g}, {:.4g}], look_at: [{:.4g}, "
-        "{:.4g}, {:.4g}]}} sees all of it:\n\n",
-        advice.eye.x, advice.eye.y, advice.eye.z, advice.target.x, advice.target.y,
-        advice.target.z);
-    return text + advice.volumes;
+    text +=
+        "\nA scene that shows it, as --scene prints it alone; or paste its parts into your "
+        "own:\n\n";
+    return text + advice.scene;
 }
 
 }  // namespace uw

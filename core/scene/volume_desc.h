@@ -56,7 +56,8 @@ struct VolumeDesc {
     std::vector<GridMappingDesc> grids;
     Centering centering = Centering::automatic;
     UpAxis up = UpAxis::automatic;
-    Affine world_from_upright;  ///< `transform`, applied after `up` has been rotated to y
+    std::optional<double> voxel_size;  ///< the edge of a voxel [m], instead of the file's
+    Affine world_from_upright;         ///< `transform`, applied after `up` has been rotated to y
     std::optional<MotionDesc> motion;
     SourceLocation where;
 

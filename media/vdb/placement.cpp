@@ -8,7 +8,8 @@ Placement decide_placement(const VdbHeader& header, const VolumeDesc& desc) {
                         desc.up == UpAxis::automatic};
     if (placement.automatic_centering)
         placement.centering = blender ? Centering::cell : Centering::node;
-    if (placement.automatic_up) placement.up = blender ? UpAxis::z : UpAxis::y;
+    if (placement.automatic_up)
+        placement.up = blender || header.from_embergen() ? UpAxis::z : UpAxis::y;
     return placement;
 }
 

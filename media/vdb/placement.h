@@ -13,7 +13,8 @@ struct Placement {
     bool automatic_centering = false, automatic_up = false;  // decided from the file, not the scene
 };
 
-/// Automatic means cell and z for caches of Blender's fluid solver, node and y for all others.
+/// Automatic means cell and z for caches of Blender's fluid solver, node and z for what EmberGen
+/// exports, node and y for all others.
 Placement decide_placement(const VdbHeader& header, const VolumeDesc& desc);
 
 /// Rotates the file's up axis to y.

@@ -10,7 +10,7 @@ namespace uw {
 
 bool VdbHeader::from_blender_fluid() const {
     if (!creator.empty() || grids.empty()) return false;
-    const auto has_mark = [](const GridSummary& grid) { return grid.has_base_resolution; };
+    const auto has_mark = [](const GridSummary& grid) { return grid.base_resolution.has_value(); };
     if (std::any_of(grids.begin(), grids.end(), has_mark)) return true;
     constexpr std::string_view k_noise = "_noise";
     static constexpr std::array<std::string_view, 13> names{
@@ -26,6 +26,18 @@ bool VdbHeader::from_blender_fluid() const {
         if (!known && !name.starts_with("phi_")) return false;
     }
     return telling;
+}
+
+bool VdbHeader::from_embergen() const {
+    if (creator.find("EmberGen") != std::string::npos) return true;
+    return std::ranges::any_of(grids, [this](const GridSummary& grid) {
+        return grid.from_embergen || (creator.empty() && grid.base_name == "flames");
+    });
+}
+
+bool VdbHeader::from_houdini() const {
+    return creator.find("Houdini") != std::string::npos ||
+           creator.find("GEO_VDB") != std::string::npos;
 }
 
 std::string VdbHeader::describe_grids() const {

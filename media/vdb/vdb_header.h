@@ -26,8 +26,11 @@ struct GridSummary {
     std::string grid_class = "unknown";         // "fog volume", "level set", "staggered", "unknown"
     std::optional<std::int64_t> active_voxels;  // if the file states it
     std::string map_type;                       // e.g. "UniformScaleMap", "NonlinearFrustumMap"
-    bool has_base_resolution = false;           // stored with each grid by Blender's fluid solver
-    std::optional<IndexBox> active_box;         // of the active voxels, if the file states it
+    /// Voxels of the domain along each axis, as Blender's fluid solver stores with each grid.
+    std::optional<std::array<std::int32_t, 3>> base_resolution;
+    bool from_embergen = false;          // it has EmberGen's metadata
+    std::optional<double> voxel_edge;    // of a UniformScaleMap, in the file's unit
+    std::optional<IndexBox> active_box;  // of the active voxels, if the file states it
 
     // For the reader: positions in the file.
     std::string tree_type;    // "Tree_float_5_4_3"
@@ -52,6 +55,11 @@ struct VdbHeader {
     /// True for a cache of Blender's fluid solver (Mantaflow): no creator, and either the solver's
     /// own metadata or nothing but the names it uses.
     bool from_blender_fluid() const;
+    /// True for what EmberGen exports: by its metadata or, without a creator, by `flames`, a name
+    /// that only it uses.
+    bool from_embergen() const;
+    /// True for files written by Houdini, which names itself as their creator.
+    bool from_houdini() const;
     /// One line that lists the grids with type and class, for messages.
     std::string describe_grids() const;
 };

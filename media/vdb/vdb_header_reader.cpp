@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 
+#include "core/base/pointer_file.h"
 #include "media/vdb/byte_reader.h"
 #include "media/vdb/nvdb_header.h"
 
@@ -27,6 +28,11 @@ struct Metadata {
     std::map<std::string, std::int64_t> integers;
     std::map<std::string, std::array<std::int32_t, 3>> vectors;
     std::vector<std::string> others;
+
+    bool has(const std::string& name) const {
+        return strings.contains(name) || integers.contains(name) || vectors.contains(name) ||
+               std::ranges::find(others, name) != others.end();
+    }
 };
 
 Metadata read_metadata(ByteReader& in) {
@@ -98,11 +104,12 @@ GridSummary read_grid(ByteReader& in, const VdbHeader& header) {
     const auto high = metadata.vectors.find("file_bbox_max");
     if (low != metadata.vectors.end() && high != metadata.vectors.end())
         grid.active_box = IndexBox{low->second, high->second};
-    grid.has_base_resolution = std::find(metadata.others.begin(), metadata.others.end(),
-                                         "file_base_resolution") != metadata.others.end() ||
-                               metadata.vectors.contains("file_base_resolution");
+    if (const auto it = metadata.vectors.find("file_base_resolution"); it != metadata.vectors.end())
+        grid.base_resolution = it->second;
+    grid.from_embergen = metadata.has("embergen_version");
     grid.transform_offset = in.position();
     grid.map_type = replace_controls(in.text());
+    if (grid.map_type == "UniformScaleMap") grid.voxel_edge = in.get<double>();
     in.seek(next_descriptor);
     return grid;
 }
@@ -128,7 +135,10 @@ VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocatio
     header.file = file;
     const std::int64_t magic = in.size() < 8 ? 0 : in.get<std::int64_t>();
     if (is_nvdb_magic(magic)) return read_nvdb_header(in, file);
-    if (magic != k_magic) in.fail("is not a VDB file (it does not start like one)");
+    if (magic != k_magic) {
+        const std::string stand_in = stand_in_of(file);
+        in.fail(stand_in.empty() ? "is not a VDB file (it does not start like one)" : stand_in);
+    }
     header.version = in.get<std::uint32_t>();
     header.library_major = in.get<std::uint32_t>();
     header.library_minor = in.get<std::uint32_t>();

@@ -33,6 +33,12 @@ GridVolume::GridVolume(std::vector<NanoGrid> bricks, const Affine& world_from_in
     }
 }
 
+GridVolume GridVolume::scaled(double factor) const {
+    GridVolume other = *this;
+    for (GridLoad& load : other.loads_) load.per_unit *= factor;
+    return other;
+}
+
 double GridVolume::value(const Point3& x) const {
     const Point3 p = lattice_from_world_ * x;
     double sum = 0;

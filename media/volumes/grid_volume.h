@@ -14,6 +14,9 @@ class GridVolume {
     GridVolume(std::vector<NanoGrid> bricks, const Affine& world_from_index, Centering centering,
                std::vector<GridLoad> loads);
 
+    /// The same grid, its values shared, with `factor` times the concentrations.
+    GridVolume scaled(double factor) const;
+
     const std::vector<NanoGrid>& bricks() const { return bricks_; }
     const std::vector<GridLoad>& loads() const { return loads_; }
     /// World bounding box outside which the interpolated value is zero; empty for a grid without

@@ -9,6 +9,8 @@
 #include "core/base/error.h"
 #include "media/vdb/vdb_file.h"
 #include "media/vdb/vdb_header_reader.h"
+#include "media/volumes/adaptive_domain.h"
+#include "media/volumes/voxel_size.h"
 
 namespace uw {
 
@@ -39,7 +41,8 @@ void VolumeSequenceCheck::take(const VolumeDesc& frame) {
     const VdbHeader header = read_vdb_header(frame.file, frame.where);
     std::vector<Affine> transforms;
     for (const GridMappingDesc& mapping : frame.grids)
-        transforms.push_back(read_file_from_index(header, mapping.grid, mapping.where));
+        transforms.push_back(
+            with_voxel_size(read_file_from_index(header, mapping.grid, mapping.where), frame));
     if (transforms_.empty()) {
         first_ = frame;
         transforms_ = std::move(transforms);
@@ -47,6 +50,9 @@ void VolumeSequenceCheck::take(const VolumeDesc& frame) {
     }
     for (std::size_t g = 0; g < transforms.size(); ++g) {
         if (same_place(transforms_.at(g), transforms[g])) continue;
+        if (const auto domain = find_adaptive_domain(header))
+            throw InputError(fmt::format("{}: '{}': {}", frame.grids[g].where, frame.file.string(),
+                                         domain->description()));
         throw InputError(
             fmt::format("{}: grid '{}' of '{}' has {}, but that of '{}' has {}; export all frames "
                         "with one transform, or render them in separate runs",

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "core/base/frame_pattern.h"
+#include "core/base/pointer_file.h"
 #include "core/base/text.h"
 
 namespace uw {
@@ -26,6 +27,8 @@ fs::path read_file(const ConfigValue& value, const SceneContext& context, bool* 
             *is_sequence = true;
             return file;
         }
+        if (const std::string stand_in = stand_in_of(file); !stand_in.empty())
+            value.fail(fmt::format("'{}' {}", printable(name, 200), stand_in));
         const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
         value.fail(
             fmt::format("no such file '{}' (looked in {}); names are relative to the scene "

@@ -99,7 +99,8 @@ MotionDesc read_motion(const ConfigValue& value, const VolumeDesc& volume,
 }
 
 VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value, {"file", "grids", "centering", "up", "transform", "velocity"},
+    ConfigMap map(value,
+                  {"file", "grids", "centering", "up", "voxel_size", "transform", "velocity"},
                   "write {file: plume.vdb, grids: {density: {small: 2, large: 10}}}");
     VolumeDesc volume;
     volume.where = value.location();
@@ -116,6 +117,8 @@ VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
             {{"y", UpAxis::y}, {"z", UpAxis::z}}};
         volume.up = entry->choice(k_choices);
     }
+    if (const auto entry = map.find("voxel_size"))
+        volume.voxel_size = entry->positive("give the edge of a voxel in metres");
     if (const auto entry = map.find("transform"))
         volume.world_from_upright = read_transform(*entry);
     if (const auto entry = map.find("velocity"))

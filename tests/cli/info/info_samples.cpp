@@ -1,11 +1,9 @@
 // ctest labels: unit
 //
-// The advice on files of other programs, and that its block renders as it is. The environment
+// The advice on files of other programs; proposed_scenes.cpp renders it. The environment
 // variable UWVDB_SAMPLES names their folder; where it is set, a file that is missing is a failure.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -71,25 +69,6 @@ const std::vector<Advice> k_samples{
     {"openvdb_sphere_houdini.vdb", {}, "y", "node", 1, {"Nothing to map", "is a level set"}},
     {"oiio_sphereCd.vdb", {}, "y", "node", 1, {"Nothing to map", "holds vectors"}}};
 
-std::string triple(const Json& p) {
-    return "[" + std::to_string(p[0].get<double>()) + ", " + std::to_string(p[1].get<double>()) +
-           ", " + std::to_string(p[2].get<double>()) + "]";
-}
-
-std::string scene_around(const Json& advice) {
-    const Json& eye = advice.at("view").at("position");
-    const Json& target = advice.at("view").at("look_at");
-    const auto at = [](const Json& p, std::size_t i) { return p[i].get<double>(); };
-    const double away = std::hypot(at(eye, 1) - at(target, 1), at(eye, 2) - at(target, 2));
-    const Json lamp{at(target, 0) - 0.2 * away, at(target, 1) + 0.6 * away,
-                    at(target, 2) + 0.2 * away};
-    const Json wall{0.0, 0.0, at(target, 2) - 0.5 * away};
-    return "uwvdb: 1\ncamera: {resolution: [48, 36], intrinsics: {fov_x: 50}, pose: {position: " +
-           triple(eye) + ", look_at: " + triple(target) + "}}\nlamps: [{position: " + triple(lamp) +
-           ", frame: world, intensity: 50}]\ngeometry: [{type: plane, point: " + triple(wall) +
-           ", normal: [0, 0, 1]}]\nrender: {samples: 1}\n";
-}
-
 /// The folder of the samples, or where there is none, that of the project's own plume.
 std::filesystem::path samples_folder() {
     const char* const folder = std::getenv("UWVDB_SAMPLES");
@@ -98,7 +77,7 @@ std::filesystem::path samples_folder() {
 
 class InfoSamples : public test::CliTest, public testing::WithParamInterface<Advice> {};
 
-TEST_P(InfoSamples, AreAdvisedRightlyAndTheBlockRenders) {
+TEST_P(InfoSamples, AreAdvisedRightly) {
     const Advice& sample = GetParam();
     const std::filesystem::path file = samples_folder() / sample.file;
     ASSERT_TRUE(std::filesystem::exists(file)) << file << " is missing";
@@ -118,27 +97,6 @@ TEST_P(InfoSamples, AreAdvisedRightlyAndTheBlockRenders) {
     EXPECT_EQ(advice.at("up"), sample.up);
     EXPECT_EQ(advice.at("centering"), sample.centering);
     EXPECT_EQ(advice.at("scale"), sample.scale);
-
-    // The camera that sees all of it, a lamp above and a wall behind, with and without the block.
-    const std::string scene = scene_around(advice);
-    write("scene.yaml", scene);
-    const test::ImageFile without = render();
-    write("scene.yaml", scene + advice.at("volumes").get<std::string>());
-    const test::ImageFile with = render();
-    test::expect_finite_and_lit(with);
-    float change = 0, clearest = 1;
-    for (int y = 0; y < 36; ++y)
-        for (int x = 0; x < 48; ++x) {
-            const float ratio = with.at("G", x, y) / without.at("G", x, y);
-            change = std::max(change, std::abs(ratio - 1));
-            clearest = std::min(
-                clearest, with.at("transmittance.G", x, y) / without.at("transmittance.G", x, y));
-        }
-    // It is seen, and it is no black hole: e^-1.5 = 0.22 through its densest part from the side
-    // that the advice speaks of; from others up to three times as deep, or as thin.
-    EXPECT_GT(change, 0.2F);
-    EXPECT_LT(clearest, 0.8F);
-    EXPECT_GT(clearest, 0.01F);
 }
 
 std::vector<Advice> samples_where_available() {

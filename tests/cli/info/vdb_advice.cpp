@@ -36,19 +36,6 @@ class VdbAdviceTest : public testing::Test {
 
 using GridNames = std::vector<std::string>;
 
-TEST(ConcentrationLikelihood, IsToldByTheName) {
-    for (const char* name : {"density", "Smoke_Density", "density_noise"})
-        EXPECT_EQ(concentration_likelihood(name), 4) << name;
-    for (const char* name : {"smoke", "Sediment", "dye2"})
-        EXPECT_EQ(concentration_likelihood(name), 3) << name;
-    for (const char* name : {"x", "", "amount"})
-        EXPECT_EQ(concentration_likelihood(name), 2) << name;
-    for (const char* name : {"temperature", "heat", "flame"})
-        EXPECT_EQ(concentration_likelihood(name), 1) << name;
-    for (const char* name : {"vel", "Cd", "phi_in", "surface", "shadow_density"})
-        EXPECT_EQ(concentration_likelihood(name), 0) << name;
-}
-
 TEST_F(VdbAdviceTest, MapsTheLikeliest) {
     const VdbAdvice advice = advise({cube("heat"), cube("density"), cube("dye")});
     EXPECT_EQ(advice.map, GridNames{"density"});
@@ -88,12 +75,80 @@ TEST_F(VdbAdviceTest, UnitsThatAreUnlikelyGetAScale) {
     EXPECT_EQ(advise({cube("density", 0.001)}).scale, 100);  // 2 cm
 }
 
-TEST_F(VdbAdviceTest, TheEyeSeesAllOfIt) {
-    const VdbAdvice advice = advise({cube("density")});
-    const Vector3 view = advice.target - advice.eye;
-    const double radius = 0.5 * advice.bounds.diagonal();
-    EXPECT_LT(std::asin(radius / glm::length(view)), glm::radians(25.0));
-    EXPECT_LT(distance(advice.target, advice.bounds.center()), 1e-12);
+TEST_F(VdbAdviceTest, FarFromTheOriginItIsBroughtThere) {
+    test::VdbFixture map = cube("density");
+    map.file_from_index = Affine(Matrix3(0.05), {652000.25, 12, 5300000});
+    const VdbAdvice advice = advise({map});
+    EXPECT_TRUE(says(advice, "from the origin, as if in the coordinates of a map"));
+    EXPECT_EQ(advice.translate, Vector3(-652001, -12, -5300000));
+    // Node 0 to node 19, each with its cell: the block's bounds are those of the file, moved.
+    EXPECT_NEAR(advice.bounds.min.x, 652000.25 - 0.025 - 652001, 1e-6);
+    EXPECT_NEAR(advice.bounds.max.x - advice.bounds.min.x, 1, 1e-6);
+    EXPECT_NE(advice.volumes.find("translate: [-652001, -12, -5300000]"), std::string::npos)
+        << advice.volumes;
+}
+
+TEST_F(VdbAdviceTest, TheVelocityOfThisMomentIsPreferred) {
+    const VdbInspection any = [this] {
+        test::write_fixture(dir_ / "v.vdb", {cube("density")});
+        return inspect_vdb(dir_ / "v.vdb", "here");
+    }();
+    const auto with_velocities = [&](const std::vector<std::string>& names) {
+        VdbInspection inspection = any;
+        for (const std::string& name : names) {
+            GridInspection grid;
+            grid.summary.name = grid.summary.base_name = name;
+            grid.summary.value_type = "vec3s";
+            grid.active_voxels = 1;
+            inspection.grids.push_back(grid);
+        }
+        return advise_on_vdb(inspection, "v.vdb");
+    };
+    EXPECT_TRUE(says(with_velocities({"velocity", "velocity_previous"}), "{grid: velocity}"));
+    EXPECT_TRUE(says(with_velocities({"velocity_previous", "velocity"}), "{grid: velocity}"));
+    EXPECT_TRUE(says(with_velocities({"vel"}), "{grid: vel}"));
+}
+
+TEST_F(VdbAdviceTest, KnowsEmberGenByItsMetadataOrItsFlames) {
+    test::VdbFixture temperature = cube("temperature", 1), flames = cube("flames", 1);
+    for (test::VdbFixture* grid : {&temperature, &flames}) grid->grid_class = "";
+    test::write_fixture(dir_ / "e.vdb", {temperature, flames}, "");
+    const VdbAdvice by_name = advise_on_vdb(inspect_vdb(dir_ / "e.vdb", "here"), "e.vdb");
+    EXPECT_TRUE(says(by_name, "written by EmberGen"));
+    EXPECT_TRUE(says(by_name, "It has no density"));
+    EXPECT_TRUE(says(by_name, "a voxel is exactly 1 m"));
+    EXPECT_NE(by_name.volumes.find("up: z"), std::string::npos) << by_name.volumes;
+    test::VdbFixture density = cube("density", 1);
+    density.metadata = {{"embergen_version", "0.5.5.2"}};
+    test::write_fixture(dir_ / "m.vdb", {density}, "");
+    const VdbAdvice by_mark = advise_on_vdb(inspect_vdb(dir_ / "m.vdb", "here"), "m.vdb");
+    EXPECT_TRUE(says(by_mark, "written by EmberGen"));
+    EXPECT_FALSE(says(by_mark, "It has no density"));
+    // Blender's grid is 'flame', and its files have no creator either.
+    EXPECT_FALSE(says(advise({cube("density"), cube("flame")}), "EmberGen"));
+}
+
+TEST_F(VdbAdviceTest, KnowsEveryHoudini) {
+    for (const char* creator :
+         {"Houdini/SOP_OpenVDB_Write", "Houdini 20.5.332/GEO_VDBTranslator"}) {
+        test::write_fixture(dir_ / "h.vdb", {cube("density")}, creator);
+        EXPECT_TRUE(
+            says(advise_on_vdb(inspect_vdb(dir_ / "h.vdb", "here"), "h.vdb"), "written by Houdini"))
+            << creator;
+    }
+}
+
+TEST_F(VdbAdviceTest, AFullDomainMayBeAnAdaptiveOne) {
+    test::VdbFixture full = cube("density");
+    full.blender_metadata = true;
+    full.base_resolution = {26, 24, 40};
+    test::write_fixture(dir_ / "b.vdb", {full}, "");
+    EXPECT_TRUE(
+        says(advise_on_vdb(inspect_vdb(dir_ / "b.vdb", "here"), "b.vdb"), "It fills its domain"));
+    full.base_resolution = {64, 64, 64};
+    test::write_fixture(dir_ / "b.vdb", {full}, "");
+    EXPECT_FALSE(
+        says(advise_on_vdb(inspect_vdb(dir_ / "b.vdb", "here"), "b.vdb"), "It fills its domain"));
 }
 
 }  // namespace

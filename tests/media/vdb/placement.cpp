@@ -9,7 +9,7 @@ namespace {
 VdbHeader blender_cache() {
     VdbHeader header;
     header.grids.emplace_back();
-    header.grids[0].has_base_resolution = true;
+    header.grids[0].base_resolution = {128, 64, 51};
     return header;
 }
 

@@ -115,7 +115,7 @@ TEST(VdbHeaderReader, KnowsBlendersCachesByTheirNamesOrTheirMark) {
     EXPECT_FALSE(header_of_grids({"shadow", "salt"}).from_blender_fluid());
     EXPECT_FALSE(VdbHeader().from_blender_fluid());
     VdbHeader marked = header_of_grids({"salt"});
-    marked.grids[0].has_base_resolution = true;
+    marked.grids[0].base_resolution = {128, 64, 51};
     EXPECT_TRUE(marked.from_blender_fluid());
     marked.creator = "Houdini";
     EXPECT_FALSE(marked.from_blender_fluid());

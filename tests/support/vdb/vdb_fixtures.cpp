@@ -45,7 +45,9 @@ openvdb::GridBase::Ptr make_grid(const VdbFixture& fixture) {
             }
     if (fixture.blender_metadata)
         grid->insertMeta("file_base_resolution",
-                         openvdb::Vec3IMetadata(openvdb::Vec3i(128, 64, 51)));
+                         openvdb::Vec3IMetadata(openvdb::Vec3i(fixture.base_resolution.data())));
+    for (const auto& [name, text] : fixture.metadata)
+        grid->insertMeta(name, openvdb::StringMetadata(text));
     return grid;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,9 @@ struct VdbFixture {
     std::vector<VdbBox> boxes;                         // active
     std::vector<VdbBox> inactive_boxes;                // values left in inactive voxels
     Affine file_from_index;
-    bool blender_metadata = false;  // as Blender's fluid solver adds to its grids
+    bool blender_metadata = false;  // as Blender's fluid solver adds to its grids:
+    std::array<int, 3> base_resolution{128, 64, 51};
+    std::map<std::string, std::string> metadata;  // further texts
 };
 
 /// Writes the grids; an empty `creator` writes no file metadata.

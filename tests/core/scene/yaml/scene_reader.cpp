@@ -35,6 +35,7 @@ volumes:
       "smoke[1]": {absorption: 0.5, scattering: [1, 2, 3, 4], phase: {type: fournier-forand, n: 1.12, mu: 3.6}}
     centering: cell
     up: z
+    voxel_size: 0.05
     transform: {scale: 2, rotate: [0, 90, 0], translate: [0, 0, 3]}
 geometry:
   - {file: seabed.glb, transform: {translate: [0, -1, 0]}, reflectance: [0.4, 0.35, 0.3, 0.2]}
@@ -143,6 +144,7 @@ TEST_F(SceneReader, readsVolumes) {
     EXPECT_EQ(volume.file, folder_.path() / "data/plume.vdb");
     EXPECT_EQ(volume.centering, Centering::cell);
     EXPECT_EQ(volume.up, UpAxis::z);
+    EXPECT_EQ(volume.voxel_size, 0.05);
     EXPECT_NE(volume.where.find("scene.yaml:18:5: volumes[0]"), std::string::npos) << volume.where;
     ASSERT_EQ(volume.grids.size(), 2U);
     EXPECT_EQ(volume.grids[0].grid, "density");

@@ -1,0 +1,87 @@
+#include "media/volumes/adaptive_domain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/frame_pattern.h"
+#include "media/vdb/vdb_header_reader.h"
+
+namespace uw {
+namespace {
+
+constexpr std::size_t k_most_neighbours = 8;
+
+const GridSummary* grid_with_resolution(const VdbHeader& header) {
+    const auto it = std::ranges::find_if(header.grids, [](const GridSummary& grid) {
+        return grid.base_resolution && grid.voxel_edge;
+    });
+    return it == header.grids.end() ? nullptr : &*it;
+}
+
+/// The sequence that `file` is a frame of, by the number at the end of its name; "" without one.
+std::filesystem::path sequence_of(const std::filesystem::path& file) {
+    const std::string stem = file.stem().string();
+    std::size_t digits = 0;
+    while (digits < stem.size() &&
+           std::isdigit(static_cast<unsigned char>(stem[stem.size() - 1 - digits])) != 0)
+        ++digits;
+    if (digits == 0) return {};
+    return file.parent_path() / (stem.substr(0, stem.size() - digits) + std::string(digits, '#') +
+                                 file.extension().string());
+}
+
+/// Up to k_most_neighbours files, from the first to the last.
+std::vector<std::filesystem::path> neighbours_of(const std::filesystem::path& file) {
+    const std::filesystem::path sequence = sequence_of(file);
+    if (sequence.empty()) return {};
+    const std::vector<int> frames = frames_found(sequence);
+    const std::size_t count = std::min(frames.size(), k_most_neighbours);
+    std::vector<std::filesystem::path> files;
+    for (std::size_t n = 0; n < count; ++n)
+        files.push_back(file_of_frame(
+            sequence, frames[count == 1 ? 0 : n * (frames.size() - 1) / (count - 1)]));
+    return files;
+}
+
+}  // namespace
+
+std::string AdaptiveDomain::description() const {
+    return fmt::format(
+        "it was baked with Blender's 'Adaptive Domain' (Physics > Fluid > Settings), whose files "
+        "hold a wrong voxel size, other in every frame: give the volume voxel_size: {0:.4g} m, the "
+        "domain's longest side, divided by its Resolution Divisions (at least {1}, so voxel_size: "
+        "{2:.4g} or less), or bake without that checkbox, as the place in the domain is lost, too",
+        longest_side, most_voxels, largest_voxel());
+}
+
+std::optional<AdaptiveDomain> find_adaptive_domain(const VdbHeader& header) {
+    if (!header.from_blender_fluid()) return std::nullopt;
+    const GridSummary* const grid = grid_with_resolution(header);
+    if (grid == nullptr) return std::nullopt;
+    AdaptiveDomain domain;
+    domain.most_voxels = std::ranges::max(*grid->base_resolution);
+    domain.longest_side = *grid->voxel_edge * domain.most_voxels;
+    bool differs = false;
+    for (const std::filesystem::path& file : neighbours_of(header.file)) {
+        VdbHeader other;
+        try {
+            other = read_vdb_header(file, file.string());
+        } catch (const std::runtime_error&) {
+            continue;  // a neighbour that cannot be read tells nothing
+        }
+        const GridSummary* const its = grid_with_resolution(other);
+        if (its == nullptr || its->name != grid->name) continue;
+        differs = differs || its->base_resolution != grid->base_resolution;
+        domain.most_voxels = std::max(domain.most_voxels, std::ranges::max(*its->base_resolution));
+    }
+    if (!differs || !(domain.longest_side > 0) || !std::isfinite(domain.longest_side))
+        return std::nullopt;
+    return domain;
+}
+
+}  // namespace uw

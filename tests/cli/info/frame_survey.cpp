@@ -1,0 +1,99 @@
+// ctest labels: unit
+//
+// Advice on sequences: what is empty, how it changes, and that it is the same for every frame.
+#include "cli/info/frame_survey.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/cli_test.h"
+#include "tests/support/vdb/vdb_fixtures.h"
+
+namespace uw {
+namespace {
+
+using Json = nlohmann::json;
+
+class Sequences : public test::CliTest {
+  protected:
+    /// A bar of `length` voxels of one value; none: an empty grid.
+    void frame(int number, int length, double value = 1) const {
+        test::VdbFixture bar;
+        if (length > 0) bar.boxes = {{{0, 0, 0}, {length - 1, 9, 9}, value}};
+        bar.file_from_index = Affine::scale(Vector3(0.05));
+        test::write_fixture(folder_ / ("s_" + std::to_string(1000 + number) + ".vdb"), {bar});
+    }
+    Json info(const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"info", "s_####.vdb", "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const test::ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return Json::parse(result.out);
+    }
+    static bool says(const Json& json, const std::string& part) {
+        return std::ranges::any_of(json.at("advice").at("lines"), [&](const Json& line) {
+            return line.get<std::string>().find(part) != std::string::npos;
+        });
+    }
+};
+
+TEST_F(Sequences, EmptyFramesAreNamedAndDoNotStopTheAdvice) {
+    frame(1, 0);
+    frame(2, 0);
+    frame(3, 10);
+    frame(4, 20);
+    const Json json = info();
+    EXPECT_EQ(json.at("sequence").at("empty"), Json({1001, 1002}));
+    EXPECT_EQ(json.at("sequence").at("frame"), 1003);
+    EXPECT_EQ(json.at("advice").at("map"), Json({"density"}));
+    const test::ProgramResult text = run({"info", "s_####.vdb"});
+    EXPECT_NE(text.out.find("hold nothing to map: 1001-1002"), std::string::npos) << text.out;
+}
+
+TEST_F(Sequences, HaveOneAdviceWhicheverFrameIsLookedAt) {
+    frame(1, 0);
+    frame(2, 10, 0.5);
+    frame(3, 30);
+    const Json all = info();
+    for (const char* number : {"1001", "1002", "1003"}) {
+        const Json one = info({"--frame", number});
+        EXPECT_EQ(one.at("sequence").at("frame").dump(), number);
+        EXPECT_EQ(one.at("advice"), all.at("advice")) << number;
+    }
+    // Bounds of the longest frame: 30 nodes, each with its cell.
+    const Json& bounds = all.at("advice").at("world_bounds");
+    EXPECT_NEAR(bounds.at("max")[0].get<double>() - bounds.at("min")[0].get<double>(), 1.5, 1e-6);
+    EXPECT_EQ(all.at("sequence").at("largest"), Json({0.5, 1.0}));
+    EXPECT_TRUE(says(all, "the largest value lies between 0.5 (frame 1002) and 1 (frame 1003)"));
+}
+
+TEST_F(Sequences, SayWhereTheirRangeFlickers) {
+    frame(1, 20, 1);
+    frame(2, 20, 10);
+    frame(3, 20, 9);
+    const Json json = info();
+    EXPECT_TRUE(says(json, "changes by a factor of 10 from frame 1001 to frame 1002"));
+    EXPECT_FALSE(says(json, "from frame 1002 to frame 1003"));
+}
+
+TEST_F(Sequences, WithNothingInThemSaySo) {
+    frame(1, 0);
+    frame(2, 0);
+    const Json json = info();
+    EXPECT_TRUE(says(json, "No frame of the sequence holds anything to map"));
+    EXPECT_EQ(json.at("sequence").at("empty"), Json({1001, 1002}));
+    expect_failure({"info", "s_####.vdb", "--scene"}, 3, "Nothing to map");
+}
+
+TEST_F(Sequences, AFrameThatCannotBeReadIsNamed) {
+    frame(1, 10);
+    write("s_1002.vdb", "this is no volume");
+    const Json json = info();
+    EXPECT_TRUE(says(json, "A frame cannot be read: s_1002.vdb"));
+    EXPECT_EQ(json.at("advice").at("map"), Json({"density"}));
+}
+
+}  // namespace
+}  // namespace uw
