@@ -11,6 +11,7 @@
 #include "cli/render/irradiance_export.h"
 #include "cli/stop_signal.h"
 #include "core/base/available_memory.h"
+#include "core/image/preview.h"
 #include "core/integrators/integrator_table.h"
 
 namespace uw {
@@ -190,7 +191,7 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
         say(fmt::format("wrote {}", files.irradiance_vdb.string()));
     }
     stats.end_stage();
-    stats.set_output(files.image.filename().string(), frame.number);
+    stats.set_output(files.main().filename().string(), frame.number);
     ImageMetadata metadata =
         metadata_of(renderer_.assembled(), frame.number, options.paths, report);
     Film film = renderer_.release_film();
@@ -225,6 +226,18 @@ std::vector<PartNumbers> FrameRenderer::measure(const ResolvedScene& scene, cons
     return numbers;
 }
 
+std::optional<double> FrameRenderer::exposure_of(const Film& film) {
+    using Kind = PreviewExposure::Kind;
+    const PreviewExposure& wanted = arguments_.exposure;
+    if (wanted.kind == Kind::automatic) return std::nullopt;
+    if (wanted.kind == Kind::fixed) return wanted.factor;
+    // A black image has none of its own. Rounded as its file states it, so that a run that
+    // continues a sequence uses the same.
+    if (const auto own = automatic_exposure(film); own && !first_exposure_)
+        first_exposure_ = as_stated_in_png(*own);
+    return first_exposure_;
+}
+
 void FrameRenderer::begin_writing(const Frame& frame, Film film, ImageMetadata metadata,
                                   RunStats stats) {
     finish();
@@ -232,10 +245,12 @@ void FrameRenderer::begin_writing(const Frame& frame, Film film, ImageMetadata m
     written_.reset(new Written{frame, is_first(), std::move(film), std::move(metadata),
                                std::move(stats), std::move(label)});
     clock_.finish_image();
-    writing_ = std::make_unique<BackgroundTask>([&written = *written_, exr = arguments_.exr()] {
+    const ImageStorage storage{arguments_.exr(), exposure_of(written_->film),
+                               arguments_.is_preview_16_bit};
+    writing_ = std::make_unique<BackgroundTask>([&written = *written_, storage] {
         const auto begin = std::chrono::steady_clock::now();
         write_images(
-            written.frame.files, written.film, std::move(written.metadata), exr,
+            written.frame.files, written.film, std::move(written.metadata), storage,
             [&](const std::string& line) {
                 written.lines.push_back({false, line});
             },

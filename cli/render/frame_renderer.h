@@ -43,6 +43,10 @@ class FrameRenderer {
     /// image of this frame is written.
     void render(const Frame& frame, ResolvedScene scene, RunStats stats);
 
+    /// The exposure of all previews from now on, where that is the first image's and that has been
+    /// rendered before.
+    void keep_exposure(double exposure) { first_exposure_ = exposure; }
+
     /// Waits until the last frame rendered has been written. Throws IoError if it cannot be.
     void finish();
 
@@ -74,7 +78,11 @@ class FrameRenderer {
     std::mutex mutex_;
     std::string stage_;
     std::unique_ptr<Progress> progress_;
-    std::string measuring_;  // what is rendered for its numbers only; empty: nothing
+    /// Of the preview of the image rendered last; none: its own.
+    std::optional<double> exposure_of(const Film& film);
+
+    std::optional<double> first_exposure_;  // where it is kept; none: not known yet
+    std::string measuring_;                 // what is rendered for its numbers only; empty: nothing
     RunStats* stats_ = nullptr;
     Done done_;
     std::unique_ptr<Written> written_;

@@ -87,10 +87,10 @@ fs::path of_camera(const fs::path& file, const std::string& camera) {
 
 void refuse_camera_places(const FrameSequence& sequence) {
     for (const Frame& frame : sequence.frames)
-        if (frame.files.image.string().find(k_camera_place) != std::string::npos)
+        if (frame.files.main().string().find(k_camera_place) != std::string::npos)
             throw UsageError(
                 fmt::format("-o {}: the scene has one camera, which has no name; take {} out",
-                            printable(frame.files.image.string(), 300), k_camera_place));
+                            printable(frame.files.main().string(), 300), k_camera_place));
 }
 
 bool has_sequence(const SceneDesc& scene) {
@@ -105,14 +105,16 @@ FrameSequence frames_of(const RenderArguments& a) {
     if (a.frames.empty()) {
         OutputFiles files = names;
         files.numbers.clear();
-        return {{{std::nullopt, std::move(files), 0, ""}}, {}, names.numbers};
+        files.contact_sheet.clear();
+        return {{{std::nullopt, std::move(files), 0, ""}}, {}, names.numbers, names.contact_sheet};
     }
     if (a.frames.size() > 1) {
-        require_place("-o", names.image);
+        require_place("-o", names.main());
         require_place("--irradiance-vdb", names.irradiance_vdb);
     }
     FrameSequence sequence;
     sequence.numbers = names.numbers;
+    sequence.contact_sheet = names.contact_sheet;
     const bool one_each = !names.stats.empty() && differs_by_frame(names.stats);
     if (!one_each) sequence.stats = names.stats;
     for (const int number : a.frames) {
@@ -139,7 +141,8 @@ void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::str
             const std::string& name = scene.cameras[i].name;
             if (!only.empty() && name != only) continue;
             OutputFiles files = frame.files;
-            for (fs::path* file : {&files.image, &files.preview}) *file = of_camera(*file, name);
+            if (!files.image.empty()) files.image = of_camera(files.image, name);
+            files.preview = of_camera(files.preview, name);
             if (frame.number && !files.stats.empty()) files.stats = of_camera(files.stats, name);
             if (!is_first) files.irradiance_vdb.clear();
             is_first = false;
@@ -175,6 +178,7 @@ void check_frames(const FrameSequence& sequence, const SceneDesc& scene) {
     OutputFiles about_all;
     about_all.stats = sequence.stats;
     about_all.numbers = sequence.numbers;
+    about_all.contact_sheet = sequence.contact_sheet;
     outputs.take_outputs(about_all);
 }
 

@@ -27,8 +27,9 @@ struct Frame {
 /// The images of a run, in the order they are rendered.
 struct FrameSequence {
     std::vector<Frame> frames;
-    std::filesystem::path stats;      // one file about all of them; empty: none, or one each
-    std::filesystem::path numbers{};  // one file about all of them; empty: none
+    std::filesystem::path stats;            // one file about all of them; empty: none, or one each
+    std::filesystem::path numbers{};        // one file about all of them; empty: none
+    std::filesystem::path contact_sheet{};  // likewise
 };
 
 /// The images that the arguments request. Throws UsageError for several frames with one name, and

@@ -145,19 +145,21 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
 }
 
 void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata,
-                  const ExrOptions& options, const SayCallback& say, const SayCallback& warn) {
-    const std::optional<double> exposure = automatic_exposure(film);
-    const Preview preview = make_preview(film, exposure.value_or(1.0));
-    write_exr(files.image, film, metadata, options);
-    metadata["exposure"] = exposure.value_or(1.0);
-    write_png(files.preview, preview, metadata);
-    warn_of_darkness(film, !exposure, warn);
-    if (options.precision == ExrOptions::Precision::half) warn_of_half(film, warn);
-    say(fmt::format("wrote {}", files.image.string()));
-    if (exposure)
-        say(fmt::format("wrote {} (preview, R G B x {:.4g})", files.preview.string(), *exposure));
+                  const ImageStorage& storage, const SayCallback& say, const SayCallback& warn) {
+    const std::optional<double> automatic = automatic_exposure(film);
+    const double exposure = storage.exposure.value_or(automatic.value_or(1.0));
+    const bool with_exr = !files.image.empty();
+    if (with_exr) write_exr(files.image, film, metadata, storage.exr);
+    metadata["exposure"] = exposure;
+    if (storage.is_preview_16_bit)
+        write_png(files.preview, make_preview16(film, exposure), metadata);
     else
-        say(fmt::format("wrote {} (preview, black)", files.preview.string()));
+        write_png(files.preview, make_preview(film, exposure), metadata);
+    warn_of_darkness(film, !automatic, warn);
+    if (with_exr && storage.exr.precision == ExrOptions::Precision::half) warn_of_half(film, warn);
+    if (with_exr) say(fmt::format("wrote {}", files.image.string()));
+    say(fmt::format("wrote {} ({}{})", files.preview.string(), with_exr ? "preview, " : "",
+                    automatic ? fmt::format("R G B x {:.4g}", exposure) : "black"));
 }
 
 }  // namespace uw

@@ -24,10 +24,17 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
 /// Prints one line.
 using SayCallback = std::function<void(const std::string& line)>;
 
-/// Writes the EXR and its preview, each whole or not at all; prints where they are and the exposure
-/// of the preview, and warns of an image that is black or empty in part, or that half floats cannot
-/// hold. Throws IoError.
+/// How images are written.
+struct ImageStorage {
+    ExrOptions exr{};
+    std::optional<double> exposure{};  // of the preview; none: its automatic one
+    bool is_preview_16_bit = false;
+};
+
+/// Writes the EXR, if it has a name, and its preview, each whole or not at all; prints where they
+/// are and the exposure of the preview, and warns of an image that is black or empty in part, or
+/// that half floats cannot hold. Throws IoError.
 void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata,
-                  const ExrOptions& options, const SayCallback& say, const SayCallback& warn);
+                  const ImageStorage& storage, const SayCallback& say, const SayCallback& warn);
 
 }  // namespace uw

@@ -25,6 +25,7 @@ std::vector<NamedFile> named(const OutputFiles& files) {
     if (!files.image.empty()) result.push_back({"the image", files.image});
     if (!files.preview.empty()) result.push_back({"the preview", files.preview});
     if (!files.stats.empty()) result.push_back({"--stats", files.stats});
+    if (!files.contact_sheet.empty()) result.push_back({"--contact-sheet", files.contact_sheet});
     if (!files.numbers.empty()) result.push_back({"--numbers", files.numbers});
     if (!files.irradiance_vdb.empty()) result.push_back({"--irradiance-vdb", files.irradiance_vdb});
     return result;
@@ -44,15 +45,43 @@ void refuse_other_ending(const char* option, const fs::path& file, const char* e
                                      option, printable(file.string(), 300), format, ending));
 }
 
+// What only an EXR can hold, or tell.
+void refuse_exr_options(const RenderArguments& a) {
+    const auto refuse = [&](bool is_given, const char* option) {
+        if (is_given)
+            throw UsageError(
+                fmt::format("{}: is for the EXR, but -o {} is a PNG alone; give a name that ends "
+                            "in .exr",
+                            option, printable(a.output.string(), 300)));
+    };
+    refuse(!a.layers.empty(), "--layers");
+    refuse(a.orders.has_value(), "--orders");
+    refuse(!a.precision.empty(), "--precision");
+    refuse(!a.compression.empty(), "--compression");
+    refuse(a.resume, "--resume");
+}
+
 }  // namespace
 
 OutputFiles output_files(const RenderArguments& a) {
     OutputFiles files;
     const char* const ending = a.frames.empty() ? ".exr" : ".####.exr";
     files.image = a.output.empty() ? a.scene.filename().replace_extension(ending) : a.output;
-    refuse_other_ending("-o", files.image, ".exr", "OpenEXR");
     files.preview = files.image;
     files.preview.replace_extension(".png");
+    if (files.image.extension() == ".png") {
+        refuse_exr_options(a);
+        files.image.clear();
+    } else if (files.image.extension() != ".exr") {
+        throw UsageError(
+            fmt::format("-o {}: it is written as OpenEXR, or as PNG; give a name that ends in .exr "
+                        "or .png",
+                        printable(files.image.string(), 300)));
+    }
+    if (!a.contact_sheet.empty()) {
+        refuse_other_ending("--contact-sheet", a.contact_sheet, ".png", "PNG");
+        files.contact_sheet = a.contact_sheet;
+    }
     files.stats = a.stats;
     if (!a.numbers.empty() && !a.prints_numbers()) {
         refuse_other_ending("--numbers", a.numbers, ".csv", "CSV");

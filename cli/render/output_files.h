@@ -12,11 +12,15 @@ namespace uw {
 
 /// The files that one render writes.
 struct OutputFiles {
-    std::filesystem::path image;           // EXR
-    std::filesystem::path preview;         // PNG beside it
-    std::filesystem::path stats;           // JSON; empty: none
-    std::filesystem::path irradiance_vdb;  // empty: none
-    std::filesystem::path numbers{};       // CSV about all images; empty: none
+    std::filesystem::path image;            // EXR; empty: the PNG alone
+    std::filesystem::path preview;          // PNG beside it
+    std::filesystem::path stats;            // JSON; empty: none
+    std::filesystem::path irradiance_vdb;   // empty: none
+    std::filesystem::path numbers{};        // CSV about all images; empty: none
+    std::filesystem::path contact_sheet{};  // PNG of all images; empty: none
+
+    /// The EXR, or the PNG where that is all.
+    const std::filesystem::path& main() const { return image.empty() ? preview : image; }
 };
 
 /// The files that the arguments request; names keep their placeholders for the frame number, and so

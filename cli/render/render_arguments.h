@@ -12,6 +12,17 @@
 
 namespace uw {
 
+/// By what the previews are multiplied: --exposure.
+struct PreviewExposure {
+    enum class Kind {
+        automatic,  // of each by itself
+        first,      // the first image's, for all
+        fixed
+    };
+    Kind kind = Kind::automatic;
+    double factor = 1;  // of `fixed`
+};
+
 /// `uwvdb render` as typed.
 struct RenderArguments {
     std::filesystem::path scene;
@@ -25,6 +36,9 @@ struct RenderArguments {
     std::string integrator;                  // empty: the scene's
     std::string layers;                      // empty: the default set
     std::string precision, compression;      // of the EXR; empty: as ExrOptions
+    PreviewExposure exposure;                // --exposure
+    bool is_preview_16_bit = false;          // --preview-bits 16
+    std::filesystem::path contact_sheet;     // --contact-sheet: a PNG; empty: none
     std::optional<int> samples;
     std::optional<double> error;  // --error: instead of a number of samples
     std::optional<int> orders;    // --orders: layers by order of scattering

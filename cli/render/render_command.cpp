@@ -11,18 +11,19 @@
 
 #include "camera/image_size.h"
 #include "cli/console.h"
-#include "cli/frame_list.h"
 #include "cli/progress.h"
 #include "cli/render/frame_renderer.h"
 #include "cli/render/frame_sequence.h"
 #include "cli/render/image_output.h"
+#include "cli/render/resume.h"
 #include "cli/render/stats.h"
 #include "cli/stop_signal.h"
 #include "cli/text_files.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
-#include "core/image/image_reader.h"
+#include "core/image/contact_sheet.h"
+#include "core/image/image_writer.h"
 #include "core/integrators/integrator_table.h"
 #include "render/scene_loading.h"
 
@@ -105,35 +106,6 @@ void append_warnings(const RenderArguments& a, const Frame& first,
             "cropped; set water.forward_scatter.K=0 to save that time");
 }
 
-// Removes the images that already exist.
-void leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc, const LayerPlan& layers,
-                        const PathRequest& paths, const ExrOptions& storage,
-                        const std::vector<PixelWindow>& windows, bool quiet) {
-    std::vector<int> there;
-    std::vector<Frame> left;
-    GltfSideFiles known;
-    for (Frame& frame : sequence.frames) {
-        const SceneDesc scene = scene_of_image(desc, frame.choice());
-        const ImageLayout layout{scene.camera.width, scene.camera.height, windows[frame.camera],
-                                 layers.channel_names(), storage};
-        // Headers describe the camera that was rendered, possibly a glTF file's.
-        const auto is_image_of = [&](const std::filesystem::path& file) {
-            const ResolvedScene resolved{SceneDesc(scene)};
-            return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number, paths));
-        };
-        const bool rendered = is_rendered(frame, input_files(scene, known), is_image_of);
-        if (rendered && (there.empty() || there.back() != *frame.number))
-            there.push_back(*frame.number);
-        if (!rendered) left.push_back(std::move(frame));
-    }
-    sequence.frames = std::move(left);
-    if (!there.empty() && !quiet)
-        print_message(fmt::format("resume: {} {} {} there already, {} {}left\n",
-                                  there.size() == 1 ? "frame" : "frames", format_frame_list(there),
-                                  there.size() == 1 ? "is" : "are", sequence.frames.size(),
-                                  desc.cameras.empty() ? "" : "images "));
-}
-
 // The scenes of frames one after the other, each resolved once. The first is resolved before
 // anything is rendered: its lamps name layers, and all frames must have the same.
 class FrameScenes {
@@ -165,6 +137,20 @@ class FrameScenes {
     std::optional<ResolvedScene> first_;  // until a frame is taken
     std::vector<std::string> lamp_names_;
 };
+
+// A row for each frame of a rig's cameras.
+void write_contact_sheet(const FrameSequence& sequence, bool quiet) {
+    if (sequence.contact_sheet.empty()) return;
+    std::vector<std::filesystem::path> pictures;
+    std::size_t cameras = 0;
+    for (const Frame& frame : sequence.frames) {
+        pictures.push_back(frame.files.preview);
+        if (frame.number == sequence.frames.front().number) ++cameras;
+    }
+    write_png(sequence.contact_sheet,
+              contact_sheet(pictures, cameras > 1 ? static_cast<int>(cameras) : 0), {});
+    if (!quiet) print_message(fmt::format("wrote {}\n", sequence.contact_sheet.string()));
+}
 
 void check_measures(const RenderArguments& a, const SceneDesc& first, const PixelWindow& window) {
     if (a.numbers.empty() && a.parts.any())
@@ -213,7 +199,7 @@ void run_render(const RenderArguments& a) {
     const auto start = std::chrono::steady_clock::now();
     RunStats stats;
     const ThreadLimit limit(a.threads);
-    const ExrOptions storage = a.exr();
+    a.exr();  // throws for a word that does not exist
     FrameSequence sequence = frames_of(a);
 
     stats.begin_stage("scene");
@@ -224,8 +210,13 @@ void run_render(const RenderArguments& a) {
     append_warnings(a, sequence.frames.front(), windows, desc);
     FrameScenes scenes(desc, sequence.frames.front());
     const LayerPlan layers = layer_plan(scenes.first(), a.layers, a.paths());
-    if (a.resume) leave_out_rendered(sequence, desc, layers, a.paths(), storage, windows, a.quiet);
-    if (sequence.frames.empty()) return;
+    const FrameSequence all = sequence;
+    std::optional<double> exposure;
+    if (a.resume) exposure = leave_out_rendered(sequence, desc, layers, a, windows);
+    if (sequence.frames.empty()) {
+        write_contact_sheet(all, a.quiet);
+        return;
+    }
     check_measures(a, scenes.first(), windows[sequence.frames.front().camera]);
     check_frames(sequence, desc);
     std::vector<RunStats> done;
@@ -235,8 +226,10 @@ void run_render(const RenderArguments& a) {
                 of_frame.write_json(frame.files.stats, desc.file.filename().string());
             done.push_back(std::move(of_frame));
         });
+    if (exposure) renderer.keep_exposure(*exposure);
     const auto write_stats = [&] {
         write_numbers(a, sequence.numbers, done);
+        if (!done.empty()) write_contact_sheet(all, a.quiet);
         if (!sequence.stats.empty() && !done.empty())
             RunStats::write_json(sequence.stats, a.scene.filename().string(), done);
     };

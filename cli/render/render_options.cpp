@@ -17,6 +17,7 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render plume.yaml --set lamps.left.intensity='[80, 80, 80]' --layers direct,depth
   uwvdb render plume.yaml --integrator reference --crop 100,80,140,120 --stats stats.json
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.exr --resume
+  uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.png --exposure first --contact-sheet s.png
   uwvdb render stereo.yaml -o 'out/{camera}.exr'
   uwvdb render plume.yaml --integrator path --error 0.02 --size 320x180
   uwvdb render plume.yaml --numbers - --object seabed
@@ -26,8 +27,9 @@ render.scattering: single, the default, is light that the water scatters once or
 once; multiple is all light, however often it was scattered and reflected, fast by
 --integrator volume, unbiased by path.
 
-Writes OUT.exr (the image and its depth; more with --layers) and OUT.png beside it, a preview. With --frames, a
-volume's file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of
+Writes OUT.exr (the image and its depth; more with --layers) and OUT.png beside it, a preview; with
+-o OUT.png the preview alone: 8 or 16 bits of what is to be seen, not the light itself, which only
+the EXR holds. Folders are made. With --frames, a volume's file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of
 several cameras becomes an image of each, OUT.NAME.exr, or with NAME in place of {camera}.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted. More: docs/command-line.md)";
@@ -41,6 +43,27 @@ constexpr int k_most_orders = 64;
 void accept_words(Option& option, const auto& names) {
     option.value = Option::Value::word;
     for (const auto& [word, meaning] : names) option.words.emplace_back(word);
+}
+
+constexpr std::array<std::pair<std::string_view, bool>, 2> k_preview_bits{
+    {{"8", false}, {"16", true}}};
+
+bool is_16(const std::string& text) {
+    if (text != "8" && text != "16")
+        throw UsageError(
+            fmt::format("--preview-bits: expected 8 or 16, found '{}'", printable(text)));
+    return text == "16";
+}
+
+PreviewExposure exposure_in(const std::string& text) {
+    using Kind = PreviewExposure::Kind;
+    if (text == "auto") return {};
+    if (text == "first") return {.kind = Kind::first};
+    double factor = 0;
+    if (parse_number(text, factor) == NumberText::number && factor > 0)
+        return {.kind = Kind::fixed, .factor = factor};
+    throw UsageError(fmt::format("--exposure: expected a number above 0, auto or first; found '{}'",
+                                 printable(text)));
 }
 
 template <class T, std::size_t N>
@@ -65,7 +88,7 @@ Options render_options(RenderArguments& a) {
     Options options;
     options.path("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
     options.path("-o,--output", "OUT.exr", a.output,
-                 "EXR to write; default: the scene's name, in this folder");
+                 "EXR to write, or a PNG alone; default: the scene's name, in this folder");
     options.parsed(
         "--frames", "1-10,20-40:2",
         [&a](const std::string& text) { a.frames = parse_frame_list(text); },
@@ -87,6 +110,17 @@ Options render_options(RenderArguments& a) {
     accept_words(options.text("--compression", "NAME", a.compression,
                               "of the EXR, without loss: zip, zips (each line by itself) or none"),
                  k_compression_names);
+    options.parsed(
+        "--exposure", "N|auto|first",
+        [&a](const std::string& text) { a.exposure = exposure_in(text); },
+        "of the preview: a factor; auto: each image's own; first: the first image's for all");
+    accept_words(options.parsed(
+                     "--preview-bits", "N",
+                     [&a](const std::string& text) { a.is_preview_16_bit = is_16(text); },
+                     "of the preview: 8, the default, or 16"),
+                 k_preview_bits);
+    options.path("--contact-sheet", "OUT.png", a.contact_sheet,
+                 "write small pictures of all images, side by side");
     options.integer("--samples", "N", a.samples, 1, k_most_paths,
                     fmt::format("surface samples per pixel, 1 to {}; with --integrator path light "
                                 "paths, up to {}",

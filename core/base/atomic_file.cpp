@@ -44,8 +44,6 @@ fs::path checked(const fs::path& target) {
 
 std::string why_not_created(const fs::path& folder, int error) {
     switch (error) {
-        case ENOENT:
-            return fmt::format("the folder '{}' does not exist; create it first", folder.string());
         case ENOTDIR:
             return fmt::format("'{}' is not a folder; choose another folder", folder.string());
         case EACCES:
@@ -62,13 +60,30 @@ std::string why_not_created(const fs::path& folder, int error) {
     }
 }
 
+/// Creates the folders of this path that do not exist, and lists them.
+std::error_code make_folders(const fs::path& folder, std::vector<fs::path>& made) {
+    std::error_code error;
+    if (folder.empty() || fs::exists(folder, error)) return {};
+    if (const std::error_code above = make_folders(folder.parent_path(), made)) return above;
+    if (fs::create_directory(folder, error)) made.push_back(folder);
+    return error;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& target, ReadTarget read_target)
     : read_target_(read_target), target_(checked(target)) {
     refuse_input(target);
-    static std::atomic<unsigned> counter{0};
     const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+    if (const int error = create_in(folder); error != 0) {
+        remove_folders();
+        fail(target_, why_not_created(folder, error));
+    }
+}
+
+int AtomicFile::create_in(const fs::path& folder) {
+    if (const std::error_code error = make_folders(folder, made_folders_)) return error.value();
+    static std::atomic<unsigned> counter{0};
     // The process id alone is not unique among machines that share a folder; O_EXCL is.
     constexpr int k_attempts = 1000;
     int error = EEXIST;
@@ -77,16 +92,25 @@ AtomicFile::AtomicFile(const fs::path& target, ReadTarget read_target)
         const int file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file >= 0) {
             ::close(file);
-            return;
+            return 0;
         }
         error = errno;
     }
-    fail(target_, why_not_created(folder, error));
+    return error;
 }
 
 AtomicFile::~AtomicFile() {
+    if (temporary_.empty()) return;
     std::error_code ignored;
-    if (!temporary_.empty()) fs::remove(temporary_, ignored);
+    fs::remove(temporary_, ignored);
+    remove_folders();
+}
+
+void AtomicFile::remove_folders() const {
+    // Those that hold something else by now stay.
+    std::error_code ignored;
+    for (auto folder = made_folders_.rbegin(); folder != made_folders_.rend(); ++folder)
+        fs::remove(*folder, ignored);
 }
 
 void AtomicFile::refuse_input(const fs::path& name) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace uw {
 
@@ -10,13 +11,14 @@ namespace uw {
 enum class ReadTarget { refuse, replace };
 
 /// Writes a file such that its name only ever refers to a complete one: write to `temporary_path`,
-/// beside the target, then `commit`. A file that is not committed is removed. Constructing and
-/// destroying one checks, before any work is done, whether the target can be written.
+/// beside the target, then `commit`. A file that is not committed is removed, and so are the
+/// folders that were made for it. Constructing and destroying one checks, before any work is done,
+/// whether the target can be written.
 class AtomicFile {
   public:
-    /// Creates the empty temporary file. A target that is a symbolic link is written through.
-    /// Throws IoError if this is impossible: the folder is missing or not writable, or the target
-    /// is a folder, a device, or a file that `read_target` refuses.
+    /// Creates the empty temporary file, and the folders that it is to be in. A target that is a
+    /// symbolic link is written through. Throws IoError if this is impossible: the folder is not
+    /// writable, or the target is a folder, a device, or a file that `read_target` refuses.
     explicit AtomicFile(const std::filesystem::path& target,
                         ReadTarget read_target = ReadTarget::refuse);
     ~AtomicFile();
@@ -32,11 +34,15 @@ class AtomicFile {
 
   private:
     void refuse_input(const std::filesystem::path& name) const;
+    /// Creates the temporary file; the error's number if it cannot be, else 0.
+    int create_in(const std::filesystem::path& folder);
+    void remove_folders() const;
     void keep_permissions() const;
 
     ReadTarget read_target_;
     std::filesystem::path target_;
     std::filesystem::path temporary_;
+    std::vector<std::filesystem::path> made_folders_;  // outermost first
 };
 
 }  // namespace uw

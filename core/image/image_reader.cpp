@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/image/exr_file.h"
 #include "core/image/jpeg_reader.h"
 #include "core/image/png_reader.h"
@@ -68,6 +69,16 @@ bool has_header_of(const std::filesystem::path& file, const ImageLayout& layout,
                    static_cast<double>(static_cast<float>(*number));
         return found->second == value;
     });
+}
+
+std::optional<PreviewHeader> read_preview_header(const std::filesystem::path& file) {
+    const std::optional<PngHeader> png = read_png_header(file);
+    PreviewHeader header;
+    if (!png || !png->texts.contains("exposure") ||
+        parse_number(png->texts.at("exposure"), header.exposure) != NumberText::number)
+        return std::nullopt;
+    header.bits = png->bits;
+    return header;
 }
 
 }  // namespace uw

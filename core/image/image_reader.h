@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,5 +33,13 @@ struct ImageLayout {
 /// of `metadata`. False if it cannot be read.
 bool has_header_of(const std::filesystem::path& file, const ImageLayout& layout,
                    const ImageMetadata& metadata);
+
+/// The exposure and the bits per channel that a PNG written by write_png states. None if it cannot
+/// be read.
+struct PreviewHeader {
+    double exposure = 1;
+    int bits = 8;
+};
+std::optional<PreviewHeader> read_preview_header(const std::filesystem::path& file);
 
 }  // namespace uw

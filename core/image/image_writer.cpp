@@ -1,5 +1,6 @@
 #include "core/image/image_writer.h"
 
+#include "core/base/text.h"
 #include "core/image/exr_file.h"
 #include "core/image/output_file.h"
 #include "core/image/png_writer.h"
@@ -16,7 +17,20 @@ void write_exr(const std::filesystem::path& file, const Film& film, const ImageM
     out.commit();
 }
 
+double as_stated_in_png(double value) {
+    double rounded = value;
+    parse_number(png_number(value), rounded);
+    return rounded;
+}
+
 void write_png(const std::filesystem::path& file, const Preview& image,
+               const ImageMetadata& metadata) {
+    OutputFile out(file);
+    write_png_file(out, image, metadata);
+    out.commit();
+}
+
+void write_png(const std::filesystem::path& file, const Preview16& image,
                const ImageMetadata& metadata) {
     OutputFile out(file);
     write_png_file(out, image, metadata);

@@ -15,9 +15,14 @@ namespace uw {
 void write_exr(const std::filesystem::path& file, const Film& film, const ImageMetadata& metadata,
                const ExrOptions& options = {});
 
-/// Writes an 8-bit sRGB PNG; metadata as text chunks. The file appears under its name only once it
-/// is complete. Throws IoError.
+/// Writes an sRGB PNG of 8 or 16 bits; metadata as text chunks. The file appears under its name
+/// only once it is complete. Throws IoError.
 void write_png(const std::filesystem::path& file, const Preview& image,
                const ImageMetadata& metadata);
+void write_png(const std::filesystem::path& file, const Preview16& image,
+               const ImageMetadata& metadata);
+
+/// A number of the metadata as a PNG states it: rounded to 6 digits.
+double as_stated_in_png(double value);
 
 }  // namespace uw

@@ -6,6 +6,7 @@
 #include <csetjmp>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <new>
 #include <vector>
 
@@ -57,6 +58,12 @@ class PngDecoder {
     bool is_16_bit() const { return png_get_bit_depth(png_, info_) == 16; }
     std::size_t row_bytes() const { return png_get_rowbytes(png_, info_); }
     const char* error() const { return error_; }
+    std::span<const png_text> texts() {
+        png_textp texts = nullptr;
+        int count = 0;
+        png_get_text(png_, info_, &texts, &count);
+        return {texts, static_cast<std::size_t>(count)};
+    }
 
   private:
     static PngDecoder& decoder_of(png_structp png) {
@@ -111,6 +118,20 @@ PixelImage read_png(std::span<const std::byte> encoded, const std::string& name)
         }
     }
     return image;
+}
+
+std::optional<PngHeader> read_png_header(const std::filesystem::path& file) {
+    // Far more than the texts of an image take.
+    constexpr std::size_t k_beginning = std::size_t{1} << 18;
+    std::vector<std::byte> beginning(k_beginning);
+    std::ifstream in(file, std::ios::binary);
+    in.read(reinterpret_cast<char*>(beginning.data()), k_beginning);
+    beginning.resize(static_cast<std::size_t>(in.gcount()));
+    PngDecoder decoder(beginning);
+    if (!decoder.read_header()) return std::nullopt;
+    PngHeader header{decoder.is_16_bit() ? 16 : 8, {}};
+    for (const png_text& text : decoder.texts()) header.texts[text.key] = text.text;
+    return header;
 }
 
 }  // namespace uw

@@ -37,10 +37,12 @@ class PngEncoder {
     PngEncoder(PngEncoder&&) = delete;
     PngEncoder& operator=(PngEncoder&&) = delete;
 
-    bool write(const Preview& image, std::span<const png_text> texts) {
+    template <class Colour>
+    bool write(const Grid2D<Colour>& image, std::span<const png_text> texts) {
+        constexpr int k_bits = 8 * sizeof(typename Colour::value_type);
         if (setjmp(png_jmpbuf(png_)) != 0) return false;
         png_set_IHDR(png_, info_, static_cast<png_uint_32>(image.width()),
-                     static_cast<png_uint_32>(image.height()), 8, PNG_COLOR_TYPE_RGB,
+                     static_cast<png_uint_32>(image.height()), k_bits, PNG_COLOR_TYPE_RGB,
                      PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
         png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
         png_set_text(png_, info_, texts.data(), static_cast<int>(texts.size()));
@@ -48,7 +50,9 @@ class PngEncoder {
         png_set_compression_level(png_, 1);
         png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
         png_write_info(png_, info_);
-        for (int y = 0; y < image.height(); ++y) png_write_row(png_, image.row(y).front().data());
+        if (k_bits == 16) png_set_swap(png_);  // stored with the higher byte first
+        for (int y = 0; y < image.height(); ++y)
+            png_write_row(png_, reinterpret_cast<png_const_bytep>(image.row(y).front().data()));
         png_write_end(png_, nullptr);
         return true;
     }
@@ -85,21 +89,34 @@ png_text text_chunk(const std::string& keyword, const std::string& text) {
     return chunk;
 }
 
-}  // namespace
-
-void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata) {
-    static_assert(sizeof(Srgb8) == 3);
+template <class Colour>
+void write_file(OutputFile& out, const Grid2D<Colour>& image, const ImageMetadata& metadata) {
+    static_assert(sizeof(Colour) == 3 * sizeof(typename Colour::value_type));
     std::vector<std::string> values;
     values.reserve(metadata.size());
     std::vector<png_text> texts;
     for (const auto& [name, value] : metadata) {
         const auto* text = std::get_if<std::string>(&value);
-        values.push_back(text ? *text : fmt::format("{:.6g}", std::get<double>(value)));
+        values.push_back(text ? *text : png_number(std::get<double>(value)));
         texts.push_back(text_chunk(name, values.back()));
     }
     PngEncoder encoder(out);
     if (!encoder.write(image, texts))
         throw IoError(fmt::format("{}: cannot write: {}", out.path().string(), encoder.error()));
+}
+
+}  // namespace
+
+std::string png_number(double value) {
+    return fmt::format("{:.6g}", value);
+}
+
+void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata) {
+    write_file(out, image, metadata);
+}
+
+void write_png_file(OutputFile& out, const Preview16& image, const ImageMetadata& metadata) {
+    write_file(out, image, metadata);
 }
 
 }  // namespace uw

@@ -1,13 +1,19 @@
 #pragma once
 
+#include <string>
+
 #include "core/image/image_metadata.h"
 #include "core/image/output_file.h"
 #include "core/image/preview.h"
 
 namespace uw {
 
-/// Writes all of a PNG of 8-bit sRGB, with metadata as its texts. Throws IoError if libpng refuses;
-/// what cannot be written is for out.commit() to report.
+/// Writes all of a PNG of 8- or 16-bit sRGB, with metadata as its texts. Throws IoError if libpng
+/// refuses; what cannot be written is for out.commit() to report.
 void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata);
+void write_png_file(OutputFile& out, const Preview16& image, const ImageMetadata& metadata);
+
+/// What a number of the metadata is as a text.
+std::string png_number(double value);
 
 }  // namespace uw

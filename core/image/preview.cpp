@@ -15,6 +15,24 @@ namespace {
 constexpr double k_percentile = 0.99;
 constexpr double k_luminance_of_percentile = 0.8;
 
+/// `encode`: linear to a value of the colour.
+template <class Colour, class Encode>
+Grid2D<Colour> preview_of(const Film& film, double exposure, const Encode& encode) {
+    const PixelWindow& window = film.window();
+    Grid2D<Colour> preview(window.width(), window.height());
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        const int y = static_cast<int>(line);
+        int x = window.x0;
+        for (Colour& out : preview.row(y)) {
+            const std::span<const float> pixel = film.pixel(x++, window.y0 + y);
+            if (!(pixel[k_alpha] > 0)) continue;  // black
+            for (const FilmChannel channel : {k_red, k_green, k_blue})
+                out[channel] = encode(exposure * pixel[channel]);
+        }
+    });
+    return preview;
+}
+
 }  // namespace
 
 std::optional<double> automatic_exposure(const Film& film) {
@@ -46,20 +64,13 @@ std::optional<double> automatic_exposure(const Film& film) {
 }
 
 Preview make_preview(const Film& film, double exposure) {
-    const PixelWindow& window = film.window();
-    Preview preview(window.width(), window.height());
-    const SrgbBytes& encode = srgb_bytes();
-    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
-        const int y = static_cast<int>(line);
-        int x = window.x0;
-        for (Srgb8& out : preview.row(y)) {
-            const std::span<const float> pixel = film.pixel(x++, window.y0 + y);
-            if (!(pixel[k_alpha] > 0)) continue;  // black
-            for (const FilmChannel channel : {k_red, k_green, k_blue})
-                out[channel] = encode(exposure * pixel[channel]);
-        }
+    return preview_of<Srgb8>(film, exposure, srgb_bytes());
+}
+
+Preview16 make_preview16(const Film& film, double exposure) {
+    return preview_of<Srgb16>(film, exposure, [](double linear) {
+        return static_cast<std::uint16_t>(std::lround(65535 * srgb_encode(linear)));
     });
-    return preview;
 }
 
 }  // namespace uw

@@ -92,7 +92,7 @@ TEST_F(RenderNumbers, AreRefusedInOneLine) {
     expect_failure({"render", "scene.yaml", "--numbers", "n.csv", "--part", "0,0,2"}, 2,
                    "--part: expected x0,y0,x1,y1");
     expect_failure({"render", "scene.yaml", "--numbers", "n.json"}, 2, "ends in .csv");
-    expect_failure({"render", "scene.yaml", "--numbers", "none/n.csv"}, 4, "none");
+    expect_failure({"render", "scene.yaml", "--numbers", "scene.yaml/n.csv"}, 4, "not a folder");
     EXPECT_EQ(file_count(), 2U);
 }
 

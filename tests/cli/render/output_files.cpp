@@ -54,13 +54,13 @@ TEST_F(OutputFiles, AreLookedAtBeforeRendering) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         expect_failure(arguments, code, part);
     };
-    refused({"-o", "none/out.exr"}, 4, "the folder 'none' does not exist; create it first");
+    refused({"-o", "none/out.exr", "--stats", "scene.yaml/s.json"}, 4,
+            "'scene.yaml' is not a folder; choose another folder");
     std::filesystem::create_directories(folder_ / "taken.exr");
     std::filesystem::create_directories(folder_ / "half.png");
     refused({"-o", "taken.exr"}, 4, "it is a folder");
     refused({"-o", "half.exr"}, 4, "half.png: cannot write: it is a folder");
-    refused({"-o", "out.exr", "--stats", "none/s.json"}, 4, "create it first");
-    refused({"-o", "out.exr", "--irradiance-vdb", "none/i.vdb"}, 4, "create it first");
+    refused({"-o", "out.exr", "--irradiance-vdb", "scene.yaml/i.vdb"}, 4, "is not a folder");
     EXPECT_FALSE(exists("half.exr"));
     EXPECT_EQ(file_count(), 3U);
 }

@@ -116,7 +116,8 @@ TEST_F(SweepCommand, RefusesInOneLine) {
     expect_failure({"sweep", "scene.yaml", "--set", range, "--part", "0,0,40,10"}, 2,
                    "not a part of the pixels 0,0,33,19");
     expect_failure({"sweep", "scene.yaml", "--set", range, "-o", "out.png"}, 2, "ends in .csv");
-    expect_failure({"sweep", "scene.yaml", "--set", range, "-o", "none/out.csv"}, 4, "none");
+    expect_failure({"sweep", "scene.yaml", "--set", range, "-o", "scene.yaml/out.csv"}, 4,
+                   "not a folder");
     EXPECT_EQ(file_count(), 1U);
 }
 

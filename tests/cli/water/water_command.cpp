@@ -166,7 +166,7 @@ TEST(WaterCommand, WhatCannotBeDoneLeavesNoFiles) {
     };
     WaterArguments a;
     a.csv = folder / "x";
-    a.svg = folder / "missing/x.svg";
+    a.svg = "/dev/null/x.svg";  // not a folder
     EXPECT_THROW(printed(a), IoError);
     refuses_and_leaves_nothing(a);
     a.svg = folder / "x.svg";

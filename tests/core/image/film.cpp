@@ -29,6 +29,22 @@ TEST(Film, RefusesWindowsOutsideTheImage) {
     }
 }
 
+TEST(Film, GivesSomeOfItsChannels) {
+    Film film(4, 3, {1, 1, 3, 3}, {"R", "G", "B", "A", "direct.R", "id.V"});
+    for (int y = 1; y < 3; ++y)
+        for (int x = 1; x < 3; ++x)
+            for (std::size_t c = 0; c < 6; ++c)
+                film.pixel(x, y)[c] = static_cast<float>(100 * y + 10 * x) + static_cast<float>(c);
+    const Film part = with_channels(film, {"R", "G", "B", "A", "id.V"});
+    EXPECT_EQ(part.channel_names(), (std::vector<std::string>{"R", "G", "B", "A", "id.V"}));
+    EXPECT_EQ(part.window(), film.window());
+    for (int y = 1; y < 3; ++y)
+        for (int x = 1; x < 3; ++x) {
+            EXPECT_EQ(part.pixel(x, y)[2], film.pixel(x, y)[2]);
+            EXPECT_EQ(part.pixel(x, y)[4], film.pixel(x, y)[5]);
+        }
+}
+
 TEST(Film, RefusesWhatMemoryCannotHold) {
     const int side = 1 << 30;  // with 16 channels the count of values is 0 modulo 2^64
     const std::vector<std::string> names(16, "R");

@@ -257,13 +257,14 @@ TEST_F(ImageWriterTest, AFullDiskLeavesTheOldFile) {
               2);
 }
 
-TEST_F(ImageWriterTest, MissingFolderIsAnIoErrorOfOneLine) {
+TEST_F(ImageWriterTest, AFileInPlaceOfAFolderIsAnIoErrorOfOneLine) {
     const Film film(1, 1, {0, 0, 1, 1}, {"R", "G", "B", "A"});
     try {
-        write_exr(directory_.path() / "none" / "image.exr", film, {});
+        write_exr(exr_, film, {});
+        write_exr(exr_ / "image.exr", film, {});
         FAIL();
     } catch (const IoError& error) {
-        EXPECT_NE(std::string(error.what()).find("create it"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("not a folder"), std::string::npos);
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
     }
 }

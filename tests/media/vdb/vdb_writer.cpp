@@ -40,10 +40,10 @@ TEST(VdbWriter, LeavesNothingBehindWhenItCannotWrite) {
     VdbOutputGrid out;
     out.size = {1, 1, 1};
     out.value = [](int, int, int) { return 1.0F; };
-    EXPECT_THROW(write_vdb(dir / "no/such/folder.vdb", {out}, {}), IoError);
     std::filesystem::create_directory(dir / "taken");
     std::ofstream(dir / "taken/file") << "x";
     EXPECT_THROW(write_vdb(dir / "taken", {out}, {}), IoError);
+    EXPECT_THROW(write_vdb(dir / "taken/file/smoke.vdb", {out}, {}), IoError);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
 }
 

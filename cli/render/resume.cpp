@@ -1,0 +1,67 @@
+#include "cli/render/resume.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "cli/console.h"
+#include "cli/frame_list.h"
+#include "cli/render/image_output.h"
+#include "core/image/image_reader.h"
+#include "core/image/image_writer.h"
+
+namespace uw {
+
+namespace {
+
+// Whether the preview of an image that exists is stored as requested; `exposure`: as it is to be,
+// none: as it is.
+bool has_preview(const OutputFiles& files, const RenderArguments& a,
+                 const std::optional<double>& exposure) {
+    const std::optional<PreviewHeader> header = read_preview_header(files.preview);
+    return header && header->bits == (a.is_preview_16_bit ? 16 : 8) &&
+           (!exposure || header->exposure == as_stated_in_png(*exposure));
+}
+
+}  // namespace
+
+std::optional<double> leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc,
+                                         const LayerPlan& layers, const RenderArguments& a,
+                                         const std::vector<PixelWindow>& windows) {
+    const PathRequest paths = a.paths();
+    const ExrOptions storage = a.exr();
+    std::vector<int> there;
+    std::vector<Frame> left;
+    GltfSideFiles known;
+    std::optional<double> exposure;
+    if (a.exposure.kind == PreviewExposure::Kind::fixed) exposure = a.exposure.factor;
+    for (Frame& frame : sequence.frames) {
+        const SceneDesc scene = scene_of_image(desc, frame.choice());
+        const ImageLayout layout{scene.camera.width, scene.camera.height, windows[frame.camera],
+                                 layers.channel_names(), storage};
+        // Headers describe the camera that was rendered, possibly a glTF file's.
+        const auto is_image_of = [&](const std::filesystem::path& file) {
+            const ResolvedScene resolved{SceneDesc(scene)};
+            return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number, paths));
+        };
+        const bool rendered = is_rendered(frame, input_files(scene, known), is_image_of) &&
+                              has_preview(frame.files, a, exposure);
+        if (rendered && !exposure && left.empty() &&
+            a.exposure.kind == PreviewExposure::Kind::first) {
+            exposure = read_preview_header(frame.files.preview)->exposure;
+            if (*exposure == 1) exposure.reset();  // black
+        }
+        if (rendered && (there.empty() || there.back() != *frame.number))
+            there.push_back(*frame.number);
+        if (!rendered) left.push_back(std::move(frame));
+    }
+    sequence.frames = std::move(left);
+    if (!there.empty() && !a.quiet)
+        print_message(fmt::format("resume: {} {} {} there already, {} {}left\n",
+                                  there.size() == 1 ? "frame" : "frames", format_frame_list(there),
+                                  there.size() == 1 ? "is" : "are", sequence.frames.size(),
+                                  desc.cameras.empty() ? "" : "images "));
+    return exposure;
+}
+
+}  // namespace uw
