@@ -140,7 +140,7 @@ TEST_F(Info, NamesPointersForWhatTheyAre) {
 TEST_F(Info, OptionsThatDoNotGoTogetherAreRefused) {
     expect_failure({"info", k_plume, "--scene", "--json"}, 2, "--scene and --json");
     expect_failure({"info", k_plume, "--picture", "a.jpg"}, 2, "does not end in .png");
-    expect_failure({"info", k_plume, "--picture", "none/a.png"}, 4, "none");
+    expect_failure({"info", k_plume, "--picture", "scene.yaml/a.png"}, 4, "not a folder");
     expect_failure({"info", "scene.yaml", "--scene"}, 2, "--scene: is for volumes");
     expect_failure({"info", "scene.yaml", "--picture", "a.png"}, 2, "--picture: is for volumes");
     EXPECT_EQ(file_count(), 1U);
