@@ -11,11 +11,11 @@
 namespace uw {
 
 const char* const k_sweep_examples = R"(Examples:
-  uwvdb sweep plume.yaml --set lamps.left.position[0]=-1.2:-0.2:0.2
-  uwvdb sweep plume.yaml --set lamps.left.position[0]=-1.5:-0.1:0.1 --target 3 -o out/distance.csv
-  uwvdb sweep stereo.yaml --camera left --set lamps.port.position[0]=-1.2:-0.2:0.2 \
-      --with lamps.starboard.position[0]=1.2:0.2:0.2
-  uwvdb sweep plume.yaml --set lamps.left.position[0]=-1.2:-0.2:0.2 \
+  uwvdb sweep plume.yaml --set 'lamps.left.position[0]=-1.2:-0.2:0.2'
+  uwvdb sweep plume.yaml --set 'lamps.left.position[0]=-1.5:-0.1:0.1' --target 3 -o out/distance.csv
+  uwvdb sweep stereo.yaml --camera left --set 'lamps.port.position[0]=-1.2:-0.2:0.2' \
+      --with 'lamps.starboard.position[0]=1.2:0.2:0.2'
+  uwvdb sweep plume.yaml --set 'lamps.left.position[0]=-1.2:-0.2:0.2' \
       --set water.particles.large=0.1:1:0.3 --object seabed
 
 Renders the scene as a draft for each value from FIRST to LAST in steps of STEP, of a second --set
