@@ -7,6 +7,7 @@
 
 #include "cli/info/grid_choice.h"
 #include "media/volumes/adaptive_domain.h"
+#include "media/volumes/fluid_config.h"
 
 namespace uw {
 
@@ -23,7 +24,7 @@ double longest_side(const Bounds& b) {
 // Farther from the origin than a scene is wide [m].
 constexpr double k_far = 1000;
 
-bool holds_only(const VdbInspection& inspection, const std::string& part) {
+bool lacks(const VdbInspection& inspection, const std::string& part) {
     return std::ranges::none_of(inspection.grids, [&](const GridInspection& grid) {
         return lower_case(grid.summary.base_name).find(part) != std::string::npos;
     });
@@ -43,13 +44,15 @@ bool fills_its_domain(const GridInspection& grid) {
 
 void say_adaptive_domain(const VdbInspection& inspection, VdbAdvice& advice) {
     if (const auto domain = find_adaptive_domain(inspection.header)) {
+        advice.lines.push_back("The voxel size is wrong: " + domain->description() + ".");
+        if (domain->voxel) return;
         const double step = std::pow(10, std::floor(std::log10(domain->largest_voxel())) - 3);
         advice.voxel_size = std::floor(domain->largest_voxel() / step + 1e-6) * step;
-        advice.lines.push_back("The voxel size is wrong: " + domain->description() + ".");
         return;
     }
     for (const GridInspection& grid : inspection.grids)
-        if (grid.summary.name == advice.map.front() && fills_its_domain(grid))
+        if (grid.summary.name == advice.map.front() && fills_its_domain(grid) &&
+            !read_fluid_config(inspection.header.file))
             advice.lines.emplace_back(
                 "It fills its domain. If 'Adaptive Domain' (Physics > Fluid > Settings) was on in "
                 "Blender, the file's voxels are too large: give voxel_size, the domain's longest "
@@ -70,7 +73,7 @@ void say_axes(const VdbInspection& inspection, VdbAdvice& advice) {
         advice.lines.push_back(fmt::format(
             "Up is z, values sit at nodes (index i at i times the voxel): written by EmberGen, "
             "recognised by its metadata or its grid 'flames'.{}",
-            holds_only(inspection, "density")
+            lacks(inspection, "density")
                 ? " It has no density: tick that channel in the export node, if the smoke is meant."
                 : ""));
         return;

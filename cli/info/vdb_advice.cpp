@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 
 #include "cli/info/grid_choice.h"
 #include "cli/info/placement_advice.h"
 #include "cli/info/vdb_concentration.h"
 #include "core/base/text.h"
+#include "media/volumes/adaptive_domain.h"
 
 namespace uw {
 
@@ -27,15 +29,22 @@ std::string quoted(const std::string& text) {
     return result + "'";
 }
 
-/// What the mapped grids hold, in the file's size and place but for a voxel size that is wrong.
+/// What the mapped grids hold, in the file's size and place but for those that are known to be
+/// wrong.
 Bounds held_by(const VdbInspection& inspection, const VdbAdvice& advice) {
+    const auto domain = find_adaptive_domain(inspection.header);
+    const std::optional<double> voxel =
+        advice.voxel_size || !domain ? advice.voxel_size : domain->voxel;
+    const Affine upright = upright_from_file(inspection.placement.up);
     Bounds bounds;
     for (const GridInspection& grid : inspection.grids) {
         if (std::ranges::count(advice.map, grid.summary.name) == 0) continue;
         if (grid.world_bounds.empty()) continue;
-        const double factor = advice.voxel_size ? *advice.voxel_size / grid.voxel_size.x : 1.0;
+        const double edge = grid.voxel_size.x;
+        const double factor = voxel ? *voxel / edge : 1;
+        const Vector3 moved = domain ? upright.apply_to_vector(edge * domain->first) : Vector3(0);
         for (const Point3& corner : {grid.world_bounds.min, grid.world_bounds.max})
-            bounds.extend(at_origin_plus(factor * from_origin(corner)));
+            bounds.extend(at_origin_plus(factor * (from_origin(corner) + moved)));
     }
     return bounds;
 }

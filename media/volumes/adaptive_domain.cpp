@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
 #include "media/vdb/vdb_header_reader.h"
+#include "media/volumes/fluid_config.h"
 
 namespace uw {
 namespace {
@@ -48,21 +49,49 @@ std::vector<std::filesystem::path> neighbours_of(const std::filesystem::path& fi
     return files;
 }
 
+/// What the cache's configuration says of a grid, whose voxels may be finer by a whole factor (as
+/// those of noise are); empty if it is about other grids.
+std::optional<AdaptiveDomain> domain_of(const FluidConfig& config, const GridSummary& grid) {
+    AdaptiveDomain domain;
+    const std::int32_t finer = (*grid.base_resolution)[0] / config.resolution[0];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (finer < 1 || (*grid.base_resolution)[axis] != finer * config.resolution[axis])
+            return std::nullopt;
+    domain.longest_side = *grid.voxel_edge * std::ranges::max(*grid.base_resolution);
+    domain.most_voxels = finer * std::ranges::max(config.domain);
+    domain.voxel = domain.largest_voxel();
+    domain.first =
+        static_cast<double>(finer) * Vector3(config.first[0], config.first[1], config.first[2]);
+    return domain;
+}
+
 }  // namespace
 
 std::string AdaptiveDomain::description() const {
-    return fmt::format(
+    constexpr const char* k_cause =
         "it was baked with Blender's 'Adaptive Domain' (Physics > Fluid > Settings), whose files "
-        "hold a wrong voxel size, other in every frame: give the volume voxel_size: {0:.4g} m, the "
-        "domain's longest side, divided by its Resolution Divisions (at least {1}, so voxel_size: "
-        "{2:.4g} or less), or bake without that checkbox, as the place in the domain is lost, too",
-        longest_side, most_voxels, largest_voxel());
+        "hold a wrong voxel size, other in every frame";
+    if (voxel)
+        return fmt::format(
+            "{}: {:.4g} m and the place of each frame in the domain are taken from the cache's "
+            "folder config",
+            k_cause, *voxel);
+    return fmt::format(
+        "{0}: keep the cache's folder config beside data, or give the volume voxel_size: {1:.4g} "
+        "m, the domain's longest side, divided by its Resolution Divisions (at least {2}, so "
+        "voxel_size: {3:.4g} or less), or bake without that checkbox, as the place in the domain "
+        "is lost, too",
+        k_cause, longest_side, most_voxels, largest_voxel());
 }
 
 std::optional<AdaptiveDomain> find_adaptive_domain(const VdbHeader& header) {
     if (!header.from_blender_fluid()) return std::nullopt;
     const GridSummary* const grid = grid_with_resolution(header);
     if (grid == nullptr) return std::nullopt;
+    if (const auto config = read_fluid_config(header.file)) {
+        if (config->resolution == config->domain) return std::nullopt;
+        if (const auto known = domain_of(*config, *grid)) return known;
+    }
     AdaptiveDomain domain;
     domain.most_voxels = std::ranges::max(*grid->base_resolution);
     domain.longest_side = *grid->voxel_edge * domain.most_voxels;

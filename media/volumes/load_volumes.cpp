@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
@@ -91,10 +92,10 @@ LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<G
     LoadedVolume volume;
     const VdbHeader header = read_vdb_header(desc.file, desc.where);
     const Placement placement = decide_placement(header, desc);
-    if (!desc.voxel_size)
-        if (const auto domain = find_adaptive_domain(header))
-            volume.warnings.push_back(
-                fmt::format("{}: '{}': {}", desc.where, desc.file.string(), domain->description()));
+    const std::optional<AdaptiveDomain> domain = find_adaptive_domain(header);
+    if (domain && !domain->voxel && !desc.voxel_size)
+        volume.warnings.push_back(
+            fmt::format("{}: '{}': {}", desc.where, desc.file.string(), domain->description()));
     for (std::size_t g = 0; g < desc.grids.size(); ++g) {
         const GridMappingDesc& mapping = desc.grids[g];
         LoadedGrid loaded = desc.motion && desc.motion->shutter > 0
@@ -103,7 +104,7 @@ LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<G
                                 : load_grid(header, mapping.grid, mapping.where, slab_bytes);
         volume.warnings.insert(volume.warnings.end(), loaded.warnings.begin(),
                                loaded.warnings.end());
-        loaded.file_from_index = with_voxel_size(loaded.file_from_index, desc);
+        loaded.file_from_index = with_voxel_size(loaded.file_from_index, desc, domain);
         const Affine place = world_from_index(loaded, placement, desc.world_from_upright);
         const double determinant = place.determinant();
         if (!std::isfinite(determinant) || determinant == 0)

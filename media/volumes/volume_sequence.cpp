@@ -39,10 +39,13 @@ std::string describe(const Affine& file_from_index) {
 
 void VolumeSequenceCheck::take(const VolumeDesc& frame) {
     const VdbHeader header = read_vdb_header(frame.file, frame.where);
+    // Frames of an adaptive domain may lie at different places: each is moved to its own.
+    std::optional<AdaptiveDomain> domain = find_adaptive_domain(header);
+    if (domain) domain->first = Vector3(0);
     std::vector<Affine> transforms;
     for (const GridMappingDesc& mapping : frame.grids)
-        transforms.push_back(
-            with_voxel_size(read_file_from_index(header, mapping.grid, mapping.where), frame));
+        transforms.push_back(with_voxel_size(
+            read_file_from_index(header, mapping.grid, mapping.where), frame, domain));
     if (transforms_.empty()) {
         first_ = frame;
         transforms_ = std::move(transforms);
@@ -50,7 +53,7 @@ void VolumeSequenceCheck::take(const VolumeDesc& frame) {
     }
     for (std::size_t g = 0; g < transforms.size(); ++g) {
         if (same_place(transforms_.at(g), transforms[g])) continue;
-        if (const auto domain = find_adaptive_domain(header))
+        if (domain)
             throw InputError(fmt::format("{}: '{}': {}", frame.grids[g].where, frame.file.string(),
                                          domain->description()));
         throw InputError(

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <optional>
+
 #include "core/base/affine.h"
 #include "core/scene/volume_desc.h"
+#include "media/volumes/adaptive_domain.h"
 
 namespace uw {
 
-/// A grid's transform as `desc` has it: that of the file, scaled about its origin such that its
-/// voxels have edges of VolumeDesc::voxel_size, if the scene gives one. Throws InputError if these
-/// are no cubes.
-Affine with_voxel_size(const Affine& file_from_index, const VolumeDesc& desc);
+/// A grid's transform, set right: scaled about the file's origin such that its voxels have edges of
+/// VolumeDesc::voxel_size if the scene gives one, else of what is known of an adaptive `domain`, in
+/// which it is moved to its place. Throws InputError if the voxels are to be scaled and are no
+/// cubes.
+Affine with_voxel_size(const Affine& file_from_index, const VolumeDesc& desc,
+                       const std::optional<AdaptiveDomain>& domain);
 
 }  // namespace uw

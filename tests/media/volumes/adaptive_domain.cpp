@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 
 #include "core/base/error.h"
 #include "media/volumes/load_volumes.h"
 #include "media/volumes/volume_sequence.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/vdb/fluid_configs.h"
 #include "tests/support/vdb/vdb_loading.h"
 
 namespace uw {
@@ -20,10 +22,11 @@ class AdaptiveDomainTest : public testing::Test {
   protected:
     /// A frame as the solver writes it: voxels of the domain's longest side divided by the longest
     /// side of its own grid.
-    VolumeDesc write(const std::string& name, std::array<int, 3> resolution) const {
+    VolumeDesc write(const std::string& name, std::array<int, 3> resolution,
+                     const test::VdbBox& box = {{4, 4, 4}, {11, 11, 11}, 1}) const {
         constexpr double k_longest_side = 2.4;
         test::VdbFixture fixture;
-        fixture.boxes = {{{4, 4, 4}, {11, 11, 11}, 1}};
+        fixture.boxes = {box};
         fixture.blender_metadata = true;
         fixture.base_resolution = resolution;
         fixture.file_from_index =
@@ -88,6 +91,35 @@ TEST_F(AdaptiveDomainTest, AVoxelSizeSetsAllFramesRight) {
         EXPECT_NEAR(bounds.min.y, 4 * 0.05, 1e-9);
         EXPECT_NEAR(bounds.max.y, 12 * 0.05, 1e-9);
     }
+}
+
+// Blender's frame, with what it noted beside it: the smoke lies about its source.
+TEST_F(AdaptiveDomainTest, TheCachesConfigurationSetsItRight) {
+    std::filesystem::create_directories(dir_ / "data");
+    std::filesystem::create_directories(dir_ / "config");
+    std::ofstream(dir_ / "config/config_0002.uni", std::ios::binary) << test::blender_config();
+    VolumeDesc desc = write("data/fluid_data_0002.vdb", {19, 19, 19}, {{5, 5, 6}, {14, 14, 14}, 1});
+    const auto domain = find(desc);
+    ASSERT_TRUE(domain && domain->voxel);
+    EXPECT_NEAR(*domain->voxel, 0.05, 1e-9);
+    const LoadedVolume volume = load(desc);
+    EXPECT_TRUE(volume.warnings.empty());
+    const Bounds& bounds = volume.reports[0].bounds;
+    EXPECT_NEAR(volume.reports[0].metres_per_voxel.x, 0.05, 1e-9);
+    // Blender's x, y are the scene's x, -z; relative to the domain's corner. Symmetric in the
+    // voxels' steps about the source, which has moved by half of one within the frame.
+    EXPECT_NEAR(bounds.center().x - 0.9, 0.6, 0.026);
+    EXPECT_NEAR(-bounds.center().z - 1.1, 0.0, 0.026);
+    EXPECT_NEAR(bounds.min.x, 25 * 0.05, 1e-9);
+    EXPECT_NEAR(bounds.max.x, 35 * 0.05, 1e-9);
+    // Another frame, cut elsewhere, goes with it; and what the scene says comes first.
+    VolumeSequenceCheck check;
+    check.take(desc);
+    EXPECT_NO_THROW(check.take(desc));
+    desc.voxel_size = 0.1;
+    EXPECT_NEAR(load(desc).reports[0].bounds.min.x, 2.5, 1e-9);
+    // A configuration of other grids is none.
+    EXPECT_FALSE(find(write("data/fluid_data_0002.vdb", {20, 19, 19})));
 }
 
 TEST_F(AdaptiveDomainTest, AVoxelSizeIsForCubes) {
