@@ -207,7 +207,7 @@ TEST_F(SceneReader, readsLampsAndRender) {
     EXPECT_EQ(scene.render.planes.count, 64);
     EXPECT_EQ(scene.render.planes.near, 0.1);
     EXPECT_EQ(scene.render.planes.far, 12);
-    EXPECT_NE(scene.render.planes.where.find("scene.yaml:40:11: render.planes"), std::string::npos)
+    EXPECT_NE(scene.render.planes.where.find("scene.yaml:41:11: render.planes"), std::string::npos)
         << scene.render.planes.where;
     EXPECT_TRUE(scene.warnings.empty());
 }
