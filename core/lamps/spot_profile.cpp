@@ -38,7 +38,8 @@ double edge_solid_angle(double inner, double outer) {
 SpotProfile::SpotProfile(const SpotProfileDesc& desc, const LampPlacement& placement)
     : axis_(placement.axis()),
       falloff_(desc.falloff),
-      dark_angle_(glm::radians(std::min(180.0, 0.5 * (desc.beam + desc.edge)))),
+      dark_angle_(glm::radians(
+          std::min(is_blenders(falloff_) ? 90.0 : 180.0, 0.5 * (desc.beam + desc.edge)))),
       cos_dark_(std::cos(dark_angle_)),
       full_angle_(glm::radians(std::max(0.0, 0.5 * (desc.beam - desc.edge)))),
       cos_full_(std::cos(full_angle_)) {

@@ -22,7 +22,7 @@ struct SpotProfileDesc {
     /// - gltf: the square of the linear ramp in the cosine (KHR_lights_punctual).
     /// - blender: as Cycles shades Blender's spots since 3.5, a smoothstep of the cosine. With
     ///   Blender's Size and Blend, beam/2 + edge/2 = Size/2 = h and edge = h Blend; the ramp begins
-    ///   at the cosine cos h + (1 - cos h) Blend.
+    ///   at the cosine cos h + (1 - cos h) Blend. h <= 90 degrees.
     /// - blender_3_4: as it did up to 3.4, times the cosine of the angle to the axis.
     enum class Falloff { smooth, gltf, blender, blender_3_4 };
 
