@@ -1,9 +1,18 @@
 #include "render/light_splatter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace uw {
+
+namespace {
+
+// Shadow maps of a lamp's emitters share the texels of a point lamp's, but have no fewer than this
+// along an edge: a shadow narrower than a texel may be missed.
+constexpr int k_least_shadow_resolution = 128;
+
+}  // namespace
 
 void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowOptions& share) {
     const bool same_shadows =
@@ -21,10 +30,15 @@ void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowO
     options_ = share;
 }
 
+int LightSplatter::shadow_resolution(const Lamp& emitter) const {
+    const auto shared = static_cast<int>(options_.shadow_resolution * std::sqrt(emitter.share()));
+    return std::max(shared, std::min(options_.shadow_resolution, k_least_shadow_resolution));
+}
+
 void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam) {
     if (!maps.shadows) {
-        maps.shadows = std::make_shared<ShadowMap>(*scene.surfaces, maps.lamp,
-                                                   options_.shadow_resolution, beam);
+        maps.shadows =
+            std::make_shared<ShadowMap>(*scene.surfaces, maps.lamp, maps.shadow_resolution, beam);
         ++counts_.shadow_maps;
         counts_.rays += maps.shadows->rays_traced();
     }
@@ -41,26 +55,28 @@ DeepShadows LightSplatter::splat(const AssembledScene& scene, const DeepShadowOp
                                  const ShareCallback& progress) {
     counts_ = {};
     DeepShadowOptions share = options;
-    share.column_budget /= std::max(std::size_t{1}, scene.lamps.size());
+    share.column_budget /= std::max(std::size_t{1}, scene.emitters.size());
     drop_outdated(scene, share);
     std::vector<Maps> before = std::exchange(maps_, {});
     DeepShadows fields;
-    for (const Lamp& lamp : scene.lamps) {
-        const DirectionCone beam = lamp.cone();
-        Maps maps{lamp.position(), nullptr, nullptr};
+    for (const Lamp& emitter : scene.emitters) {
+        const DirectionCone beam = emitter.cone();
+        Maps maps{emitter.position(), shadow_resolution(emitter), nullptr, nullptr};
         // Lamps at the same position share their maps.
         for (const std::vector<Maps>* known : {&maps_, &before}) {
             for (const Maps& other : *known) {
                 if (other.lamp != maps.lamp) continue;
                 if (!maps.columns) maps.columns = other.columns;
-                if (!maps.shadows && other.shadows && other.shadows->beam().includes(beam))
+                if (!maps.shadows && other.shadows &&
+                    other.shadow_resolution == maps.shadow_resolution &&
+                    other.shadows->beam().includes(beam))
                     maps.shadows = other.shadows;
             }
         }
         complete(maps, scene, beam);
         fields.push_back(std::make_shared<DeepShadowMap>(maps.shadows, maps.columns));
         maps_.push_back(std::move(maps));
-        progress(static_cast<double>(fields.size()) / static_cast<double>(scene.lamps.size()));
+        progress(static_cast<double>(fields.size()) / static_cast<double>(scene.emitters.size()));
     }
     return fields;
 }

@@ -11,7 +11,7 @@
 
 namespace uw {
 
-/// Receives the fraction of the lamps that are done.
+/// Receives the fraction of the emitters that are done.
 using ShareCallback = std::function<void(double share)>;
 
 /// What one splat made rather than reused.
@@ -28,8 +28,8 @@ struct SplatCounts {
 /// only; a lamp that turned or widened its beam needs new shadows only, within that beam.
 class LightSplatter {
   public:
-    /// The light of every lamp of `scene`, the same to the bit as from a new splatter. Surfaces and
-    /// field are the same if they are the same objects. The surfaces are kept alive; a field is
+    /// The light of every emitter of `scene`, the same to the bit as from a new splatter. Surfaces
+    /// and field are the same if they are the same objects. The surfaces are kept alive; a field is
     /// not, so that its memory is free for the next one. What `progress` throws ends the splat.
     DeepShadows splat(
         const AssembledScene& scene, const DeepShadowOptions& options,
@@ -41,10 +41,12 @@ class LightSplatter {
   private:
     struct Maps {
         Point3 lamp;
+        int shadow_resolution;
         std::shared_ptr<const ShadowMap> shadows;
         std::shared_ptr<const ColumnMap> columns;
     };
 
+    int shadow_resolution(const Lamp& emitter) const;
     void drop_outdated(const AssembledScene& scene, const DeepShadowOptions& share);
     void complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam);
 

@@ -6,6 +6,7 @@
 #include "core/forward/forward_images.h"
 #include "core/integrators/focus_weighted_integrator.h"
 #include "core/integrators/integrator_table.h"
+#include "core/lamps/lamp_extent.h"
 #include "core/lamps/lamp_factory.h"
 #include "core/paths/path_tracer.h"
 #include "core/surfaces/geometry_scene.h"
@@ -14,6 +15,9 @@
 namespace uw {
 
 namespace {
+
+// Drafts make do with a quarter of the points of lamps with an extent.
+constexpr int k_draft_thinning = 4;
 
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
     to.insert(to.end(), from.begin(), from.end());
@@ -30,12 +34,12 @@ void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
             desc.file.filename().string()));
         return;
     }
-    for (std::size_t j = 0; j < scene.lamps.size(); ++j) {
-        if (distance(scene.lamps[j].position(), ray->origin) < k_lamp_radius)
+    for (const Lamp& emitter : scene.emitters) {
+        if (distance(emitter.position(), ray->origin) < k_lamp_radius)
             scene.warnings.push_back(fmt::format(
                 "{}: the lamp is where the camera's rays enter the water; its in-scatter grows "
                 "without bound there and is cut off at {} m from it; move it aside",
-                desc.lamps[j].where, k_lamp_radius));
+                desc.lamps[emitter.index()].where, k_lamp_radius));
     }
 }
 
@@ -120,9 +124,13 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
         scene.surfaces =
             build_surfaces(desc.geometry, medium.wavelengths_nm, scene.geometry_warnings);
     append(scene.warnings, scene.geometry_warnings);
-    for (const LampDesc& lamp : desc.lamps)
+    for (const LampDesc& lamp : desc.lamps) {
         scene.lamps.push_back(
             make_lamp(lamp, desc.camera.world_from_camera, medium.wavelengths_nm, scene.warnings));
+        append_emitters(lamp, scene.lamps.back(), scene.lamps.size() - 1,
+                        desc.render.quality == RenderDesc::Quality::draft ? k_draft_thinning : 1,
+                        desc.camera.world_from_camera, scene.emitters);
+    }
     warn_of_lamps_at_the_camera(desc, scene);
     scene.slabs = place_slabs(desc.render.planes, *scene.camera, scene.lit());
     return scene;

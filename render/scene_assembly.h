@@ -16,7 +16,7 @@
 
 namespace uw {
 
-/// The light of every lamp of a scene, in their order.
+/// The light of every emitter of a scene, in their order.
 using DeepShadows = std::vector<std::shared_ptr<const DeepShadowMap>>;
 
 /// A scene description turned into the concrete parts that integrators work on.
@@ -26,7 +26,8 @@ struct AssembledScene {
     WaterModel water;
     std::shared_ptr<const ConcentrationField> field;
     std::shared_ptr<const Surfaces> surfaces;
-    std::vector<Lamp> lamps;
+    std::vector<Lamp> lamps;     // as the description has them, each at its centre
+    std::vector<Lamp> emitters;  // the points that they consist of (LitScene::emitters)
     Slabs slabs;
     std::vector<VolumeReport> volume_reports;
     std::vector<std::string> warnings;  // one line each, in the order met
@@ -35,7 +36,7 @@ struct AssembledScene {
     std::vector<LoadedVolume> volumes;  // what `field` is made of
     std::vector<std::string> geometry_warnings;
 
-    LitScene lit() const { return {&water.medium, field.get(), surfaces.get(), &lamps}; }
+    LitScene lit() const { return {&water.medium, field.get(), surfaces.get(), &emitters}; }
 };
 
 /// Called with the name of each stage as it begins.

@@ -116,13 +116,13 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     setup.sensor = SensorModel(scene.desc);
     setup.first = {scene.slabs.boundary(0), scene.slabs.boundary(1)};
     const ConcentrationField* field = scene.field.get();
-    const std::vector<Lamp>* lamps = &scene.lamps;
-    setup.lamp_column = [&deep_shadows, field, lamps](std::size_t lamp, const Point3& x,
-                                                      std::span<double> column) {
+    const std::vector<Lamp>* emitters = &scene.emitters;
+    setup.lamp_column = [&deep_shadows, field, emitters](std::size_t emitter, const Point3& x,
+                                                         std::span<double> column) {
         if (deep_shadows.empty())
-            field->column((*lamps)[lamp].position(), x, column);
+            field->column((*emitters)[emitter].position(), x, column);
         else
-            deep_shadows[lamp]->columns(std::span<const Point3>(&x, 1), column);
+            deep_shadows[emitter]->columns(std::span<const Point3>(&x, 1), column);
     };
     return setup;
 }

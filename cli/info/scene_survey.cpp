@@ -37,7 +37,7 @@ class Reach {
     /// Whether some lamp's light arrives at `x` (k_reach); with a normal, from its side of the
     /// surface.
     bool any(const Point3& x, const Vector3* normal) const {
-        return std::ranges::any_of(scene_.lamps,
+        return std::ranges::any_of(scene_.emitters,
                                    [&](const Lamp& lamp) { return reaches(lamp, x, normal); });
     }
 

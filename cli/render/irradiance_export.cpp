@@ -42,7 +42,7 @@ Lattice lattice_over(const AssembledScene& scene) {
     double voxel = scene.field->finest_voxel();
     if (bounds.empty()) {
         bounds = scene.surfaces->bounds();
-        for (const Lamp& lamp : scene.lamps) bounds.extend(lamp.position());
+        for (const Lamp& lamp : scene.emitters) bounds.extend(lamp.position());
         voxel = 0;
     }
     if (bounds.empty() || bounds.diagonal() == 0)
@@ -63,16 +63,18 @@ Lattice lattice_over(const AssembledScene& scene) {
     }
 }
 
-// Irradiance of one lamp at every lattice point, [band][point].
-std::vector<std::vector<float>> sample_lamp(const AssembledScene& scene, std::size_t lamp_index,
-                                            const DeepShadowMap& light, const Lattice& lattice,
-                                            const ProgressCallback& progress) {
-    const Lamp& lamp = scene.lamps[lamp_index];
+// Irradiance at every lattice point, [band][point].
+using Irradiance = std::vector<std::vector<float>>;
+
+// Adds that of one emitter.
+void add_emitter(const AssembledScene& scene, std::size_t emitter_index, const DeepShadowMap& light,
+                 const Lattice& lattice, const ProgressCallback& progress, Irradiance& result) {
+    const Lamp& lamp = scene.emitters[emitter_index];
     const AttenuationTable attenuation(scene.water.medium);
     const auto bands = static_cast<std::size_t>(attenuation.band_count);
-    std::vector<std::vector<float>> result(bands, std::vector<float>(lattice.count()));
+    result.resize(bands, std::vector<float>(lattice.count()));
     const auto slices = static_cast<std::size_t>(lattice.size[2]);
-    std::atomic<std::size_t> done = lamp_index * slices;
+    std::atomic<std::size_t> done = emitter_index * slices;
     parallel_for(slices, [&](std::size_t slice) {
         const int k = static_cast<int>(slice);
         std::vector<double> column(static_cast<std::size_t>(scene.field->constituent_count()));
@@ -89,15 +91,14 @@ std::vector<std::vector<float>> sample_lamp(const AssembledScene& scene, std::si
                 const Spectrum t = attenuation.transmittance(radius, column);
                 const double relative = lamp.relative_intensity(v) / (r * r);
                 for (std::size_t b = 0; b < bands; ++b)
-                    result[b][lattice.index(i, j, k)] =
+                    result[b][lattice.index(i, j, k)] +=
                         static_cast<float>(lamp.axis_intensity()[b] * relative * t[b]);
             }
         }
         if (!progress(static_cast<double>(++done) /
-                      static_cast<double>(slices * scene.lamps.size())))
+                      static_cast<double>(slices * scene.emitters.size())))
             throw Interrupted();
     });
-    return result;
 }
 
 }  // namespace
@@ -110,9 +111,10 @@ void write_irradiance_vdb(const std::filesystem::path& file, const AssembledScen
                           const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows,
                           const ProgressCallback& progress) {
     const Lattice lattice = lattice_over(scene);
-    std::vector<std::vector<std::vector<float>>> values;  // [lamp][band][point]
-    for (std::size_t j = 0; j < scene.lamps.size(); ++j)
-        values.push_back(sample_lamp(scene, j, *deep_shadows[j], lattice, progress));
+    std::vector<Irradiance> values(scene.lamps.size());
+    for (std::size_t j = 0; j < scene.emitters.size(); ++j)
+        add_emitter(scene, j, *deep_shadows[j], lattice, progress,
+                    values[scene.emitters[j].index()]);
     std::vector<VdbOutputGrid> grids;
     for (std::size_t j = 0; j < scene.lamps.size(); ++j) {
         for (std::size_t b = 0; b < values[j].size(); ++b) {

@@ -114,7 +114,8 @@ class DirectSum {
                           std::vector<double>(pixels_),
                           std::vector<double>(pixels_),
                           std::vector<char>(pixels_)};
-        const std::vector<Lamp>& lamps = trial_.scene().lamps;
+        const std::vector<Lamp>& emitters = trial_.scene().emitters;
+        const auto lamps = static_cast<double>(trial_.scene().lamps.size());
         parallel_for(pixels_, [&](std::size_t i) {
             const int x = static_cast<int>(i) % trial_.width();
             const int y = static_cast<int>(i) / trial_.width();
@@ -127,15 +128,15 @@ class DirectSum {
             SurfaceLight light;
             lighting.evaluate_one(sample, light);
             seen.to_camera[i] = hit.distance;
-            for (std::size_t j = 0; j < lamps.size(); ++j)
+            for (const Lamp& emitter : emitters)
                 seen.to_lamps[i] +=
-                    distance(lamps[j].position(), hit.position) / static_cast<double>(lamps.size());
+                    distance(emitter.position(), hit.position) * emitter.share() / lamps;
             const SurfaceReflection reflection(*trial_.scene().surfaces, sample,
                                                static_cast<int>(bands_));
             Spectrum brdf;
-            for (std::size_t j = 0; j < lamps.size(); ++j) {
+            for (std::size_t j = 0; j < emitters.size(); ++j) {
                 if (!light.visible(0, j)) continue;
-                reflection.brdf(lamps[j].position(), brdf);
+                reflection.brdf(emitters[j].position(), brdf);
                 for (std::size_t b = 0; b < bands_; ++b) {
                     seen.irradiance[i][b] += light.irradiance(0, j, b);
                     seen.direct[i][b] += light.irradiance(0, j, b) * brdf[b];

@@ -63,7 +63,7 @@ void add_scaled(OpticalCoefficients& to, const OpticalCoefficients& from, double
 // Bounds of everything that light passes between lamps and camera before it is extinguished.
 Bounds reach_of(const TrialScene& trial) {
     Bounds bounds = trial.scene().surfaces->bounds();
-    for (const Lamp& lamp : trial.scene().lamps) bounds.extend(lamp.position());
+    for (const Lamp& lamp : trial.scene().emitters) bounds.extend(lamp.position());
     bounds.extend(at_origin_plus(trial.scene().camera->world_from_camera().offset()));
     const AttenuationTable c(trial.scene().water.medium);
     const double least = c.uniform.least(static_cast<std::size_t>(c.band_count));
@@ -224,15 +224,16 @@ std::vector<char> smooth_pixels(const TrialScene& trial) {
             trial.scene().surfaces->closest_hit(*ray, k_far, hit) ? hit.distance : k_far;
         std::vector<Interval> lit;
         std::vector<double> edges;
-        for (std::size_t j = 0; j < trial.scene().lamps.size(); ++j) {
-            const Interval in_beam = trial.scene().lamps[j].beam(*ray, {0, end});
+        for (std::size_t j = 0; j < trial.scene().emitters.size(); ++j) {
+            const Lamp& emitter = trial.scene().emitters[j];
+            const Interval in_beam = emitter.beam(*ray, {0, end});
             trial.light()[j]->lit_intervals(*ray, in_beam, lit);
             edges.clear();
             for (const Interval& interval : lit) {
                 edges.push_back(interval.begin);
                 edges.push_back(interval.end);
             }
-            append_hard_beam_edges(*ray, trial.scene().lamps[j], edges);
+            append_hard_beam_edges(*ray, emitter, edges);
             for (const double s : edges)
                 if (s > k_edge * end && s < (1 - k_edge) * end) smooth[i] = 0;
         }

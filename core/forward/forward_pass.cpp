@@ -52,11 +52,11 @@ ForwardPass::ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
                   renderer.rays().world_from_camera(), setup.faces, setup.shells, setup.sensor),
       bands_(static_cast<std::size_t>(renderer.band_count())) {
     groups_.emplace_back();
-    for (std::size_t j = 0; j < scene.lamps->size(); ++j) {
-        if (plan.first_channel_of_lamp(j) < 0)
-            groups_[0].lamps.push_back(j);
-        else
-            groups_.push_back({{j}, {}, {}});
+    for (std::size_t j = 0; j < scene.lamp_count(); ++j) {
+        const bool has_own = plan.first_channel_of_lamp(j) >= 0;
+        if (has_own) groups_.emplace_back();
+        group_of_lamp_.push_back(has_own ? groups_.size() - 1 : 0);
+        groups_[group_of_lamp_.back()].lamps.push_back(j);
     }
     several_ = groups_.size() > 1;
     const bool first = plan.has(Layer::backscatter_first);
@@ -150,7 +150,7 @@ void ForwardPass::add_surface(const RenderedPixel& pixel, std::size_t sample,
     };
     Spectrum irradiance, brdf;
     if (!several_) {  // the direct light is that of the pixel
-        for (std::size_t j = 0; j < light.lamp_count(); ++j)
+        for (std::size_t j = 0; j < light.emitter_count(); ++j)
             if (light.visible(at, j)) add_irradiance(0, j, irradiance);
         return;
     }
@@ -158,14 +158,13 @@ void ForwardPass::add_surface(const RenderedPixel& pixel, std::size_t sample,
     if (reflection.emits())
         for (std::size_t b = 0; b < bands_; ++b)
             sums.direct[0][b] += weight * reflection.emission()[b] * seen * to_camera[b];
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-        for (const std::size_t j : groups_[g].lamps) {
-            if (!light.visible(at, j)) continue;
-            add_irradiance(g, j, irradiance);
-            reflection.brdf((*scene_.lamps)[j].position(), brdf);
-            for (std::size_t b = 0; b < bands_; ++b)
-                sums.direct[g][b] += irradiance[b] * brdf[b] * seen * to_camera[b];
-        }
+    for (std::size_t j = 0; j < light.emitter_count(); ++j) {
+        if (!light.visible(at, j)) continue;
+        const std::size_t g = group_of_lamp_[light.emitters()[j].index()];
+        add_irradiance(g, j, irradiance);
+        reflection.brdf(light.emitters()[j].position(), brdf);
+        for (std::size_t b = 0; b < bands_; ++b)
+            sums.direct[g][b] += irradiance[b] * brdf[b] * seen * to_camera[b];
     }
 }
 

@@ -89,6 +89,7 @@ class ForwardPass {
     InScatterSlabs in_scatter_;
     std::size_t bands_;
     std::vector<Group> groups_;
+    std::vector<std::size_t> group_of_lamp_;
     bool several_;                         // whether there is more than one group
     std::vector<ImagePlane> direct_;       // per band, if there are several groups
     std::vector<ImagePlane> backscatter_;  // per band, without what is added

@@ -10,10 +10,11 @@ namespace uw {
 void LampPaths::add_mean(double weight, const Point3& x, WaterPath& path) const {
     thread_local std::vector<double> column;
     column.assign(path.columns.size(), 0.0);
-    const double each = weight / static_cast<double>(scene_.lamps->size());
-    for (std::size_t j = 0; j < scene_.lamps->size(); ++j) {
+    const double each = weight / static_cast<double>(scene_.lamp_count());
+    for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
+        const Lamp& emitter = (*scene_.emitters)[j];
         if (!column.empty()) column_(j, x, column);
-        path.add(each, distance((*scene_.lamps)[j].position(), x), column);
+        path.add(each * emitter.share(), distance(emitter.position(), x), column);
     }
 }
 
@@ -50,7 +51,7 @@ void InScatterSlabs::integrate(const Ray& ray, double end, std::size_t first, st
     slabs.resize(last - first);
     for (SlabLight& slab : slabs) {
         slab.visible = false;
-        slab.lamps.assign(scene_.lamps->size(), Spectrum{});
+        slab.lamps.assign(scene_.lamp_count(), Spectrum{});
         slab.weight = Spectrum{};
         slab.to_lamps.reset(constituents);
         slab.to_camera.reset(constituents);

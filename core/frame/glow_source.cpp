@@ -37,10 +37,11 @@ void GlowSource::add_direct(const SurfaceSample& sample, const SurfaceLight& lig
         for (std::size_t b = 0; b < bands_; ++b)
             radiance[(groups - 1) * bands_ + b] += reflection.emission()[b] * to_camera[b];
     Spectrum brdf;
-    for (std::size_t j = 0; j < light.lamp_count(); ++j) {
+    for (std::size_t j = 0; j < light.emitter_count(); ++j) {
         if (!light.visible(index, j)) continue;
-        reflection.brdf((*scene.lamps)[j].position(), brdf);
-        double* sum = &radiance[std::min(j, groups - 1) * bands_];
+        const Lamp& emitter = light.emitters()[j];
+        reflection.brdf(emitter.position(), brdf);
+        double* sum = &radiance[std::min(emitter.index(), groups - 1) * bands_];
         for (std::size_t b = 0; b < bands_; ++b)
             sum[b] += light.irradiance(index, j, b) * brdf[b] * to_camera[b];
     }

@@ -230,15 +230,15 @@ void PathPixels::add_direct(const SurfaceSample& surface, const SurfaceLight& li
         sum.add(term);
     }
     term.reflections = 1;
-    for (std::size_t j = 0; j < light.lamp_count(); ++j) {
+    for (std::size_t j = 0; j < light.emitter_count(); ++j) {
         if (!light.visible(in_light, j)) continue;
-        reflection.brdf((*scene.lamps)[j].position(), brdf);
+        reflection.brdf(light.emitters()[j].position(), brdf);
         for (std::size_t b = 0; b < bands; ++b) {
             const double reflected = light.irradiance(in_light, j, b) * brdf[b];
             leaving[b] += reflected;
             arriving[b] = reflected * to_camera[b];
         }
-        term.lamp = j;
+        term.lamp = light.emitters()[j].index();
         sum.add(term);
     }
 }

@@ -169,7 +169,7 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
                           std::size_t first_sample, std::span<const double> in_scatter,
                           PixelResult& result) const {
     const auto bands = static_cast<std::size_t>(band_count());
-    result.reset(in_scatter_.parts().lamps ? scene_.lamps->size() : 0, bands);
+    result.reset(in_scatter_.parts().lamps ? scene_.lamp_count() : 0, bands);
     result.alpha = view.alpha;
     result.has_hit = view.has_hit;
     if (view.has_hit) {
@@ -222,11 +222,12 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
         }
     }
     Spectrum brdf;
-    for (std::size_t j = 0; j < light.lamp_count(); ++j) {
+    for (std::size_t j = 0; j < light.emitter_count(); ++j) {
         if (!light.visible(sample, j)) continue;
-        result.lit += weight / static_cast<double>(light.lamp_count());
-        reflection.brdf((*scene_.lamps)[j].position(), brdf);
-        // One loop instead of a spectrum per product: this runs for every sample and every lamp.
+        const Lamp& emitter = light.emitters()[j];
+        result.lit += weight * emitter.share() / static_cast<double>(lamp_count());
+        reflection.brdf(emitter.position(), brdf);
+        // One loop instead of a spectrum per product: this runs for every sample and every emitter.
         for (std::size_t b = 0; b < bands; ++b) {
             const double irradiance = weight * light.irradiance(sample, j, b);
             const double response = brdf[b] * seen;
@@ -235,7 +236,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
             result.exitance[b] += irradiance * hit.reflectance[b];
             result.clean[b] += weight * light.clean(sample, j, b) * response;
             result.direct[b] += direct;
-            if (!result.lamps.empty()) result.lamps[j][b] += direct;
+            if (!result.lamps.empty()) result.lamps[emitter.index()][b] += direct;
         }
     }
 }

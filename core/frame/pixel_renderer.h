@@ -26,7 +26,7 @@ class PixelRenderer {
                   int samples, const Slabs& slabs, const SensorModel& sensor = {},
                   const InScatterParts& parts = {});
 
-    int lamp_count() const { return static_cast<int>(scene_.lamps->size()); }
+    int lamp_count() const { return static_cast<int>(scene_.lamp_count()); }
     int band_count() const { return scene_.medium->band_count(); }
     int samples() const { return samples_; }
     const RaySource& rays() const { return rays_; }

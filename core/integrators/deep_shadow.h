@@ -7,8 +7,8 @@
 
 namespace uw {
 
-/// Visibility and column concentrations along the light paths of one lamp, precomputed by splatting
-/// so that integrators need not trace shadow rays. Thread safe.
+/// Visibility and column concentrations along the light paths of one emitter, precomputed by
+/// splatting so that integrators need not trace shadow rays. Thread safe.
 class DeepShadow {
   public:
     virtual ~DeepShadow() = default;

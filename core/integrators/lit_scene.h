@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/lamps/lamp.h"
@@ -14,7 +15,12 @@ struct LitScene {
     const Medium* medium = nullptr;
     const ConcentrationField* field = nullptr;
     const Surfaces* surfaces = nullptr;
-    const std::vector<Lamp>* lamps = nullptr;
+    /// The points that emit light, in the order of the scene's lamps: one for each lamp, several
+    /// for a lamp with an extent (Lamp::index).
+    const std::vector<Lamp>* emitters = nullptr;
+
+    /// How many lamps the scene has.
+    std::size_t lamp_count() const { return emitters->empty() ? 0 : emitters->back().index() + 1; }
 };
 
 }  // namespace uw

@@ -64,21 +64,22 @@ void PlanesIntegrator::in_scatter(const Ray& ray, std::span<const double> distan
 void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
                                        std::span<const double> distances, InScatter& result) const {
     thread_local Workspace w;
-    const std::vector<Lamp>& lamps = *scene_.lamps;
-    result.reset(distances.size(), lamps.size());
+    const std::vector<Lamp>& emitters = *scene_.emitters;
+    result.reset(distances.size(), scene_.lamp_count());
     place_samples(ray, begin, distances, w.samples);
-    for (std::size_t j = 0; j < lamps.size(); ++j) {
-        light_samples(ray, lamps[j], w);
+    for (std::size_t j = 0; j < emitters.size(); ++j) {
+        light_samples(ray, emitters[j], w);
+        const std::size_t lamp = emitters[j].index();
         Spectrum whole;
         std::size_t next = 0;
         const auto finish =
             [&](std::size_t until) {  // all whole slabs before these have been summed
-                for (; next < until; ++next) result.at(next, j) += whole;
+                for (; next < until; ++next) result.at(next, lamp) += whole;
             };
         for (std::size_t i = 0; i < w.samples.size(); ++i) {
             const Sample& sample = w.samples[i];
             if (!sample.cut) finish(sample.distance);
-            Spectrum& sum = sample.cut ? result.at(sample.distance, j) : whole;
+            Spectrum& sum = sample.cut ? result.at(sample.distance, lamp) : whole;
             sum += w.radiance[i];
         }
         finish(distances.size());

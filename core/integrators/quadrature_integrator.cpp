@@ -118,15 +118,15 @@ QuadratureIntegrator::QuadratureIntegrator(const LitScene& scene, double toleran
 
 void QuadratureIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
                                       InScatter& result) const {
-    const std::vector<Lamp>& lamps = *scene_.lamps;
-    result.reset(distances.size(), lamps.size());
-    for (std::size_t j = 0; j < lamps.size(); ++j) {
-        RayIntegral integral(*this, ray, lamps[j]);
+    const std::vector<Lamp>& emitters = *scene_.emitters;
+    result.reset(distances.size(), scene_.lamp_count());
+    for (std::size_t j = 0; j < emitters.size(); ++j) {
+        RayIntegral integral(*this, ray, emitters[j]);
         Spectrum sum;
         double begin = 0;
         for (std::size_t i = 0; i < distances.size(); ++i) {
             sum += integral(begin, distances[i]);
-            result.at(i, j) = sum;
+            result.at(i, emitters[j].index()) += sum;
             begin = distances[i];
         }
     }
@@ -140,7 +140,7 @@ UniformWaterLighting::UniformWaterLighting(const LitScene& scene)
 void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> samples,
                                     SurfaceLight& light) const {
     const auto bands = static_cast<std::size_t>(attenuation_.band_count);
-    light.reset(samples.size(), *scene_.lamps, bands);
+    light.reset(samples.size(), *scene_.emitters, bands);
     const auto set_transmittance = [&](std::span<double> transmittance, double length) {
         for (std::size_t b = 0; b < bands; ++b)
             transmittance[b] = std::exp(-attenuation_.uniform[b] * length);
@@ -148,8 +148,8 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const auto& [ray, hit, x, y] = *samples[i];
         set_transmittance(light.to_camera(i), distance(ray.origin, hit.position));
-        for (std::size_t j = 0; j < scene_.lamps->size(); ++j) {
-            const Lamp& lamp = (*scene_.lamps)[j];
+        for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
+            const Lamp& lamp = (*scene_.emitters)[j];
             const Vector3 v = lamp.position() - hit.position;
             const double r2 = glm::dot(v, v);
             const double geometry_term =
@@ -158,7 +158,7 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
                 scene_.surfaces->occluded(lamp.position(), hit.position))
                 continue;
             light.geometry_term(i, j) = geometry_term;
-            set_transmittance(light.from_lamp(i, j), std::sqrt(r2));
+            set_transmittance(light.from_emitter(i, j), std::sqrt(r2));
         }
     }
 }

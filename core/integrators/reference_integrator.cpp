@@ -42,14 +42,14 @@ ReferenceIntegrator::ReferenceIntegrator(const LitScene& scene, double step)
 
 void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
                                      InScatter& result) const {
-    const std::vector<Lamp>& lamps = *scene_.lamps;
-    result.reset(distances.size(), lamps.size());
+    const std::vector<Lamp>& emitters = *scene_.emitters;
+    result.reset(distances.size(), scene_.lamp_count());
     const Interval grid = inside(ray, scene_.field->bounds());
     const double voxel = scene_.field->finest_voxel();
     const double least_c =
         attenuation_.uniform.least(static_cast<std::size_t>(attenuation_.band_count));
-    for (std::size_t j = 0; j < lamps.size(); ++j) {
-        const LampPassage passage(ray, lamps[j].position());
+    for (std::size_t j = 0; j < emitters.size(); ++j) {
+        const LampPassage passage(ray, emitters[j].position());
         const double reach =
             least_c > 0 ? passage.radius(0) + k_negligible_optical_depth / least_c : k_far;
         Spectrum sum;
@@ -64,14 +64,14 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
                 sum += length * in_scatter_per_metre(ray, s + 0.5 * length, j);
                 s = end - s > length ? s + length : end;
             }
-            result.at(i, j) = sum;
+            result.at(i, emitters[j].index()) += sum;
         }
     }
 }
 
 Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
                                                    std::size_t lamp_index) const {
-    const Lamp& lamp = (*scene_.lamps)[lamp_index];
+    const Lamp& lamp = (*scene_.emitters)[lamp_index];
     const Medium& medium = *scene_.medium;
     const Point3 x = ray.at(s);
     const Vector3 from_lamp = x - lamp.position();

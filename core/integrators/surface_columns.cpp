@@ -81,7 +81,7 @@ void SurfaceColumns::integrate(std::size_t sample, std::span<double> column) con
     const auto& [ray, hit, x, y] = *samples_[sample];
     const Point3& end = path_ == k_camera
                             ? ray.origin
-                            : (*scene_->lamps)[static_cast<std::size_t>(path_)].position();
+                            : (*scene_->emitters)[static_cast<std::size_t>(path_)].position();
     scene_->field->column(end, hit.position, column);
 }
 
@@ -149,9 +149,10 @@ bool SurfaceColumns::confirmed(std::size_t cell) {
     exact_.resize(constituents_);
     integrate(asked.middle, exact_);
     const double length =
-        path_ == k_camera ? samples_[asked.middle]->hit.distance
-                          : distance((*scene_->lamps)[static_cast<std::size_t>(path_)].position(),
-                                     samples_[asked.middle]->hit.position);
+        path_ == k_camera
+            ? samples_[asked.middle]->hit.distance
+            : distance((*scene_->emitters)[static_cast<std::size_t>(path_)].position(),
+                       samples_[asked.middle]->hit.position);
     for (std::size_t band = 0; band < static_cast<std::size_t>(attenuation_->band_count); ++band) {
         const double depth = attenuation_->optical_depth(band, length, exact_);
         const double difference = attenuation_->optical_depth(band, length, mixture_) - depth;

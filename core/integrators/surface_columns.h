@@ -15,7 +15,7 @@ namespace uw {
 
 /// How columns of neighbouring surface samples are interpolated rather than integrated one by one.
 struct ColumnMixing {
-    const std::vector<std::shared_ptr<const DeepShadow>>* deep_shadows = nullptr;  // by lamp
+    const std::vector<std::shared_ptr<const DeepShadow>>* deep_shadows = nullptr;  // by emitter
     /// Largest permitted error in a path's transmittance (0..1), measured between the interpolated
     /// and the exact column halfway between the surrounding samples; 0 integrates every column.
     double tolerance = 0;
@@ -36,7 +36,7 @@ class SurfaceColumns {
 
     /// Selects the other end of the paths.
     void take_camera() { take(k_camera); }
-    void take_lamp(std::size_t lamp) { take(static_cast<int>(lamp)); }
+    void take_emitter(std::size_t emitter) { take(static_cast<int>(emitter)); }
 
     /// Column concentrations of a sample's path, one per constituent [unit m].
     void column(std::size_t sample, std::span<double> column);
@@ -75,8 +75,8 @@ class SurfaceColumns {
     bool mixed_ = false;
     int x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;  // first and last pixels of the tile
     Grid2D<Node> nodes_;
-    Grid2D<Cell> cells_;                 // indexed by their first node
-    std::vector<double> node_columns_;   // exact; for a lamp, minus those of its deep shadow map
+    Grid2D<Cell> cells_;                // indexed by their first node
+    std::vector<double> node_columns_;  // exact; for an emitter, minus those of its deep shadow map
     std::vector<double> field_columns_;  // from the deep shadow map, for all samples
     std::vector<Point3> positions_;
     std::vector<double> mixture_, exact_;

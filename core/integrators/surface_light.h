@@ -9,58 +9,59 @@
 
 namespace uw {
 
-/// Light of every lamp on surface points, and the transmittance of the water from the lamps to the
-/// points and from there to the camera.
+/// Light of every emitter (LitScene::emitters) on surface points, and the transmittance of the
+/// water from the emitters to the points and from there to the camera.
 class SurfaceLight {
   public:
-    /// Resets everything to dark. `lamps` must outlive this object.
-    void reset(std::size_t samples, const std::vector<Lamp>& lamps, std::size_t bands) {
-        lamps_ = &lamps;
+    /// Resets everything to dark. `emitters` must outlive this object.
+    void reset(std::size_t samples, const std::vector<Lamp>& emitters, std::size_t bands) {
+        emitters_ = &emitters;
         bands_ = bands;
-        geometry_terms_.assign(samples * lamps.size(), 0.0);
-        transmittances_.assign(samples * (1 + lamps.size()) * bands, 0.0);
+        geometry_terms_.assign(samples * emitters.size(), 0.0);
+        transmittances_.assign(samples * (1 + emitters.size()) * bands, 0.0);
     }
 
-    std::size_t lamp_count() const { return lamps_->size(); }
-    /// Whether the lamp shines on the sample.
-    bool visible(std::size_t sample, std::size_t lamp) const {
-        return geometry_term(sample, lamp) > 0;
+    const std::vector<Lamp>& emitters() const { return *emitters_; }
+    std::size_t emitter_count() const { return emitters_->size(); }
+    /// Whether the emitter shines on the sample.
+    bool visible(std::size_t sample, std::size_t emitter) const {
+        return geometry_term(sample, emitter) > 0;
     }
     /// Irradiance in the absence of water [W/m^2].
-    double clean(std::size_t sample, std::size_t lamp, std::size_t band) const {
-        return (*lamps_)[lamp].axis_intensity()[band] * geometry_term(sample, lamp);
+    double clean(std::size_t sample, std::size_t emitter, std::size_t band) const {
+        return (*emitters_)[emitter].axis_intensity()[band] * geometry_term(sample, emitter);
     }
     /// Irradiance [W/m^2].
-    double irradiance(std::size_t sample, std::size_t lamp, std::size_t band) const {
-        return clean(sample, lamp, band) * from_lamp(sample, lamp)[band];
+    double irradiance(std::size_t sample, std::size_t emitter, std::size_t band) const {
+        return clean(sample, emitter, band) * from_emitter(sample, emitter)[band];
     }
     /// e^-tau per band from the sample to its ray's origin.
     std::span<const double> to_camera(std::size_t sample) const { return row(sample, 0); }
 
     // For SurfaceLighting, which fills in the values:
 
-    /// Irradiance without water for 1 W/sr on the lamp's axis [1/m^2]: relative intensity times
-    /// cosine over squared distance; 0 where the lamp is occluded or behind the surface.
-    double& geometry_term(std::size_t sample, std::size_t lamp) {
-        return geometry_terms_[sample * lamp_count() + lamp];
+    /// Irradiance without water for 1 W/sr on the emitter's axis [1/m^2]: relative intensity times
+    /// cosine over squared distance; 0 where it is occluded or behind the surface.
+    double& geometry_term(std::size_t sample, std::size_t emitter) {
+        return geometry_terms_[sample * emitter_count() + emitter];
     }
-    double geometry_term(std::size_t sample, std::size_t lamp) const {
-        return geometry_terms_[sample * lamp_count() + lamp];
+    double geometry_term(std::size_t sample, std::size_t emitter) const {
+        return geometry_terms_[sample * emitter_count() + emitter];
     }
     std::span<double> to_camera(std::size_t sample) { return row(sample, 0); }
-    /// e^-tau per band from the lamp to the sample; undefined where the lamp is not visible.
-    std::span<double> from_lamp(std::size_t sample, std::size_t lamp) {
-        return row(sample, 1 + lamp);
+    /// e^-tau per band from the emitter to the sample; undefined where it is not visible.
+    std::span<double> from_emitter(std::size_t sample, std::size_t emitter) {
+        return row(sample, 1 + emitter);
     }
-    std::span<const double> from_lamp(std::size_t sample, std::size_t lamp) const {
-        return row(sample, 1 + lamp);
+    std::span<const double> from_emitter(std::size_t sample, std::size_t emitter) const {
+        return row(sample, 1 + emitter);
     }
     /// All transmittances, for processing in bulk.
     std::span<double> transmittances() { return transmittances_; }
 
   private:
     std::size_t place(std::size_t sample, std::size_t path) const {
-        return (sample * (1 + lamp_count()) + path) * bands_;
+        return (sample * (1 + emitter_count()) + path) * bands_;
     }
     std::span<double> row(std::size_t sample, std::size_t path) {
         return std::span(transmittances_).subspan(place(sample, path), bands_);
@@ -69,10 +70,10 @@ class SurfaceLight {
         return std::span(transmittances_).subspan(place(sample, path), bands_);
     }
 
-    const std::vector<Lamp>* lamps_ = nullptr;
+    const std::vector<Lamp>* emitters_ = nullptr;
     std::size_t bands_ = 0;
-    std::vector<double> geometry_terms_;  // [sample][lamp]
-    std::vector<double> transmittances_;  // [sample][to the camera, then from each lamp][band]
+    std::vector<double> geometry_terms_;  // [sample][emitter]
+    std::vector<double> transmittances_;  // [sample][to the camera, then from each emitter][band]
 };
 
 }  // namespace uw

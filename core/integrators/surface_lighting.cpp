@@ -57,7 +57,7 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
     thread_local Facing facing;
     thread_local SurfaceColumns columns;
     column.resize(attenuation_.constituents.size());
-    light.reset(samples.size(), *scene_.lamps, bands);
+    light.reset(samples.size(), *scene_.emitters, bands);
     // Compute optical depths first; all are converted to transmittances at once.
     const auto set_depths = [&](std::size_t sample, double length, std::span<double> depths) {
         columns.column(sample, column);
@@ -68,16 +68,16 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
     columns.take_camera();
     for (std::size_t i = 0; i < samples.size(); ++i)
         set_depths(i, samples[i]->hit.distance, light.to_camera(i));
-    for (std::size_t j = 0; j < scene_.lamps->size(); ++j) {
-        const Lamp& lamp = (*scene_.lamps)[j];
+    for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
+        const Lamp& lamp = (*scene_.emitters)[j];
         facing.find(lamp, samples);
         scene_.surfaces->occluded_many(lamp.position(), facing.positions, facing.hidden);
-        columns.take_lamp(j);
+        columns.take_emitter(j);
         for (std::size_t n = 0; n < facing.samples.size(); ++n) {
             if (facing.hidden[n] != 0) continue;
             const std::size_t i = facing.samples[n];
             light.geometry_term(i, j) = facing.geometry_terms[n];
-            set_depths(i, facing.radii[n], light.from_lamp(i, j));
+            set_depths(i, facing.radii[n], light.from_emitter(i, j));
         }
     }
     exp_of_minus(light.transmittances());

@@ -35,7 +35,7 @@ class DirectLighting final : public SurfaceLighting {
     /// With exact columns.
     explicit DirectLighting(const LitScene& scene) : DirectLighting(scene, {}, 0) {}
     /// With columns interpolated to within `column_tolerance` (ColumnMixing). `deep_shadows`: one
-    /// per lamp unless the tolerance is 0.
+    /// per emitter unless the tolerance is 0.
     DirectLighting(const LitScene& scene,
                    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                    double column_tolerance);

@@ -157,16 +157,16 @@ void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> distan
 void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
                                        std::span<const double> distances, InScatter& result) const {
     thread_local Workspace w;
-    const std::vector<Lamp>& lamps = *scene_.lamps;
-    result.reset(distances.size(), lamps.size());
+    const std::vector<Lamp>& emitters = *scene_.emitters;
+    result.reset(distances.size(), scene_.lamp_count());
     scene_.field->profile_within(tolerance_, ray, distances.back(), w.profile);
-    for (std::size_t j = 0; j < lamps.size(); ++j) {
-        const LampPassage passage(ray, lamps[j].position());
+    for (std::size_t j = 0; j < emitters.size(); ++j) {
+        const LampPassage passage(ray, emitters[j].position());
         double reach = distances.back();
         if (smallest_attenuation_ > 0)
             reach = std::min(
                 reach, passage.radius(0) + k_negligible_optical_depth / smallest_attenuation_);
-        deep_shadows_[j]->lit_intervals(ray, lamps[j].beam(ray, {begin, reach}), w.lit);
+        deep_shadows_[j]->lit_intervals(ray, emitters[j].beam(ray, {begin, reach}), w.lit);
         w.nodes.clear();
         for (const Interval& interval : w.lit) {
             const std::vector<double>& breaks =
@@ -179,11 +179,11 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
         w.nodes.look_up(w.profile);
         w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
         w.radiance.assign(distances.size(), Spectrum{});
-        sum_.add(w.nodes, lamps[j].axis_intensity(), w.radiance);
+        sum_.add(w.nodes, emitters[j].axis_intensity(), w.radiance);
         Spectrum so_far;
         for (std::size_t i = 0; i < distances.size(); ++i) {
             so_far += w.radiance[i];
-            result.at(i, j) = so_far;
+            result.at(i, emitters[j].index()) += so_far;
         }
     }
 }
@@ -196,7 +196,7 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     w.breaks.reset(interval);
     for (const double distance : distances) w.breaks.add_edge(distance);
     w.marks.clear();
-    (*scene_.lamps)[lamp].append_profile_breaks(ray, w.marks);
+    (*scene_.emitters)[lamp].append_profile_breaks(ray, w.marks);
     for (const double s : w.marks) w.breaks.add_edge(s);
     if (passage.distance < k_lamp_radius) {
         const double half =
@@ -222,7 +222,7 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
 void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPassage& passage,
                                   std::span<const double> distances, std::span<const double> breaks,
                                   const ConcentrationProfile& profile, ScatterNodes& nodes) const {
-    const Lamp& source = (*scene_.lamps)[lamp];
+    const Lamp& source = (*scene_.emitters)[lamp];
     std::size_t next = 0;
     std::size_t knot = 0;
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {

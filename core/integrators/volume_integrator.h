@@ -18,7 +18,7 @@ class VolumeIntegrator final : public Integrator {
     /// For every scene whose lamps have been splatted.
     static const IntegratorKind k_kind;
 
-    /// `deep_shadows`: one per lamp of `scene`. `tolerance`: of the concentrations along a ray.
+    /// `deep_shadows`: one per emitter of `scene`. `tolerance`: of the concentrations along a ray.
     /// `knots_per_panel`: how finely their variation is resolved, with at least two nodes per
     /// panel; large values are for drafts.
     VolumeIntegrator(const LitScene& scene,

@@ -44,9 +44,7 @@ IesProfile::IesProfile(const IesProfileDesc& desc, const LampPlacement& placemen
                        std::shared_ptr<const PhotometricWeb> web)
     : web_(std::move(web)), cos_dark_(std::cos(web_->dark_angle())) {
     const Vector3& direction = placement.direction;
-    const Vector3 x(1, 0, 0), y(0, 1, 0);
-    const Vector3& reference = glm::length(glm::cross(direction, x)) > 1e-6 ? x : y;
-    const Vector3 towards = glm::normalize(reference - glm::dot(reference, direction) * direction);
+    const Vector3 towards = placement.across();
     // The zenith, the opposite end of the luminaire's axis, is z of a right-handed system.
     const Vector3 across = glm::cross(-direction, towards);
     const double turn = glm::radians(desc.rotate), tilt = glm::radians(desc.tilt);

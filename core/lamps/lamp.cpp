@@ -15,6 +15,20 @@ Lamp::Lamp(std::string name, const Point3& position, LampProfile profile,
       profile_(std::move(profile)),
       axis_intensity_(axis_intensity) {}
 
+Lamp Lamp::emitter(std::size_t index, const Point3& position, double share) const {
+    Lamp point = brightened(share);
+    point.index_ = index;
+    point.share_ = share;
+    point.position_ = position;
+    return point;
+}
+
+Lamp Lamp::brightened(double factor) const {
+    Lamp lamp = *this;
+    for (double& value : lamp.axis_intensity_) value *= factor;
+    return lamp;
+}
+
 std::string_view Lamp::profile_name() const {
     return std::visit([](const auto& profile) { return profile.k_name; }, profile_);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,14 +16,27 @@ namespace uw {
 /// of a point source would grow without bound [m].
 inline constexpr double k_lamp_radius = 1e-3;
 
-/// A point-like lamp in the world: radiant intensity I(w, lambda) = intensity * profile(w) [W/sr].
+/// A point-like source of light in the world: radiant intensity I(w, lambda) = intensity *
+/// profile(w) [W/sr]. A lamp of the scene, or one of the points that a lamp with an extent consists
+/// of (core/lamps/lamp_extent.h).
 class Lamp {
   public:
     /// `axis_intensity`: radiant intensity per band where the profile is 1 [W/sr].
     Lamp(std::string name, const Point3& position, LampProfile profile,
          const Spectrum& axis_intensity);
 
+    /// A point of this lamp, the scene's with this `index`: at `position`, with a `share` of its
+    /// light.
+    Lamp emitter(std::size_t index, const Point3& position, double share) const;
+
+    /// The same emitter, but `factor` times as bright.
+    Lamp brightened(double factor) const;
+
     const std::string& name() const { return name_; }
+    /// Which of the scene's lamps it belongs to; 0 unless it is an emitter.
+    std::size_t index() const { return index_; }
+    /// The share of that lamp's light that comes from here.
+    double share() const { return share_; }
     const Point3& position() const { return position_; }
     /// Radiant intensity on the axis per band [W/sr]; for an IES profile, in the brightest
     /// direction.
@@ -53,6 +67,8 @@ class Lamp {
     Point3 position_;
     LampProfile profile_;
     Spectrum axis_intensity_{};
+    std::size_t index_ = 0;
+    double share_ = 1;
 };
 
 }  // namespace uw

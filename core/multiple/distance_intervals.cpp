@@ -44,7 +44,7 @@ double fine_reach_of_open_water(const RaySource& rays, const LitScene& scene, do
     double reach = c > 0 ? k_fine_depth / c : 0;
     const auto ray = rays.refracted_ray(0.5 * rays.width(), 0.5 * rays.height());
     if (!ray) return reach;
-    for (const Lamp& lamp : *scene.lamps)
+    for (const Lamp& lamp : *scene.emitters)
         reach = std::max(reach, 2 * distance(ray->origin, lamp.position()));
     return reach;
 }

@@ -171,9 +171,9 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
         const SurfaceReflection reflection(*scene_.surfaces, sample, static_cast<int>(bands));
         w.seen.assign(bands, 0.0);
         Spectrum brdf;
-        for (std::size_t j = 0; j < w.light.lamp_count(); ++j) {
+        for (std::size_t j = 0; j < w.light.emitter_count(); ++j) {
             if (!w.light.visible(0, j)) continue;
-            reflection.brdf((*scene_.lamps)[j].position(), brdf);
+            reflection.brdf(w.light.emitters()[j].position(), brdf);
             for (std::size_t b = 0; b < bands; ++b)
                 w.seen[b] += w.light.irradiance(0, j, b) * brdf[b];
         }

@@ -55,14 +55,14 @@ void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
                                    std::span<double> column) const {
     if (column.empty()) return;
     if (deep_shadows_.empty())
-        optics_.scene().field->column((*optics_.scene().lamps)[lamp].position(), x, column);
+        optics_.scene().field->column((*optics_.scene().emitters)[lamp].position(), x, column);
     else
         deep_shadows_[lamp]->columns(std::span(&x, 1), column);
 }
 
 void LampGathering::find_water_shares(const WaterSegment& segment, std::span<const double> weights,
                                       const PathState& state, Workspace& w) const {
-    const std::vector<Lamp>& lamps = *optics_.scene().lamps;
+    const std::vector<Lamp>& lamps = *optics_.scene().emitters;
     const std::size_t phases = tables_.phase_count();
     // By the scattering of the whole segment: what is chosen need only resemble what it stands for.
     const Medium& medium = *optics_.scene().medium;
@@ -178,7 +178,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
     density *= lamp_choice.probability / total;
     if (!(density > 0)) return;
 
-    const Lamp& lamp = (*optics_.scene().lamps)[share.lamp];
+    const Lamp& lamp = (*optics_.scene().emitters)[share.lamp];
     const Point3 x = segment.ray.at(s);
     const double relative = lamp.relative_intensity(x - lamp.position());
     if (!(relative > 0) || optics_.scene().surfaces->occluded(lamp.position(), x)) return;
@@ -212,7 +212,7 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
     thread_local Workspace w;
     double u = random.next();
     const std::size_t bands = optics_.bands();
-    const std::vector<Lamp>& lamps = *optics_.scene().lamps;
+    const std::vector<Lamp>& lamps = *optics_.scene().emitters;
     const SurfaceHit& hit = segment.hit;
     const SurfaceSample sample{segment.ray, hit, 0, 0};
     const SurfaceReflection reflection(*optics_.scene().surfaces, sample, static_cast<int>(bands));

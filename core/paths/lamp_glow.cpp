@@ -25,13 +25,13 @@ struct Nearness {
 
 LampGlow::Spread LampGlow::spread(std::size_t lamp, const LampPassage& passage, double s,
                                   const Point3& x) const {
-    const Nearness near((*optics_.scene().lamps)[lamp], x);
+    const Nearness near((*optics_.scene().emitters)[lamp], x);
     const double h = passage.half_tangent(s, near.radius);
     return {near.relative * tables_.spread_glow(h), near.radius};
 }
 
 double LampGlow::of_lamp(std::size_t lamp, const Point3& x, const Spectrum& weights) const {
-    const Lamp& source = (*optics_.scene().lamps)[lamp];
+    const Lamp& source = (*optics_.scene().emitters)[lamp];
     const Nearness near(source, x);
     return near.relative * optics_.attenuated_sum(weights, source.axis_intensity(), near.radius);
 }

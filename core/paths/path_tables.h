@@ -14,24 +14,26 @@
 
 namespace uw {
 
-/// What all paths through a scene look up.
+/// What all paths through a scene look up that see its lamps alike (LampView).
 struct PathTables {
     WaterOptics optics;
-    ScatteringTables scattering;
+    const ScatteringTables& scattering;
     LampGathering lamps;
     LampGlow glow;
     VertexTables vertices;
     Spectrum light;   // of all lamps on their axes, or 1 without lamps
     Spectrum albedo;  // the greatest of all the water may hold, at least 0.1: guides paths
 
-    /// `deep_shadows`: as LampGathering takes them.
-    PathTables(const LitScene& scene, std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
+    /// `scene`: with one emitter per lamp. `deep_shadows`: as LampGathering takes them. What is
+    /// referred to must outlive this object.
+    PathTables(const LitScene& scene, const ScatteringTables& tables,
+               std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
         : optics(scene),
-          scattering(*scene.medium),
+          scattering(tables),
           lamps(optics, scattering, std::move(deep_shadows)),
           glow(optics, scattering),
           vertices{&optics, &scattering, &glow} {
-        for (const Lamp& lamp : *scene.lamps) light += lamp.axis_intensity();
+        for (const Lamp& lamp : *scene.emitters) light += lamp.axis_intensity();
         for (std::size_t b = 0; b < optics.bands(); ++b) {
             const auto include = [&](const OpticalCoefficients& coefficients) {
                 const double c = coefficients.attenuation(b);
@@ -42,7 +44,7 @@ struct PathTables {
                 include(constituent.per_unit);
             albedo[b] = std::max(albedo[b], 0.1);
         }
-        if (scene.lamps->empty())
+        if (scene.emitters->empty())
             for (std::size_t b = 0; b < optics.bands(); ++b) light[b] = 1;
     }
 };

@@ -43,22 +43,41 @@ Workspace& workspace_of_thread() {
 
 }  // namespace
 
-PathTracer::PathTracer(const LitScene& scene, PathOptions options)
-    : tables_(std::make_unique<PathTables>(scene, std::move(options.deep_shadows))) {}
+PathTracer::PathTracer(const LitScene& scene, const PathOptions& options)
+    : scattering_(std::make_unique<ScatteringTables>(*scene.medium)),
+      views_(lamp_views(*scene.emitters)) {
+    for (const LampView& view : views_) {
+        LitScene seen = scene;
+        seen.emitters = &view.lamps;
+        std::vector<std::shared_ptr<const DeepShadow>> deep_shadows;
+        if (!options.deep_shadows.empty())
+            for (const std::size_t emitter : view.emitters)
+                deep_shadows.push_back(options.deep_shadows[emitter]);
+        tables_.push_back(
+            std::make_unique<PathTables>(seen, *scattering_, std::move(deep_shadows)));
+    }
+}
 
 PathTracer::~PathTracer() = default;
+
+// A path sees one point of each lamp.
+const PathTables& PathTracer::choose_tables(PathRandom& random) const {
+    if (tables_.size() == 1) return *tables_.front();
+    const double place = random.next() * static_cast<double>(tables_.size());
+    return *tables_[std::min(static_cast<std::size_t>(place), tables_.size() - 1)];
+}
 
 void PathTracer::begin(const Ray& ray, const SurfaceHit* hit, std::span<const double> surface_light,
                        CameraSegment& segment) const {
     Workspace& w = workspace_of_thread();
-    const WaterOptics& optics = tables_->optics;
+    const WaterOptics& optics = tables_.front()->optics;
     WaterSegment& water = segment.water;
     optics.set(ray, hit, water);
     optics.look_up(water, water.length, w.point);
     segment.transmittance = {};
     if (hit) optics.transmittances(water.length, w.point.column, segment.transmittance);
     w.passages.clear();
-    for (const Lamp& lamp : *optics.scene().lamps) w.passages.emplace_back(ray, lamp.position());
+    for (const Lamp& lamp : *optics.scene().emitters) w.passages.emplace_back(ray, lamp.position());
     place_intervals(segment);
     weigh_intervals(surface_light, segment);
 }
@@ -67,7 +86,7 @@ void PathTracer::begin(const Ray& ray, const SurfaceHit* hit, std::span<const do
 // at knots of the concentrations.
 void PathTracer::place_intervals(CameraSegment& segment) const {
     Workspace& w = workspace_of_thread();
-    const WaterOptics& optics = tables_->optics;
+    const WaterOptics& optics = tables_.front()->optics;
     const WaterSegment& water = segment.water;
     std::vector<double>& s = segment.distances;
     const double c = optics.attenuation().uniform[optics.clearest_band()];
@@ -110,11 +129,11 @@ void PathTracer::place_intervals(CameraSegment& segment) const {
 void PathTracer::weigh_intervals(std::span<const double> surface_light,
                                  CameraSegment& segment) const {
     Workspace& w = workspace_of_thread();
-    const WaterOptics& optics = tables_->optics;
+    const WaterOptics& optics = tables_.front()->optics;
     const std::size_t bands = optics.bands();
     const WaterSegment& water = segment.water;
     const std::vector<double>& s = segment.distances;
-    const std::vector<Lamp>& lamps = *optics.scene().lamps;
+    const std::vector<Lamp>& lamps = *optics.scene().emitters;
     const AttenuationTable& attenuation = optics.attenuation();
     // A few of the bands, evenly spread, stand for all.
     const std::size_t stride = (bands + k_most_guiding_bands - 1) / k_most_guiding_bands;
@@ -128,7 +147,7 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
         w.spreads.clear();
         for (std::size_t j = 0; j < lamps.size(); ++j)
             w.spreads.push_back(
-                tables_->glow.spread(j, w.passages[j], middle, water.ray.at(middle)));
+                tables_.front()->glow.spread(j, w.passages[j], middle, water.ray.at(middle)));
         double guided = 0, plain = 0;
         for (std::size_t b = stride / 2; b < bands; b += stride) {
             double scattering = 0;
@@ -175,14 +194,16 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
 
 void PathTracer::trace_single(const CameraSegment& segment, PathRandom& random,
                               PathTerms& terms) const {
+    const PathTables& tables = choose_tables(random);
     PathState state;
-    for (double& value : state.throughput.first(tables_->optics.bands())) value = 1;
+    for (double& value : state.throughput.first(tables.optics.bands())) value = 1;
     state.from_water = true;
-    tables_->lamps.gather_from_water(segment.water, {}, state, random, terms);
+    tables.lamps.gather_from_water(segment.water, {}, state, random, terms);
 }
 
 void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
                              PathTerms& terms) const {
+    const PathTables& tables = choose_tables(random);
     double u = random.next();
     if (segment.cumulative.empty()) return;
     Workspace& w = workspace_of_thread();
@@ -191,10 +212,10 @@ void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
     const double length = segment.distances[interval.index + 1] - begin;
     if (!(interval.probability > 0)) return;
     const double s = begin + u * length;
-    const WaterOptics& optics = tables_->optics;
+    const WaterOptics& optics = tables.optics;
     optics.look_up(segment.water, s, w.point);
     optics.find_scattering(w.point);
-    PathWalk walk(*tables_, segment.light, random, terms);
+    PathWalk walk(tables, segment.light, random, terms);
     PathState& state = walk.state();
     optics.transmittances(s, w.point.column, state.throughput);
     for (double& value : state.throughput.first(optics.bands()))
@@ -207,7 +228,7 @@ void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
 void PathTracer::trace_surface(const CameraSegment& segment, PathRandom& random,
                                PathTerms& terms) const {
     if (!segment.water.has_hit) return;
-    PathWalk walk(*tables_, segment.light, random, terms);
+    PathWalk walk(choose_tables(random), segment.light, random, terms);
     PathState& state = walk.state();
     std::ranges::copy(segment.transmittance, state.throughput.begin());
     state.distance = segment.water.length;
@@ -221,9 +242,10 @@ void PathTracer::trace_mirrored(const SurfaceSample& sample, PathRandom& random,
     segment.length = sample.hit.distance;
     segment.has_hit = true;
     segment.hit = sample.hit;
-    PathWalk walk(*tables_, {}, random, terms);
+    const PathTables& tables = choose_tables(random);
+    PathWalk walk(tables, {}, random, terms);
     PathState& state = walk.state();
-    for (double& value : state.throughput.first(tables_->optics.bands())) value = 1;
+    for (double& value : state.throughput.first(tables.optics.bands())) value = 1;
     state.distance = sample.hit.distance;
     walk.mirror(segment);
 }

@@ -7,6 +7,7 @@
 #include "core/integrators/deep_shadow.h"
 #include "core/integrators/lit_scene.h"
 #include "core/paths/camera_segment.h"
+#include "core/paths/lamp_views.h"
 #include "core/paths/path_random.h"
 #include "core/paths/path_terms.h"
 #include "core/surfaces/surface_sample.h"
@@ -14,17 +15,18 @@
 namespace uw {
 
 struct PathTables;
+struct ScatteringTables;
 
 /// Where light paths take optical depths between lamps and points from.
 struct PathOptions {
-    /// One per lamp: their columns and no others. Empty: columns are exact.
+    /// One per emitter: their columns and no others. Empty: columns are exact.
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows{};
 };
 
 /// Unbiased estimates of all light by random paths from the camera (docs/multiple.md). Thread safe.
 class PathTracer {
   public:
-    explicit PathTracer(const LitScene& scene, PathOptions options = {});
+    explicit PathTracer(const LitScene& scene, const PathOptions& options = {});
     ~PathTracer();
     PathTracer(const PathTracer&) = delete;
     PathTracer& operator=(const PathTracer&) = delete;
@@ -52,10 +54,13 @@ class PathTracer {
     }
 
   private:
+    const PathTables& choose_tables(PathRandom& random) const;
     void place_intervals(CameraSegment& segment) const;
     void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
 
-    std::unique_ptr<const PathTables> tables_;
+    std::unique_ptr<const ScatteringTables> scattering_;
+    std::vector<LampView> views_;
+    std::vector<std::unique_ptr<const PathTables>> tables_;  // one per view
 };
 
 }  // namespace uw

@@ -81,7 +81,7 @@ void PathVertex::find_lobes(const Spectrum& throughput) {
     lobes_.clear();
     lobe_cumulative_.clear();
     if (!(tables_.scattering->lobe.mass() > 0)) return;
-    const std::vector<Lamp>& lamps = *tables_.optics->scene().lamps;
+    const std::vector<Lamp>& lamps = *tables_.optics->scene().emitters;
     const double scattering = scattering_around();
     const double attenuation =
         tables_.optics->attenuation().uniform[tables_.optics->clearest_band()];
@@ -116,7 +116,7 @@ std::optional<DrawnLobe> PathVertex::draw_lobe(PathRandom& random) const {
 }
 
 void PathVertex::lobe_densities(const Vector3& direction, std::vector<double>& densities) const {
-    densities.assign(tables_.optics->scene().lamps->size(), 0.0);
+    densities.assign(tables_.optics->scene().emitters->size(), 0.0);
     double before = 0;
     for (std::size_t i = 0; i < lobes_.size(); ++i) {
         const double h = half_tangent_between(lobes_[i].direction, direction);

@@ -7,6 +7,7 @@
 
 #include "core/base/affine.h"
 #include "core/base/vec.h"
+#include "core/scene/lamp_extent_desc.h"
 #include "core/scene/lamp_profile_desc.h"
 #include "core/scene/lamp_spectrum_desc.h"
 #include "core/scene/per_band.h"
@@ -14,11 +15,12 @@
 
 namespace uw {
 
-/// A lamp, small enough to be treated as a point source.
+/// A lamp: a point, or one with an extent.
 struct LampDesc {
-    std::string name;            ///< of its layers; unique in the scene
-    Point3 position;             ///< in its frame [m]
-    Vector3 direction{0, 0, 1};  ///< in its frame, unit
+    std::string name;                      ///< of its layers; unique in the scene
+    Point3 position;                       ///< in its frame [m]
+    Vector3 direction{0, 0, 1};            ///< in its frame, unit
+    std::optional<LampExtentDesc> extent;  ///< none: it is a point
     LampProfileDesc profile;
     // At most one of the next three is set; none for a profile that is absolute.
     std::optional<PerBand> intensity;  ///< on the axis [W/sr]; with a spectrum, a single total

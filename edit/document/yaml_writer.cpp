@@ -13,13 +13,15 @@ namespace {
 
 /// In the order of docs/scene-file.md.
 constexpr auto k_key_order = std::to_array<std::string_view>(
-    {"uwvdb",       "camera",     "cameras",     "rig",        "water", "volumes",     "geometry",
-     "lamps",       "render",     "name",        "type",       "model", "file",        "resolution",
-     "calibration", "intrinsics", "distortion",  "port",       "pose",  "lens",        "bands",
-     "preset",      "salinity",   "temperature", "absorption", "cdom",  "chlorophyll", "particles",
-     "small",       "large",      "scattering",  "b",          "phase", "position",    "direction",
-     "look_at",     "up",         "profile",     "beam",       "edge",  "falloff",     "fwhm",
-     "rotate",      "tilt",       "spectrum",    "intensity",  "power", "lumens",      "frame"});
+    {"uwvdb",      "camera",     "cameras",     "rig",        "water",      "volumes",
+     "geometry",   "lamps",      "render",      "name",       "type",       "model",
+     "file",       "resolution", "calibration", "intrinsics", "distortion", "port",
+     "pose",       "lens",       "bands",       "preset",     "salinity",   "temperature",
+     "absorption", "cdom",       "chlorophyll", "particles",  "small",      "large",
+     "scattering", "b",          "phase",       "position",   "direction",  "width",
+     "height",     "radius",     "samples",     "look_at",    "up",         "profile",
+     "beam",       "edge",       "falloff",     "fwhm",       "rotate",     "tilt",
+     "spectrum",   "intensity",  "power",       "lumens",     "frame"});
 
 bool is_word_of_yaml(std::string_view text) {
     constexpr auto k_words = std::to_array<std::string_view>(

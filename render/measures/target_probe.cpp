@@ -99,6 +99,11 @@ std::string key_of(const LampDesc& lamp, double distance) {
             key += fmt::format("{} {} {} {} ", mount.linear()[i].x, mount.linear()[i].y,
                                mount.linear()[i].z, mount.offset()[i]);
     }
+    if (lamp.extent) {
+        const LampExtentDesc& extent = *lamp.extent;
+        key += fmt::format("{} {} {} {} {} {} ", static_cast<int>(extent.shape), extent.width,
+                           extent.height, extent.rotate, extent.radius, extent.samples);
+    }
     return key + profile_key(lamp.profile);
 }
 

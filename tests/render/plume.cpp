@@ -85,6 +85,20 @@ TEST(GaussianPlume, VolumeIntegratorAgreesWithTheReference) {
     }
 }
 
+TEST(GaussianPlume, VolumeIntegratorAgreesWithTheReferenceInTheLightOfAPanel) {
+    const TempDir dir;
+    SceneDesc desc = plume_scene(write_gaussian(dir, 0.05));
+    resize_image(desc.camera, 16, 12);
+    desc.lamps.pop_back();
+    desc.lamps[0].profile = CosineProfileDesc{120};
+    desc.lamps[0].extent = LampExtentDesc{LampExtentDesc::Shape::rectangle, 0.5, 0.2, 0, 0, 6};
+    const std::vector<PixelResult> image = TestScene(desc).image();
+    desc.render.integrator = RenderDesc::Integrator::reference;
+    const std::vector<PixelResult> truth = TestScene(desc).image();
+    for (std::size_t band = 0; band < 3; ++band)
+        EXPECT_LT(difference(image, truth, band).rms, 0.003);  // as for point lamps
+}
+
 TEST(GaussianPlume, DimsWhatIsBehindItAndGlowsItself) {
     const TempDir dir;
     const SceneDesc with = plume_scene(write_gaussian(dir, 0.05));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -46,6 +47,12 @@ LampProfileDesc read_spot(ConfigMap& map, const SceneContext& /*context*/) {
              {"blender", Falloff::blender},
              {"blender-3.4", Falloff::blender_3_4}});
         profile.falloff = falloff->choice(k_falloffs);
+        const bool is_blenders =
+            profile.falloff == Falloff::blender || profile.falloff == Falloff::blender_3_4;
+        if (is_blenders && profile.beam + profile.edge > 180)
+            falloff->fail(fmt::format(
+                "needs beam + edge, Blender's Size, of at most 180, found {}; make them narrower",
+                profile.beam + profile.edge));
     }
     return profile;
 }
@@ -140,10 +147,51 @@ void read_output(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
     }
 }
 
+void read_samples(ConfigMap& map, LampExtentDesc& extent) {
+    if (const auto samples = map.find("samples"))
+        extent.samples = samples->integer(1, 1024, "give the number of points that stand for it");
+}
+
+std::optional<LampExtentDesc> read_point(ConfigMap& /*map*/) {
+    return std::nullopt;
+}
+
+std::optional<LampExtentDesc> read_rectangle(ConfigMap& map) {
+    LampExtentDesc extent;
+    constexpr auto k_mend = "give the sides of the luminous rectangle in metres";
+    extent.width = map.require("width", k_mend).positive(k_mend);
+    extent.height = map.require("height", k_mend).positive(k_mend);
+    if (const auto rotate = map.find("rotate"))
+        extent.rotate =
+            rotate->within(-360, 360, "give the turn about the lamp's direction in degrees");
+    read_samples(map, extent);
+    return extent;
+}
+
+std::optional<LampExtentDesc> read_disk(ConfigMap& map) {
+    LampExtentDesc extent;
+    extent.shape = LampExtentDesc::Shape::disk;
+    constexpr auto k_mend = "give the radius of the luminous disk in metres";
+    extent.radius = map.require("radius", k_mend).positive(k_mend);
+    read_samples(map, extent);
+    return extent;
+}
+
+// The lamp's type, and what only this type has.
+void read_extent(ConfigMap& map, LampDesc& lamp) {
+    using Read = std::optional<LampExtentDesc> (*)(ConfigMap&);
+    constexpr auto k_types = std::to_array<std::pair<std::string_view, Read>>(
+        {{"point", read_point}, {"rectangle", read_rectangle}, {"disk", read_disk}});
+    const auto type = map.find("type");
+    lamp.extent = (type ? type->choice(k_types) : read_point)(map);
+    // A diffuse surface, unless a profile says otherwise.
+    if (lamp.extent) lamp.profile = CosineProfileDesc{120};
+}
+
 LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneContext& context) {
     ConfigMap map(value,
-                  {"name", "position", "direction", "profile", "spectrum", "intensity", "power",
-                   "lumens", "frame"},
+                  {"name", "type", "position", "direction", "width", "height", "radius", "rotate",
+                   "samples", "profile", "spectrum", "intensity", "power", "lumens", "frame"},
                   "write {name: left, position: [-1, 0, 0], intensity: 50}");
     LampDesc lamp;
     lamp.where = value.location();
@@ -156,6 +204,7 @@ LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneCont
     if (const auto entry = map.find("direction")) {
         lamp.direction = entry->direction("give the direction in which the lamp shines, not all 0");
     }
+    read_extent(map, lamp);
     if (const auto entry = map.find("profile")) lamp.profile = read_profile(*entry, context);
     read_output(map, context, lamp);
     enum class Frame { camera, rig, world };
@@ -175,6 +224,8 @@ LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneCont
         lamp.world_from_mount =
             frame == Frame::rig ? context.rig->world_from_rig : context.rig->world_from_camera;
     }
+    const ConfigNode* const type = value.node().find("type");
+    map.finish(fmt::format("a lamp of type '{}'", type ? type->scalar : "point"));
     return lamp;
 }
 

@@ -40,8 +40,8 @@ class FaultyLighting final : public SurfaceLighting {
                   SurfaceLight& light) const override {
         honest_->evaluate(samples, light);
         for (std::size_t i = 0; i < samples.size(); ++i)
-            for (std::size_t j = 0; j < light.lamp_count(); ++j)
-                for (double& value : light.from_lamp(i, j)) value *= factor_;
+            for (std::size_t j = 0; j < light.emitter_count(); ++j)
+                for (double& value : light.from_emitter(i, j)) value *= factor_;
     }
 
   private:
@@ -93,8 +93,8 @@ class LightingOfFaultyIrradiance final : public SurfaceLighting {
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const double more = 1 + 0.3 * std::sin(3 * samples[i]->hit.position.x);
             for (double& value : light.to_camera(i)) value /= more;
-            for (std::size_t j = 0; j < light.lamp_count(); ++j)
-                for (double& value : light.from_lamp(i, j)) value *= more;
+            for (std::size_t j = 0; j < light.emitter_count(); ++j)
+                for (double& value : light.from_emitter(i, j)) value *= more;
         }
     }
 

@@ -64,7 +64,7 @@ class SurfaceColumnsTest : public ::testing::Test {
         SurfaceColumns columns;
         field_.count = 0;
         columns.begin(scene, attenuation, {&deep_shadows_, k_tolerance}, seen_);
-        from_lamp ? columns.take_lamp(0) : columns.take_camera();
+        from_lamp ? columns.take_emitter(0) : columns.take_camera();
         std::vector<double> mixed(samples_.size());
         for (std::size_t i = 0; i < mixed.size(); ++i) columns.column(i, {&mixed[i], 1});
         Outcome outcome{0, field_.count};

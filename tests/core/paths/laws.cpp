@@ -95,6 +95,32 @@ TEST(PathLaws, LightOfLampsIsThatOfTheirSum) {
     deviations.expect_within_errors();
 }
 
+// Paths see one point of a lamp with an extent at a time (LampView); here 3 of one and 2 of
+// another.
+TEST(PathLaws, ALampsLightIsThatOfItsPoints) {
+    const std::vector<Point3> points{
+        k_lamp, {0.8, -0.7, 0.1}, {1.2, -0.4, -0.1}, {-0.7, 0.6, 0.5}, {-0.9, 0.5, 0.4}};
+    const std::vector<double> intensities{0.3, 0.3, 0.3, 0.2, 0.2};
+    PathScene apart = lit_scene(k_three_bands);
+    apart.lamps.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) apart.add_lamp(points[i], intensities[i]);
+    PathScene together = lit_scene(k_three_bands);
+    together.lamps.clear();
+    for (std::size_t i = 0; i < points.size(); ++i)
+        together.lamps.push_back(
+            apart.lamps[i].emitter(i < 3 ? 0 : 1, points[i], i < 3 ? 1.0 / 3 : 0.5));
+    // The shares have dimmed them once more.
+    for (std::size_t i = 0; i < points.size(); ++i)
+        together.lamps[i] = together.lamps[i].brightened(i < 3 ? 3 : 2);
+    ASSERT_EQ(together.lit().lamp_count(), 2U);
+    const auto of_lamps = ray_batches(together, some_ray(), 1);
+    const auto of_points = ray_batches(apart, some_ray(), 2);
+    Deviations deviations;
+    for (std::size_t b = 0; b < 3; ++b)
+        compare_kinds(of_lamps, b, of_points, b, "band", deviations);
+    deviations.expect_within_errors();
+}
+
 TEST(PathLaws, EachLampHasItsOwnLight) {
     struct PerLamp final : PathTerms {
         void add(const PathTerm& term) override { sums[term.lamp] += term.radiance[0]; }
@@ -127,7 +153,7 @@ TEST(PathLaws, EachLampHasItsOwnLight) {
     for (const std::size_t lamp : {0U, 1U}) {
         PathScene alone({{0.1, 0.3}}, 0.9);
         alone.set_surfaces(box_and_plane(1));
-        alone.lamps.push_back(both.lamps[lamp]);
+        alone.lamps.push_back(both.lamps[lamp].emitter(0, both.lamps[lamp].position(), 1));
         const BatchMeans truth = means_of(ray_batches(alone, ray, 5 + lamp),
                                           [](const TermSums& sums) { return sums.total(0); });
         deviations.add("lamp", shares[lamp], truth.mean(), truth.error());

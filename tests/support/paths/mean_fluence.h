@@ -24,7 +24,7 @@ inline double visible_transmittance(const LitScene& scene, std::size_t band, con
 /// at which a diffuse surface lies: reflected once, never scattered.
 inline void add_direct_light(const LitScene& scene, const Ray& ray, const SurfaceHit& hit,
                              double weight, TermSums& sums) {
-    const Lamp& lamp = scene.lamps->front();
+    const Lamp& lamp = scene.emitters->front();
     const Vector3 way = hit.position - lamp.position();
     const double r2 = glm::dot(way, way), cosine = -glm::dot(way, hit.normal) / std::sqrt(r2);
     if (cosine <= 0) return;
@@ -41,7 +41,7 @@ inline void add_direct_light(const LitScene& scene, const Ray& ray, const Surfac
 
 /// The fluence of the lamp's unscattered light.
 inline void add_unscattered(const LitScene& scene, const Point3& x, double weight, TermSums& sums) {
-    const Lamp& lamp = scene.lamps->front();
+    const Lamp& lamp = scene.emitters->front();
     const Vector3 way = x - lamp.position();
     const auto bands = static_cast<std::size_t>(scene.medium->band_count());
     std::vector<double> fluence(bands);
@@ -63,7 +63,7 @@ struct FluenceDirection {
 inline FluenceDirection fluence_direction(const LitScene& scene, const Point3& x, double u,
                                           double v) {
     constexpr double pi = std::numbers::pi;
-    const Vector3 axis = glm::normalize(scene.lamps->front().position() - x);
+    const Vector3 axis = glm::normalize(scene.emitters->front().position() - x);
     const Vector3 across = glm::normalize(
         glm::cross(axis, std::abs(axis.x) < 0.7 ? Vector3(1, 0, 0) : Vector3(0, 1, 0)));
     const double psi = pi * u * u, azimuth = 2 * pi * v;

@@ -62,7 +62,8 @@ struct PathScene {
     void add_lamp(const Point3& position, double intensity,
                   const LampProfile& profile = IsotropicProfile()) {
         const Spectrum bands = per_band(band_count(), [&](std::size_t) { return intensity; });
-        lamps.emplace_back("lamp" + std::to_string(lamps.size()), position, profile, bands);
+        const Lamp lamp("lamp" + std::to_string(lamps.size()), position, profile, bands);
+        lamps.push_back(lamp.emitter(lamps.size(), position, 1));
     }
 
     std::size_t band_count() const { return medium.wavelengths_nm.size(); }

@@ -41,6 +41,8 @@ TEST_F(LampReader, ReadsEachProfile) {
               SpotProfileDesc::Falloff::blender);
     EXPECT_EQ(profile<SpotProfileDesc>("{type: spot, beam: 60, falloff: blender-3.4}").falloff,
               SpotProfileDesc::Falloff::blender_3_4);
+    EXPECT_THROW(profile<SpotProfileDesc>("{type: spot, beam: 150, edge: 31, falloff: blender}"),
+                 InputError);
     EXPECT_EQ(profile<SpotProfileDesc>("{type: spot, beam: 60}").falloff,
               SpotProfileDesc::Falloff::smooth);
     EXPECT_EQ(profile<CosineProfileDesc>("{type: cosine, fwhm: 70}").fwhm, 70);
@@ -52,6 +54,42 @@ TEST_F(LampReader, ReadsEachProfile) {
     EXPECT_NE(ies.where.find("lamps[0].profile"), std::string::npos) << ies.where;
     EXPECT_TRUE(std::holds_alternative<IsotropicProfileDesc>(
         read("[{position: [0, 0, 0], intensity: 1}]").at(0).profile));
+}
+
+TEST_F(LampReader, ReadsExtents) {
+    EXPECT_FALSE(read("[{position: [0, 0, 0], intensity: 1, type: point}]").at(0).extent);
+    const LampDesc panel = read(
+                               "[{type: rectangle, width: 0.4, height: 0.2, rotate: 30, samples: "
+                               "16, position: [0, 0, 0], power: 1}]")
+                               .at(0);
+    EXPECT_EQ(panel.extent,
+              (LampExtentDesc{LampExtentDesc::Shape::rectangle, 0.4, 0.2, 30, 0, 16}));
+    EXPECT_EQ(std::get<CosineProfileDesc>(panel.profile).fwhm, 120);  // diffuse
+    const LampDesc disk = read(
+                              "[{type: disk, radius: 0.3, position: [0, 0, 0], power: 1, profile: "
+                              "{type: isotropic}}]")
+                              .at(0);
+    EXPECT_EQ(disk.extent, (LampExtentDesc{LampExtentDesc::Shape::disk, 0, 0, 0, 0.3, 32}));
+    EXPECT_TRUE(std::holds_alternative<IsotropicProfileDesc>(disk.profile));
+}
+
+TEST_F(LampReader, RefusesWhatAnExtentCannotBe) {
+    for (const auto& [keys, part] :
+         {std::pair{"type: rectangle, width: 1", "'height' is missing"},
+          {"type: rectangle, width: 0, height: 1", "width: must be greater than 0"},
+          {"type: disk", "'radius' is missing"},
+          {"type: disk, radius: 1, width: 2", "width"},
+          {"radius: 1", "radius"},
+          {"type: disk, radius: 1, samples: 0", "samples"},
+          {"type: disc, radius: 1", "did you mean 'disk'?"}}) {
+        try {
+            read(std::string("[{position: [0, 0, 0], intensity: 1, ") + keys + "}]");
+            FAIL() << keys;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+        }
+    }
 }
 
 TEST_F(LampReader, OnlyAbsoluteProfilesNeedNoOutput) {

@@ -1,0 +1,222 @@
+// ctest labels: analytic metamorphic
+// Lamps with an extent: one lamp in every layer, the light of its points, and soft shadows.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/integrators/surface_lighting.h"
+#include "tests/support/test_scene.h"
+
+namespace uw::test {
+namespace {
+
+using std::numbers::pi;
+
+LampDesc panel(const LampExtentDesc& extent, const Point3& position, double intensity) {
+    LampDesc lamp = isotropic_lamp(position, intensity);
+    lamp.name = "panel";
+    lamp.profile = CosineProfileDesc{120};
+    lamp.extent = extent;
+    return lamp;
+}
+
+LampExtentDesc disk(double radius, int samples) {
+    return {LampExtentDesc::Shape::disk, 0, 0, 0, radius, samples};
+}
+
+/// A panel beside the camera and a point lamp, a box that shadows the water and a plane.
+SceneDesc lit_by_a_panel(int samples) {
+    SceneDesc desc = pinhole_scene(24, 18);
+    desc.geometry = {plane_at_z(4), box({-0.1, -0.3, 1.0}, {0.2, 0.0, 1.3})};
+    desc.lamps = {
+        panel({LampExtentDesc::Shape::rectangle, 0.6, 0.2, 30, 0, samples}, {0.9, -0.5, 0}, 50),
+        isotropic_lamp({-0.8, 0.1, 0.2}, 20)};
+    return desc;
+}
+
+/// The same with each of the panel's points as a lamp of its own.
+SceneDesc lit_by_its_points(int samples) {
+    SceneDesc desc = lit_by_a_panel(samples);
+    const TestScene scene(desc);
+    const LampDesc whole = desc.lamps[0], other = desc.lamps[1];
+    desc.lamps.clear();
+    for (const Lamp& emitter : scene.assembled().emitters) {
+        if (emitter.index() != 0) continue;
+        LampDesc point = whole;
+        point.name += std::to_string(desc.lamps.size());
+        point.extent.reset();
+        point.position = emitter.position();
+        point.intensity = PerBand(3, 50.0 / samples);
+        desc.lamps.push_back(point);
+    }
+    desc.lamps.push_back(other);
+    return desc;
+}
+
+class AreaLamp : public testing::TestWithParam<RenderDesc::Integrator> {};
+
+TEST_P(AreaLamp, IsOneLampWithTheLightOfItsPoints) {
+    constexpr int k_samples = 5;
+    SceneDesc whole = lit_by_a_panel(k_samples), parts = lit_by_its_points(k_samples);
+    whole.render.integrator = parts.render.integrator = GetParam();
+    // Coarser maps find the edges of shadows in the water from other texels on, to 3e-4 of their
+    // distance.
+    const double slack = GetParam() == RenderDesc::Integrator::volume ? 1e-3 : 1e-12;
+    const std::vector<PixelResult> image = TestScene(whole).image();
+    const std::vector<PixelResult> points = TestScene(parts).image();
+    double direct = 0, backscatter = 0;
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        ASSERT_EQ(image[i].lamps.size(), 2U);
+        double lit = 0;
+        for (std::size_t band = 0; band < 3; ++band) {
+            double panel = 0;
+            for (int j = 0; j < k_samples; ++j)
+                panel += points[i].lamps[static_cast<std::size_t>(j)][band];
+            EXPECT_NEAR(image[i].lamps[0][band], panel, slack * panel);
+            EXPECT_NEAR(image[i].lamps[1][band], points[i].lamps[k_samples][band],
+                        slack * points[i].lamps[k_samples][band]);
+            EXPECT_NEAR(image[i].direct[band], points[i].direct[band],
+                        1e-12 * points[i].direct[band]);
+            EXPECT_NEAR(image[i].irradiance[band], points[i].irradiance[band],
+                        1e-12 * points[i].irradiance[band]);
+            EXPECT_NEAR(image[i].backscatter[band], points[i].backscatter[band],
+                        slack * points[i].backscatter[band]);
+            direct += image[i].direct[band];
+            backscatter += image[i].backscatter[band];
+            lit += image[i].lit;
+        }
+        EXPECT_GE(lit, 0);
+        EXPECT_LE(image[i].lit, 1 + 1e-12);
+    }
+    EXPECT_GT(direct, 0);
+    EXPECT_GT(backscatter, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, AreaLamp,
+                         testing::Values(RenderDesc::Integrator::volume,
+                                         RenderDesc::Integrator::planes,
+                                         RenderDesc::Integrator::reference));
+
+// Shadows of a panel's points in the water, found in its maps, against rays and small steps.
+TEST(AreaLamps, VolumeIntegratorAgreesWithTheReference) {
+    SceneDesc desc = lit_by_a_panel(16);
+    const std::vector<PixelResult> image = TestScene(desc).image();
+    desc.render.integrator = RenderDesc::Integrator::reference;
+    const std::vector<PixelResult> truth = TestScene(desc).image();
+    double squares = 0, sum = 0;
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        squares += std::pow(image[i].backscatter[1] - truth[i].backscatter[1], 2);
+        sum += truth[i].backscatter[1];
+    }
+    const auto n = static_cast<double>(image.size());
+    // As for point lamps: steps at shadow edges are the reference's, of first order.
+    EXPECT_LT(std::sqrt(squares / n), 3e-3 * sum / n);
+}
+
+/// The light of one panel on the wall z = `wall` in front of it, without water.
+class LightOnAWall {
+  public:
+    LightOnAWall(LampDesc lamp, double wall, std::vector<GeometryDesc> more = {})
+        : scene_(make(std::move(lamp), wall, std::move(more))), wall_(wall) {}
+
+    /// At a point of the wall.
+    SurfaceLight at(double x, double y) const {
+        const LitScene lit = scene_.assembled().lit();
+        SurfaceSample sample{{{x, y, wall_ - 0.1}, {0, 0, 1}}, {}, 0, 0};
+        EXPECT_TRUE(lit.surfaces->closest_hit(sample.ray, k_far, sample.hit));
+        SurfaceLight light;
+        DirectLighting(lit).evaluate_one(sample, light);
+        return light;
+    }
+
+  private:
+    static SceneDesc make(LampDesc lamp, double wall, std::vector<GeometryDesc> more) {
+        SceneDesc desc = pinhole_scene(4, 3);
+        desc.water.absorption = {0, 0, 0};
+        desc.water.scattering->b = {0, 0, 0};
+        desc.geometry = std::move(more);
+        desc.geometry.push_back(plane_at_z(wall));
+        desc.lamps = {std::move(lamp)};
+        return desc;
+    }
+
+    TestScene scene_;
+    double wall_;
+};
+
+// The penumbra of a half plane's edge, midway between a disk and a wall: of the disk, seen from the
+// wall, the edge hides the part on one side of a line.
+TEST(AreaLamps, TheShadowOfAnEdgeIsAsSoftAsTheDiskIsWide) {
+    constexpr double k_radius = 0.4, k_edge = 0.6;
+    constexpr int k_samples = 256;
+    // The half plane x > 0.6, z = 2.
+    const LightOnAWall wall(panel(disk(k_radius, k_samples), {k_edge, 0, 0}, 10), 4,
+                            {box({k_edge, -50, 2}, {60, 50, 2 + 1e-4})});
+    double squares = 0;
+    int inside = 0;
+    for (double x = -0.2; x < 1.4; x += 0.01) {
+        const SurfaceLight light = wall.at(x, 0.1);
+        double seen = 0;
+        for (std::size_t j = 0; j < light.emitter_count(); ++j)
+            if (light.visible(0, j)) seen += light.emitters()[j].share();
+        // The line through the edge meets the disk's plane at 2 * 0.6 - x.
+        const double t = std::clamp((k_edge - x) / k_radius, -1.0, 1.0);
+        const double truth = 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / pi;
+        EXPECT_NEAR(seen, truth, 4.0 / k_samples) << x;
+        if (std::abs(t) == 1) continue;
+        squares += (seen - truth) * (seen - truth);
+        ++inside;
+    }
+    EXPECT_GE(inside, 78);
+    EXPECT_LT(std::sqrt(squares / inside), 1.5 / k_samples);
+}
+
+// The share of what a diffuse point emits that falls on the square |x|, |y| < a at distance 1: the
+// view factors of its four parts.
+double share_on_square(double a, double x, double y) {
+    double sum = 0;
+    for (const double u : {a - x, a + x})
+        for (const double v : {a - y, a + y}) {
+            const double wide = std::sqrt(1 + u * u), high = std::sqrt(1 + v * v);
+            sum += (u / wide * std::atan(v / wide) + v / high * std::atan(u / high)) / (2 * pi);
+        }
+    return sum;
+}
+
+TEST(AreaLamps, AllOfItsPowerArrives) {
+    constexpr double k_radius = 0.3, k_half = 2, k_step = 0.05;
+    LampDesc lamp = panel(disk(k_radius, 64), {0, 0, 0}, 0);
+    lamp.intensity.reset();
+    lamp.power = PerBand{1, 2, 3};
+    const LightOnAWall wall(lamp, 1);
+    Spectrum flux{};
+    for (double y = -k_half + 0.5 * k_step; y < k_half; y += k_step)
+        for (double x = -k_half + 0.5 * k_step; x < k_half; x += k_step) {
+            const SurfaceLight light = wall.at(x, y);
+            for (std::size_t j = 0; j < light.emitter_count(); ++j)
+                for (std::size_t band = 0; band < 3; ++band)
+                    flux[band] += light.irradiance(0, j, band) * k_step * k_step;
+        }
+    double share = 0;  // the mean over the disk
+    constexpr int k_rings = 20, k_spokes = 16;
+    for (int ring = 0; ring < k_rings; ++ring)
+        for (int spoke = 0; spoke < k_spokes; ++spoke) {
+            const double r = k_radius * std::sqrt((ring + 0.5) / k_rings);
+            const double angle = 2 * pi * spoke / k_spokes;
+            share +=
+                share_on_square(2, r * std::cos(angle), r * std::sin(angle)) / (k_rings * k_spokes);
+        }
+    EXPECT_NEAR(share, 0.829, 1e-3);
+    for (std::size_t band = 0; band < 3; ++band) {
+        const auto power = static_cast<double>(band + 1);
+        // Midpoints 5 cm apart, and 64 points.
+        EXPECT_NEAR(flux[band], power * share, 5e-4 * power) << band;
+    }
+}
+
+}  // namespace
+}  // namespace uw::test
