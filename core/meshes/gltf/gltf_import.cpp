@@ -182,10 +182,11 @@ std::vector<const GltfLight*> chosen_lights(const GltfItems& items, const Geomet
         if (light.type != GltfLight::Type::directional) {
             chosen.push_back(&light);
         } else if (is_named) {
-            throw InputError(fmt::format(
-                "{}: the light '{}' is directional (a sun), but lamps are points; make it a point "
-                "or spot light",
-                import.lamps_where, printable(light.name)));
+            throw InputError(
+                fmt::format("{}: the light '{}' is directional (a sun), but lamps have a position; "
+                            "make it a point "
+                            "or spot light",
+                            import.lamps_where, printable(light.name)));
         } else {
             add_to(directional);
         }

@@ -14,8 +14,9 @@ namespace uw {
 ///   view and the scene's resolution, with square pixels and the principal point at the centre, and
 ///   the pose. Scale and mirroring along its axes are ignored.
 /// - Lamps are fixed to the world. Point lights are isotropic, spots fall off as glTF
-///   says, or in files that Blender wrote as that version of it shades them; directional lights are not supported: lamps are points. Intensities are W/sr, times the colour
-///   as ReflectanceBands converts it to bands; scale does not affect them. Names are those of the
+///   says, or in files that Blender wrote as that version of it shades them; directional lights are
+///   not supported: lamps have a position. Intensities are W/sr, times the colour as
+///   ReflectanceBands converts it to bands; scale does not affect them. Names are those of the
 ///   files, with '_' for characters not allowed in a layer's name, and "_2" etc. for duplicates.
 ///
 /// Throws IoError, InputError: a camera or light that does not exist, an orthographic camera.
