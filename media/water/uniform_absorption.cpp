@@ -21,6 +21,29 @@ std::string bands_outside(const WaterDesc& water, const WavelengthRange& range) 
     return outside;
 }
 
+/// Beyond its measurements, a preset's absorption in excess of pure water's is held. If all of that
+/// hardly shows over a metre of water, there is nothing to say.
+void warn_of_held_absorption(const WaterDesc& water, const JerlovPreset& preset,
+                             std::vector<std::string>& warnings) {
+    constexpr double k_visible = 0.02;  // of the light, per metre
+    double most = 0;
+    std::string outside;
+    for (const double band : water.bands_nm) {
+        if (preset.measured.contains(band)) continue;
+        const double held = preset.excess_absorption.value(band);
+        const double share = -std::expm1(-std::max(0.0, held));
+        if (share < k_visible) continue;
+        most = std::max(most, share);
+        outside += fmt::format("{}{:g}", outside.empty() ? "" : ", ", band);
+    }
+    if (outside.empty()) return;
+    warnings.push_back(fmt::format(
+        "{}: at {} nm the picture may be too dark or too bright by up to {:.2g} % per metre of "
+        "water: {} was measured from {} to {} nm, and its last value is taken beyond",
+        water.where, outside, 100 * most, preset.name, preset.measured.first_nm,
+        preset.measured.last_nm));
+}
+
 }  // namespace
 
 Spectrum uniform_absorption(const WaterDesc& water, const JerlovPreset* preset,
@@ -42,15 +65,7 @@ Spectrum uniform_absorption(const WaterDesc& water, const JerlovPreset* preset,
             fmt::format("{}: bands {} nm: the absorption of pure water is known from {} to {} nm; "
                         "choose bands within that range, or give the absorption",
                         water.where, outside, known.first_nm, known.last_nm));
-    if (preset) {
-        const std::string outside = bands_outside(water, preset->measured);
-        if (!outside.empty())
-            warnings.push_back(
-                fmt::format("{}: bands {} nm: {} was measured from {} to {} nm; beyond that, its "
-                            "absorption in excess of pure water's is held constant",
-                            water.where, outside, preset->name, preset->measured.first_nm,
-                            preset->measured.last_nm));
-    }
+    if (preset) warn_of_held_absorption(water, *preset, warnings);
     if (water.chlorophyll > 0) {
         const WavelengthRange range = chlorophyll_absorption_range();
         const std::string outside = bands_outside(water, range);

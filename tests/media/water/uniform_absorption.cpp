@@ -64,8 +64,14 @@ TEST_F(UniformAbsorption, OfAPresetIsItsOwn) {
     WaterDesc water = basic_water();
     water.bands_nm = {620, 540, 450};
     EXPECT_EQ(absorption(water, &preset)[1], jerlov_absorption(preset, 540, 20, 35));
+    // At 620 nm it exceeds pure water by 0.011 1/m, which a metre of water does not show.
+    EXPECT_TRUE(warnings_.empty());
+    water.bands_nm = {400, 540};
+    absorption(water, &preset);
     ASSERT_EQ(warnings_.size(), 1U);
-    EXPECT_NE(warnings_[0].find("bands 620 nm: jerlov-IB was measured from 412 to 555 nm"),
+    // At 412 nm by 0.0434 less pure water's 0.0027 1/m: 4.0 % of the light per metre.
+    EXPECT_NE(warnings_[0].find("at 400 nm the picture may be too dark or too bright by up to 4 % "
+                                "per metre of water: jerlov-IB was measured from 412 to 555 nm"),
               std::string::npos)
         << warnings_[0];
 }

@@ -130,10 +130,12 @@ TEST(WaterModel, PresetAndItsOverrides) {
                 1e-15);
 
     water = basic_water();
-    water.preset = "jerlov-IB";  // measured from 412 to 555 nm: 620 is outside
+    water.preset = "jerlov-IB";  // measured from 412 to 555 nm: 380 is outside
+    water.bands_nm = {620, 540, 380};
     const WaterModel beyond = build_water_model(water, {});
     ASSERT_EQ(beyond.warnings.size(), 1U);
-    EXPECT_NE(beyond.warnings[0].find("bands 620 nm"), std::string::npos) << beyond.warnings[0];
+    EXPECT_NE(beyond.warnings[0].find("at 380 nm the picture"), std::string::npos)
+        << beyond.warnings[0];
 }
 
 TEST(WaterModel, ExplicitScatteringReplacesMoleculesAndParticles) {

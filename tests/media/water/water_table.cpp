@@ -119,7 +119,7 @@ TEST(WaterTable, AnyNumberOfWavelengths) {
             EXPECT_DOUBLE_EQ(all.uniform.parts[part].b[i], single.uniform.parts[part].b[0]);
         EXPECT_DOUBLE_EQ(all.constituents[0].attenuation(i), single.constituents[0].attenuation(0));
     }
-    EXPECT_FALSE(all.warnings.empty());  // jerlov-IB was measured up to 555 nm
+    EXPECT_FALSE(all.warnings.empty());  // jerlov-IB was measured from 412 nm
 
     water.absorption = PerBand(76, 0.1);
     EXPECT_THROW(tabulate_water(water, volumes), InputError);
