@@ -4,6 +4,7 @@
 #include <cctype>
 #include <variant>
 
+#include "core/meshes/files/obj_materials.h"
 #include "core/meshes/gltf/gltf_files.h"
 
 namespace uw {
@@ -12,16 +13,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_gltf(const fs::path& file) {
+std::string lower_ending(const fs::path& file) {
     std::string ending = file.extension().string();
     for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return ending == ".gltf" || ending == ".glb";
+    return ending;
 }
 
 /// Walks through a scene description and collects the files that it names.
 class InputCollection {
   public:
-    explicit InputCollection(GltfSideFiles& known) : known_(known) {}
+    explicit InputCollection(MeshSideFiles& known) : known_(known) {}
 
     void add(const SceneDesc& scene) {
         add(scene.file, "the scene", true);
@@ -65,30 +66,36 @@ class InputCollection {
         for (const GridMappingDesc& grid : volume.grids)
             if (grid.optics && grid.optics->phase) add(*grid.optics->phase);
     }
-    // OBJ, STL and PLY refer to no other files: material libraries are not read.
+    // STL and PLY refer to no other files.
     void add(const GeometryDesc& geometry) {
         if (geometry.type != GeometryDesc::Type::file) return;
         add(geometry.file, "a mesh of the scene");
-        if (!is_gltf(geometry.file)) return;
+        const std::string ending = lower_ending(geometry.file);
+        const bool is_gltf = ending == ".gltf" || ending == ".glb";
+        if (!is_gltf && ending != ".obj") return;
         const auto [found, is_new] = known_.try_emplace(geometry.file);
-        if (is_new) found->second = files_named_by_gltf(geometry.file);
-        for (const fs::path& file : found->second) add(file, "a texture or buffer of a mesh");
+        if (is_new)
+            found->second =
+                is_gltf ? files_named_by_gltf(geometry.file) : files_named_by_obj(geometry.file);
+        for (const fs::path& file : found->second)
+            add(file, is_gltf ? "a texture or buffer of a mesh"
+                              : "a texture or material library of a mesh");
     }
 
-    GltfSideFiles& known_;
+    MeshSideFiles& known_;
     std::vector<InputFile> files_;
 };
 
 }  // namespace
 
-std::vector<InputFile> input_files(const SceneDesc& scene, GltfSideFiles& known) {
+std::vector<InputFile> input_files(const SceneDesc& scene, MeshSideFiles& known) {
     InputCollection collection(known);
     collection.add(scene);
     return std::move(collection).take();
 }
 
 std::vector<InputFile> input_files(const SceneDesc& scene) {
-    GltfSideFiles known;
+    MeshSideFiles known;
     return input_files(scene, known);
 }
 

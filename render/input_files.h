@@ -17,13 +17,13 @@ struct InputFile {
     bool is_hashed = false;
 };
 
-/// The files that glTF files refer to, by the glTF file: looked up once for many frames.
-using GltfSideFiles = std::map<std::filesystem::path, std::vector<std::filesystem::path>>;
+/// The files that glTF and OBJ files refer to, by that file: looked up once for many frames.
+using MeshSideFiles = std::map<std::filesystem::path, std::vector<std::filesystem::path>>;
 
 /// Every file that the scene of one image is read from, the scene file itself first: the one answer
 /// to which files a scene depends on. A file that serves two purposes is listed twice. Missing or
 /// broken files are not an error here. `known` is looked up and added to.
-std::vector<InputFile> input_files(const SceneDesc& scene, GltfSideFiles& known);
+std::vector<InputFile> input_files(const SceneDesc& scene, MeshSideFiles& known);
 std::vector<InputFile> input_files(const SceneDesc& scene);
 
 }  // namespace uw

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/options.h"
 #include "core/scene/scene_desc.h"
+#include "core/surfaces/surface_names.h"
 #include "render/measures/lamp_numbers.h"
 
 namespace uw {
@@ -25,16 +27,25 @@ void add_part_options(Options& options, PartArguments& arguments);
 /// What a user calls an entry of `geometry`: the name of its file without ending, or its type.
 std::string object_name(const GeometryDesc& geometry);
 
-/// The object that --object names, by its number in the layer `id`: an entry of `geometry`, from 1,
-/// or the only one with the name. Throws UsageError that names those there are.
-int chosen_object(const std::string& object, const std::vector<GeometryDesc>& geometry);
+/// What --object names, as numbers of the layer `id`.
+struct ChosenObject {
+    std::string name;
+    std::vector<std::uint32_t> ids;  // ascending
+};
 
-/// Throws UsageError if the arguments name no part of the image of `scene` within `window`.
+/// All of an entry of `geometry`, by its number from 1 or its name if no other has it; else what
+/// has the name in a file (SurfaceNames). Throws UsageError that names the entries there are.
+ChosenObject chosen_object(const std::string& object, const std::vector<GeometryDesc>& geometry,
+                           const SurfaceNames& names);
+
+/// Throws UsageError if the arguments name no part of the image of `scene` within `window`, as far
+/// as that can be told before the files of `geometry` are read.
 void check_parts(const PartArguments& arguments, const SceneDesc& scene, const PixelWindow& window);
 
 /// The whole image, then the parts. `film` has the layer id if an object is named. An object that
-/// is not in the image is left out. Throws as check_parts.
+/// is not in the image is left out. Throws as check_parts and chosen_object.
 std::vector<PicturePart> picture_parts(const PartArguments& arguments, const SceneDesc& scene,
-                                       const Film& film, const LayerPlan& plan);
+                                       const SurfaceNames& names, const Film& film,
+                                       const LayerPlan& plan);
 
 }  // namespace uw

@@ -47,6 +47,7 @@ struct FrameRenderer::Written {
     Frame frame;
     bool is_first;
     Film film;
+    std::shared_ptr<const Surfaces> surfaces;
     ImageMetadata metadata;
     RunStats stats;
     std::string label;  // empty: the only image
@@ -169,6 +170,9 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
     stage_.clear();
     renderer_.set_scene(std::move(scene));
     prepare(frame, options);
+    if (!arguments_.parts.object.empty())
+        chosen_object(arguments_.parts.object, renderer_.scene().geometry,
+                      renderer_.assembled().surfaces->names());
     if (with_irradiance) {
         check_irradiance_vdb(renderer_.assembled());
         renderer_.splat();
@@ -210,8 +214,8 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
 std::vector<PartNumbers> FrameRenderer::measure(const ResolvedScene& scene, const Film& film,
                                                 const RenderOptions& options) {
     const LayerPlan plan = layer_plan(scene.desc(), options.layers, options.paths);
-    const std::vector<PicturePart> parts =
-        picture_parts(arguments_.parts, scene.desc(), film, plan);
+    const std::vector<PicturePart> parts = picture_parts(
+        arguments_.parts, scene.desc(), renderer_.assembled().surfaces->names(), film, plan);
     std::vector<PartNumbers> numbers = part_numbers({film, plan}, parts);
     const std::size_t lamps = scene.desc().lamps.size();
     for (PartNumbers& of_lamp :
@@ -242,15 +246,16 @@ void FrameRenderer::begin_writing(const Frame& frame, Film film, ImageMetadata m
                                   RunStats stats) {
     finish();
     std::string label = clock_.is_sequence() ? clock_.label("done in ") : "";
-    written_.reset(new Written{frame, is_first(), std::move(film), std::move(metadata),
-                               std::move(stats), std::move(label)});
+    written_.reset(new Written{frame, is_first(), std::move(film), renderer_.assembled().surfaces,
+                               std::move(metadata), std::move(stats), std::move(label)});
     clock_.finish_image();
     const ImageStorage storage{arguments_.exr(), exposure_of(written_->film),
                                arguments_.is_preview_16_bit};
     writing_ = std::make_unique<BackgroundTask>([&written = *written_, storage] {
         const auto begin = std::chrono::steady_clock::now();
         write_images(
-            written.frame.files, written.film, std::move(written.metadata), storage,
+            written.frame.files, written.film, written.surfaces->names(),
+            std::move(written.metadata), storage,
             [&](const std::string& line) {
                 written.lines.push_back({false, line});
             },

@@ -9,6 +9,7 @@
 
 #include "cli/camera_choice.h"
 #include "cli/frame_list.h"
+#include "cli/render/id_table.h"
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
@@ -121,6 +122,7 @@ FrameSequence frames_of(const RenderArguments& a) {
         OutputFiles files;
         files.image = expanded(names.image, number);
         files.preview = expanded(names.preview, number);
+        if (!names.ids.empty()) files.ids = id_table_beside(files.image);
         if (one_each) files.stats = expanded(names.stats, number);
         files.irradiance_vdb = expanded(names.irradiance_vdb, number);
         sequence.frames.push_back({number, std::move(files), 0, ""});
@@ -143,6 +145,7 @@ void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::str
             OutputFiles files = frame.files;
             if (!files.image.empty()) files.image = of_camera(files.image, name);
             files.preview = of_camera(files.preview, name);
+            if (!files.ids.empty()) files.ids = id_table_beside(files.image);
             if (frame.number && !files.stats.empty()) files.stats = of_camera(files.stats, name);
             if (!is_first) files.irradiance_vdb.clear();
             is_first = false;
@@ -171,7 +174,7 @@ void check_frames(const FrameSequence& sequence, const SceneDesc& scene) {
         check_volumes(sequence, scene);
     }
     OutputCheck outputs;
-    GltfSideFiles known;
+    MeshSideFiles known;
     for (const Frame& frame : sequence.frames)
         outputs.take_inputs(input_files(scene_of_image(scene, frame.choice()), known));
     for (const Frame& frame : sequence.frames) outputs.take_outputs(frame.files);
@@ -187,6 +190,7 @@ bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
     const OutputFiles& files = frame.files;
     if (!is_file(files.image) || !is_file(files.preview)) return false;
     if (!files.irradiance_vdb.empty() && !is_file(files.irradiance_vdb)) return false;
+    if (!files.ids.empty() && !is_file(files.ids)) return false;
     std::error_code error;
     const auto rendered = fs::last_write_time(files.image, error);
     if (error) return false;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "cli/render/id_table.h"
 #include "cli/version.h"
 #include "cli/word_of.h"
 #include "core/image/preview.h"
@@ -144,12 +145,18 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
     return m;
 }
 
-void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata,
-                  const ImageStorage& storage, const SayCallback& say, const SayCallback& warn) {
+void write_images(const OutputFiles& files, const Film& film, const SurfaceNames& names,
+                  ImageMetadata metadata, const ImageStorage& storage, const SayCallback& say,
+                  const SayCallback& warn) {
     const std::optional<double> automatic = automatic_exposure(film);
     const double exposure = storage.exposure.value_or(automatic.value_or(1.0));
     const bool with_exr = !files.image.empty();
-    if (with_exr) write_exr(files.image, film, metadata, storage.exr);
+    if (with_exr) {
+        ImageMetadata with_names = metadata;
+        if (!files.ids.empty()) add_id_names(names, with_names);
+        write_exr(files.image, film, with_names, storage.exr);
+        if (!files.ids.empty()) write_id_table(files.ids, names);
+    }
     metadata["exposure"] = exposure;
     if (storage.is_preview_16_bit)
         write_png(files.preview, make_preview16(film, exposure), metadata);
@@ -158,6 +165,7 @@ void write_images(const OutputFiles& files, const Film& film, ImageMetadata meta
     warn_of_darkness(film, !automatic, warn);
     if (with_exr && storage.exr.precision == ExrOptions::Precision::half) warn_of_half(film, warn);
     if (with_exr) say(fmt::format("wrote {}", files.image.string()));
+    if (!files.ids.empty()) say(fmt::format("wrote {} (names of ids)", files.ids.string()));
     say(fmt::format("wrote {} ({}{})", files.preview.string(), with_exr ? "preview, " : "",
                     automatic ? fmt::format("R G B x {:.4g}", exposure) : "black"));
 }

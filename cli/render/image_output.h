@@ -31,10 +31,11 @@ struct ImageStorage {
     bool is_preview_16_bit = false;
 };
 
-/// Writes the EXR, if it has a name, and its preview, each whole or not at all; prints where they
-/// are and the exposure of the preview, and warns of an image that is black or empty in part, or
-/// that half floats cannot hold. Throws IoError.
-void write_images(const OutputFiles& files, const Film& film, ImageMetadata metadata,
-                  const ImageStorage& storage, const SayCallback& say, const SayCallback& warn);
+/// Writes the EXR, if it has a name, its preview, and the table of its ids if there is to be one,
+/// each whole or not at all; prints where they are and the exposure of the preview, and warns of an
+/// image that is black or empty in part, or that half floats cannot hold. Throws IoError.
+void write_images(const OutputFiles& files, const Film& film, const SurfaceNames& names,
+                  ImageMetadata metadata, const ImageStorage& storage, const SayCallback& say,
+                  const SayCallback& warn);
 
 }  // namespace uw

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/render/id_table.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -27,6 +28,7 @@ std::vector<NamedFile> named(const OutputFiles& files) {
     if (!files.stats.empty()) result.push_back({"--stats", files.stats});
     if (!files.contact_sheet.empty()) result.push_back({"--contact-sheet", files.contact_sheet});
     if (!files.numbers.empty()) result.push_back({"--numbers", files.numbers});
+    if (!files.ids.empty()) result.push_back({"the table of ids", files.ids});
     if (!files.irradiance_vdb.empty()) result.push_back({"--irradiance-vdb", files.irradiance_vdb});
     return result;
 }
@@ -87,6 +89,7 @@ OutputFiles output_files(const RenderArguments& a) {
         refuse_other_ending("--numbers", a.numbers, ".csv", "CSV");
         files.numbers = a.numbers;
     }
+    if (!files.image.empty() && requests_ids(a.layers)) files.ids = id_table_beside(files.image);
     files.irradiance_vdb = a.irradiance_vdb;
     if (!a.irradiance_vdb.empty())
         refuse_other_ending("--irradiance-vdb", a.irradiance_vdb, ".vdb", "OpenVDB");

@@ -17,6 +17,7 @@ struct OutputFiles {
     std::filesystem::path stats;            // JSON; empty: none
     std::filesystem::path irradiance_vdb;   // empty: none
     std::filesystem::path numbers{};        // CSV about all images; empty: none
+    std::filesystem::path ids{};            // CSV of names; empty: no layer of numbers
     std::filesystem::path contact_sheet{};  // PNG of all images; empty: none
 
     /// The EXR, or the PNG where that is all.

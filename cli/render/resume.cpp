@@ -32,7 +32,7 @@ std::optional<double> leave_out_rendered(FrameSequence& sequence, const SceneDes
     const ExrOptions storage = a.exr();
     std::vector<int> there;
     std::vector<Frame> left;
-    GltfSideFiles known;
+    MeshSideFiles known;
     std::optional<double> exposure;
     if (a.exposure.kind == PreviewExposure::Kind::fixed) exposure = a.exposure.factor;
     for (Frame& frame : sequence.frames) {

@@ -98,7 +98,8 @@ class Run {
         const Film& film = renderer_.render(options);
         for (const std::string& warning : renderer_.report().warnings) warn(warning);
         const LayerPlan plan = layer_plan(scene.desc(), options.layers);
-        const std::vector<PicturePart> parts = picture_parts(a_.parts, scene.desc(), film, plan);
+        const std::vector<PicturePart> parts = picture_parts(
+            a_.parts, scene.desc(), renderer_.assembled().surfaces->names(), film, plan);
         SweepPoint point{values_at(a_, at), part_numbers({film, plan}, parts), {}};
         if (a_.target)
             point.target = target_numbers(

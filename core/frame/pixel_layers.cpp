@@ -124,6 +124,10 @@ void id(const PixelResult& pixel, std::span<float> channels) {
     channels[0] = static_cast<float>(pixel.hit.object_id);
 }
 
+void material(const PixelResult& pixel, std::span<float> channels) {
+    channels[0] = static_cast<float>(pixel.hit.material_id);
+}
+
 }  // namespace layer_channels
 
 InScatterParts in_scatter_parts(const LayerPlan& plan) {

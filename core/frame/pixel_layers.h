@@ -79,6 +79,7 @@ void albedo(const PixelResult& pixel, std::span<float> channels);
 void normal(const PixelResult& pixel, std::span<float> channels);
 void position(const PixelResult& pixel, std::span<float> channels);
 void id(const PixelResult& pixel, std::span<float> channels);
+void material(const PixelResult& pixel, std::span<float> channels);
 
 }  // namespace layer_channels
 
@@ -137,6 +138,7 @@ inline constexpr std::array<PixelLayer, k_layer_count> k_pixel_layers{{
     {.layer = Layer::normal, .fill = layer_channels::normal, .of_hit = true},
     {.layer = Layer::position, .fill = layer_channels::position, .of_hit = true},
     {.layer = Layer::id, .fill = layer_channels::id, .of_hit = true},
+    {.layer = Layer::material, .fill = layer_channels::material, .of_hit = true},
 }};
 static_assert(has_every_layer(k_pixel_layers));
 

@@ -34,6 +34,7 @@ enum class Layer {
     normal,
     position,
     id,
+    material,
     count,  // not a layer: the number of layers
 };
 inline constexpr auto k_layer_count = static_cast<std::size_t>(Layer::count);
@@ -69,6 +70,7 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::normal, "normal", "XYZ"},
     {Layer::position, "position", "XYZ"},
     {Layer::id, "id", "V"},
+    {Layer::material, "material", "V"},
 }};
 
 /// Whether a table holds one line for every layer, in order.
@@ -101,9 +103,9 @@ struct LayerSupply {
 /// decimal point is written as an underscore (`direct.540_5nm`), since readers take everything
 /// before the last point as the layer. Then the total per band is a layer of its own, `total`; with
 /// three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`, `normal.X .Y .Z`,
-/// `position.X .Y .Z`, `id.V`. A lamp's own light is `lamp.<name>.R` and so on; light scattered n
-/// times is `order.<n>.R`, what is scattered more often than LayerSupply::orders `order.more.R`,
-/// and by reflections likewise `reflections.<n>.R`.
+/// `position.X .Y .Z`, `id.V`, `material.V`. A lamp's own light is `lamp.<name>.R` and so on; light
+/// scattered n times is `order.<n>.R`, what is scattered more often than LayerSupply::orders
+/// `order.more.R`, and by reflections likewise `reflections.<n>.R`.
 class LayerPlan {
   public:
     /// `request` is the argument of --layers: comma-separated layers, including `lamps` for every

@@ -26,9 +26,10 @@ struct MeshMaterial {
     double metallic = 0, roughness = 1;  // 0..1
     TextureUse metallic_roughness_map;   // linear; green roughness, blue metallic
     double ior = 1.5;                    // of the dielectric; 0: reflects everything
+    std::uint32_t number = 0;            // in MeshFile::materials, from 1; 0: none of the file's
 };
 
-/// The triangles of one mesh file, in the file's own space [m], node hierarchy applied. Inert.
+/// Triangles with what their corners and faces carry. Inert.
 struct TriangleMesh {
     std::vector<float> positions;          // x, y, z per vertex
     std::vector<std::uint32_t> triangles;  // three vertices each; all in range
@@ -43,6 +44,8 @@ struct TriangleMesh {
     std::vector<float> tangents;
     std::vector<std::uint32_t> triangle_materials;  // per triangle; empty: all have material 0
     std::vector<MeshMaterial> materials{MeshMaterial{}};  // at least one
+    std::vector<std::uint32_t>
+        triangle_objects;  // per triangle, in MeshFile::objects; empty: all 0
 
     std::size_t vertex_count() const { return positions.size() / 3; }
     std::size_t triangle_count() const { return triangles.size() / 3; }

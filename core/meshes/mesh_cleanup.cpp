@@ -47,6 +47,7 @@ void flatten_broken_normals(TriangleMesh& mesh) {
 
 void drop_bad_triangles(TriangleMesh& mesh, DroppedTriangles& dropped) {
     const bool has_materials = !mesh.triangle_materials.empty();
+    const bool has_objects = !mesh.triangle_objects.empty();
     std::size_t kept = 0;
     const std::size_t count = mesh.triangle_count();
     for (std::size_t triangle = 0; triangle < count; ++triangle) {
@@ -59,11 +60,13 @@ void drop_bad_triangles(TriangleMesh& mesh, DroppedTriangles& dropped) {
                 mesh.triangles[3 * kept + k] = mesh.triangles[3 * triangle + k];
             }
             if (has_materials) mesh.triangle_materials[kept] = mesh.triangle_materials[triangle];
+            if (has_objects) mesh.triangle_objects[kept] = mesh.triangle_objects[triangle];
         }
         ++kept;
     }
     mesh.triangles.resize(3 * kept);
     if (has_materials) mesh.triangle_materials.resize(kept);
+    if (has_objects) mesh.triangle_objects.resize(kept);
     flatten_broken_normals(mesh);
 }
 

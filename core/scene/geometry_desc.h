@@ -47,7 +47,9 @@ struct GeometryDesc {
     double radius = 0;                   ///< of a sphere [m]
     std::optional<PerBand> reflectance;  ///< 0..1; replaces the file's colours; 0.5 without either
     GltfImportDesc import;
-    bool is_pbr = false;  ///< a glTF file's metallic-roughness materials; else all is diffuse
+    bool is_pbr =
+        false;  ///< a glTF or OBJ file's metallic-roughness materials; else all is diffuse
+    bool is_material_given = false;  ///< which of them is written in the scene
     SourceLocation where;
 
     friend bool operator==(const GeometryDesc&, const GeometryDesc&) = default;

@@ -22,14 +22,25 @@ Query& query_of(const embree::Context* context, RTCRayN* rays, unsigned count, u
     return context_of(context).queries[RTCRayN_id(rays, count, i)];
 }
 
+/// The number of the mesh that Embree found, SceneObjects::placed.
+unsigned number_of(const RTCFilterFunctionNArguments* args, unsigned i) {
+    const unsigned instance = RTCHitN_instID(args->hit, args->N, i, 0);
+    return instance != RTC_INVALID_GEOMETRY_ID ? instance : RTCHitN_geomID(args->hit, args->N, i);
+}
+
+PlacedMesh mesh_of(const RTCFilterFunctionNArguments* args, unsigned i) {
+    return context_of(args->context).objects->placed(number_of(args, i));
+}
+
 /// Whether the ray of `query` passes through a hole of the mesh where Embree found a triangle hit.
-bool passes_hole(const MeshObject& object, const RTCFilterFunctionNArguments* args, unsigned i,
+bool passes_hole(const PlacedMesh& mesh, const RTCFilterFunctionNArguments* args, unsigned i,
                  const Query& query) {
     const unsigned count = args->N;
     const unsigned triangle = RTCHitN_primID(args->hit, count, i);
     // In double precision, like the crossing reported later.
-    const auto crossing = cross_triangle(object, triangle, query.origin, query.direction);
-    return object.is_hole(triangle, crossing ? *crossing
+    const auto crossing = cross_triangle(mesh, triangle, query.origin, query.direction);
+    return mesh.object.is_hole(triangle, crossing
+                                             ? *crossing
                                              : TriangleCrossing{0, RTCHitN_u(args->hit, count, i),
                                                                 RTCHitN_v(args->hit, count, i)});
 }
@@ -41,15 +52,13 @@ void take_closest(const RTCFilterFunctionNArguments* args) {
         if (args->valid[i] != -1) continue;
         Query& query = query_of(args->context, args->ray, count, i);
         if constexpr (with_holes) {
-            if (passes_hole(*static_cast<const MeshObject*>(args->geometryUserPtr), args, i,
-                            query)) {
+            if (passes_hole(mesh_of(args, i), args, i, query)) {
                 args->valid[i] = 0;
                 continue;
             }
         }
         float& end = RTCRayN_tfar(args->ray, count, i);  // here the candidate's own
-        if (query.take(end, RTCHitN_geomID(args->hit, count, i),
-                       RTCHitN_primID(args->hit, count, i))) {
+        if (query.take(end, number_of(args, i), RTCHitN_primID(args->hit, count, i))) {
             query.u = RTCHitN_u(args->hit, count, i);
             query.v = RTCHitN_v(args->hit, count, i);
             end = search_end(end);
@@ -61,15 +70,15 @@ void take_closest(const RTCFilterFunctionNArguments* args) {
 
 template <bool with_holes>
 void take_occluder(const RTCFilterFunctionNArguments* args) {
-    const auto& object = *static_cast<const MeshObject*>(args->geometryUserPtr);
     const unsigned count = args->N;
     for (unsigned i = 0; i < count; ++i) {
         if (args->valid[i] != -1) continue;
         Query& query = query_of(args->context, args->ray, count, i);
-        const auto crossing = cross_triangle(object, RTCHitN_primID(args->hit, count, i),
+        const PlacedMesh mesh = mesh_of(args, i);
+        const auto crossing = cross_triangle(mesh, RTCHitN_primID(args->hit, count, i),
                                              query.origin, query.direction);
         const double t = crossing ? crossing->t : RTCRayN_tfar(args->ray, count, i);
-        if (!between_ends(t) || (with_holes && passes_hole(object, args, i, query))) {
+        if (!between_ends(t) || (with_holes && passes_hole(mesh, args, i, query))) {
             args->valid[i] = 0;
         } else if (!context_of(args->context).edges_count &&
                    !(crossing && crossing->well_inside())) {

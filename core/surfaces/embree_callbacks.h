@@ -25,6 +25,7 @@ struct Query {
     Vector3 direction{0.0};
     float t = std::numeric_limits<float>::infinity();
     float u = 0, v = 0;  // of meshes
+    /// In the traced scene: of an instance its own, not that of its mesh.
     unsigned geometry = RTC_INVALID_GEOMETRY_ID, primitive = RTC_INVALID_GEOMETRY_ID;
     bool has_doubt = false;  // an occluder was skipped
 
@@ -43,22 +44,31 @@ struct Query {
     }
 };
 
+/// Embree's structure over the objects of a scene. Its geometries are numbered as
+/// SceneObjects::placed, the spheres last.
+struct TracedScene {
+    RTCScene scene = nullptr;
+    const SceneObjects* objects = nullptr;
+};
+
 /// Passed to the callbacks as their context: the queries in progress. The id of each Embree ray is
 /// the index of its query.
 struct QueryContext {
     embree::Context context;  // first, so that a pointer to one is a pointer to the other
     Query* queries = nullptr;
+    const SceneObjects* objects = nullptr;
     /// Whether occluders hit near the edge of a triangle count (embree_rays.h); otherwise they are
     /// skipped.
     bool edges_count = false;
 
-    explicit QueryContext(Query* first) : context(embree::make_context()), queries(first) {}
+    QueryContext(const TracedScene& traced, Query* first)
+        : context(embree::make_context()), queries(first), objects(traced.objects) {}
 };
 static_assert(std::is_standard_layout_v<QueryContext>);
 
 /// Triangle filter for the closest hit; resolves ties.
 void filter_closest(const RTCFilterFunctionNArguments* args);
-/// Triangle filter for shadow rays; the geometry's user data is its MeshObject.
+/// Triangle filter for shadow rays.
 void filter_occluder(const RTCFilterFunctionNArguments* args);
 /// The same for meshes with holes (MeshObject::has_holes), which cost a texture look-up each.
 void filter_closest_with_holes(const RTCFilterFunctionNArguments* args);

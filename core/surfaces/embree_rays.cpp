@@ -45,27 +45,27 @@ void put(RTCRay8& rays, Places& places, std::size_t i, const Query& query, float
     places.taken[i] = -1;
 }
 
-void trace_packet(RTCScene scene, std::span<Query> queries, float begin,
+void trace_packet(const TracedScene& traced, std::span<Query> queries, float begin,
                   std::span<const double> ends) {
     assert(queries.size() <= k_packet_size && queries.size() == ends.size());
-    QueryContext context(queries.data());
+    QueryContext context(traced, queries.data());
     RTCRayHit8 rayhits{};
     Places places;
     for (std::size_t i = 0; i < queries.size(); ++i) {
         put(rayhits.ray, places, i, queries[i], begin, ends[i]);
         rayhits.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
-    embree::intersect8(places.taken, scene, context.context, rayhits);
+    embree::intersect8(places.taken, traced.scene, context.context, rayhits);
 }
 
-unsigned occluded_packet(RTCScene scene, std::span<Query> queries, bool edges_count) {
+unsigned occluded_packet(const TracedScene& traced, std::span<Query> queries, bool edges_count) {
     assert(queries.size() <= k_packet_size);
-    QueryContext context(queries.data());
+    QueryContext context(traced, queries.data());
     context.edges_count = edges_count;
     RTCRay8 rays{};
     Places places;
     for (std::size_t i = 0; i < queries.size(); ++i) put(rays, places, i, queries[i], 0, 1);
-    embree::occluded8(places.taken, scene, context.context, rays);
+    embree::occluded8(places.taken, traced.scene, context.context, rays);
     unsigned occluded = 0;
     for (std::size_t i = 0; i < queries.size(); ++i) {
         if (rays.tfar[i] < 0) occluded |= 1U << i;
@@ -75,36 +75,37 @@ unsigned occluded_packet(RTCScene scene, std::span<Query> queries, bool edges_co
 
 }  // namespace
 
-void trace(RTCScene scene, Query& query, float begin, double end) {
-    QueryContext context(&query);
+void trace(const TracedScene& traced, Query& query, float begin, double end) {
+    QueryContext context(traced, &query);
     RTCRayHit rayhit{};
     rayhit.ray = embree_ray(query, begin, end);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    embree::intersect1(scene, context.context, rayhit);
+    embree::intersect1(traced.scene, context.context, rayhit);
 }
 
-void trace_edges(RTCScene scene, Query& query, float begin, double end) {
-    trace_packet(scene, std::span(&query, 1), begin, std::span(&end, 1));
+void trace_edges(const TracedScene& traced, Query& query, float begin, double end) {
+    trace_packet(traced, std::span(&query, 1), begin, std::span(&end, 1));
 }
 
-void trace_packet(RTCScene scene, std::span<Query> queries, std::span<const double> ends) {
-    trace_packet(scene, queries, 0, ends);
+void trace_packet(const TracedScene& traced, std::span<Query> queries,
+                  std::span<const double> ends) {
+    trace_packet(traced, queries, 0, ends);
 }
 
-bool is_occluded(RTCScene scene, Query& query) {
+bool is_occluded(const TracedScene& traced, Query& query) {
     query.has_doubt = false;
-    QueryContext context(&query);
+    QueryContext context(traced, &query);
     RTCRay ray = embree_ray(query, 0, 1);
-    embree::occluded1(scene, context.context, ray);
+    embree::occluded1(traced.scene, context.context, ray);
     if (ray.tfar < 0 || !query.has_doubt) return ray.tfar < 0;
-    return occluded_packet(scene, std::span(&query, 1), true) != 0;
+    return occluded_packet(traced, std::span(&query, 1), true) != 0;
 }
 
-unsigned occluded_packet(RTCScene scene, std::span<Query> queries) {
-    unsigned occluded = occluded_packet(scene, queries, false);
+unsigned occluded_packet(const TracedScene& traced, std::span<Query> queries) {
+    unsigned occluded = occluded_packet(traced, queries, false);
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const bool open = (occluded >> i & 1U) == 0 && queries[i].has_doubt;
-        if (open && is_occluded(scene, queries[i])) occluded |= 1U << i;
+        if (open && is_occluded(traced, queries[i])) occluded |= 1U << i;
     }
     return occluded;
 }

@@ -19,15 +19,16 @@ namespace uw {
 inline constexpr std::size_t k_packet_size = 8;
 
 /// Finds the nearest candidate of `query` between the parameters `begin` and `end`.
-void trace(RTCScene scene, Query& query, float begin, double end);
+void trace(const TracedScene& traced, Query& query, float begin, double end);
 /// The same as a packet of one.
-void trace_edges(RTCScene scene, Query& query, float begin, double end);
+void trace_edges(const TracedScene& traced, Query& query, float begin, double end);
 /// The same for a packet, from 0 to the end of each.
-void trace_packet(RTCScene scene, std::span<Query> queries, std::span<const double> ends);
+void trace_packet(const TracedScene& traced, std::span<Query> queries,
+                  std::span<const double> ends);
 
 /// Whether a mesh or sphere lies between the parameters 0 and 1, with hits near edges resolved.
-bool is_occluded(RTCScene scene, Query& query);
+bool is_occluded(const TracedScene& traced, Query& query);
 /// The same for a packet: bit i of the result is that of query i.
-unsigned occluded_packet(RTCScene scene, std::span<Query> queries);
+unsigned occluded_packet(const TracedScene& traced, std::span<Query> queries);
 
 }  // namespace uw

@@ -5,13 +5,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
 #include "core/surfaces/embree_rays.h"
+#include "core/surfaces/embree_scene.h"
 
 namespace uw {
 namespace {
@@ -20,25 +18,10 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 /// How often a closest hit at or behind the origin is skipped: a camera in a surface's plane.
 constexpr int k_max_restarts = 16;
 
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, decltype(&rtcReleaseDevice)>;
-using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcReleaseScene)>;
-using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, decltype(&rtcReleaseGeometry)>;
-
 class EmbreeSurfaces final : public Surfaces {
   public:
     explicit EmbreeSurfaces(SceneObjects objects)
-        : objects_(std::move(objects)),
-          device_(rtcNewDevice(nullptr), &rtcReleaseDevice),
-          scene_(nullptr, &rtcReleaseScene) {
-        if (!device_) throw std::runtime_error("Embree cannot start on this processor");
-        scene_.reset(rtcNewScene(device_.get()));
-        // Robust: no ray slips between two triangles that share an edge.
-        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        for (const auto& mesh : objects_.meshes) attach(*mesh);
-        if (!objects_.spheres.empty()) attach_spheres();
-        rtcCommitScene(scene_.get());
-        check("building the acceleration structure");
-    }
+        : objects_(std::move(objects)), scene_(objects_), traced_(scene_.traced()) {}
 
     bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const override {
         return shade(find_nearest(ray, s_end), ray, s_end, hit);
@@ -46,7 +29,7 @@ class EmbreeSurfaces final : public Surfaces {
 
     SurfaceMaterial material(const SurfaceHit& hit) const override {
         if (!hit.has_material) return {};
-        return material_of_mesh(*objects_.meshes[hit.geometry], objects_.bands, hit);
+        return material_of_mesh(objects_.placed(hit.geometry), objects_.bands, hit);
     }
 
     double hit_distance(const Ray& ray) const override {
@@ -56,7 +39,7 @@ class EmbreeSurfaces final : public Surfaces {
     bool occluded(const Point3& from, const Point3& to) const override {
         Query query = shadow_query(from, to);
         if (query.direction == Vector3(0.0)) return false;
-        return blocked_by_plane(query) || is_occluded(scene_.get(), query);
+        return blocked_by_plane(query) || is_occluded(traced_, query);
     }
 
     void closest_hits(std::span<const Ray> rays, double s_end, std::span<SurfaceHit> hits,
@@ -92,8 +75,7 @@ class EmbreeSurfaces final : public Surfaces {
         std::array<std::size_t, k_packet_size> places{};
         std::size_t count = 0;
         const auto follow = [&] {
-            const unsigned occluded =
-                occluded_packet(scene_.get(), std::span(queries).first(count));
+            const unsigned occluded = occluded_packet(traced_, std::span(queries).first(count));
             for (std::size_t i = 0; i < count; ++i) blocked[places[i]] = (occluded >> i & 1U) != 0;
             count = 0;
         };
@@ -109,16 +91,20 @@ class EmbreeSurfaces final : public Surfaces {
         if (count > 0) follow();
     }
 
+    const SurfaceNames& names() const override { return objects_.names; }
+
     Bounds bounds() const override { return objects_.bounds; }
 
     std::uint64_t triangle_count() const override {
         std::uint64_t count = 0;
         for (const auto& object : objects_.meshes) count += object->mesh.triangle_count();
+        for (const auto& instance : objects_.instances)
+            count += instance.object->mesh.triangle_count();
         return count;
     }
 
     bool empty() const override {
-        return objects_.meshes.empty() && objects_.spheres.empty() && objects_.planes.empty();
+        return objects_.placed_count() == 0 && objects_.spheres.empty() && objects_.planes.empty();
     }
 
   private:
@@ -130,47 +116,6 @@ class EmbreeSurfaces final : public Surfaces {
         bool near_edge = false;     // of a triangle, where rounding decides (embree_rays.h)
     };
 
-    void check(const char* doing) const {
-        const RTCError error = rtcGetDeviceError(device_.get());
-        if (error == RTC_ERROR_NONE) return;
-        const std::string reason =
-            error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(error);
-        throw std::runtime_error(std::string("Embree failed while ") + doing + ": " + reason);
-    }
-
-    void attach(MeshObject& object) {
-        const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE),
-                                &rtcReleaseGeometry);
-        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   object.mesh.positions.data(), 0, 3 * sizeof(float),
-                                   object.vertex_count);
-        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                   object.mesh.triangles.data(), 0, 3 * sizeof(std::uint32_t),
-                                   object.mesh.triangle_count());
-        rtcSetGeometryUserData(geometry.get(), &object);
-        rtcSetGeometryIntersectFilterFunction(
-            geometry.get(), object.has_holes ? filter_closest_with_holes : filter_closest);
-        rtcSetGeometryOccludedFilterFunction(
-            geometry.get(), object.has_holes ? filter_occluder_with_holes : filter_occluder);
-        rtcCommitGeometry(geometry.get());
-        rtcAttachGeometry(scene_.get(), geometry.get());
-        check("taking over a mesh");
-    }
-
-    void attach_spheres() {
-        const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER),
-                                &rtcReleaseGeometry);
-        rtcSetGeometryUserPrimitiveCount(geometry.get(),
-                                         static_cast<unsigned>(objects_.spheres.size()));
-        rtcSetGeometryUserData(geometry.get(), &objects_.spheres);
-        rtcSetGeometryBoundsFunction(geometry.get(), sphere_bounds, nullptr);
-        rtcSetGeometryIntersectFunction(geometry.get(), intersect_sphere);
-        rtcSetGeometryOccludedFunction(geometry.get(), occlude_sphere);
-        rtcCommitGeometry(geometry.get());
-        rtcAttachGeometry(scene_.get(), geometry.get());
-        check("taking over the spheres");
-    }
-
     /// Fills `hit` unless `nearest` is empty or beyond `s_end`.
     bool shade(const Candidate& nearest, const Ray& ray, double s_end, SurfaceHit& hit) const {
         if (!(nearest.distance <= s_end) || nearest.distance == k_infinity) return false;
@@ -178,8 +123,8 @@ class EmbreeSurfaces final : public Surfaces {
         hit.position = ray.at(nearest.distance);
         if (nearest.plane != nullptr) {
             shade_plane(*nearest.plane, ray.direction, hit);
-        } else if (nearest.geometry < objects_.meshes.size()) {
-            shade_mesh(*objects_.meshes[nearest.geometry], nearest.primitive, nearest.crossing,
+        } else if (nearest.geometry < objects_.placed_count()) {
+            shade_mesh(objects_.placed(nearest.geometry), nearest.primitive, nearest.crossing,
                        objects_.bands, ray.direction, hit);
             hit.geometry = nearest.geometry;
         } else {
@@ -193,12 +138,12 @@ class EmbreeSurfaces final : public Surfaces {
         float begin = 0;
         for (int restart = 0; restart < k_max_restarts; ++restart) {
             Query query{ray.origin, ray.direction};
-            trace(scene_.get(), query, begin, s_end);
+            trace(traced_, query, begin, s_end);
             if (!query.has_candidate()) break;
             Candidate candidate = refine(query);
             if (candidate.near_edge) {
                 query = {ray.origin, ray.direction};
-                trace_edges(scene_.get(), query, begin, s_end);
+                trace_edges(traced_, query, begin, s_end);
                 if (!query.has_candidate()) break;
                 candidate = refine(query);
             }
@@ -214,9 +159,9 @@ class EmbreeSurfaces final : public Surfaces {
         candidate.geometry = query.geometry;
         candidate.primitive = query.primitive;
         const double coarse = query.t;
-        if (candidate.geometry < objects_.meshes.size()) {
+        if (candidate.geometry < objects_.placed_count()) {
             const auto crossing =
-                cross_triangle(*objects_.meshes[candidate.geometry], candidate.primitive,
+                cross_triangle(objects_.placed(candidate.geometry), candidate.primitive,
                                query.origin, query.direction);
             candidate.crossing = crossing ? *crossing : TriangleCrossing{coarse, query.u, query.v};
             candidate.distance = candidate.crossing.t;
@@ -258,7 +203,7 @@ class EmbreeSurfaces final : public Surfaces {
             queries[i] = {rays[i].origin, rays[i].direction};
             ends[i] = std::min(s_end, nearest[i].distance);
         }
-        trace_packet(scene_.get(), std::span(queries).first(rays.size()),
+        trace_packet(traced_, std::span(queries).first(rays.size()),
                      std::span(ends).first(rays.size()));
         for (std::size_t i = 0; i < rays.size(); ++i) {
             if (!queries[i].has_candidate()) continue;
@@ -286,8 +231,8 @@ class EmbreeSurfaces final : public Surfaces {
     }
 
     SceneObjects objects_;
-    Device device_;
-    Scene scene_;
+    EmbreeScene scene_;
+    TracedScene traced_;
 };
 
 }  // namespace

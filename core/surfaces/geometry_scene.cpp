@@ -17,6 +17,7 @@ namespace uw {
 namespace {
 
 constexpr double k_default_reflectance = 0.5;
+constexpr std::size_t k_max_objects = (std::size_t{1} << 24) - 1;  // whole numbers of a float
 
 /// The reflectance given in the scene, if any.
 std::optional<Spectrum> given_reflectance(const GeometryDesc& desc, int band_count) {
@@ -84,6 +85,20 @@ Bounds bounds_of(const TriangleMesh& mesh) {
     return bounds;
 }
 
+/// A box around the transformed box; empty for an empty one.
+Bounds transformed(const Bounds& bounds, const Affine& map) {
+    Bounds result;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        Point3 p;
+        for (int axis = 0; axis < 3; ++axis) {
+            const bool high = (corner >> static_cast<unsigned>(axis) & 1U) != 0;
+            p[axis] = high ? bounds.max[axis] : bounds.min[axis];
+        }
+        result.extend(map * p);
+    }
+    return result;
+}
+
 /// Whether a material has more than the colour that a given reflectance replaces.
 bool has_more_than_color(const MeshMaterial& material) {
     return material.alpha_cutoff > 0 || material.normal_map || material.emission != Rgb{0, 0, 0};
@@ -105,10 +120,10 @@ TriangleMesh box_mesh(const GeometryDesc& desc) {
 class Builder {
   public:
     explicit Builder(const std::vector<double>& wavelengths_nm)
-        : objects_{{}, {}, {}, {}, ReflectanceBands(wavelengths_nm)} {}
+        : objects_{{}, {}, {}, {}, {}, {}, ReflectanceBands(wavelengths_nm), {}} {}
 
-    void add(const GeometryDesc& desc, std::uint32_t object_id,
-             std::vector<std::string>& warnings) {
+    /// The next entry of `geometry`.
+    void add(const GeometryDesc& desc, std::vector<std::string>& warnings) {
         const double determinant = desc.world_from_object.determinant();
         if (determinant == 0 || !std::isfinite(determinant)) {
             throw InputError(
@@ -118,21 +133,21 @@ class Builder {
         }
         switch (desc.type) {
             case GeometryDesc::Type::file:
-                add_mesh(desc,
-                         read_mesh(desc.file, warnings,
-                                   {desc.import.camera, desc.import.any_lamps(), desc.is_pbr}),
-                         object_id, given_reflectance(desc, objects_.bands.count()));
+                add_file(desc, read_mesh(desc.file, warnings,
+                                         {desc.import.camera || desc.import.any_lamps(),
+                                          desc.is_pbr, desc.is_material_given}));
                 break;
             case GeometryDesc::Type::box:
-                add_mesh(desc, box_mesh(desc), object_id, reflectance(desc));
+                add_mesh(desc, box_mesh(desc), name_object(desc, "box"), reflectance(desc));
                 break;
             case GeometryDesc::Type::sphere:
-                add_sphere(desc, object_id);
+                add_sphere(desc, name_object(desc, "sphere"));
                 break;
             case GeometryDesc::Type::plane:
-                add_plane(desc, object_id);
+                add_plane(desc, name_object(desc, "plane"));
                 break;
         }
+        ++entry_;
     }
 
     SceneObjects take() { return std::move(objects_); }
@@ -140,6 +155,44 @@ class Builder {
   private:
     Spectrum reflectance(const GeometryDesc& desc) const {
         return reflectance_or_default(desc, objects_.bands.count());
+    }
+
+    /// Returns the object's id.
+    std::uint32_t name_object(const GeometryDesc& desc, std::string name) {
+        auto& objects = objects_.names.objects;
+        if (objects.size() == k_max_objects) {
+            throw InputError(fmt::format(
+                "{}: more than 16 million objects, which the layer id cannot tell apart; join "
+                "some into one mesh",
+                desc.where));
+        }
+        objects.push_back({std::move(name), entry_});
+        return static_cast<std::uint32_t>(objects.size());
+    }
+
+    void add_file(const GeometryDesc& desc, MeshFile file) {
+        const auto objects_end = static_cast<std::uint32_t>(objects_.names.objects.size());
+        const auto materials_end = static_cast<std::uint32_t>(objects_.names.materials.size());
+        for (std::string& name : file.objects) name_object(desc, std::move(name));
+        for (std::string& name : file.materials)
+            objects_.names.materials.push_back({std::move(name), entry_});
+        const auto reflectance = given_reflectance(desc, objects_.bands.count());
+        if (!file.mesh.triangles.empty()) {
+            add_mesh(desc, std::move(file.mesh), objects_end + 1, reflectance).materials_end =
+                materials_end;
+        }
+        for (SharedMesh& shared : file.shared) {
+            const Bounds bounds = bounds_of(shared.mesh);
+            auto object = make_mesh_object(desc, std::move(shared.mesh), reflectance);
+            object->materials_end = materials_end;
+            for (const SharedMesh::Placement& placement : shared.placements) {
+                const Affine map = desc.world_from_object * placement.file_from_mesh;
+                extend_bounds(desc, transformed(bounds, map));
+                objects_.instances.push_back(
+                    {object.get(), MeshTransform(map), objects_end + 1 + placement.object});
+            }
+            objects_.shared_meshes.push_back(std::move(object));
+        }
     }
 
     void extend_bounds(const GeometryDesc& desc, const Bounds& bounds) {
@@ -153,27 +206,32 @@ class Builder {
         objects_.bounds.extend(bounds);
     }
 
-    void add_mesh(const GeometryDesc& desc, TriangleMesh mesh, std::uint32_t object_id,
-                  const std::optional<Spectrum>& reflectance) {
+    static std::unique_ptr<MeshObject> make_mesh_object(
+        const GeometryDesc& desc, TriangleMesh mesh, const std::optional<Spectrum>& reflectance) {
         auto object = std::make_unique<MeshObject>();
         object->mesh = std::move(mesh);
-        object->object_id = object_id;
         object->reflectance = reflectance;
         object->is_pbr = desc.is_pbr;
         object->vertex_count = object->mesh.vertex_count();
-        const auto& materials = object->mesh.materials;
+        auto& materials = object->mesh.materials;
         object->has_holes = std::ranges::any_of(
             materials, [](const MeshMaterial& material) { return material.alpha_cutoff > 0; });
         if (reflectance && !desc.is_pbr && std::ranges::none_of(materials, has_more_than_color)) {
             object->mesh.uvs = {};
             object->mesh.colors = {};
-            object->mesh.triangle_materials = {};
-            object->mesh.materials = {MeshMaterial{}};
+            for (MeshMaterial& material : materials) material.base_map = {};
         }
-        if (!is_identity(desc.world_from_object)) transform(object->mesh, desc.world_from_object);
-        extend_bounds(desc, bounds_of(object->mesh));
         object->mesh.positions.resize(object->mesh.positions.size() + 4);  // Embree's padding
-        objects_.meshes.push_back(std::move(object));
+        return object;
+    }
+
+    MeshObject& add_mesh(const GeometryDesc& desc, TriangleMesh mesh, std::uint32_t object_id,
+                         const std::optional<Spectrum>& reflectance) {
+        if (!is_identity(desc.world_from_object)) transform(mesh, desc.world_from_object);
+        extend_bounds(desc, bounds_of(mesh));
+        objects_.meshes.push_back(make_mesh_object(desc, std::move(mesh), reflectance));
+        objects_.meshes.back()->object_id = object_id;
+        return *objects_.meshes.back();
     }
 
     void add_sphere(const GeometryDesc& desc, std::uint32_t object_id) {
@@ -194,6 +252,7 @@ class Builder {
     }
 
     SceneObjects objects_;
+    std::size_t entry_ = 0;  // of `geometry`
 };
 
 }  // namespace
@@ -202,8 +261,7 @@ std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geomet
                                          const std::vector<double>& wavelengths_nm,
                                          std::vector<std::string>& warnings) {
     Builder builder(wavelengths_nm);
-    std::uint32_t object_id = 0;
-    for (const GeometryDesc& desc : geometry) builder.add(desc, ++object_id, warnings);
+    for (const GeometryDesc& desc : geometry) builder.add(desc, warnings);
     return make_embree_surfaces(builder.take());
 }
 

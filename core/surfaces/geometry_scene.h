@@ -12,7 +12,7 @@ namespace uw {
 /// Reads the mesh files of `geometry` and prepares everything for ray tracing, in world space [m].
 /// Every shape honours its `world_from_object`. `wavelengths_nm`: one per band of the reflectances;
 /// RGB colours in files are converted to bands by ReflectanceBands. A given `reflectance` replaces
-/// a file's colours.
+/// a file's colours. Meshes that several objects of a file show are kept once (MeshFile::shared).
 ///
 /// Every surface is opaque and diffuse on both sides: a single-sided glTF face is shaded from
 /// behind as well, since light does not pass through it either.

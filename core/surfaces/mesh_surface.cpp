@@ -7,11 +7,22 @@
 
 namespace uw {
 
-MeshPlace::MeshPlace(const TriangleMesh& mesh, std::uint32_t triangle, double u, double v)
+namespace {
+
+Vector3 unit_or_zero(const Vector3& v) {
+    const double length = glm::length(v);
+    return length > 0 ? v / length : Vector3(0.0);
+}
+
+}  // namespace
+
+MeshPlace::MeshPlace(const TriangleMesh& mesh, std::uint32_t triangle, double u, double v,
+                     const MeshTransform* transform)
     : mesh_(&mesh),
       material_(
           &mesh.materials[mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[triangle]]),
-      corners_(&mesh.triangles[3 * std::size_t{triangle}]) {
+      corners_(&mesh.triangles[3 * std::size_t{triangle}]),
+      transform_(transform) {
     const double b = std::clamp(u, 0.0, 1.0), c = std::clamp(v, 0.0, 1.0 - b);
     weights_ = {1 - b - c, b, c};
 }
@@ -25,8 +36,20 @@ double MeshPlace::mean(const std::vector<float>& values, std::size_t width,
     return sum;
 }
 
-Vector3 MeshPlace::mean_vector(const std::vector<float>& values, std::size_t width) const {
-    return {mean(values, width, 0), mean(values, width, 1), mean(values, width, 2)};
+Vector3 MeshPlace::in_world(const Vector3& v) const {
+    return transform_ == nullptr ? v : transform_->world_from_mesh.apply_to_vector(v);
+}
+
+Vector3 MeshPlace::corner_normal(std::size_t k) const {
+    const float* n = &mesh_->normals[3 * std::size_t{corners_[k]}];
+    const Vector3 normal(n[0], n[1], n[2]);
+    return transform_ == nullptr ? normal : unit_or_zero(transform_->world_from_normal * normal);
+}
+
+Vector3 MeshPlace::corner_tangent(std::size_t k) const {
+    const float* t = &mesh_->tangents[4 * std::size_t{corners_[k]}];
+    const Vector3 tangent(t[0], t[1], t[2]);
+    return transform_ == nullptr ? tangent : unit_or_zero(in_world(tangent));
 }
 
 Rgb MeshPlace::sample(const TextureUse& use) const {
@@ -78,11 +101,12 @@ std::array<double, 2> MeshPlace::roughness_metallic() const {
 
 std::optional<Vector3> MeshPlace::interpolated_normal() const {
     if (mesh_->normals.empty()) return std::nullopt;
+    Vector3 sum(0.0);
     for (std::size_t k = 0; k < 3; ++k) {
-        const float* n = &mesh_->normals[3 * std::size_t{corners_[k]}];
-        if (n[0] == 0 && n[1] == 0 && n[2] == 0) return std::nullopt;
+        const Vector3 normal = corner_normal(k);
+        if (normal == Vector3(0.0)) return std::nullopt;
+        sum += weights_[k] * normal;
     }
-    const Vector3 sum = mean_vector(mesh_->normals, 3);
     const double length = glm::length(sum);
     if (!(length > 1e-6)) return std::nullopt;
     return sum / length;
@@ -94,7 +118,10 @@ Vector3 MeshPlace::turn_side(const Vector3& flat) const {
         const float* at = &mesh_->positions[3 * std::size_t{corners_[k]}];
         p[k] = Vector3(at[0], at[1], at[2]);
     }
-    return glm::dot(glm::cross(p[1] - p[0], p[2] - p[0]), flat) < 0 ? -flat : flat;
+    const Vector3 across = glm::cross(in_world(p[1] - p[0]), in_world(p[2] - p[0]));
+    // A mirrored copy has its corners in the opposite order.
+    const bool is_mirror = transform_ != nullptr && transform_->is_mirror;
+    return (glm::dot(across, flat) < 0) != is_mirror ? -flat : flat;
 }
 
 Vector3 MeshPlace::bent(const Vector3& normal) const {
@@ -104,21 +131,20 @@ Vector3 MeshPlace::bent(const Vector3& normal) const {
     const Vector3 local(scale * (2 * texel[0] - 1), scale * (2 * texel[1] - 1), 2 * texel[2] - 1);
     Vector3 tangent(0.0), up(0.0);
     double side = 1;
-    const bool has_all = !mesh_->tangents.empty() && [&] {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const float* t = &mesh_->tangents[4 * std::size_t{corners_[k]}];
-            if (t[0] == 0 && t[1] == 0 && t[2] == 0) return false;
-        }
-        return true;
-    }();
+    bool has_all = !mesh_->tangents.empty();
+    for (std::size_t k = 0; has_all && k < 3; ++k) {
+        const Vector3 corner = corner_tangent(k);
+        has_all = corner != Vector3(0.0);
+        tangent += weights_[k] * corner;
+    }
     if (has_all) {
-        tangent = mean_vector(mesh_->tangents, 4);
         side = mean(mesh_->tangents, 4, 3) < 0 ? -1 : 1;
+        if (transform_ != nullptr && transform_->is_mirror) side = -side;
     } else {
         UvAxes axes;
         if (!uv_axes(*mesh_, corners_, use, axes)) return normal;
-        tangent = axes.u_axis;
-        side = glm::dot(glm::cross(normal, tangent), axes.up_axis) < 0 ? -1 : 1;
+        tangent = in_world(axes.u_axis);
+        side = glm::dot(glm::cross(normal, tangent), in_world(axes.up_axis)) < 0 ? -1 : 1;
     }
     tangent -= glm::dot(tangent, normal) * normal;
     const double length = glm::length(tangent);

@@ -40,10 +40,10 @@ Bounds SphereObject::world_bounds() const {
     return bounds;
 }
 
-std::optional<TriangleCrossing> cross_triangle(const MeshObject& object, std::uint32_t triangle,
+std::optional<TriangleCrossing> cross_triangle(const PlacedMesh& mesh, std::uint32_t triangle,
                                                const Point3& origin, const Vector3& direction) {
-    const Point3 a = object.corner(triangle, 0);
-    const Vector3 ab = object.corner(triangle, 1) - a, ac = object.corner(triangle, 2) - a;
+    const Point3 a = mesh.corner(triangle, 0);
+    const Vector3 ab = mesh.corner(triangle, 1) - a, ac = mesh.corner(triangle, 2) - a;
     const Vector3 p = glm::cross(direction, ac);
     const double determinant = glm::dot(ab, p);
     if (determinant == 0) return std::nullopt;
@@ -80,13 +80,14 @@ std::optional<double> cross_plane(const PlaneObject& plane, const Point3& origin
     return glm::dot(plane.point - origin, plane.normal) / slope;
 }
 
-void shade_mesh(const MeshObject& object, std::uint32_t triangle, const TriangleCrossing& crossing,
+void shade_mesh(const PlacedMesh& mesh, std::uint32_t triangle, const TriangleCrossing& crossing,
                 const ReflectanceBands& bands, const Vector3& direction, SurfaceHit& hit) {
-    const Point3 a = object.corner(triangle, 0);
-    const Vector3 area = glm::cross(object.corner(triangle, 1) - a, object.corner(triangle, 2) - a);
+    const MeshObject& object = mesh.object;
+    const Point3 a = mesh.corner(triangle, 0);
+    const Vector3 area = glm::cross(mesh.corner(triangle, 1) - a, mesh.corner(triangle, 2) - a);
     const double size = glm::length(area);
     const Vector3 flat = size > 0 ? area / size : -direction;
-    const MeshPlace place(object.mesh, triangle, crossing.u, crossing.v);
+    const MeshPlace place(object.mesh, triangle, crossing.u, crossing.v, mesh.transform());
     hit.geometric_normal = toward_viewer(flat, direction);
     hit.normal = place.shading_normal(hit.geometric_normal);
     hit.reflectance = base_color(object, place, bands);
@@ -98,11 +99,16 @@ void shade_mesh(const MeshObject& object, std::uint32_t triangle, const Triangle
     hit.triangle = triangle;
     hit.u = crossing.u;
     hit.v = crossing.v;
-    hit.object_id = object.object_id;
+    hit.object_id = mesh.instance ? mesh.instance->object_id : object.object_id;
+    if (!object.mesh.triangle_objects.empty())
+        hit.object_id += object.mesh.triangle_objects[triangle];
+    const std::uint32_t number = place.material().number;
+    hit.material_id = number == 0 ? 0 : object.materials_end + number;
 }
 
-SurfaceMaterial material_of_mesh(const MeshObject& object, const ReflectanceBands& bands,
+SurfaceMaterial material_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands,
                                  const SurfaceHit& hit) {
+    const MeshObject& object = mesh.object;
     const MeshPlace place(object.mesh, hit.triangle, hit.u, hit.v);
     SurfaceMaterial material;
     material.emission = bands.from_rgb(place.emission());
@@ -126,6 +132,7 @@ void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceH
     hit.geometric_normal = hit.normal = toward_viewer(normal, direction);
     hit.reflectance = sphere.reflectance;
     hit.has_material = false;
+    hit.material_id = 0;
     hit.object_id = sphere.object_id;
 }
 
@@ -133,6 +140,7 @@ void shade_plane(const PlaneObject& plane, const Vector3& direction, SurfaceHit&
     hit.geometric_normal = hit.normal = toward_viewer(plane.normal, direction);
     hit.reflectance = plane.reflectance;
     hit.has_material = false;
+    hit.material_id = 0;
     hit.object_id = plane.object_id;
 }
 

@@ -10,6 +10,7 @@
 #include "core/base/spectrum.h"
 #include "core/colour/reflectance.h"
 #include "core/meshes/mesh.h"
+#include "core/surfaces/mesh_transform.h"
 #include "core/surfaces/surfaces.h"
 
 namespace uw {
@@ -27,11 +28,12 @@ struct TriangleCrossing {
     static constexpr double k_edge_margin = 1e-3;
 };
 
-/// A triangle mesh in world space. Its positions are followed by the 4 floats that Embree may read
-/// past the last vertex.
+/// A triangle mesh, in world space unless instances show it. Its positions are followed by the 4
+/// floats that Embree may read past the last vertex.
 struct MeshObject {
     TriangleMesh mesh;
-    std::uint32_t object_id = 0;
+    std::uint32_t object_id = 0;          // of its object 0; the others follow
+    std::uint32_t materials_end = 0;      // id of the last material before its file's first
     std::optional<Spectrum> reflectance;  // overrides the mesh's colours
     std::size_t vertex_count = 0;
     bool has_holes = false;  // some material has an alpha cutoff
@@ -41,6 +43,29 @@ struct MeshObject {
     bool is_hole(std::uint32_t triangle, const TriangleCrossing& crossing) const;
     /// Corner `k` (0..2) of a triangle.
     Point3 corner(std::uint32_t triangle, int k) const;
+};
+
+/// One object of several that show the same mesh.
+struct MeshInstance {
+    const MeshObject* object = nullptr;
+    MeshTransform transform;
+    std::uint32_t object_id = 0;
+};
+
+/// A mesh where the scene has it: in world space, or as an instance.
+struct PlacedMesh {
+    const MeshObject& object;
+    const MeshInstance* instance = nullptr;
+
+    PlacedMesh(const MeshObject& mesh, const MeshInstance* placed = nullptr)
+        : object(mesh), instance(placed) {}
+
+    const MeshTransform* transform() const { return instance ? &instance->transform : nullptr; }
+    /// Corner `k` (0..2) of a triangle, in world space.
+    Point3 corner(std::uint32_t triangle, int k) const {
+        const Point3 p = object.corner(triangle, k);
+        return instance ? instance->transform.world_from_mesh * p : p;
+    }
 };
 
 /// A sphere in object space, an ellipsoid in the world.
@@ -64,17 +89,28 @@ struct PlaneObject {
 
 /// All surfaces of a scene, before and after Embree's acceleration structure is built over them.
 struct SceneObjects {
-    std::vector<std::unique_ptr<MeshObject>> meshes;
+    std::vector<std::unique_ptr<MeshObject>> meshes;         // in world space
+    std::vector<std::unique_ptr<MeshObject>> shared_meshes;  // shown by instances
+    std::vector<MeshInstance> instances;
     std::vector<SphereObject> spheres;
     std::vector<PlaneObject> planes;
-    Bounds bounds;  // of meshes and spheres
+    Bounds bounds;  // of meshes, instances and spheres
     ReflectanceBands bands;
+    SurfaceNames names;
+
+    /// Number of meshes as the scene has them: those in world space, then the instances.
+    std::size_t placed_count() const { return meshes.size() + instances.size(); }
+    PlacedMesh placed(std::size_t number) const {
+        if (number < meshes.size()) return *meshes[number];
+        const MeshInstance& instance = instances[number - meshes.size()];
+        return {*instance.object, &instance};
+    }
 };
 
 /// The crossing of a line with the plane of a triangle (Moeller & Trumbore 1997) in double
 /// precision. Empty if it misses the triangle by more than k_edge_margin, as can happen for lines
 /// nearly in its plane.
-std::optional<TriangleCrossing> cross_triangle(const MeshObject& object, std::uint32_t triangle,
+std::optional<TriangleCrossing> cross_triangle(const PlacedMesh& mesh, std::uint32_t triangle,
                                                const Point3& origin, const Vector3& direction);
 
 /// Both crossings of a line with a sphere, the nearer first; empty if it misses.
@@ -90,10 +126,10 @@ std::optional<double> cross_plane(const PlaneObject& plane, const Point3& origin
 
 /// Fill all of `hit` except `distance` and `position`, which are given; `direction` is the ray's,
 /// and the normals are turned to face it.
-void shade_mesh(const MeshObject& object, std::uint32_t triangle, const TriangleCrossing& crossing,
+void shade_mesh(const PlacedMesh& mesh, std::uint32_t triangle, const TriangleCrossing& crossing,
                 const ReflectanceBands& bands, const Vector3& direction, SurfaceHit& hit);
 /// The material, beyond diffuse reflection, of the triangle of `hit` (SurfaceHit::triangle).
-SurfaceMaterial material_of_mesh(const MeshObject& object, const ReflectanceBands& bands,
+SurfaceMaterial material_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands,
                                  const SurfaceHit& hit);
 void shade_sphere(const SphereObject& sphere, const Vector3& direction, SurfaceHit& hit);
 void shade_plane(const PlaneObject& plane, const Vector3& direction, SurfaceHit& hit);

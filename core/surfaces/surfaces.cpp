@@ -5,6 +5,11 @@
 
 namespace uw {
 
+const SurfaceNames& Surfaces::names() const {
+    static const SurfaceNames none;
+    return none;
+}
+
 void Surfaces::closest_hits(std::span<const Ray> rays, double s_end, std::span<SurfaceHit> hits,
                             std::span<char> found) const {
     assert(hits.size() == rays.size() && found.size() == rays.size());

@@ -6,6 +6,7 @@
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
 #include "core/surfaces/surface_material.h"
+#include "core/surfaces/surface_names.h"
 
 namespace uw {
 
@@ -16,7 +17,8 @@ struct SurfaceHit {
     Vector3 normal{0, 0, 1};            // shading normal, unit, on the side the ray comes from
     Vector3 geometric_normal{0, 0, 1};  // of the true surface, unit, same side
     Spectrum reflectance{};             // diffuse reflectance rho per band, 0..1
-    std::uint32_t object_id = 0;        // index of the entry of `geometry`, from 1
+    std::uint32_t object_id = 0;        // in Surfaces::names, from 1
+    std::uint32_t material_id = 0;      // likewise; 0: none of a file's
     bool has_material = false;          // more than diffuse reflection: see Surfaces::material
     // For Surfaces::material: the triangle and the position on it.
     std::uint32_t geometry = 0, triangle = 0;
@@ -58,8 +60,13 @@ class Surfaces {
     virtual void occluded_many(const Point3& from, std::span<const Point3> to,
                                std::span<char> blocked) const;
 
-    /// World bounds of all finite surfaces; empty if there are none.
+    /// The names behind SurfaceHit's ids; none by default.
+    virtual const SurfaceNames& names() const;
+
+    /// World bounds of all finite surfaces, a little loose around instances; empty if there are
+    /// none.
     virtual Bounds bounds() const = 0;
+    /// Instances count as often as they are shown.
     virtual std::uint64_t triangle_count() const = 0;
     virtual bool empty() const = 0;
 };

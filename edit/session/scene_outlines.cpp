@@ -24,6 +24,10 @@ std::array<float, 3> floats_of(const Point3& p) {
     return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
+Point3 point_of(const std::array<float, 3>& p) {
+    return {p[0], p[1], p[2]};
+}
+
 double length_of(const OutlineSegment& segment) {
     return std::hypot(segment.to[0] - segment.from[0], segment.to[1] - segment.from[1],
                       segment.to[2] - segment.from[2]);
@@ -58,9 +62,8 @@ class Outlines {
         bool is_crease = false;
     };
 
-    void add_line(const GeometryDesc& desc, const Point3& a, const Point3& b) {
-        segments_.push_back(
-            {floats_of(desc.world_from_object * a), floats_of(desc.world_from_object * b)});
+    void add_line(const Affine& world_from_line, const Point3& a, const Point3& b) {
+        segments_.push_back({floats_of(world_from_line * a), floats_of(world_from_line * b)});
     }
 
     void add_box(const GeometryDesc& desc) {
@@ -73,7 +76,7 @@ class Outlines {
         for (int bits = 0; bits < 8; ++bits)
             for (int axis = 0; axis < 3; ++axis)
                 if (((bits >> axis) & 1) == 0)
-                    add_line(desc, corner(bits), corner(bits | 1 << axis));
+                    add_line(desc.world_from_object, corner(bits), corner(bits | 1 << axis));
     }
 
     void add_sphere(const GeometryDesc& desc) {
@@ -85,18 +88,35 @@ class Outlines {
                 offset[(axis + 2) % 3] = desc.radius * std::sin(turn);
                 return desc.center + offset;
             };
-            for (int i = 0; i < k_circle_sides; ++i) add_line(desc, at(i), at(i + 1));
+            for (int i = 0; i < k_circle_sides; ++i)
+                add_line(desc.world_from_object, at(i), at(i + 1));
         }
     }
 
     void add_mesh(const GeometryDesc& desc) {
-        TriangleMesh mesh;
+        MeshFile file;
         try {
             std::vector<std::string> ignored;
-            mesh = read_mesh(desc.file, ignored);
+            file = read_mesh(desc.file, ignored, {.camera_or_lamps = true});
         } catch (const std::exception&) {
             return;
         }
+        add_triangles(desc.world_from_object, file.mesh);
+        for (const SharedMesh& shared : file.shared) {
+            const std::size_t first = segments_.size();
+            add_triangles(Affine(), shared.mesh);
+            const std::vector<OutlineSegment> outline(
+                segments_.begin() + static_cast<std::ptrdiff_t>(first), segments_.end());
+            segments_.resize(first);
+            for (const SharedMesh::Placement& placement : shared.placements) {
+                const Affine map = desc.world_from_object * placement.file_from_mesh;
+                for (const OutlineSegment& line : outline)
+                    add_line(map, point_of(line.from), point_of(line.to));
+            }
+        }
+    }
+
+    void add_triangles(const Affine& world_from_mesh, const TriangleMesh& mesh) {
         const auto vertex = [&](std::uint32_t v) {
             const float* p = &mesh.positions[3 * std::size_t{v}];
             return Point3{p[0], p[1], p[2]};
@@ -112,7 +132,8 @@ class Outlines {
                 meet(edges, joined[corner[k]], joined[corner[(k + 1) % 3]], glm::normalize(normal));
         }
         for (const auto& [key, edge] : edges)
-            if (edge.faces == 1 || edge.is_crease) add_line(desc, vertex(edge.a), vertex(edge.b));
+            if (edge.faces == 1 || edge.is_crease)
+                add_line(world_from_mesh, vertex(edge.a), vertex(edge.b));
     }
 
     static void meet(std::unordered_map<std::uint64_t, Edge>& edges, std::uint32_t a,

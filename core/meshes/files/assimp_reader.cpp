@@ -21,7 +21,7 @@ namespace {
 // A few nodes may instance a large mesh; this limit is what fits a large machine, not the format's.
 constexpr std::uint64_t k_max_corners = 1'500'000'000;
 
-/// Lets Assimp open only regular files, and no material library: a mesh could refer to a pipe.
+/// Lets Assimp open only regular files.
 class RegularFiles : public Assimp::DefaultIOSystem {
   public:
     bool Exists(const char* name) const override { return allowed(name); }
@@ -34,7 +34,7 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   private:
     static bool allowed(const std::filesystem::path& name) {
         std::error_code status;
-        return name.extension() != ".mtl" && std::filesystem::is_regular_file(name, status);
+        return std::filesystem::is_regular_file(name, status);
     }
 };
 
@@ -74,8 +74,6 @@ std::vector<Placement> placements_of(const aiScene& scene) {
 /// Builds one mesh from all placements.
 class MeshJoiner {
   public:
-    explicit MeshJoiner(bool normals) : wants_normals_(normals) {}
-
     TriangleMesh join(const std::vector<Placement>& placements, const std::string& name) {
         prepare(placements, name);
         for (const Placement& placement : placements) append(placement);
@@ -89,7 +87,6 @@ class MeshJoiner {
         for (const auto& [mesh, transform] : placements) {
             vertices += mesh->mNumVertices;
             faces += mesh->mNumFaces;
-            has_normals_ |= wants_normals_ && mesh->mNormals != nullptr;
         }
         if (vertices > k_max_corners || 3 * faces > k_max_corners) {
             throw InputError(
@@ -99,13 +96,11 @@ class MeshJoiner {
         }
         mesh_.positions.reserve(3 * vertices + 4);  // Embree reads 16 bytes at the last vertex
         mesh_.triangles.reserve(3 * faces);
-        if (has_normals_) mesh_.normals.reserve(3 * vertices);
     }
 
     void append(const Placement& placement) {
         const auto first = static_cast<std::uint32_t>(mesh_.vertex_count());
         append_positions(placement);
-        if (has_normals_) append_normals(placement);
         append_faces(*placement.mesh, first);
     }
 
@@ -114,24 +109,6 @@ class MeshJoiner {
         for (const aiVector3D& v : std::span(mesh.mVertices, mesh.mNumVertices)) {
             const Point3 p = placement.file_from_mesh * Point3{v.x, v.y, v.z};
             for (const double x : {p.x, p.y, p.z}) mesh_.positions.push_back(static_cast<float>(x));
-        }
-    }
-
-    void append_normals(const Placement& placement) {
-        const aiMesh& mesh = *placement.mesh;
-        const bool usable = mesh.mNormals != nullptr && placement.file_from_mesh.determinant() != 0;
-        const Matrix3 map =
-            usable ? glm::transpose(placement.file_from_mesh.inverse().linear()) : Matrix3(0.0);
-        for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
-            Vector3 n(0.0);
-            if (usable) {
-                n = map * Vector3(mesh.mNormals[k].x, mesh.mNormals[k].y, mesh.mNormals[k].z);
-                const double length = glm::length(n);
-                n = length > 0 ? n / length : Vector3(0.0);
-            }
-            for (int axis = 0; axis < 3; ++axis) {
-                mesh_.normals.push_back(static_cast<float>(n[axis]));
-            }
         }
     }
 
@@ -154,14 +131,12 @@ class MeshJoiner {
         }
     }
 
-    bool wants_normals_ = false;
     TriangleMesh mesh_;
-    bool has_normals_ = false;
 };
 
 }  // namespace
 
-TriangleMesh read_with_assimp(const std::filesystem::path& file, bool normals) {
+TriangleMesh read_stl(const std::filesystem::path& file) {
     const std::string name = file.string();
     Assimp::Importer importer;
     importer.SetIOHandler(new RegularFiles);  // the importer owns it
@@ -173,7 +148,7 @@ TriangleMesh read_with_assimp(const std::filesystem::path& file, bool normals) {
         std::replace(message.begin(), message.end(), '\n', ' ');
         throw InputError(fmt::format("{}: cannot read the mesh: {}", name, message));
     }
-    return MeshJoiner(normals).join(placements_of(*scene), name);
+    return MeshJoiner().join(placements_of(*scene), name);
 }
 
 }  // namespace uw

@@ -6,9 +6,9 @@
 
 namespace uw {
 
-/// Reads the triangles of an OBJ or STL file with Assimp, and its normals if `normals`; degenerate
-/// triangles and invalid corners are kept. Coordinates are the file's. Points and lines are
-/// skipped. Throws InputError with Assimp's message in one line.
-TriangleMesh read_with_assimp(const std::filesystem::path& file, bool normals);
+/// Reads the triangles of an STL file with Assimp; degenerate triangles and invalid corners are
+/// kept. The file's normals are those of the faces anyway, and not read. Throws InputError with
+/// Assimp's message in one line.
+TriangleMesh read_stl(const std::filesystem::path& file);
 
 }  // namespace uw

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/meshes/files/assimp_reader.h"
+#include "core/meshes/files/obj_reader.h"
 #include "core/meshes/files/ply_reader.h"
 #include "core/meshes/gltf/gltf_reader.h"
 #include "core/meshes/mesh_cleanup.h"
@@ -22,13 +23,13 @@ std::string lower_extension(const std::filesystem::path& file) {
     return extension;
 }
 
-TriangleMesh read_any(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                      const GltfUse& use) {
+MeshFile read_any(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                  const GltfUse& use) {
     const std::string extension = lower_extension(file);
-    if (extension == ".ply") return read_ply(file, warnings);
-    if (extension == ".obj") return read_with_assimp(file, true);
-    // STL repeats the face's normal at each corner.
-    if (extension == ".stl") return read_with_assimp(file, false);
+    const std::string name = file.stem().string();
+    if (extension == ".ply") return {read_ply(file, warnings), {}, {name}, {}};
+    if (extension == ".obj") return read_obj(file, use.pbr, warnings);
+    if (extension == ".stl") return {read_stl(file), {}, {name}, {}};
     return read_gltf(file, use, warnings);
 }
 
@@ -53,18 +54,27 @@ void check_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                       const GltfUse& use) {
+MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                   const GltfUse& use) {
     check_file(file);
-    TriangleMesh mesh = read_any(file, warnings, use);
+    MeshFile content = read_any(file, warnings, use);
     DroppedTriangles dropped;
-    drop_bad_triangles(mesh, dropped);
-    dropped.report(file.string(), warnings);
-    compute_tangents(mesh);
-    if (mesh.triangles.empty()) {
-        throw InputError(file.string() + ": the mesh has no triangles; check what was exported");
+    drop_bad_triangles(content.mesh, dropped);
+    compute_tangents(content.mesh);
+    for (SharedMesh& shared : content.shared) {
+        drop_bad_triangles(shared.mesh, dropped);
+        compute_tangents(shared.mesh);
     }
-    return mesh;
+    std::erase_if(content.shared, [](const SharedMesh& shared) {
+        return shared.mesh.triangles.empty() || shared.placements.empty();
+    });
+    dropped.report(file.string(), warnings);
+    if (!content.has_triangles() && !use.camera_or_lamps) {
+        throw InputError(file.string() +
+                         ": the mesh has no triangles; check what was exported, or take the camera "
+                         "or lamps of a glTF file (camera: true, lamps: all)");
+    }
+    return content;
 }
 
 }  // namespace uw

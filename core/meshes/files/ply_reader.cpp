@@ -61,21 +61,43 @@ void skip_entry(const PlyElement& element, PlySource& source, const std::string&
     }
 }
 
-/// The positions of x, y, z, nx, ny, nz among the properties of a vertex.
+/// x, y, z, nx, ny, nz, red, green, blue among the properties of a vertex.
 struct VertexLayout {
-    std::vector<int> slots;  // per property: 0..5, or -1 if skipped
-    bool has_normals = false;
+    std::vector<int> slots;  // per property: 0..8, or -1 if skipped
+    bool has_normals = false, has_colors = false;
+    double color_unit = 1;  // of the file's colours in 0..1
 };
 
+/// What one step of a colour is worth; 0 for types that hold none.
+double color_unit_of(PlyType type) {
+    switch (type) {
+        case PlyType::uint8:
+            return 1.0 / 255;
+        case PlyType::uint16:
+            return 1.0 / 65535;
+        case PlyType::float32:
+        case PlyType::float64:
+            return 1;
+        default:
+            return 0;
+    }
+}
+
 VertexLayout layout_of(const PlyElement& element, const std::string& name) {
-    static constexpr std::array<const char*, 6> names = {"x", "y", "z", "nx", "ny", "nz"};
+    static constexpr std::array<std::string_view, 9> names = {"x",  "y",   "z",     "nx",  "ny",
+                                                              "nz", "red", "green", "blue"};
+    constexpr std::string_view k_diffuse = "diffuse_";  // before colours, as some programs write
     VertexLayout layout;
-    std::array<int, 6> found{};
+    std::array<int, 9> found{};
     for (const PlyProperty& property : element.properties) {
+        std::string_view bare = property.name;
+        if (bare.starts_with(k_diffuse)) bare.remove_prefix(k_diffuse.size());
         int slot = -1;
-        for (int k = 0; k < 6; ++k) {
-            if (property.name == names[static_cast<std::size_t>(k)] && !property.is_list) slot = k;
+        for (int k = 0; k < 9; ++k) {
+            if (bare == names[static_cast<std::size_t>(k)] && !property.is_list) slot = k;
         }
+        if (slot >= 6)
+            layout.color_unit = std::min(layout.color_unit, color_unit_of(property.type));
         if (slot >= 0) ++found[static_cast<std::size_t>(slot)];
         layout.slots.push_back(slot);
     }
@@ -83,14 +105,23 @@ VertexLayout layout_of(const PlyElement& element, const std::string& name) {
         throw InputError(name + ": the PLY vertices lack x, y or z; export the mesh again");
     }
     layout.has_normals = found[3] == 1 && found[4] == 1 && found[5] == 1;
+    layout.has_colors = found[6] == 1 && found[7] == 1 && found[8] == 1 && layout.color_unit > 0;
     return layout;
 }
 
-bool has_colors(const PlyElement& vertices) {
-    return std::any_of(vertices.properties.begin(), vertices.properties.end(),
-                       [](const PlyProperty& property) {
-                           return property.name == "red" || property.name == "diffuse_red";
-                       });
+bool has_colors(const PlyElement& element) {
+    return std::ranges::any_of(element.properties, [](const PlyProperty& property) {
+        return property.name == "red" || property.name == "diffuse_red";
+    });
+}
+
+/// sRGB-encoded colours as linear ones.
+void append_color(const VertexLayout& layout, const float* color, TriangleMesh& mesh) {
+    for (int k = 0; k < 3; ++k) {
+        const double code = layout.color_unit * color[k];
+        const double in_range = code > 0 ? std::min(code, 1.0) : 0.0;
+        mesh.colors.push_back(static_cast<float>(linear_from_srgb(in_range)));
+    }
 }
 
 void read_vertices(const PlyElement& element, PlySource& source, const std::string& name,
@@ -101,8 +132,9 @@ void read_vertices(const PlyElement& element, PlySource& source, const std::stri
     const VertexLayout layout = layout_of(element, name);
     mesh.positions.reserve(3 * element.count + 4);  // Embree reads 16 bytes at the last vertex
     if (layout.has_normals) mesh.normals.reserve(3 * element.count);
+    if (layout.has_colors) mesh.materials[0].base_color = {1, 1, 1};  // the colours alone
     for (std::uint64_t vertex = 0; vertex < element.count; ++vertex) {
-        std::array<float, 6> values{};
+        std::array<float, 9> values{};
         for (std::size_t k = 0; k < element.properties.size(); ++k) {
             const PlyProperty& property = element.properties[k];
             if (property.is_list) {
@@ -116,8 +148,9 @@ void read_vertices(const PlyElement& element, PlySource& source, const std::stri
         }
         mesh.positions.insert(mesh.positions.end(), values.begin(), values.begin() + 3);
         if (layout.has_normals) {
-            mesh.normals.insert(mesh.normals.end(), values.begin() + 3, values.end());
+            mesh.normals.insert(mesh.normals.end(), values.begin() + 3, values.begin() + 6);
         }
+        if (layout.has_colors) append_color(layout, &values[6], mesh);
     }
 }
 
@@ -167,9 +200,14 @@ TriangleMesh read_ply(const std::filesystem::path& file, std::vector<std::string
     for (const PlyElement& element : header.elements) {
         if (element.properties.empty()) continue;  // occupies no bytes in the file
         if (element.name == "vertex") {
-            if (has_colors(element)) warnings.push_back(name + ": ignored: vertex colours");
             read_vertices(element, source, name, mesh);
+            if (has_colors(element) && mesh.colors.empty()) {
+                warnings.push_back(name +
+                                   ": ignored: vertex colours that are not red, green and "
+                                   "blue of 8 or 16 bits or floats");
+            }
         } else if (element.name == "face") {
+            if (has_colors(element)) warnings.push_back(name + ": ignored: colours of faces");
             read_faces(element, source, name, mesh);
         } else {
             for (std::uint64_t k = 0; k < element.count; ++k) skip_entry(element, source, name);

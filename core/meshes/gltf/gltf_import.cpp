@@ -69,6 +69,19 @@ const GltfCamera& chosen_camera(const GltfItems& items, const GeometryDesc& obje
                                  printable(name), names_of(items.cameras)));
 }
 
+/// The side of the image, in pixels, of which a lens shift is a share.
+double shifted_side(GltfCamera::SensorFit fit, int width, int height) {
+    switch (fit) {
+        case GltfCamera::SensorFit::horizontal:
+            return width;
+        case GltfCamera::SensorFit::vertical:
+            return height;
+        case GltfCamera::SensorFit::automatic:
+            break;
+    }
+    return std::max(width, height);
+}
+
 void import_camera(const GltfItems& items, const GeometryDesc& object, SceneDesc& scene) {
     const GltfCamera& source = chosen_camera(items, object);
     const SourceLocation& where = object.import.camera_where;
@@ -85,7 +98,11 @@ void import_camera(const GltfItems& items, const GeometryDesc& object, SceneDesc
     }
     if (camera.has_intrinsics) return;
     const double focal = camera.height / 2.0 / std::tan(source.yfov / 2);
-    camera.intrinsics = {focal, focal, camera.width / 2.0, camera.height / 2.0};
+    // Blender moves the frame to the right and up, that is, the principal point to the left and
+    // down in it.
+    const double side = shifted_side(source.sensor_fit, camera.width, camera.height);
+    camera.intrinsics = {focal, focal, camera.width / 2.0 - side * source.shift_x,
+                         camera.height / 2.0 + side * source.shift_y};
     const double aspect = static_cast<double>(camera.width) / camera.height;
     if (source.aspect_ratio > 0 && std::abs(aspect / source.aspect_ratio - 1) > 0.01) {
         scene.warnings.push_back(
@@ -217,6 +234,20 @@ void import_lamps(const GltfItems& items, const GeometryDesc& object, SceneDesc&
     }
 }
 
+/// In a scene without lamps, the lights that a key would make them.
+void name_unused_lights(SceneDesc& scene) {
+    for (const GeometryDesc& object : scene.geometry) {
+        const std::string extension = object.file.extension().string();
+        if (extension != ".gltf" && extension != ".glb") continue;
+        if (object.import.any_lamps()) continue;
+        const GltfItems items = read_gltf_items(object.file);
+        if (items.lights.empty()) continue;
+        scene.warnings.push_back(fmt::format(
+            "{}: '{}' has lights that no key asks for: {}; take them with lamps: all", object.where,
+            printable(object.file.string(), 300), names_of(items.lights)));
+    }
+}
+
 }  // namespace
 
 void import_gltf(SceneDesc& scene) {
@@ -226,6 +257,7 @@ void import_gltf(SceneDesc& scene) {
         if (object.import.camera) import_camera(items, object, scene);
         if (object.import.any_lamps()) import_lamps(items, object, scene);
     }
+    if (scene.lamps.empty()) name_unused_lights(scene);
 }
 
 }  // namespace uw

@@ -28,10 +28,6 @@ class Inspection {
                 check_primitive(primitive);
         }
         for (const Json& material : document_.list("materials")) inspect_material(material);
-        for (const char* ignored : {"animations", "skins"}) {
-            if (!document_.list(ignored).empty()) ignored_.insert(ignored);
-        }
-        if (!use_.camera && !document_.list("cameras").empty()) ignored_.insert("cameras");
         return {ignored_.begin(), ignored_.end()};
     }
 
@@ -59,11 +55,9 @@ class Inspection {
         }
         for (const Json& used : document_.list("extensionsUsed")) {
             const std::string extension = used.get<std::string>();
-            if (extension == "KHR_lights_punctual") {
-                if (!use_.lamps) ignored_.insert("lights");
-            } else if (extension == "KHR_materials_ior") {
+            if (extension == "KHR_materials_ior") {
                 if (!use_.pbr) ignored_.insert(extension);
-            } else if (extension != "KHR_texture_transform" &&
+            } else if (extension != "KHR_lights_punctual" && extension != "KHR_texture_transform" &&
                        extension != "KHR_materials_emissive_strength") {
                 ignored_.insert(extension);
             }
@@ -198,8 +192,9 @@ class Inspection {
 
     void inspect_material(const Json& material) {
         const Json& surface = document_.object(material, "pbrMetallicRoughness");
-        if (!use_.pbr && (surface.value("metallicFactor", 1.0) > 0 ||
-                          surface.contains("metallicRoughnessTexture"))) {
+        if (!use_.pbr && !use_.diffuse_meant &&
+            (surface.value("metallicFactor", 1.0) > 0 ||
+             surface.contains("metallicRoughnessTexture"))) {
             ignored_.insert("metallic");
         }
         if (material.contains("occlusionTexture")) ignored_.insert("occlusion maps");

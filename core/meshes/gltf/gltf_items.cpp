@@ -41,6 +41,30 @@ GltfCamera read_camera(const GltfDocument& document, const Json& json) {
     return camera;
 }
 
+/// `extras` may hold anything: only numbers count.
+double custom_number(const Json& extras, const char* key, double otherwise) {
+    const auto found = extras.find(key);
+    const bool is_number = found != extras.end() && found->is_number();
+    return is_number ? found->get<double>() : otherwise;
+}
+
+void read_shift(const GltfDocument& document, const Json& owner, GltfCamera& camera) {
+    const auto found = owner.find("extras");
+    if (found == owner.end() || !found->is_object()) return;
+    camera.shift_x = custom_number(*found, "shift_x", camera.shift_x);
+    camera.shift_y = custom_number(*found, "shift_y", camera.shift_y);
+    constexpr double k_most_shift = 10;  // Blender's own limit
+    if (std::abs(camera.shift_x) > k_most_shift || std::abs(camera.shift_y) > k_most_shift) {
+        document.fail("a glTF camera has a lens shift of more than 10 images");
+    }
+    const auto fit = found->find("sensor_fit");
+    if (fit == found->end()) return;
+    using Fit = GltfCamera::SensorFit;
+    if (*fit == "AUTO") camera.sensor_fit = Fit::automatic;
+    if (*fit == "HORIZONTAL") camera.sensor_fit = Fit::horizontal;
+    if (*fit == "VERTICAL") camera.sensor_fit = Fit::vertical;
+}
+
 void read_cone(const GltfDocument& document, const Json& json, GltfLight& light) {
     const Json& spot = document.object(json, "spot");
     light.inner_cone = spot.value("innerConeAngle", 0.0);
@@ -107,6 +131,7 @@ GltfItems read_items(const GltfDocument& document) {
         if (node.json->contains("camera")) {
             const Json& json = document.element("cameras", *node.json, "camera");
             GltfCamera camera = read_camera(document, json);
+            for (const Json* owner : {&json, node.json}) read_shift(document, *owner, camera);
             camera.name = name_of(*node.json, json, "camera", items.cameras.size() + 1);
             camera.file_from_camera = node.file_from_node;
             items.cameras.push_back(std::move(camera));

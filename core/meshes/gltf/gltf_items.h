@@ -17,6 +17,11 @@ struct GltfCamera {
     bool perspective = true;
     double yfov = 0;          // full angle of view, top to bottom [rad], 0 to pi
     double aspect_ratio = 0;  // width over height; 0: not given
+    /// Blender's lens shift, in units of the image's side that its sensor fit names; from custom
+    /// properties of the camera or its object (glTF `extras`), since the format has none.
+    enum class SensorFit { automatic, horizontal, vertical };
+    double shift_x = 0, shift_y = 0;
+    SensorFit sensor_fit = SensorFit::automatic;  // the longer side
     Affine file_from_camera;
 };
 

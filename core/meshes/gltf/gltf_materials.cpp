@@ -106,6 +106,7 @@ MeshMaterial GltfMaterials::read(std::size_t index) {
     const Json& json = document_.list("materials")[index];
     const Json& surface = document_.object(json, "pbrMetallicRoughness");
     MeshMaterial material;
+    material.number = static_cast<std::uint32_t>(index + 1);
     material.base_color = color_of(surface, "baseColorFactor", {1, 1, 1});
     material.double_sided = json.value("doubleSided", false);
     if (json.value("alphaMode", "OPAQUE") == "MASK") {

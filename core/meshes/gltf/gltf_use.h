@@ -4,8 +4,10 @@ namespace uw {
 
 /// What the scene takes from a glTF file besides triangles and diffuse materials.
 struct GltfUse {
-    bool camera = false, lamps = false;  // read by import_gltf, not with the mesh
-    bool pbr = false;                    // metallic, roughness and refractive index
+    /// Its camera or lamps, which import_gltf reads: the file need not show a mesh.
+    bool camera_or_lamps = false;
+    bool pbr = false;            // metallic, roughness and refractive index
+    bool diffuse_meant = false;  // metal is shown as diffuse on request, and not reported
 };
 
 }  // namespace uw

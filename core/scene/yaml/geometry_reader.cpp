@@ -113,10 +113,11 @@ void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
         import.units = units->choice(k_units);
     }
     if (const auto material = map.find("material")) {
-        check_file(*material);
+        if (extension != ".obj") check_file(*material);
         constexpr std::array<std::pair<std::string_view, bool>, 2> k_materials{
             {{"diffuse", false}, {"pbr", true}}};
         object.is_pbr = material->choice(k_materials);
+        object.is_material_given = true;
     }
 }
 

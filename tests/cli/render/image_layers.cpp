@@ -26,8 +26,9 @@ TEST_F(ImageLayers, ThreeBandsAreRedGreenBlue) {
     for (const char* layer : {"direct", "forward", "backscatter", "backscatter_first", "irradiance",
                               "exitance", "clean", "transmittance", "albedo", "lamp.left"})
         for (const char* band : {".R", ".G", ".B"}) expected.push_back(std::string(layer) + band);
-    for (const char* name : {"lit.V", "depth.Z", "range.V", "path.V", "normal.X", "normal.Y",
-                             "normal.Z", "position.X", "position.Y", "position.Z", "id.V"})
+    for (const char* name :
+         {"lit.V", "depth.Z", "range.V", "path.V", "normal.X", "normal.Y", "normal.Z", "position.X",
+          "position.Y", "position.Z", "id.V", "material.V"})
         expected.emplace_back(name);
     EXPECT_EQ(sorted(image.names), sorted(expected));
     test::expect_finite_and_lit(image);

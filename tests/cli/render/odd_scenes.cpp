@@ -130,7 +130,7 @@ TEST_F(OddScenes, OpaqueCloudsAndManyBands) {
     const ImageFile many =
         render({"--set", "water={bands: [" + bands + "]}", "--set", "lamps.left.intensity=50",
                 "--set", "geometry[1].reflectance=0.5", "--layers", "all"});
-    EXPECT_EQ(many.names.size(), 4U + 10 * 32 + 11 + 32);
+    EXPECT_EQ(many.names.size(), 4U + 10 * 32 + 12 + 32);
     for (const auto& [name, values] : many.channels)
         for (const float value : values) ASSERT_TRUE(std::isfinite(value)) << name;
 }

@@ -68,7 +68,8 @@ TEST(Layers, AllIsEveryLayer) {
                       "position.X",
                       "position.Y",
                       "position.Z",
-                      "id.V"};
+                      "id.V",
+                      "material.V"};
     EXPECT_EQ(plan.channel_names(), truth);
     EXPECT_EQ(plan.first_channel(Layer::total), -1);  // R G B
     EXPECT_EQ(plan.first_channel(Layer::direct), 4);
@@ -104,11 +105,11 @@ TEST(Layers, LightIsToldFromGroundTruth) {
 
 TEST(Layers, AllHasTheLamps) {
     const LayerPlan plan("all", k_rgb, k_lamps);
-    ASSERT_EQ(plan.channel_names().size(), 42u + 6u);
-    EXPECT_EQ(plan.first_channel_of_lamp(0), 42);
-    EXPECT_EQ(plan.first_channel_of_lamp(1), 45);
-    EXPECT_EQ(plan.channel_names()[42], "lamp.left.R");
-    EXPECT_EQ(plan.channel_names()[47], "lamp.right.top.B");
+    ASSERT_EQ(plan.channel_names().size(), 43u + 6u);
+    EXPECT_EQ(plan.first_channel_of_lamp(0), 43);
+    EXPECT_EQ(plan.first_channel_of_lamp(1), 46);
+    EXPECT_EQ(plan.channel_names()[43], "lamp.left.R");
+    EXPECT_EQ(plan.channel_names()[48], "lamp.right.top.B");
 }
 
 TEST(Layers, ListInAnyOrderWithSpacesAndRepetition) {
@@ -146,7 +147,7 @@ TEST(Layers, ManyBandsAndLamps) {
     Names lamps;
     for (int i = 0; i < 40; ++i) lamps.push_back("lamp" + std::to_string(i));
     const LayerPlan plan("all", bands, lamps);
-    EXPECT_EQ(plan.channel_names().size(), 4u + 10u * 32u + 11u + 40u * 32u);
+    EXPECT_EQ(plan.channel_names().size(), 4u + 10u * 32u + 12u + 40u * 32u);
     EXPECT_EQ(plan.channel_names()[static_cast<std::size_t>(plan.first_channel_of_lamp(39)) + 31],
               "lamp.lamp39.710nm");
 }
@@ -170,7 +171,7 @@ TEST(Layers, WhatCannotBeSuppliedIsLeftOutOrRefused) {
         return LayerPlan(request, k_rgb, k_lamps, supply).channel_names();
     };
     const Names all = names("all", {.multiple = true, .error = true});
-    ASSERT_EQ(all.size(), 42U + 12U + 6U);
+    ASSERT_EQ(all.size(), 43U + 12U + 6U);
     EXPECT_EQ(Names(all.begin() + 16, all.begin() + 28),
               (Names{"multiple.R", "multiple.G", "multiple.B", "multiple.volume.R",
                      "multiple.volume.G", "multiple.volume.B", "multiple.surface.R",

@@ -36,8 +36,12 @@ inline double area_about_z(const TriangleMesh& mesh) {
 /// Reads meshes that a test writes down as bytes.
 class MeshReading : public testing::Test {
   protected:
-    TriangleMesh read(const std::string& name, const std::string& bytes) {
+    MeshFile read_file(const std::string& name, const std::string& bytes) {
         return read_mesh(folder_.write(name, bytes), warnings_);
+    }
+    /// What is there once.
+    TriangleMesh read(const std::string& name, const std::string& bytes) {
+        return read_file(name, bytes).mesh;
     }
     /// The one-line message that refuses the file; empty if it is read.
     std::string error_of(const std::string& name, const std::string& bytes) {

@@ -56,7 +56,7 @@ TEST_F(MeshReader, RefusesBrokenFilesInOneLine) {
 
 TEST_F(MeshReader, ReadsTheProjectsSeabed) {
     const std::filesystem::path assets = std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/meshes";
-    const TriangleMesh mesh = read_mesh(assets / "seabed.glb", warnings_);
+    const TriangleMesh mesh = read_mesh(assets / "seabed.glb", warnings_).mesh;
     // Counted from the file's index accessors: 301056 / 3 of the grid, rocks, cube, rings, pipe.
     EXPECT_EQ(mesh.triangle_count(), 110408U);
     EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
@@ -68,7 +68,7 @@ TEST_F(MeshReader, ReadsTheProjectsSeabed) {
     }
     EXPECT_EQ(lowest, -0.1977550983428955F);
     EXPECT_EQ(highest, 0.19117094576358795F);
-    const TriangleMesh cube = read_mesh(assets / "cube_quads.ply", warnings_);
+    const TriangleMesh cube = read_mesh(assets / "cube_quads.ply", warnings_).mesh;
     EXPECT_EQ(cube.triangle_count(), 12U);
 }
 
@@ -76,13 +76,13 @@ TEST_F(MeshReader, ReadsTheSamplesIfTheyAreThere) {
     const char* folder = std::getenv("UWVDB_SAMPLES");
     if (folder == nullptr) return;  // set in continuous integration; nothing to look at elsewhere
     const std::filesystem::path samples = folder;
-    const TriangleMesh apart = read_mesh(samples / "seabed_sep.gltf", warnings_);
-    const TriangleMesh together = read_mesh(samples / "seabed.glb", warnings_);
+    const TriangleMesh apart = read_mesh(samples / "seabed_sep.gltf", warnings_).mesh;
+    const TriangleMesh together = read_mesh(samples / "seabed.glb", warnings_).mesh;
     EXPECT_EQ(apart.positions, together.positions);
     EXPECT_EQ(apart.uvs, together.uvs);
-    EXPECT_EQ(read_mesh(samples / "seabed_only.ply", warnings_).triangle_count(), 100352U);
+    EXPECT_EQ(read_mesh(samples / "seabed_only.ply", warnings_).mesh.triangle_count(), 100352U);
     for (const char* lights : {"lights_raw.gltf", "lights_spec.gltf", "lights_compat.gltf"}) {
-        EXPECT_EQ(read_mesh(samples / lights, warnings_).triangle_count(), 12U);
+        EXPECT_EQ(read_mesh(samples / lights, warnings_).mesh.triangle_count(), 12U);
     }
 }
 

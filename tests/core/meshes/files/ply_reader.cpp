@@ -81,14 +81,41 @@ TEST_F(PlyReader, ReadsAllEncodings) {
     }
 }
 
-TEST_F(PlyReader, SaysThatColoursAreIgnored) {
-    read(
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-        "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
-        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-        "0 0 0 9 9 9\n1 0 0 9 9 9\n0 1 0 9 9 9\n3 0 1 2\n");
+TEST_F(PlyReader, DecodesVertexColoursFromSrgb) {
+    const auto colored = [](const std::string& type, const std::string& first) {
+        return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+               "property float z\nproperty " +
+               type + " red\nproperty " + type + " green\nproperty " + type +
+               " blue\nproperty uchar alpha\nelement face 1\n"
+               "property list uchar int vertex_indices\nend_header\n0 0 0 " +
+               first + " 7\n1 0 0 0 0 0 7\n0 1 0 0 0 0 7\n3 0 1 2\n";
+    };
+    // IEC 61966-2-1: a code of 188 is 0.5029, of 128 0.2159; of 10 it is on the straight piece.
+    const TriangleMesh bytes = read(colored("uchar", "188 128 10"));
+    ASSERT_EQ(bytes.colors.size(), 9U);
+    EXPECT_NEAR(bytes.colors[0], 0.50288646, 1e-7);
+    EXPECT_NEAR(bytes.colors[1], 0.21586050, 1e-7);
+    EXPECT_NEAR(bytes.colors[2], 10 / 255.0 / 12.92, 1e-9);
+    EXPECT_EQ(bytes.materials[0].base_color, (Rgb{1, 1, 1}));
+    const TriangleMesh shorts = read(colored("ushort", "48316 32896 2570"));  // 257 times those
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(shorts.colors[k], bytes.colors[k], 1e-7);
+    const TriangleMesh floats = read(colored("float", "0.5 2 -1"));
+    EXPECT_NEAR(floats.colors[0], 0.21404114, 1e-7);
+    EXPECT_EQ(floats.colors[1], 1);
+    EXPECT_EQ(floats.colors[2], 0);
+    EXPECT_TRUE(warnings_.empty());
+    EXPECT_TRUE(read(colored("int", "1 1 1")).colors.empty());
     ASSERT_EQ(warnings_.size(), 1U);
-    EXPECT_TRUE(warnings_[0].ends_with("mesh.ply: ignored: vertex colours")) << warnings_[0];
+    EXPECT_NE(warnings_[0].find("ignored: vertex colours that are not"), std::string::npos);
+}
+
+TEST_F(PlyReader, SaysThatColoursOfFacesAreIgnored) {
+    const TriangleMesh mesh = read(with_three_vertices(
+        "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n",
+        "3 0 1 2 9\n"));
+    EXPECT_EQ(mesh.materials[0].base_color, (Rgb{0.5, 0.5, 0.5}));
+    ASSERT_EQ(warnings_.size(), 1U);
+    EXPECT_TRUE(warnings_[0].ends_with("mesh.ply: ignored: colours of faces")) << warnings_[0];
 }
 
 TEST_F(PlyReader, TakesNormalsIfAllThreeAreThere) {

@@ -146,8 +146,57 @@ TEST_F(GltfImport, WhatTheSceneSaysItselfStands) {
     expect_error("scene.yaml:2:9: camera: 'intrinsics' is missing; give", ", lamps: all");
 }
 
+TEST_F(GltfImport, LensShiftIsTakenFromCustomProperties) {
+    const auto camera_with = [&](const std::string& extras, const std::string& node_extras = "{}") {
+        return scene(", camera: true", "",
+                     {{"nodes", R"([{"mesh":0},{"camera":0,"extras":)" + node_extras + "}]"},
+                      {"scenes", R"([{"nodes":[0,1]}])"},
+                      {"cameras", R"([{"type":"perspective","extras":)" + extras +
+                                      R"(,"perspective":{"yfov":1,"znear":1}}])"}})
+            .camera.intrinsics;
+    };
+    // In Blender the frame moves right and up by shares of its longer side, here 300 of 300 x 200.
+    const IntrinsicsDesc automatic = camera_with(R"({"shift_x":0.1,"shift_y":0.05})");
+    EXPECT_NEAR(automatic.cx, 150 - 30, 1e-12);
+    EXPECT_NEAR(automatic.cy, 100 + 15, 1e-12);
+    EXPECT_NEAR(automatic.fx, 100 / std::tan(0.5), 1e-12);  // as without
+    const IntrinsicsDesc vertical =
+        camera_with(R"({"shift_x":0.1,"shift_y":-0.05,"sensor_fit":"VERTICAL","note":[1]})");
+    EXPECT_NEAR(vertical.cx, 150 - 20, 1e-12);
+    EXPECT_NEAR(vertical.cy, 100 - 10, 1e-12);
+    EXPECT_NEAR(camera_with(R"({"shift_y":0.1,"sensor_fit":"HORIZONTAL"})").cy, 100 + 30, 1e-12);
+    // Of the object, if both have one; what is no number is somebody else's.
+    EXPECT_NEAR(camera_with(R"({"shift_x":0.1})", R"({"shift_x":0.2})").cx, 150 - 60, 1e-12);
+    EXPECT_EQ(camera_with(R"({"shift_x":"0.1","sensor_fit":7})", "[]").cx, 150);
+    EXPECT_EQ(camera_with("3").cx, 150);
+    expect_error("lens shift", ", camera: true", "",
+                 {{"cameras", R"([{"type":"perspective","extras":{"shift_x":1e30},
+                                   "perspective":{"yfov":1,"znear":1}}])"}});
+}
+
+TEST_F(GltfImport, LightsThatNobodyTakesAreNamedInTheDark) {
+    const SceneDesc dark = scene(", camera: true");
+    ASSERT_EQ(dark.warnings.size(), 2U);  // there are no lamps
+    EXPECT_NE(dark.warnings[1].find("lights that no key asks for: Sun, Bulb 1, Bulb.1; take them"),
+              std::string::npos)
+        << dark.warnings[1];
+    for (const std::string& warning : scene(", camera: true, lamps: ['Bulb 1']").warnings)
+        EXPECT_EQ(warning.find("no key"), std::string::npos) << warning;
+}
+
+TEST_F(GltfImport, AFileMayHoldNothingButACamera) {
+    folder_.write("eye.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"camera":0}],
+        "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}]})");
+    SceneDesc desc = read_scene(folder_.write("scene.yaml",
+                                              "uwvdb: 1\ncamera: {resolution: [30, 20]}\n"
+                                              "geometry: [{file: eye.gltf, camera: true}]\n"),
+                                {});
+    import_gltf(desc);
+    EXPECT_NEAR(desc.camera.intrinsics.fy, 10 / std::tan(0.5), 1e-12);
+}
+
 TEST_F(GltfImport, AnotherAspectIsSaid) {
-    EXPECT_TRUE(scene(", camera: true").warnings.size() == 1);  // no lamps: black
+    EXPECT_EQ(scene(", camera: true").warnings.size(), 2U);  // no lamps, though the file has lights
     const SceneDesc desc = scene(", camera: true, lamps: ['Bulb 1']", "", {{"cameras", R"(
         [{"type":"perspective","perspective":{"yfov":1,"aspectRatio":1,"znear":1}}])"}});
     ASSERT_GE(desc.warnings.size(), 1U);

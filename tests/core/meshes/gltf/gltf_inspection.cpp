@@ -47,12 +47,11 @@ TEST_F(GltfInspection, NamesWhatIsNotUsedSorted) {
         {"materials", R"([{"alphaMode":"BLEND","occlusionTexture":{}},{"occlusionTexture":{}}])"},
         {"extensionsUsed",
          R"(["KHR_lights_punctual","KHR_materials_ior","KHR_texture_transform","EXT_other"])"}};
-    EXPECT_EQ(inspect(all),
-              (IgnoredNames{"EXT_other", "KHR_materials_ior", "alpha blending", "animations",
-                            "cameras", "lights", "metallic", "occlusion maps", "skins"}));
-    EXPECT_EQ(
-        inspect(all, {.camera = true, .lamps = true, .pbr = true}),
-        (IgnoredNames{"EXT_other", "alpha blending", "animations", "occlusion maps", "skins"}));
+    EXPECT_EQ(inspect(all), (IgnoredNames{"EXT_other", "KHR_materials_ior", "alpha blending",
+                                          "metallic", "occlusion maps"}));
+    EXPECT_EQ(inspect(all, {.pbr = true}),
+              (IgnoredNames{"EXT_other", "alpha blending", "occlusion maps"}));
+    EXPECT_EQ(inspect({{"materials", "[{}]"}}, {.diffuse_meant = true}), IgnoredNames{});
 }
 
 TEST_F(GltfInspection, MetallicIsTheDefaultOfASurface) {

@@ -98,9 +98,101 @@ TEST_F(MeshReaderGltf, NamesWhatItIgnoresInOneLine) {
                                      "occlusionTexture":{"index":0}}])"},
                     {"extensionsUsed", R"(["KHR_lights_punctual"])"}}));
     ASSERT_EQ(warnings_.size(), 1U);
-    EXPECT_NE(
-        warnings_[0].find("ignored: alpha blending, cameras, lights, metallic, occlusion maps"),
-        std::string::npos)
+    EXPECT_NE(warnings_[0].find("ignored: alpha blending, metallic, occlusion maps"),
+              std::string::npos)
+        << warnings_[0];
+}
+
+TEST_F(MeshReaderGltf, NodesAreObjectsWithTheirNames) {
+    const MeshFile file = read_file(
+        "names.gltf",
+        gltf_text({{"scenes", R"([{"nodes":[3,0,2]}])"},
+                   {"nodes", R"([{"name":"rock","mesh":0,"children":[1]},
+                                 {"mesh":1,"translation":[0,0,5]},{"mesh":0},
+                                 {"name":"empty"},{"name":"not shown","mesh":0}])"},
+                   {"materials", R"([{"name":"steel"},{}])"},
+                   {"meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1},
+                                  {"attributes":{"POSITION":0},"indices":1,"material":1}]},
+                                  {"name":"stone","primitives":[{"attributes":{"POSITION":0}}]}])"}}));
+    EXPECT_EQ(file.objects, (std::vector<std::string>{"rock", "stone", "node2"}));
+    EXPECT_EQ(file.materials, (std::vector<std::string>{"steel", "material2"}));
+    EXPECT_EQ(file.mesh.triangle_objects, (std::vector<std::uint32_t>{0, 0, 1, 2, 2}));
+    ASSERT_EQ(file.mesh.materials.size(), 2U);  // those in use, and none
+    EXPECT_EQ(file.mesh.materials[0].number, 2U);
+    EXPECT_EQ(file.mesh.materials[1].number, 0U);
+    EXPECT_EQ(file.mesh.triangle_materials, (std::vector<std::uint32_t>{1, 0, 1, 1, 0}));
+    EXPECT_TRUE(file.shared.empty());  // too small
+}
+
+TEST_F(MeshReaderGltf, LargeMeshesOfSeveralNodesAreKeptOnce) {
+    // 33 triangles in one mesh: a strip over the three vertices, again and again.
+    std::vector<std::uint16_t> corners;
+    for (int k = 0; k < 33; ++k) corners.insert(corners.end(), {0, 1, 2});
+    const std::string buffer = bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytes_of(corners);
+    const MeshFile file = read_file(
+        "shared.gltf",
+        gltf_text(
+            {{"scenes", R"([{"nodes":[0,1,2,3]}])"},
+             {"nodes", R"([{"mesh":0,"name":"a"},{"mesh":1,"name":"b"},
+                                 {"mesh":0,"name":"c","translation":[0,0,5]},
+                                 {"mesh":0,"name":"flat","scale":[1,1,0]}])"},
+             {"meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1}]},
+                                  {"primitives":[{"attributes":{"POSITION":0}}]}])"},
+             {"accessors", R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+                        {"bufferView":1,"componentType":5123,"count":99,"type":"SCALAR"}])"},
+             {"bufferViews", R"([{"buffer":0,"byteLength":36},
+                                       {"buffer":0,"byteOffset":36,"byteLength":198}])"},
+             {"buffers", R"([{"byteLength":234,"uri":"data:application/octet-stream;base64,)" +
+                             test::base64(buffer) + R"("}])"}}));
+    ASSERT_EQ(file.shared.size(), 1U);
+    EXPECT_EQ(file.shared[0].mesh.triangle_count(), 33U);
+    ASSERT_EQ(file.shared[0].placements.size(), 2U);
+    EXPECT_EQ(file.shared[0].placements[1].object, 2U);
+    EXPECT_EQ(file.shared[0].placements[1].file_from_mesh.offset(), Vector3(0, 0, 5));
+    // What is there once, and what no transform could be undone of.
+    ASSERT_EQ(file.mesh.triangle_objects.size(), 1U + 33U);
+    EXPECT_EQ(file.mesh.triangle_objects.front(), 1U);
+    EXPECT_EQ(file.mesh.triangle_objects.back(), 3U);
+    EXPECT_EQ(file.objects, (std::vector<std::string>{"a", "b", "c", "flat"}));
+}
+
+TEST_F(MeshReaderGltf, FilesWithoutAMeshAreReadForTheirCameraOrLamps) {
+    const std::string text =
+        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"camera":0}],
+            "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}]})";
+    for (const std::string& bytes : {text, test::glb_bytes(text)}) {
+        const auto file = folder_.write(bytes == text ? "eye.gltf" : "eye.glb", bytes);
+        EXPECT_FALSE(read_mesh(file, warnings_, {.camera_or_lamps = true}).has_triangles());
+        EXPECT_THROW(read_mesh(file, warnings_), InputError);
+    }
+    EXPECT_NE(error_of("eye.gltf", text).find("camera: true"), std::string::npos);
+}
+
+TEST_F(MeshReaderGltf, NamesWhatWouldMoveInOneLine) {
+    read("moves.gltf",
+         gltf_text({{"scenes", R"([{"nodes":[0,1,2]}])"},
+                    {"nodes", R"([{"mesh":0,"name":"fish","skin":0},{"name":"lid"},{}])"},
+                    {"skins", R"([{"joints":[1]}])"},
+                    {"animations", R"([{"channels":[{"target":{"node":1,"path":"rotation"}},
+                        {"target":{"node":2,"path":"scale"}},{"target":{"node":99}},{}]},
+                        {"channels":[{"target":{"node":1,"path":"translation"}}]}])"}}));
+    ASSERT_EQ(warnings_.size(), 1U);
+    EXPECT_NE(warnings_[0].find("animations of 'lid', 'node2' and skins of 'fish' stand still"),
+              std::string::npos)
+        << warnings_[0];
+}
+
+TEST_F(MeshReaderGltf, ManyNodesAreNamedInShort) {
+    std::string nodes, channels;
+    for (int k = 0; k < 9; ++k) {
+        nodes += std::string(k == 0 ? "" : ",") + R"({"mesh":0})";
+        channels +=
+            std::string(k == 0 ? "" : ",") + R"({"target":{"node":)" + std::to_string(k) + "}}";
+    }
+    read("many.gltf", gltf_text({{"nodes", "[" + nodes + "]"},
+                                 {"animations", R"([{"channels":[)" + channels + "]}]"}}));
+    ASSERT_EQ(warnings_.size(), 1U);
+    EXPECT_NE(warnings_[0].find("'node5' and 3 more stand still"), std::string::npos)
         << warnings_[0];
 }
 

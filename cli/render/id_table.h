@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "core/image/image_metadata.h"
+#include "core/surfaces/surface_names.h"
+
+namespace uw {
+
+/// Whether --layers asks for numbers that stand for names: `id` or `material`.
+bool requests_ids(std::string_view layers);
+
+/// The table's file beside an image: "out_ids.csv" beside "out.exr".
+std::filesystem::path id_table_beside(const std::filesystem::path& image);
+
+/// Adds what the numbers of those layers stand for to an image's header: `uwvdb/id_names` and
+/// `uwvdb/material_names`, JSON objects of names by number.
+void add_id_names(const SurfaceNames& names, ImageMetadata& metadata);
+
+/// Writes the same as a CSV: layer, number, name, and the entry of `geometry` it comes from. Throws
+/// IoError.
+void write_id_table(const std::filesystem::path& file, const SurfaceNames& names);
+
+}  // namespace uw

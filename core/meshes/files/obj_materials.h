@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/meshes/mesh.h"
+
+namespace uw {
+
+/// The materials of an OBJ file: those with these names in its material libraries. Libraries that
+/// are missing or lie outside the OBJ's folder, materials that no library has, textures that are
+/// missing or not PNG or JPEG, and statements that cannot be used each add one line to `warnings`;
+/// without anything else, a material has reflectance 0.5. `is_pbr`: roughness and metallic are
+/// used. Throws InputError for broken libraries and damaged textures, IoError.
+std::vector<MeshMaterial> read_obj_materials(const std::filesystem::path& obj_file,
+                                             const std::vector<std::string>& libraries,
+                                             const std::vector<std::string>& names, bool is_pbr,
+                                             std::vector<std::string>& warnings);
+
+/// The material libraries and textures that an OBJ file leads to. None for a file that cannot be
+/// read; the actual reader reports what is wrong.
+std::vector<std::filesystem::path> files_named_by_obj(const std::filesystem::path& obj_file);
+
+}  // namespace uw
