@@ -1,6 +1,8 @@
 // ctest labels: golden
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "tests/support/cli_test.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 
@@ -17,7 +19,7 @@ class ExampleScenes : public test::CliTest {
         arguments.insert(arguments.end(), more.begin(), more.end());
         const test::ProgramResult result = run(arguments);
         ASSERT_EQ(result.exit_code, 0) << scene << result.err;
-        EXPECT_EQ(result.err.find("black"), std::string::npos) << scene << result.err;
+        expect_no_doubts(result.err, scene);
         int images = 0;  // a rig makes one for each camera
         for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
             if (entry.path().extension() != ".exr") continue;
@@ -26,6 +28,19 @@ class ExampleScenes : public test::CliTest {
             ++images;
         }
         EXPECT_GE(images, 1) << scene;
+    }
+
+    // The light of harbour.yaml has the standard error that its first lines state, and the test's
+    // images are wider than some cameras were made for.
+    static void expect_no_doubts(const std::string& messages, const std::filesystem::path& scene) {
+        std::istringstream lines(messages);
+        for (std::string line; std::getline(lines, line);) {
+            const bool is_error = scene.filename() == "harbour.yaml" &&
+                                  line.starts_with("warning: multiple scattering: its standard");
+            const bool is_aspect = line.find("made for an aspect ratio of") != std::string::npos;
+            EXPECT_TRUE(is_error || is_aspect || !line.starts_with("warning:"))
+                << scene << ": " << line;
+        }
     }
 
     static void expect_lit(const test::ImageFile& image, const std::filesystem::path& scene) {
