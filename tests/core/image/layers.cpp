@@ -176,7 +176,7 @@ TEST(Layers, WhatCannotBeSuppliedIsLeftOutOrRefused) {
               (Names{"multiple.R", "multiple.G", "multiple.B", "multiple.volume.R",
                      "multiple.volume.G", "multiple.volume.B", "multiple.surface.R",
                      "multiple.surface.G", "multiple.surface.B", "error.R", "error.G", "error.B"}));
-    EXPECT_EQ(names("all", {.multiple = true}).size(), 42U + 9U + 6U);
+    EXPECT_EQ(names("all", {.multiple = true}).size(), 43U + 9U + 6U);
     EXPECT_EQ(names("multiple.surface", {.multiple = true}).size(), 4U + 3U);
     for (const char* const name : {"multiple", "multiple.volume", "multiple.surface"})
         EXPECT_EQ(message_of<UsageError>(name),
