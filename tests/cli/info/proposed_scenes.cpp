@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "tests/support/cli_test.h"
 #include "tests/support/vdb/vdb_fixtures.h"
@@ -40,10 +39,8 @@ class ProposedScenes : public test::CliTest {
     void expect_plain_to_see(const std::filesystem::path& file,
                              const std::vector<std::string>& more = {}) const {
         SCOPED_TRACE(file.filename());
-        const test::ProgramResult printed =
-            run({"info", file.string(), "--scene", "--picture", "thumbnail.png"});
+        const test::ProgramResult printed = run({"info", file.string(), "--scene"});
         ASSERT_EQ(printed.exit_code, 0) << printed.err;
-        EXPECT_TRUE(read("thumbnail.png").starts_with("\x89PNG"));
         write("with.yaml", printed.out);
         write("without.yaml", printed.out.substr(0, printed.out.find("\nvolumes:") + 1));
         const test::ImageFile with = render("with.yaml", more),
@@ -91,7 +88,11 @@ double ball(int i, int j, int k) {
 }
 
 TEST_F(ProposedScenes, ShowTheProjectsPlume) {
-    expect_plain_to_see(UWVDB_SOURCE_DIR "/assets/grids/plume128_blosc_half_0030.vdb");
+    const std::string plume = UWVDB_SOURCE_DIR "/assets/grids/plume128_blosc_half_0030.vdb";
+    expect_plain_to_see(plume);
+    const test::ProgramResult result = run({"info", plume, "--picture", "thumbnail.png"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(read("thumbnail.png").starts_with("\x89PNG"));
 }
 
 TEST_F(ProposedScenes, ShowAnySizePlaceAndValue) {
@@ -126,9 +127,11 @@ TEST_F(ProposedScenes, ShowTheFilesOfOtherPrograms) {
     int shown = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().extension() != ".vdb") continue;
-        const test::ProgramResult info = run({"info", entry.path().string(), "--json"});
-        ASSERT_EQ(info.exit_code, 0) << info.err;
-        if (nlohmann::json::parse(info.out).at("advice").at("map").empty()) continue;
+        // Level sets, points and vectors, which info_samples.cpp is about.
+        const std::string name = entry.path().stem().string();
+        if (name == "arnold_pointgrid" || name == "oiio_sphereCd" ||
+            name == "openvdb_sphere_houdini")
+            continue;
         expect_plain_to_see(entry.path());
         ++shown;
     }
