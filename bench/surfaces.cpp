@@ -41,10 +41,13 @@ std::unique_ptr<Surfaces> wall() {
     }
     object->reflectance = Spectrum{};
     SceneObjects objects{.meshes = {},
+                         .shared_meshes = {},
+                         .instances = {},
                          .spheres = {},
                          .planes = {},
                          .bounds = {},
-                         .bands = ReflectanceBands({620, 540, 450})};
+                         .bands = ReflectanceBands({620, 540, 450}),
+                         .names = {}};
     objects.meshes.push_back(std::move(object));
     return make_embree_surfaces(std::move(objects));
 }
