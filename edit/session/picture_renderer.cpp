@@ -59,6 +59,21 @@ ResolvedScene scene_of_part(const EditedScene& edited, PictureQuality quality,
     return scene;
 }
 
+// Surfaces that emit light do so beside every lamp, but that light belongs to the unlit part.
+void take_away_emission(LightLayers& light, const LightLayers& unlit) {
+    for (const Layer layer : {Layer::direct, Layer::forward, Layer::multiple,
+                              Layer::multiple_volume, Layer::multiple_surface, Layer::clean}) {
+        if (!light.plan.has(layer)) continue;
+        const auto to = static_cast<std::size_t>(light.plan.first_channel(layer));
+        const auto from = static_cast<std::size_t>(unlit.plan.first_channel(layer));
+        const auto bands = static_cast<std::size_t>(light.plan.band_count());
+        for (int y = 0; y < light.film.height(); ++y)
+            for (int x = 0; x < light.film.width(); ++x)
+                for (std::size_t b = 0; b < bands; ++b)
+                    light.film.pixel(x, y)[to + b] -= unlit.film.pixel(x, y)[from + b];
+    }
+}
+
 }  // namespace
 
 PictureRenderer::PictureRenderer(PictureCallbacks callbacks)
@@ -176,18 +191,20 @@ PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, Pictur
         lamp ? renderer_.assembled().lamps.front().axis_intensity() : Spectrum{};
     if (!std::exchange(is_announced_, true)) callbacks_.assembled(renderer_);
     if (lamp) ++rendered_;
-    return std::make_shared<LightLayers>(LightLayers{lamp ? scene.lamps[*lamp].key : k_unlit,
-                                                     renderer_.release_film(), std::move(plan),
-                                                     brightness});
+    auto light = std::make_shared<LightLayers>(LightLayers{lamp ? scene.lamps[*lamp].key : k_unlit,
+                                                           renderer_.release_film(),
+                                                           std::move(plan), brightness});
+    if (lamp) take_away_emission(*light, *find(quality, k_unlit));
+    return light;
 }
 
 void PictureRenderer::make(const std::shared_ptr<const EditedScene>& scene,
                            PictureQuality quality) {
     quality_ = quality;
     std::vector<std::optional<std::size_t>> missing;
+    if (!find(quality, k_unlit)) missing.push_back(std::nullopt);  // first: lamps need it
     for (std::size_t i = 0; i < scene->lamps.size(); ++i)
         if (!find(quality, scene->lamps[i].key)) missing.push_back(i);
-    if (!find(quality, k_unlit)) missing.push_back(std::nullopt);
     parts_ = missing.size();
     for (part_ = 0; part_ < parts_; ++part_) {
         const auto lamp = missing[part_];

@@ -16,6 +16,7 @@
 #include "render/renderer.h"
 #include "render/scene_loading.h"
 #include "tests/support/edit_scene.h"
+#include "tests/support/meshes/mesh_fixtures.h"
 
 namespace {
 
@@ -141,10 +142,9 @@ TEST(Pictures, HalvesAreTheSameToTheirPrecision) {
 
 // Light is additive and linear in the lamps' intensities: mixed from its parts, the picture is that
 // of the whole scene. The tolerance is that of interpolated in-scatter (1e-4 of the mean).
-TEST(Pictures, MixedFromLampsTheyAreTheWhole) {
+void expect_mixed_from_lamps(std::string text) {
     PictureRenderer renderer(quiet());
-    const auto picture = final_picture(renderer, scene_of(k_edit_scene));
-    std::string text = k_edit_scene;
+    const auto picture = final_picture(renderer, scene_of(text));
     text.replace(text.find("[40, 30, 20]"), 12, "[5, 50, 25]");
     const auto brighter = scene_of(text);
     ASSERT_TRUE(is_same_picture(*picture->scene, *brighter));
@@ -167,6 +167,22 @@ TEST(Pictures, MixedFromLampsTheyAreTheWhole) {
     }
     const double count = 3 * 96 * 64;
     EXPECT_LT(std::sqrt(error / count), 3e-4 * mean / count);
+}
+
+TEST(Pictures, MixedFromLampsTheyAreTheWhole) {
+    expect_mixed_from_lamps(k_edit_scene);
+}
+
+TEST(Pictures, ShowSurfacesThatEmitLightOnce) {
+    const MeshFolder folder;
+    folder.write("glow.gltf", gltf_text({{"materials", R"([{"emissiveFactor":[1,0.5,0.2]}])"},
+                                         {"meshes", R"([{"primitives":[{"attributes":
+                                             {"POSITION":0},"indices":1,"material":0}]}])"}}));
+    std::string text = k_edit_scene;
+    text.insert(text.find("lamps:"),
+                "  - {file: '" + folder.path("glow.gltf").string() +
+                    "', material: pbr, transform: {translate: [-0.4, -0.4, 1.5]}}\n");
+    expect_mixed_from_lamps(text);
 }
 
 TEST(Pictures, ADarkLampIsReadyToBeTurnedUp) {
