@@ -7,19 +7,11 @@
 #include "core/base/parallel.h"
 #include "core/colour/colour.h"
 #include "core/optics/optical_depth.h"
+#include "render/measures/pixel_values.h"
 
 namespace uw {
 
 namespace {
-
-/// The value below which the fraction `share` of them lies; 0 without any.
-double percentile(std::vector<double> values, double share) {
-    if (values.empty()) return 0;
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(
-                                            share * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), place, values.end());
-    return *place;
-}
 
 /// Per pixel, row by row; 0 where no ray enters the water.
 std::vector<double> luminances(const Film& film) {
@@ -62,7 +54,8 @@ std::vector<double> volume_depths(const AssembledScene& scene) {
 }  // namespace
 
 DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, const Film& without) {
-    const std::vector<double> light = luminances(with), before = luminances(without);
+    std::vector<double> light = luminances(with);
+    const std::vector<double> before = luminances(without);
     const std::vector<double> depths = volume_depths(scene);
     double mean = 0;
     for (const double value : before) mean += value / static_cast<double>(before.size());
@@ -76,10 +69,11 @@ DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, cons
     }
     DraftContrast result;
     result.seen = static_cast<double>(contrasts.size()) / static_cast<double>(depths.size());
-    result.contrast = percentile(std::move(contrasts), 0.99);
+    if (contrasts.empty()) return result;
+    result.contrast = percentile(contrasts, 0.99);
     const double bright = percentile(light, 0.99);
-    if (bright > 0) result.brightness = percentile(std::move(brightness), 0.5) / bright;
-    result.depth = percentile(std::move(depth), 0.9);
+    if (bright > 0) result.brightness = percentile(brightness, 0.5) / bright;
+    result.depth = percentile(depth, 0.9);
     return result;
 }
 
