@@ -115,6 +115,11 @@ void check(const LampDesc& lamp) {
     if (const auto beam = beam_of(lamp.profile); beam && !(*beam >= k_narrowest_beam))
         checked.fail(fmt::format("its beam of {:g} degrees is narrower than {:g}; widen it", *beam,
                                  k_narrowest_beam));
+    if (lamp.extent) {
+        checked.length("width", lamp.extent->width);
+        checked.length("height", lamp.extent->height);
+        checked.length("radius", lamp.extent->radius);
+    }
     constexpr auto k_mend = "give W/sr, W or lm";
     if (lamp.intensity)
         checked.all_at_most(k_largest_brightness, "intensity", *lamp.intensity, k_mend);

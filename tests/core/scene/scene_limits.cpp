@@ -123,6 +123,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"narrow_spot",
                  [](SceneDesc& s) { s.lamps[0].profile = SpotProfileDesc{.beam = 1e-5}; },
                  "s.yaml:5: lamps[0]: its beam of 1e-05 degrees"},
+        BadScene{"extent",
+                 [](SceneDesc& s) {
+                     s.lamps[0].extent.emplace();
+                     s.lamps[0].extent->radius = 1e8;
+                 },
+                 "s.yaml:5: lamps[0]: its radius of 1e+08 is beyond 1e+07"},
         BadScene{"intensity",
                  [](SceneDesc& s) {
                      s.lamps[0].intensity = PerBand{1, 1e30, 1};
