@@ -37,7 +37,8 @@ const fail = (message) =>
 addEventListener("error", (event) => event.message && fail(event.message));
 addEventListener("unhandledrejection", (event) => fail(event.reason?.message ?? event.reason));
 const refuse = (error) => status.refuse(error.message);
-const editing = new Editing(scene, refuse);
+const editing = new Editing(scene, refuse,
+    (isBusy) => { document.body.dataset.edits = isBusy ? "sent" : "answered"; });
 const files = new FileActions(scene, editing, status);
 const list = new LampList(byId("lamps"), scene, settings, editing);
 

@@ -9,11 +9,16 @@ export class Editing {
     #idle = [];
     #sending = false;
     #onRefusal;
+    #onBusy;
 
-    /** `scene`: the observable state of the server; `onRefusal(error)` hears what was refused. */
-    constructor(scene, onRefusal) {
+    /**
+     * `scene`: the observable state of the server; `onRefusal(error)` hears what was refused,
+     * `onBusy(isBusy)` when the first edit is sent and the last one answered.
+     */
+    constructor(scene, onRefusal, onBusy) {
         this.#scene = scene;
         this.#onRefusal = onRefusal;
+        this.#onBusy = onBusy;
     }
 
     /** The scene after the last answer. */
@@ -34,8 +39,8 @@ export class Editing {
     /**
      * Asks for changes that are undone together under `label`; changes of one `group` in succession
      * are one step. A function of the scene makes the changes when it is their turn: so each of
-     * several steps begins where the one before ended. True when done, false when refused (unless the caller hears of that itself,
-     * by `onRefusal`) or replaced by a newer change.
+     * several steps begins where the one before ended. True when done, false when refused (unless
+     * the caller hears of that itself, by `onRefusal`) or replaced by a newer change.
      */
     edit(label, changes, { group = null, onRefusal = this.#onRefusal } = {}) {
         const body = (scene) => ({
@@ -67,6 +72,7 @@ export class Editing {
     async #send() {
         if (this.#sending) return;
         this.#sending = true;
+        this.#onBusy(true);
         for (let task; (task = this.#waiting.shift()); ) {
             try {
                 this.#scene.set(await post(task.path, task.body(this.#scene.value)));
@@ -77,6 +83,7 @@ export class Editing {
             }
         }
         this.#sending = false;
+        this.#onBusy(false);
         for (const resolve of this.#idle.splice(0)) resolve();
     }
 }

@@ -159,5 +159,6 @@ class EditorPage:
         return self.page.evaluate(f"document.querySelector({selector!r}).textContent")
 
     def settle(self):
-        """Lets what the user did arrive at the server."""
+        """Lets what the user did arrive at the server, and its answers here."""
         self.page.pump(0.15)
+        self.page.wait("document.body.dataset.edits !== 'sent'")
