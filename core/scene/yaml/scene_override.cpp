@@ -81,6 +81,9 @@ class Walk {
         } else if (ConfigNode* const found = node_->find(key)) {
             node_ = found;
         } else {
+            std::vector<std::string_view> neighbours;
+            for (const ConfigNode::Entry& entry : node_->entries) neighbours.push_back(entry.key);
+            nearest_key_ = std::string(nearest_word(key, neighbours));
             node_->entries.push_back({key, position_, ConfigNode{}});
             node_ = &node_->entries.back().value;
             node_->position = position_;
@@ -107,6 +110,10 @@ class Walk {
 
     void to_index(std::size_t index) {
         const bool list = node_->kind == ConfigNode::Kind::sequence;
+        if (node_->kind == ConfigNode::Kind::null && !nearest_key_.empty()) {
+            fail(fmt::format("is not in the scene, so there is no [{}]; did you mean '{}'?", index,
+                             printable(nearest_key_)));
+        }
         if (!list && node_->kind != ConfigNode::Kind::null) {
             fail(fmt::format("is {}, not a list; leave out [{}]", node_->description(), index));
         }
@@ -123,6 +130,7 @@ class Walk {
     std::string origin_;
     ConfigPosition position_;
     std::string path_;
+    std::string nearest_key_;  // of those beside the last key, if that was missing
 };
 
 }  // namespace

@@ -80,6 +80,8 @@ TEST(SceneOverride, errorsNameTheOverrideAndTheMend) {
          "--set water.bnds=[1, 2, 3]: water.bnds: unknown key; did you mean 'bands'?"},
         {"lamps[2].intensity=3",
          "--set lamps[2].intensity=3: lamps: has 2 entries, so there is no [2]; count from [0]"},
+        {"lamps.left.positon[0]=3",
+         "lamps.left.positon: is not in the scene, so there is no [0]; did you mean 'position'?"},
         {"volumes[0].up=z", "volumes: has 0 entries, so there is no [0]; set the whole list"},
         {"lamps.right.intensity=3",
          "lamps: is a list, and none of its 2 entries is called 'right'; there are: left, lamp2"},
