@@ -151,12 +151,12 @@ MultipleLightOptions multiple_light_options(const SceneDesc& scene, const LayerP
     options.lamps = plan.has_lamps();
     options.nodes = 5000;
     options.cells = 1'000'000;
-    options.paths = 2'000'000;
+    options.paths = 1'000'000;
     options.error = 0.009;
     if (scene.render.quality == RenderDesc::Quality::draft) {
         options.nodes = 1000;
         options.cells = 100'000;
-        options.paths = 60'000;
+        options.paths = 30'000;
         options.error = 0;
     }
     if (scene.render.quality == RenderDesc::Quality::exact) {

@@ -26,7 +26,7 @@ constexpr double k_least_share_of_paths = 0.2;
 constexpr double k_most_slope = 0.35;
 constexpr double k_least_cosine_of_match = 0.7;  // of normals, where no node agrees better
 constexpr int k_search = 3;            // cells around a pixel without a match at its corners
-constexpr int k_paths_of_sample = 64;  // where there is none at all
+constexpr int k_paths_of_sample = 32;  // where there is none at all
 constexpr int k_mirrored_paths = 8;    // of a pixel whose surfaces are glossy
 
 double lerp_weight(double t, int side) {

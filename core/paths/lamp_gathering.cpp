@@ -206,9 +206,9 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
     terms.add(term);
 }
 
-void LampGathering::gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
-                                        const PathState& state, PathRandom& random,
-                                        PathTerms& terms) const {
+double LampGathering::gather_from_surface(const WaterSegment& segment,
+                                          const Spectrum& transmittance, const PathState& state,
+                                          PathRandom& random, PathTerms& terms) const {
     thread_local Workspace w;
     double u = random.next();
     const std::size_t bands = optics_.bands();
@@ -217,10 +217,17 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
     const SurfaceSample sample{segment.ray, hit, 0, 0};
     const SurfaceReflection reflection(*optics_.scene().surfaces, sample, static_cast<int>(bands));
     const std::span<double> radiance = w.radiance.first(bands);
+    double seen = 0, transmitted = 0;
+    for (const double value : transmittance.first(bands)) transmitted += value;
+    if (!(transmitted > 0)) return 0;
+    const auto add_term = [&](const PathTerm& term) {
+        for (const double value : radiance) seen += value / transmitted;
+        terms.add(term);
+    };
     if (reflection.emits()) {
         for (std::size_t b = 0; b < bands; ++b)
             radiance[b] = state.throughput[b] * transmittance[b] * reflection.emission()[b];
-        terms.add(state.term(k_no_lamp, radiance));
+        add_term(state.term(k_no_lamp, radiance));
     }
     w.shares.clear();
     w.cumulative.clear();
@@ -246,11 +253,11 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
         w.shares.push_back(share);
         w.cumulative.push_back(total);
     }
-    if (w.shares.empty()) return;
+    if (w.shares.empty()) return seen;
     const auto [chosen, probability] = choose(w.cumulative, u);
     const Share& share = w.shares[chosen];
     const Lamp& lamp = lamps[share.lamp];
-    if (optics_.scene().surfaces->occluded(lamp.position(), hit.position)) return;
+    if (optics_.scene().surfaces->occluded(lamp.position(), hit.position)) return seen;
     w.column.resize(optics_.constituents());
     column_to_lamp(share.lamp, hit.position, w.column);
     reflection.brdf(lamp.position(), w.brdf);
@@ -260,7 +267,8 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
                        transmittance[b] * state.throughput[b];
     PathTerm term = state.term(share.lamp, radiance);
     ++term.reflections;
-    terms.add(term);
+    add_term(term);
+    return seen;
 }
 
 }  // namespace uw

@@ -27,9 +27,10 @@ class LampGathering {
     void gather_from_water(const WaterSegment& segment, std::span<const double> weights,
                            const PathState& state, PathRandom& random, PathTerms& terms) const;
     /// The surface's, for a lamp chosen by its share; `transmittance` is that of the segment. Uses
-    /// one random number. Precondition: segment.has_hit.
-    void gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
-                             const PathState& state, PathRandom& random, PathTerms& terms) const;
+    /// one random number. Returns what would arrive of it, and of what the surface emits, through
+    /// clear water, roughly: the mean of the bands [W m^-2 sr^-1]. Precondition: segment.has_hit.
+    double gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
+                               const PathState& state, PathRandom& random, PathTerms& terms) const;
 
   private:
     struct Share;

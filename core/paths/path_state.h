@@ -11,6 +11,7 @@ struct PathState {
     int scatterings = 0, reflections = 0;
     bool from_water = false;  // where it first turned, seen from the camera
     double distance = 0;      // and how far along the camera ray [m]
+    double branches = 1;      // into how many it has split
 
     /// A term of light that arrives along the segment.
     PathTerm term(std::size_t lamp, std::span<const double> radiance) const {

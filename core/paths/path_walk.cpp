@@ -14,6 +14,10 @@ namespace {
 // and its limits: below, spared paths would outweigh the rest.
 constexpr double k_thoroughness = 3;
 constexpr double k_least_survival = 0.25, k_least_lobe_survival = 0.2, k_most_survival = 0.97;
+// Where much more may arrive than the light of the path's pixel, as in front of a surface close to
+// a lamp, a path splits: into these many branches relative to it, each with its share of the light.
+// In all it has no more than the limit, or the paths of a black pixel might never end.
+constexpr double k_splitting = 0.3, k_most_branches = 16;
 // Of a surface, as far as paths head for it.
 constexpr double k_least_reflectance = 0.1;
 // How far rays begin above the surface they leave, relative to the coordinates and to the last
@@ -117,10 +121,16 @@ bool PathWalk::leave(const Point3& origin, bool is_last) {
         weight = own->density / (own->density + weight);
     trace({origin, own->direction});
     tables_.lamps.gather_from_water(w.segment, w.along_own.lobe_densities, state, random_, terms_);
+    double seen = 0;
     if (w.segment.has_hit)
-        tables_.lamps.gather_from_surface(w.segment, w.transmittance, state, random_, terms_);
+        seen =
+            tables_.lamps.gather_from_surface(w.segment, w.transmittance, state, random_, terms_);
+    if (by_own > 0) by_own = branches(w.along_own.value + seen, by_own, by_lobe);
     if (of_own >= by_own) return false;
     state_ = continued(w.along_own, by_own);
+    state_.branches *= std::max(1.0, by_own);
+    for (double n = of_own + 1; n < by_own; ++n)
+        w.pending.push_back({state_, {origin, own->direction}});
     return true;
 }
 
@@ -159,6 +169,15 @@ void PathWalk::continuation(const Vector3& direction, Continuation& along) const
 double PathWalk::survival(const Continuation& along, double least) const {
     if (!(along.value > 0)) return 0;
     return std::clamp(k_thoroughness * along.value / light_.own, least, k_most_survival);
+}
+
+// How many branches go on, on average, along its own direction, now that the surface at its end has
+// been seen: a bright one means more light beside it. `by_own` did before.
+double PathWalk::branches(double value, double by_own, double by_lobe) const {
+    const double relative = value / light_.own;
+    const double split = std::min(k_splitting * relative, k_most_branches / state_.branches);
+    if (split > 1) return split;
+    return std::max(by_own, std::min(k_thoroughness * relative, k_most_survival - by_lobe));
 }
 
 PathState PathWalk::continued(const Continuation& along, double survival) const {

@@ -36,6 +36,7 @@ class PathWalk {
     void gather_along(const DrawnLobe& lobe, const Continuation& along, const Point3& origin);
     void continuation(const Vector3& direction, Continuation& along) const;
     double survival(const Continuation& along, double least) const;
+    double branches(double value, double by_own, double by_lobe) const;
     PathState continued(const Continuation& along, double survival) const;
     void trace(const Ray& ray);
     void follow(bool goes_on);

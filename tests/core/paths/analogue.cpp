@@ -124,7 +124,7 @@ void compare(const Analogue::Scene& scene, int photons, int directions) {
 }
 
 TEST(AnaloguePhotons, AgreeWithPathsAroundABoxAWallAndACloud) {
-    compare(harbour(), 100'000, 1 << 8);
+    compare(harbour(), 800'000, 1 << 10);
 }
 
 TEST(AnaloguePhotons, AgreeWithPathsForACosineLampAndADenseForwardScatteringCloud) {
@@ -133,7 +133,7 @@ TEST(AnaloguePhotons, AgreeWithPathsForACosineLampAndADenseForwardScatteringClou
     scene.source.exponent = 2;
     scene.water = {0.05, 0.25, 0.9};
     scene.cloud.peak = {0.2, 5.0, 0.9};
-    compare(scene, 100'000, 1 << 8);
+    compare(scene, 400'000, 1 << 11);
 }
 
 }  // namespace

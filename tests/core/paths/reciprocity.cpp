@@ -22,7 +22,7 @@ TEST(PathReciprocity, LampAndDetectorMayBeExchanged) {
         scene.add_lamp(lamp, 1);
         const PathTracer tracer(scene.lit());
         return run_batches(32, 2, seed, [&](std::uint64_t batch_seed, TermSums& sums) {
-            constexpr int k_directions = 1 << 9;
+            constexpr int k_directions = 1 << 10;
             std::mt19937_64 engine(batch_seed);
             std::uniform_real_distribution<double> uniform;
             for (int i = 0; i < k_directions; ++i)
