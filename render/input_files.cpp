@@ -47,6 +47,9 @@ class InputCollection {
     }
     void add(const CameraDesc& camera) {
         if (camera.calibration) add(camera.calibration->file, "a calibration of the scene", true);
+        if (!camera.sensor) return;
+        add(camera.sensor->quantum_efficiency.file, "the quantum efficiency of a sensor");
+        add(camera.sensor->image.response.file, "the response curve of a camera");
     }
     // The file of those alternatives of a variant that have one.
     void add_named(const auto& variant, const char* what) {

@@ -116,6 +116,8 @@ void Renderer::prepare(const RenderOptions& options) {
     report_ = {};
     plan_ = layer_plan(scene_.desc, options.layers, options.paths);
     if (!colour_) colour_ = make_band_colour(scene_.desc.render.colour, scene_.desc.water.bands_nm);
+    sensor_.reset();
+    if (plan_->has(Layer::sensor)) sensor_.emplace(scene_.desc, options.frame);
     fit_film(options);
     report_.pixels = static_cast<std::uint64_t>(film_->window().width()) *
                      static_cast<std::uint64_t>(film_->window().height());
@@ -177,6 +179,7 @@ const Film& Renderer::render(const RenderOptions& options) {
                  {samples_of(scene_.desc.render), options.paths.error},
                  {[this](const PathAccuracy& so_far) { report_.paths = so_far; },
                   [this](double error) { report_.multiple_error = error; }});
+    if (sensor_) sensor_->expose(*scene_.camera, *plan_, *film_);
     warn_of_error(options.paths);
     warn_of_multiple_error();
     count_work();

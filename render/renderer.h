@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/sensor/camera_sensor.h"
 #include "render/light_splatter.h"
 #include "render/resolved_scene.h"
 #include "render/scene_assembly.h"
@@ -20,6 +21,7 @@ struct RenderOptions {
     std::string layers{};                       // as LayerPlan takes them; empty: the default set
     std::optional<PixelWindow> window{};        // the pixels wanted; none: the whole image
     PathRequest paths{};                        // of integrators that trace paths
+    std::int64_t frame = 0;                     // number, on which the sensor's noise depends
     const LightTransport* transport = nullptr;  // instead of the scene's, for tests; not owned
 };
 
@@ -127,9 +129,10 @@ class Renderer {
     DeepShadows light_;             // of the scene; empty: not splatted
     std::uint64_t splat_rays_ = 0;  // since the last image
     std::optional<LayerPlan> plan_;
-    std::optional<BandColour> colour_;  // of the scene; none: not looked up
-    PixelWindow window_;                // wanted of the image
-    std::optional<Film> film_;          // of what is rendered
+    std::optional<BandColour> colour_;    // of the scene; none: not looked up
+    std::optional<CameraSensor> sensor_;  // if its layer is wanted
+    PixelWindow window_;                  // wanted of the image
+    std::optional<Film> film_;            // of what is rendered
     bool is_film_clear_ = false;
     std::optional<Film> cropped_;  // what is wanted of it, if that is less
     RenderReport report_;

@@ -179,10 +179,12 @@ LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const Pat
     names.reserve(scene.lamps.size());
     for (const LampDesc& lamp : scene.lamps) names.push_back(lamp.name);
     const bool several = paths.error || samples_of(scene.render) > 1;
+    const std::optional<SensorDesc>& sensor = scene.camera.sensor;
     return {request, scene.water.bands_nm, names,
             LayerSupply{.multiple = scattering_of(scene.render) == RenderDesc::Scattering::multiple,
                         .error = traces_paths && several,
-                        .orders = paths.orders}};
+                        .orders = paths.orders,
+                        .sensor_values = sensor ? value_count(sensor->mosaic) : 0}};
 }
 
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,

@@ -47,6 +47,7 @@ struct FrameRenderer::Written {
     Frame frame;
     bool is_first;
     Film film;
+    std::optional<SensorImage> sensor;
     std::shared_ptr<const Surfaces> surfaces;
     ImageMetadata metadata;
     RunStats stats;
@@ -164,12 +165,13 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
         options.layers = (options.layers.empty() ? "default" : options.layers) + "," +
                          layers_to_measure(scene.desc()) +
                          (arguments_.parts.object.empty() ? "" : ",id");
+    const SensorImager imager(frame, scene.desc(), options);
     std::optional<ResolvedScene> measured;
     if (!arguments_.numbers.empty()) measured = scene;
     stats_ = &stats;
     stage_.clear();
     renderer_.set_scene(std::move(scene));
-    prepare(frame, options);
+    prepare(frame, imager.rendered());
     if (!arguments_.parts.object.empty())
         chosen_object(arguments_.parts.object, renderer_.scene().geometry,
                       renderer_.assembled().surfaces->names());
@@ -178,7 +180,7 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
         renderer_.splat();
     }
     const std::size_t warned = renderer_.report().warnings.size();
-    renderer_.render(options);
+    renderer_.render(imager.rendered());
     progress_.reset();
     const RenderReport& report = renderer_.report();
     for (std::size_t i = warned; i < report.warnings.size(); ++i)
@@ -199,6 +201,8 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
     ImageMetadata metadata =
         metadata_of(renderer_.assembled(), frame.number, options.paths, report);
     Film film = renderer_.release_film();
+    std::optional<SensorImage> sensor =
+        imager.take(film, layer_plan(renderer_.scene(), options.layers, options.paths));
     if (!arguments_.numbers.empty()) {
         const LayerPlan written =
             layer_plan(renderer_.scene(), arguments_.layers, arguments_.paths());
@@ -206,9 +210,9 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
         stats.set_numbers(measure(*measured, film, options));
         stats.end_stage();
         if (written.channel_names() != film.channel_names())
-            film = with_channels(film, written.channel_names());
+            film = with_channels(film, written.channel_names(), film.window());
     }
-    begin_writing(frame, std::move(film), std::move(metadata), std::move(stats));
+    begin_writing(frame, std::move(film), std::move(sensor), std::move(metadata), std::move(stats));
 }
 
 std::vector<PartNumbers> FrameRenderer::measure(const ResolvedScene& scene, const Film& film,
@@ -242,19 +246,20 @@ std::optional<double> FrameRenderer::exposure_of(const Film& film) {
     return first_exposure_;
 }
 
-void FrameRenderer::begin_writing(const Frame& frame, Film film, ImageMetadata metadata,
-                                  RunStats stats) {
+void FrameRenderer::begin_writing(const Frame& frame, Film film, std::optional<SensorImage> sensor,
+                                  ImageMetadata metadata, RunStats stats) {
     finish();
     std::string label = clock_.is_sequence() ? clock_.label("done in ") : "";
-    written_.reset(new Written{frame, is_first(), std::move(film), renderer_.assembled().surfaces,
-                               std::move(metadata), std::move(stats), std::move(label)});
+    written_.reset(new Written{frame, is_first(), std::move(film), std::move(sensor),
+                               renderer_.assembled().surfaces, std::move(metadata),
+                               std::move(stats), std::move(label)});
     clock_.finish_image();
     const ImageStorage storage{arguments_.exr(), exposure_of(written_->film),
                                arguments_.is_preview_16_bit};
     writing_ = std::make_unique<BackgroundTask>([&written = *written_, storage] {
         const auto begin = std::chrono::steady_clock::now();
         write_images(
-            written.frame.files, written.film, written.surfaces->names(),
+            written.frame.files, written.film, written.sensor, written.surfaces->names(),
             std::move(written.metadata), storage,
             [&](const std::string& line) {
                 written.lines.push_back({false, line});

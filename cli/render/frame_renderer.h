@@ -12,6 +12,7 @@
 #include "cli/render/background_task.h"
 #include "cli/render/frame_sequence.h"
 #include "cli/render/render_arguments.h"
+#include "cli/render/sensor_image.h"
 #include "cli/render/sequence_clock.h"
 #include "cli/render/stats.h"
 #include "core/image/image_metadata.h"
@@ -59,7 +60,8 @@ class FrameRenderer {
     void prepare(const Frame& frame, const RenderOptions& options);
     void count_work(RunStats& stats) const;
     void write_irradiance(const std::filesystem::path& file);
-    void begin_writing(const Frame& frame, Film film, ImageMetadata metadata, RunStats stats);
+    void begin_writing(const Frame& frame, Film film, std::optional<SensorImage> sensor,
+                       ImageMetadata metadata, RunStats stats);
     /// Measures the image, lamp by lamp; the renderer's scene is then another.
     std::vector<PartNumbers> measure(const ResolvedScene& scene, const Film& film,
                                      const RenderOptions& options);

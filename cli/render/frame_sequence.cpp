@@ -79,7 +79,14 @@ fs::path of_camera(const fs::path& file, const std::string& camera) {
     std::size_t at = name.find(k_camera_place);
     if (at == std::string::npos) {
         fs::path with_name = file;
-        return with_name.replace_extension("." + camera + file.extension().string());
+        std::string ending = file.extension().string();
+        with_name.replace_extension();
+        if (with_name.extension() == k_sensor_ending) {
+            ending.insert(0, k_sensor_ending);
+            with_name.replace_extension();
+        }
+        with_name += "." + camera + ending;
+        return with_name;
     }
     for (; at != std::string::npos; at = name.find(k_camera_place, at + camera.size()))
         name.replace(at, k_camera_place.size(), camera);
@@ -92,6 +99,12 @@ void refuse_camera_places(const FrameSequence& sequence) {
             throw UsageError(
                 fmt::format("-o {}: the scene has one camera, which has no name; take {} out",
                             printable(frame.files.main().string(), 300), k_camera_place));
+}
+
+bool has_sensor(const SceneDesc& scene) {
+    return scene.camera.sensor || std::ranges::any_of(scene.cameras, [](const auto& entry) {
+               return entry.camera.sensor.has_value();
+           });
 }
 
 bool has_sequence(const SceneDesc& scene) {
@@ -122,6 +135,7 @@ FrameSequence frames_of(const RenderArguments& a) {
         OutputFiles files;
         files.image = expanded(names.image, number);
         files.preview = expanded(names.preview, number);
+        files.sensor = expanded(names.sensor, number);
         if (!names.ids.empty()) files.ids = id_table_beside(files.image);
         if (one_each) files.stats = expanded(names.stats, number);
         files.irradiance_vdb = expanded(names.irradiance_vdb, number);
@@ -144,7 +158,8 @@ void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::str
             if (!only.empty() && name != only) continue;
             OutputFiles files = frame.files;
             if (!files.image.empty()) files.image = of_camera(files.image, name);
-            files.preview = of_camera(files.preview, name);
+            if (!files.preview.empty()) files.preview = of_camera(files.preview, name);
+            if (!files.sensor.empty()) files.sensor = of_camera(files.sensor, name);
             if (!files.ids.empty()) files.ids = id_table_beside(files.image);
             if (frame.number && !files.stats.empty()) files.stats = of_camera(files.stats, name);
             if (!is_first) files.irradiance_vdb.clear();
@@ -157,6 +172,34 @@ void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::str
     // Without --frames the statistics of all cameras go to one file.
     sequence.stats = sequence.frames.front().files.stats;
     for (Frame& frame : sequence.frames) frame.files.stats.clear();
+}
+
+void add_sensor_images(FrameSequence& sequence, const SceneDesc& scene) {
+    for (Frame& frame : sequence.frames) {
+        const CameraDesc& camera =
+            scene.cameras.empty() ? scene.camera : scene.cameras[frame.camera].camera;
+        OutputFiles& files = frame.files;
+        const bool is_alone = !files.sensor.empty();
+        const auto refuse = [&](const char* what) {
+            throw UsageError(fmt::format("-o {}: {}", printable(files.sensor.string(), 300), what));
+        };
+        if (!camera.sensor) {
+            if (is_alone)
+                refuse(
+                    "the camera has no sensor to make it with; add camera.sensor to the scene, "
+                    "or give a name that ends in .exr or .png");
+            continue;
+        }
+        const DevelopmentDesc::Format format = camera.sensor->image.format;
+        const bool is_png = format == DevelopmentDesc::Format::png;
+        if (!is_alone)
+            files.sensor = sensor_image_beside(files.main(), format);
+        else if ((files.sensor.extension() == ".png") != is_png)
+            refuse(is_png ? "the camera's image is a PNG; give a name that ends in .sensor.png, or "
+                            "set camera.sensor.image.format to jpeg"
+                          : "the camera's image is a JPEG; give a name that ends in .jpg, or leave "
+                            "out camera.sensor.image.format");
+    }
 }
 
 void check_frames(const FrameSequence& sequence, const SceneDesc& scene) {
@@ -191,6 +234,7 @@ bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
     if (!is_file(files.image) || !is_file(files.preview)) return false;
     if (!files.irradiance_vdb.empty() && !is_file(files.irradiance_vdb)) return false;
     if (!files.ids.empty() && !is_file(files.ids)) return false;
+    if (!files.sensor.empty() && !is_file(files.sensor)) return false;
     std::error_code error;
     const auto rendered = fs::last_write_time(files.image, error);
     if (error) return false;
@@ -204,6 +248,7 @@ bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
 }
 
 std::optional<std::string> frame_warning(const RenderArguments& a, const SceneDesc& scene) {
+    if (!a.frames.empty() && has_sensor(scene)) return std::nullopt;  // noise of its own
     if (a.frames.size() > 1 && !has_sequence(scene))
         return "--frames: all frames are alike, because no file of the scene has a placeholder for "
                "the frame number, such as file: smoke_####.vdb";

@@ -42,6 +42,11 @@ FrameSequence frames_of(const RenderArguments& arguments);
 /// does not exist, and for {camera} in names without a rig.
 void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::string& only);
 
+/// Adds the images of the cameras that have a sensor (`camera.sensor`), beside the others or, where
+/// that is all there is, under the name requested. Throws UsageError for a camera without sensor
+/// where there would be nothing else, and for a name whose ending is not that of its format.
+void add_sensor_images(FrameSequence& sequence, const SceneDesc& scene);
+
 /// Checks what all frames read and write before the first is rendered. Throws IoError that names
 /// all frames whose files are missing; InputError for a frame that does not match the others (see
 /// VolumeSequenceCheck); and as OutputCheck does.

@@ -67,6 +67,23 @@ void warn_of_half(const Film& film, const SayCallback& warn) {
             "--precision float");
 }
 
+void write_preview(const std::filesystem::path& file, const Film& film, const ImageStorage& storage,
+                   double exposure, const ImageMetadata& metadata) {
+    if (storage.is_preview_16_bit)
+        write_png(file, make_preview16(film, exposure), metadata);
+    else
+        write_png(file, make_preview(film, exposure), metadata);
+}
+
+void describe(const SensorDesc& sensor, ImageMetadata& m) {
+    m["uwvdb/sensor_exposure_s"] = *sensor.exposure;
+    m["uwvdb/sensor_mosaic"] = word_of(sensor.mosaic, k_sensor_mosaics);
+    m["uwvdb/sensor_gain_dn_per_e"] = sensor.system_gain();
+    m["uwvdb/sensor_black_level_dn"] = sensor.black_level;
+    m["uwvdb/sensor_bit_depth"] = static_cast<double>(sensor.bit_depth);
+    m["uwvdb/sensor_seed"] = static_cast<double>(sensor.seed);
+}
+
 }  // namespace
 
 ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
@@ -116,6 +133,7 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
         m["uwvdb/lens_focal_length_m"] = lens->focal_length;
         m["uwvdb/lens_transmission"] = lens->transmission;
     }
+    if (scene.camera.sensor) describe(*scene.camera.sensor, m);
     return m;
 }
 
@@ -145,7 +163,8 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
     return m;
 }
 
-void write_images(const OutputFiles& files, const Film& film, const SurfaceNames& names,
+void write_images(const OutputFiles& files, const Film& film,
+                  const std::optional<SensorImage>& sensor, const SurfaceNames& names,
                   ImageMetadata metadata, const ImageStorage& storage, const SayCallback& say,
                   const SayCallback& warn) {
     const std::optional<double> automatic = automatic_exposure(film);
@@ -157,15 +176,15 @@ void write_images(const OutputFiles& files, const Film& film, const SurfaceNames
         write_exr(files.image, film, with_names, storage.exr);
         if (!files.ids.empty()) write_id_table(files.ids, names);
     }
+    if (sensor) write_sensor_image(files.sensor, *sensor, metadata);
     metadata["exposure"] = exposure;
-    if (storage.is_preview_16_bit)
-        write_png(files.preview, make_preview16(film, exposure), metadata);
-    else
-        write_png(files.preview, make_preview(film, exposure), metadata);
+    if (!files.preview.empty()) write_preview(files.preview, film, storage, exposure, metadata);
     warn_of_darkness(film, !automatic, warn);
     if (with_exr && storage.exr.precision == ExrOptions::Precision::half) warn_of_half(film, warn);
     if (with_exr) say(fmt::format("wrote {}", files.image.string()));
     if (!files.ids.empty()) say(fmt::format("wrote {} (names of ids)", files.ids.string()));
+    if (sensor) say(fmt::format("wrote {} (the camera's image)", files.sensor.string()));
+    if (files.preview.empty()) return;
     say(fmt::format("wrote {} ({}{})", files.preview.string(), with_exr ? "preview, " : "",
                     automatic ? fmt::format("R G B x {:.4g}", exposure) : "black"));
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cli/render/output_files.h"
+#include "cli/render/sensor_image.h"
 #include "core/image/film.h"
 #include "core/image/image_writer.h"
 #include "render/renderer.h"
@@ -31,10 +32,12 @@ struct ImageStorage {
     bool is_preview_16_bit = false;
 };
 
-/// Writes the EXR, if it has a name, its preview, and the table of its ids if there is to be one,
-/// each whole or not at all; prints where they are and the exposure of the preview, and warns of an
-/// image that is black or empty in part, or that half floats cannot hold. Throws IoError.
-void write_images(const OutputFiles& files, const Film& film, const SurfaceNames& names,
+/// Writes the EXR, if it has a name, likewise its preview, the camera's image if there is one, and
+/// the table of its ids if there is to be one, each whole or not at all; prints where they are and
+/// the exposure of the preview, and warns of an image that is black or empty in part, or that half
+/// floats cannot hold. Throws IoError.
+void write_images(const OutputFiles& files, const Film& film,
+                  const std::optional<SensorImage>& sensor, const SurfaceNames& names,
                   ImageMetadata metadata, const ImageStorage& storage, const SayCallback& say,
                   const SayCallback& warn);
 

@@ -25,6 +25,7 @@ std::vector<NamedFile> named(const OutputFiles& files) {
     std::vector<NamedFile> result;
     if (!files.image.empty()) result.push_back({"the image", files.image});
     if (!files.preview.empty()) result.push_back({"the preview", files.preview});
+    if (!files.sensor.empty()) result.push_back({"the camera's image", files.sensor});
     if (!files.stats.empty()) result.push_back({"--stats", files.stats});
     if (!files.contact_sheet.empty()) result.push_back({"--contact-sheet", files.contact_sheet});
     if (!files.numbers.empty()) result.push_back({"--numbers", files.numbers});
@@ -47,14 +48,22 @@ void refuse_other_ending(const char* option, const fs::path& file, const char* e
                                      option, printable(file.string(), 300), format, ending));
 }
 
+// Whether a file of this name is the camera's image alone.
+bool is_sensor_image(const fs::path& file) {
+    const fs::path ending = file.extension();
+    return ending == ".jpg" || ending == ".jpeg" ||
+           (ending == ".png" && file.stem().extension() == k_sensor_ending);
+}
+
 // What only an EXR can hold, or tell.
 void refuse_exr_options(const RenderArguments& a) {
     const auto refuse = [&](bool is_given, const char* option) {
         if (is_given)
             throw UsageError(
-                fmt::format("{}: is for the EXR, but -o {} is a PNG alone; give a name that ends "
+                fmt::format("{}: is for the EXR, but -o {} is {} alone; give a name that ends "
                             "in .exr",
-                            option, printable(a.output.string(), 300)));
+                            option, printable(a.output.string(), 300),
+                            is_sensor_image(a.output) ? "the camera's image" : "a PNG"));
     };
     refuse(!a.layers.empty(), "--layers");
     refuse(a.orders.has_value(), "--orders");
@@ -65,19 +74,30 @@ void refuse_exr_options(const RenderArguments& a) {
 
 }  // namespace
 
+fs::path sensor_image_beside(const fs::path& image, DevelopmentDesc::Format format) {
+    const char* const ending = format == DevelopmentDesc::Format::jpeg ? ".jpg" : ".png";
+    fs::path beside = image;
+    return beside.replace_extension(std::string(k_sensor_ending) + ending);
+}
+
 OutputFiles output_files(const RenderArguments& a) {
     OutputFiles files;
     const char* const ending = a.frames.empty() ? ".exr" : ".####.exr";
     files.image = a.output.empty() ? a.scene.filename().replace_extension(ending) : a.output;
     files.preview = files.image;
     files.preview.replace_extension(".png");
-    if (files.image.extension() == ".png") {
+    if (is_sensor_image(files.image)) {
+        refuse_exr_options(a);
+        files.sensor = files.image;
+        files.image.clear();
+        files.preview.clear();
+    } else if (files.image.extension() == ".png") {
         refuse_exr_options(a);
         files.image.clear();
     } else if (files.image.extension() != ".exr") {
         throw UsageError(
-            fmt::format("-o {}: it is written as OpenEXR, or as PNG; give a name that ends in .exr "
-                        "or .png",
+            fmt::format("-o {}: it is written as OpenEXR or PNG, a camera's image as PNG or JPEG; "
+                        "give a name that ends in .exr or .png, or in .sensor.png or .jpg",
                         printable(files.image.string(), 300)));
     }
     if (!a.contact_sheet.empty()) {

@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/render/render_arguments.h"
+#include "core/scene/sensor_desc.h"
 #include "render/input_files.h"
 
 namespace uw {
@@ -14,15 +16,27 @@ namespace uw {
 struct OutputFiles {
     std::filesystem::path image;            // EXR; empty: the PNG alone
     std::filesystem::path preview;          // PNG beside it
+    std::filesystem::path sensor{};         // the camera's image, PNG or JPEG; empty: none
     std::filesystem::path stats;            // JSON; empty: none
     std::filesystem::path irradiance_vdb;   // empty: none
     std::filesystem::path numbers{};        // CSV about all images; empty: none
     std::filesystem::path ids{};            // CSV of names; empty: no layer of numbers
     std::filesystem::path contact_sheet{};  // PNG of all images; empty: none
 
-    /// The EXR, or the PNG where that is all.
-    const std::filesystem::path& main() const { return image.empty() ? preview : image; }
+    /// The EXR, or the preview or the camera's image where that is all.
+    const std::filesystem::path& main() const {
+        return !image.empty() ? image : preview.empty() ? sensor : preview;
+    }
+    /// What is to be looked at: the preview, or the camera's image where that is all.
+    const std::filesystem::path& picture() const { return preview.empty() ? sensor : preview; }
 };
+
+/// What the names of cameras' images have before their ending.
+inline constexpr std::string_view k_sensor_ending = ".sensor";
+
+/// The camera's image beside others: "out.sensor.png" beside "out.exr".
+std::filesystem::path sensor_image_beside(const std::filesystem::path& image,
+                                          DevelopmentDesc::Format format);
 
 /// The files that the arguments request; names keep their placeholders for the frame number, and so
 /// does the default name of a sequence's images. Throws UsageError for a name whose ending is not

@@ -144,7 +144,7 @@ void write_contact_sheet(const FrameSequence& sequence, bool quiet) {
     std::vector<std::filesystem::path> pictures;
     std::size_t cameras = 0;
     for (const Frame& frame : sequence.frames) {
-        pictures.push_back(frame.files.preview);
+        pictures.push_back(frame.files.picture());
         if (frame.number == sequence.frames.front().number) ++cameras;
     }
     write_png(sequence.contact_sheet,
@@ -206,13 +206,14 @@ void run_render(const RenderArguments& a) {
     SceneDesc desc = load_scene(a.scene, a.overrides);
     apply_arguments(a, desc);
     add_cameras(sequence, desc, a.camera);
+    add_sensor_images(sequence, desc);
     const std::vector<PixelWindow> windows = windows_of(a, desc);
     append_warnings(a, sequence.frames.front(), windows, desc);
     FrameScenes scenes(desc, sequence.frames.front());
-    const LayerPlan layers = layer_plan(scenes.first(), a.layers, a.paths());
+    layer_plan(scenes.first(), a.layers, a.paths());  // throws for what does not exist
     const FrameSequence all = sequence;
     std::optional<double> exposure;
-    if (a.resume) exposure = leave_out_rendered(sequence, desc, layers, a, windows);
+    if (a.resume) exposure = leave_out_rendered(sequence, desc, a, windows);
     if (sequence.frames.empty()) {
         write_contact_sheet(all, a.quiet);
         return;

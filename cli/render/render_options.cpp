@@ -19,6 +19,7 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.exr --resume
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.png --exposure first --contact-sheet s.png
   uwvdb render stereo.yaml -o 'out/{camera}.exr'
+  uwvdb render camera.yaml -o camera.sensor.png --set camera.sensor.exposure=0.01
   uwvdb render plume.yaml --integrator path --error 0.02 --size 320x180
   uwvdb render plume.yaml --numbers - --object seabed
   uwvdb render houdini.yaml --set 'volumes[0].file=/data/my.vdb' --irradiance-vdb light.vdb
@@ -29,8 +30,10 @@ once; multiple is all light, however often it was scattered and reflected, fast 
 
 Writes OUT.exr (the image and its depth; more with --layers) and OUT.png beside it, a preview; with
 -o OUT.png the preview alone: 8 or 16 bits of what is to be seen, not the light itself, which only
-the EXR holds. Folders are made. With --frames, a volume's file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of
-several cameras becomes an image of each, OUT.NAME.exr, or with NAME in place of {camera}.
+the EXR holds. A camera with a sensor (camera.sensor) also writes its own image, OUT.sensor.png or
+.jpg, or that alone with -o OUT.sensor.png or -o OUT.jpg. Folders are made. With --frames, a volume's
+file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of several cameras
+becomes an image of each, OUT.NAME.exr, or with NAME in place of {camera}.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted. More: docs/command-line.md)";
 
@@ -87,8 +90,10 @@ ExrOptions RenderArguments::exr() const {
 Options render_options(RenderArguments& a) {
     Options options;
     options.path("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
-    options.path("-o,--output", "OUT.exr", a.output,
-                 "EXR to write, or a PNG alone; default: the scene's name, in this folder");
+    options.path(
+        "-o,--output", "OUT.exr", a.output,
+        "EXR to write, or a PNG or the camera's image alone; default: the scene's name, in "
+        "this folder");
     options.parsed(
         "--frames", "1-10,20-40:2",
         [&a](const std::string& text) { a.frames = parse_frame_list(text); },

@@ -26,7 +26,7 @@ bool has_preview(const OutputFiles& files, const RenderArguments& a,
 }  // namespace
 
 std::optional<double> leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc,
-                                         const LayerPlan& layers, const RenderArguments& a,
+                                         const RenderArguments& a,
                                          const std::vector<PixelWindow>& windows) {
     const PathRequest paths = a.paths();
     const ExrOptions storage = a.exr();
@@ -37,11 +37,12 @@ std::optional<double> leave_out_rendered(FrameSequence& sequence, const SceneDes
     if (a.exposure.kind == PreviewExposure::Kind::fixed) exposure = a.exposure.factor;
     for (Frame& frame : sequence.frames) {
         const SceneDesc scene = scene_of_image(desc, frame.choice());
-        const ImageLayout layout{scene.camera.width, scene.camera.height, windows[frame.camera],
-                                 layers.channel_names(), storage};
         // Headers describe the camera that was rendered, possibly a glTF file's.
         const auto is_image_of = [&](const std::filesystem::path& file) {
             const ResolvedScene resolved{SceneDesc(scene)};
+            const ImageLayout layout{scene.camera.width, scene.camera.height, windows[frame.camera],
+                                     layer_plan(resolved.desc(), a.layers, paths).channel_names(),
+                                     storage};
             return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number, paths));
         };
         const bool rendered = is_rendered(frame, input_files(scene, known), is_image_of) &&

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "cli/render/frame_sequence.h"
-#include "core/image/layers.h"
 
 namespace uw {
 
@@ -12,7 +11,7 @@ namespace uw {
 /// written, by camera. Returns the exposure of previews where it is the same for all and known:
 /// that of the first image, if it exists.
 std::optional<double> leave_out_rendered(FrameSequence& sequence, const SceneDesc& desc,
-                                         const LayerPlan& layers, const RenderArguments& arguments,
+                                         const RenderArguments& arguments,
                                          const std::vector<PixelWindow>& windows);
 
 }  // namespace uw

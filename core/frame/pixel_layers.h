@@ -80,6 +80,8 @@ void normal(const PixelResult& pixel, std::span<float> channels);
 void position(const PixelResult& pixel, std::span<float> channels);
 void id(const PixelResult& pixel, std::span<float> channels);
 void material(const PixelResult& pixel, std::span<float> channels);
+/// Leaves them alone: they are filled once the whole image is there (core/sensor).
+inline void later(const PixelResult&, std::span<float>) {}
 
 }  // namespace layer_channels
 
@@ -139,6 +141,7 @@ inline constexpr std::array<PixelLayer, k_layer_count> k_pixel_layers{{
     {.layer = Layer::position, .fill = layer_channels::position, .of_hit = true},
     {.layer = Layer::id, .fill = layer_channels::id, .of_hit = true},
     {.layer = Layer::material, .fill = layer_channels::material, .of_hit = true},
+    {.layer = Layer::sensor, .fill = layer_channels::later},
 }};
 static_assert(has_every_layer(k_pixel_layers));
 

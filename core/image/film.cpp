@@ -49,12 +49,12 @@ Film cropped(const Film& film, const PixelWindow& window) {
     return part;
 }
 
-Film with_channels(const Film& film, const std::vector<std::string>& channel_names) {
+Film with_channels(const Film& film, const std::vector<std::string>& channel_names,
+                   const PixelWindow& window) {
     std::vector<std::size_t> sources;
     for (const std::string& name : channel_names)
         sources.push_back(static_cast<std::size_t>(std::ranges::find(film.channel_names(), name) -
                                                    film.channel_names().begin()));
-    const PixelWindow& window = film.window();
     Film part(film.width(), film.height(), window, channel_names);
     for (int y = window.y0; y < window.y1; ++y)
         for (int x = window.x0; x < window.x1; ++x) {

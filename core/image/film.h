@@ -63,8 +63,9 @@ class Film {
 /// The part of `film` within `window`. Throws as Film's constructor.
 Film cropped(const Film& film, const PixelWindow& window);
 
-/// The film with these of its channels alone. Precondition: it has them. Throws as Film's
-/// constructor.
-Film with_channels(const Film& film, const std::vector<std::string>& channel_names);
+/// The part of `film` within `window` with these of its channels alone. Precondition: it has them.
+/// Throws as Film's constructor.
+Film with_channels(const Film& film, const std::vector<std::string>& channel_names,
+                   const PixelWindow& window);
 
 }  // namespace uw

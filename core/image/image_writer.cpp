@@ -2,6 +2,7 @@
 
 #include "core/base/text.h"
 #include "core/image/exr_file.h"
+#include "core/image/jpeg_writer.h"
 #include "core/image/output_file.h"
 #include "core/image/png_writer.h"
 
@@ -34,6 +35,20 @@ void write_png(const std::filesystem::path& file, const Preview16& image,
                const ImageMetadata& metadata) {
     OutputFile out(file);
     write_png_file(out, image, metadata);
+    out.commit();
+}
+
+void write_png(const std::filesystem::path& file, const DigitalImage& image,
+               const ImageMetadata& metadata) {
+    OutputFile out(file);
+    write_png_file(out, image, metadata);
+    out.commit();
+}
+
+void write_jpeg(const std::filesystem::path& file, const DigitalImage& image, int quality,
+                const ImageMetadata& metadata) {
+    OutputFile out(file);
+    write_jpeg_file(out, image, quality, metadata);
     out.commit();
 }
 

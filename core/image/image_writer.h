@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "core/image/digital_image.h"
 #include "core/image/exr_options.h"
 #include "core/image/film.h"
 #include "core/image/image_metadata.h"
@@ -21,6 +22,12 @@ void write_png(const std::filesystem::path& file, const Preview& image,
                const ImageMetadata& metadata);
 void write_png(const std::filesystem::path& file, const Preview16& image,
                const ImageMetadata& metadata);
+
+/// The same of a camera's image, as PNG or as JPEG of a quality of 1..100, which needs 8 bits.
+void write_png(const std::filesystem::path& file, const DigitalImage& image,
+               const ImageMetadata& metadata);
+void write_jpeg(const std::filesystem::path& file, const DigitalImage& image, int quality,
+                const ImageMetadata& metadata);
 
 /// A number of the metadata as a PNG states it: rounded to 6 digits.
 double as_stated_in_png(double value);

@@ -70,9 +70,22 @@ std::string_view mend_of_missing(Layer layer, const LayerSupply& supply) {
         case Layer::error:
             if (supply.error) return {};
             return "only --integrator path has a standard error, from two samples on; write that";
+        case Layer::sensor:
+            if (supply.sensor_values > 0) return {};
+            return "the camera has no sensor; add camera.sensor to the scene";
         default:
             return {};
     }
+}
+
+/// The endings of a layer's channels.
+std::vector<std::string> suffixes_of(const LayerKind& kind, std::span<const std::string> bands,
+                                     const LayerSupply& supply) {
+    if (kind.suffixes.empty()) return {bands.begin(), bands.end()};
+    if (kind.layer == Layer::sensor && supply.sensor_values == 1) return {"V"};
+    std::vector<std::string> letters;
+    for (const char letter : kind.suffixes) letters.emplace_back(1, letter);
+    return letters;
 }
 
 /// A lamp's name becomes part of a channel name: readers end it at NUL, and control characters
@@ -110,6 +123,7 @@ struct LayerPlan::Selection {
     std::array<bool, k_layer_count> layers{};
     std::vector<bool> lamps{};
 
+    bool has(Layer layer) const { return layers[static_cast<std::size_t>(layer)]; }
     void add(std::string_view item, std::span<const std::string> lamp_names);
     void add_all();
     void add_layer(std::size_t layer);
@@ -174,6 +188,8 @@ LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
         selection.add(trimmed(request.substr(begin, end - begin)), lamp_names);
         begin = end + 1;
     }
+    // Which it is made from.
+    if (selection.has(Layer::sensor)) selection.add_layer(static_cast<std::size_t>(Layer::total));
     const std::vector<std::string> bands = band_suffixes(bands_nm);
     add_layers(selection, bands);
     add_lamps(selection, lamp_names, bands);
@@ -185,9 +201,9 @@ void LayerPlan::add_layers(const Selection& selection, std::span<const std::stri
         const bool is_rgb = i == static_cast<std::size_t>(Layer::total) && band_count_ == 3;
         if (!selection.layers[i] || is_rgb) continue;
         first_[i] = static_cast<int>(channel_names_.size());
-        std::vector<std::string> letters;
-        for (const char letter : k_layers[i].suffixes) letters.emplace_back(1, letter);
-        add_channels(std::string(k_layers[i].name), letters.empty() ? bands : letters);
+        const auto suffixes = suffixes_of(k_layers[i], bands, selection.supply);
+        channel_counts_[i] = suffixes.size();
+        add_channels(std::string(k_layers[i].name), suffixes);
     }
 }
 

@@ -35,6 +35,7 @@ enum class Layer {
     position,
     id,
     material,
+    sensor,
     count,  // not a layer: the number of layers
 };
 inline constexpr auto k_layer_count = static_cast<std::size_t>(Layer::count);
@@ -43,8 +44,9 @@ inline constexpr auto k_layer_count = static_cast<std::size_t>(Layer::count);
 struct LayerKind {
     Layer layer;
     std::string_view name;
-    std::string_view suffixes;  // one channel per letter; one per band if empty
-    bool is_light = false;      // radiance, irradiance or exitance; else ground truth
+    /// One channel per letter; one per band if empty. A sensor with one number per pixel has `V`.
+    std::string_view suffixes;
+    bool is_light = false;  // radiance, irradiance or exitance; else ground truth
 };
 
 /// Every layer, in the order of Layer.
@@ -71,6 +73,7 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::position, "position", "XYZ"},
     {Layer::id, "id", "V"},
     {Layer::material, "material", "V"},
+    {Layer::sensor, "sensor", "RGB"},
 }};
 
 /// Whether a table holds one line for every layer, in order.
@@ -94,6 +97,7 @@ struct LayerSupply {
     /// The light by how often it was scattered, and by how often it was reflected, each 0 to this;
     /// 0: not at all. These layers are in the plan without being requested.
     int orders = 0;
+    std::size_t sensor_values = 0;  // numbers per pixel of the camera's sensor, 1 or 3; 0: none
 };
 
 /// Which channels an image has, what they are called, and where each layer begins.
@@ -103,17 +107,17 @@ struct LayerSupply {
 /// decimal point is written as an underscore (`direct.540_5nm`), since readers take everything
 /// before the last point as the layer. Then the total per band is a layer of its own, `total`; with
 /// three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`, `normal.X .Y .Z`,
-/// `position.X .Y .Z`, `id.V`, `material.V`. A lamp's own light is `lamp.<name>.R` and so on; light
-/// scattered n times is `order.<n>.R`, what is scattered more often than LayerSupply::orders
-/// `order.more.R`, and by reflections likewise `reflections.<n>.R`.
+/// `position.X .Y .Z`, `id.V`, `material.V`, `sensor.V` or `sensor.R .G .B`. A lamp's own light is
+/// `lamp.<name>.R` and so on; light scattered n times is `order.<n>.R`, what is scattered more
+/// often than LayerSupply::orders `order.more.R`, and by reflections likewise `reflections.<n>.R`.
 class LayerPlan {
   public:
     /// `request` is the argument of --layers: comma-separated layers, including `lamps` for every
     /// lamp, `lamp.<name>` for one, `all`, and `default` for the image with its depth. Empty means
-    /// `default`. Order and repetition do not matter. `all` leaves out what is not in `supply`.
-    /// Throws UsageError for an unknown layer or lamp, for one that is not supported yet and for
-    /// one that is not in `supply`; InputError if bands or lamps cannot be distinguished by name or
-    /// a lamp's name is not valid in a channel name.
+    /// `default`. Order and repetition do not matter. `sensor` brings `total` with it. `all` leaves
+    /// out what is not in `supply`. Throws UsageError for an unknown layer or lamp, for one that is
+    /// not supported yet and for one that is not in `supply`; InputError if bands or lamps cannot
+    /// be distinguished by name or a lamp's name is not valid in a channel name.
     LayerPlan(std::string_view request, std::span<const double> bands_nm,
               std::span<const std::string> lamp_names, const LayerSupply& supply = {});
 
@@ -130,9 +134,8 @@ class LayerPlan {
 
     /// The layer's channels among all those of a pixel. Precondition: has(layer).
     std::span<float> channels(Layer layer, std::span<float> pixel) const {
-        const auto suffixes = k_layers[static_cast<std::size_t>(layer)].suffixes.size();
         return pixel.subspan(static_cast<std::size_t>(first_channel(layer)),
-                             suffixes == 0 ? band_count_ : suffixes);
+                             channel_counts_[static_cast<std::size_t>(layer)]);
     }
     /// The same for one lamp's light; empty if it was not requested.
     std::span<float> lamp_channels(std::size_t lamp, std::span<float> pixel) const {
@@ -164,6 +167,7 @@ class LayerPlan {
     std::vector<std::string> channel_names_{"R", "G", "B", "A"};
     std::size_t band_count_;
     std::array<int, k_layer_count> first_{};
+    std::array<std::size_t, k_layer_count> channel_counts_{};
     std::vector<int> first_of_lamp_;
     std::size_t first_order_ = 0, order_count_ = 0;
 };

@@ -17,6 +17,14 @@
 namespace uw {
 namespace {
 
+/// What a PNG's rows hold.
+struct PngLayout {
+    int width, height;
+    int channels;  // 1 or 3
+    int bits;      // 8 or 16
+    bool is_srgb;
+};
+
 /// libpng with a file. It reports errors by a jump, which must not pass over anything that has a
 /// destructor: `write` returns false instead.
 class PngEncoder {
@@ -37,22 +45,23 @@ class PngEncoder {
     PngEncoder(PngEncoder&&) = delete;
     PngEncoder& operator=(PngEncoder&&) = delete;
 
-    template <class Colour>
-    bool write(const Grid2D<Colour>& image, std::span<const png_text> texts) {
-        constexpr int k_bits = 8 * sizeof(typename Colour::value_type);
+    /// `row(y)`: where its values begin.
+    template <class Row>
+    bool write(const PngLayout& layout, const Row& row, std::span<const png_text> texts) {
         if (setjmp(png_jmpbuf(png_)) != 0) return false;
-        png_set_IHDR(png_, info_, static_cast<png_uint_32>(image.width()),
-                     static_cast<png_uint_32>(image.height()), k_bits, PNG_COLOR_TYPE_RGB,
+        png_set_IHDR(png_, info_, static_cast<png_uint_32>(layout.width),
+                     static_cast<png_uint_32>(layout.height), layout.bits,
+                     layout.channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
                      PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
-        png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+        if (layout.is_srgb) png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
         png_set_text(png_, info_, texts.data(), static_cast<int>(texts.size()));
         // More effort saves a tenth at several times the cost.
         png_set_compression_level(png_, 1);
         png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
         png_write_info(png_, info_);
-        if (k_bits == 16) png_set_swap(png_);  // stored with the higher byte first
-        for (int y = 0; y < image.height(); ++y)
-            png_write_row(png_, reinterpret_cast<png_const_bytep>(image.row(y).front().data()));
+        if (layout.bits == 16) png_set_swap(png_);  // stored with the higher byte first
+        for (int y = 0; y < layout.height; ++y)
+            png_write_row(png_, reinterpret_cast<png_const_bytep>(row(y)));
         png_write_end(png_, nullptr);
         return true;
     }
@@ -89,9 +98,9 @@ png_text text_chunk(const std::string& keyword, const std::string& text) {
     return chunk;
 }
 
-template <class Colour>
-void write_file(OutputFile& out, const Grid2D<Colour>& image, const ImageMetadata& metadata) {
-    static_assert(sizeof(Colour) == 3 * sizeof(typename Colour::value_type));
+template <class Row>
+void write_file(OutputFile& out, const PngLayout& layout, const Row& row,
+                const ImageMetadata& metadata) {
     std::vector<std::string> values;
     values.reserve(metadata.size());
     std::vector<png_text> texts;
@@ -101,8 +110,17 @@ void write_file(OutputFile& out, const Grid2D<Colour>& image, const ImageMetadat
         texts.push_back(text_chunk(name, values.back()));
     }
     PngEncoder encoder(out);
-    if (!encoder.write(image, texts))
+    if (!encoder.write(layout, row, texts))
         throw IoError(fmt::format("{}: cannot write: {}", out.path().string(), encoder.error()));
+}
+
+template <class Colour>
+void write_preview(OutputFile& out, const Grid2D<Colour>& image, const ImageMetadata& metadata) {
+    static_assert(sizeof(Colour) == 3 * sizeof(typename Colour::value_type));
+    constexpr int k_bits = 8 * sizeof(typename Colour::value_type);
+    write_file(
+        out, {image.width(), image.height(), 3, k_bits, true},
+        [&](int y) { return image.row(y).front().data(); }, metadata);
 }
 
 }  // namespace
@@ -112,11 +130,24 @@ std::string png_number(double value) {
 }
 
 void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata) {
-    write_file(out, image, metadata);
+    write_preview(out, image, metadata);
 }
 
 void write_png_file(OutputFile& out, const Preview16& image, const ImageMetadata& metadata) {
-    write_file(out, image, metadata);
+    write_preview(out, image, metadata);
+}
+
+void write_png_file(OutputFile& out, const DigitalImage& image, const ImageMetadata& metadata) {
+    const PngLayout layout{image.width, image.height, image.channels, image.bits, image.is_srgb};
+    const auto first_of = [&](int y) { return static_cast<std::size_t>(y) * image.row_values(); };
+    if (image.bits == 16) {
+        write_file(
+            out, layout, [&](int y) { return &image.values[first_of(y)]; }, metadata);
+        return;
+    }
+    const std::vector<std::uint8_t> bytes(image.values.begin(), image.values.end());
+    write_file(
+        out, layout, [&](int y) { return &bytes[first_of(y)]; }, metadata);
 }
 
 }  // namespace uw

@@ -11,8 +11,12 @@ double focus_factor(double distance, double focal_length) {
     return ratio > 0 ? ratio * ratio : 0.0;
 }
 
-SensorModel::SensorModel(const SceneDesc& desc) : output_(desc.render.output) {
-    if (output_ != RenderDesc::Output::radiance) lens_ = desc.camera.lens.value();
+SensorModel::SensorModel(const SceneDesc& desc)
+    : SensorModel(desc.render.output, desc.camera.lens) {}
+
+SensorModel::SensorModel(RenderDesc::Output output, const std::optional<LensDesc>& lens)
+    : output_(output) {
+    if (output_ != RenderDesc::Output::radiance) lens_ = lens.value();
 }
 
 double SensorModel::pixel_factor(const LensRay& lens_ray, double range) const {

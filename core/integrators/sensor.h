@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "core/base/ray_source.h"
@@ -31,6 +32,8 @@ class SensorModel {
     SensorModel() = default;
     /// Precondition, checked by the scene reader: every output but radiance has a lens.
     explicit SensorModel(const SceneDesc& desc);
+    /// The same for any output of a camera.
+    SensorModel(RenderDesc::Output output, const std::optional<LensDesc>& lens);
 
     /// Whether the factors depend on LensRay::falloff and the range.
     bool uses_lens() const { return output_ != RenderDesc::Output::radiance; }

@@ -8,6 +8,7 @@
 
 #include "core/base/affine.h"
 #include "core/base/vec.h"
+#include "core/scene/sensor_desc.h"
 #include "core/scene/source_location.h"
 
 /// The camera of a scene as inert data (docs/scene-file.md). Lengths in metres, angles in degrees.
@@ -64,6 +65,9 @@ struct LensDesc {
     double f_number = 0;      ///< > 0
     double focal_length = 0;  ///< > 0 [m]
     double transmission = 1;  ///< fraction of the light transmitted, 0..1
+    /// From the camera's centre, along the axis, to the plane in focus, in water behind a port [m];
+    /// none: all distances are in focus.
+    std::optional<double> focus_distance{};
 };
 
 /// A file that holds a camera's resolution, intrinsics, distortion and, perhaps, port.
@@ -80,6 +84,7 @@ struct CameraDesc {
     DistortionDesc distortion;
     std::optional<PortDesc> port;
     std::optional<LensDesc> lens;
+    std::optional<SensorDesc> sensor;
     Affine world_from_camera;  ///< rigid; x right, y down, z forward
     /// The source of resolution, intrinsics, distortion and port, if they are not in the scene
     /// (camera/calibration/calibration.h).

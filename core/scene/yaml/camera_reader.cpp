@@ -10,8 +10,8 @@
 #include "core/scene/yaml/camera_values.h"
 #include "core/scene/yaml/config_map.h"
 #include "core/scene/yaml/name_reader.h"
-#include "core/scene/yaml/port_reader.h"
 #include "core/scene/yaml/pose_reader.h"
+#include "core/scene/yaml/sensor_reader.h"
 
 namespace uw {
 namespace {
@@ -150,9 +150,10 @@ CalibrationDesc read_calibration_name(const ConfigValue& value, const SceneConte
 }  // namespace
 
 CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value,
-                  {"resolution", "intrinsics", "distortion", "port", "pose", "lens", "calibration"},
-                  "write {resolution: [1920, 1080], intrinsics: {fov_x: 60}}");
+    ConfigMap map(
+        value,
+        {"resolution", "intrinsics", "distortion", "port", "pose", "lens", "sensor", "calibration"},
+        "write {resolution: [1920, 1080], intrinsics: {fov_x: 60}}");
     CameraDesc camera;
     if (const auto calibration = map.find("calibration")) {
         camera.calibration = read_calibration_name(*calibration, context);
@@ -173,6 +174,7 @@ CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
     camera.where = value.location();
     if (const auto entry = map.find("port")) camera.port = read_port(*entry, context);
     if (const auto entry = map.find("lens")) camera.lens = read_lens(*entry);
+    if (const auto entry = map.find("sensor")) camera.sensor = read_sensor(*entry, context);
     const auto pose = map.find("pose");
     camera.has_pose = pose.has_value();
     if (pose) camera.world_from_camera = read_pose(*pose);

@@ -15,6 +15,7 @@
 #include "core/scene/yaml/rig_reader.h"
 #include "core/scene/yaml/scene_context.h"
 #include "core/scene/yaml/scene_override.h"
+#include "core/scene/yaml/sensor_reader.h"
 #include "core/scene/yaml/volume_reader.h"
 #include "core/scene/yaml/water_reader.h"
 #include "core/scene/yaml/yaml_document.h"
@@ -153,6 +154,7 @@ SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& fi
     if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
     open_shutter(desc);
     check_lenses(desc);
+    complete_sensors(desc);
     check_gltf_imports(desc);
     const bool brings_lamps = std::ranges::any_of(
         desc.geometry, [](const GeometryDesc& object) { return object.import.any_lamps(); });

@@ -35,7 +35,7 @@ TEST(Film, GivesSomeOfItsChannels) {
         for (int x = 1; x < 3; ++x)
             for (std::size_t c = 0; c < 6; ++c)
                 film.pixel(x, y)[c] = static_cast<float>(100 * y + 10 * x) + static_cast<float>(c);
-    const Film part = with_channels(film, {"R", "G", "B", "A", "id.V"});
+    const Film part = with_channels(film, {"R", "G", "B", "A", "id.V"}, film.window());
     EXPECT_EQ(part.channel_names(), (std::vector<std::string>{"R", "G", "B", "A", "id.V"}));
     EXPECT_EQ(part.window(), film.window());
     for (int y = 1; y < 3; ++y)

@@ -188,6 +188,23 @@ TEST(Layers, WhatCannotBeSuppliedIsLeftOutOrRefused) {
     EXPECT_NE(message_of<UsageError>("order.2").find("written with --orders N"), std::string::npos);
 }
 
+TEST(Layers, ASensorHasOneNumberPerPixelOrThree) {
+    const LayerPlan one("sensor", k_rgb, k_lamps, {.sensor_values = 1});
+    EXPECT_EQ(one.channel_names(), (Names{"R", "G", "B", "A", "sensor.V"}));
+    // More bands are needed to make it of.
+    const LayerPlan three("sensor", std::vector<double>{450, 540}, {}, {.sensor_values = 3});
+    EXPECT_EQ(three.channel_names(), (Names{"R", "G", "B", "A", "total.450nm", "total.540nm",
+                                            "sensor.R", "sensor.G", "sensor.B"}));
+    std::vector<float> pixel(three.channel_names().size());
+    EXPECT_EQ(three.channels(Layer::sensor, pixel).data(), &pixel[6]);
+    EXPECT_EQ(three.channels(Layer::sensor, pixel).size(), 3U);
+    EXPECT_EQ(one.channels(Layer::sensor, pixel).size(), 1U);
+    EXPECT_FALSE(is_light("sensor.V"));  // numbers of 16 bits need more than half floats have
+    EXPECT_NE(message_of<UsageError>("sensor").find("add camera.sensor"), std::string::npos);
+    EXPECT_EQ(LayerPlan("all", k_rgb, k_lamps, {.sensor_values = 1}).channel_names().size(),
+              LayerPlan("all", k_rgb, k_lamps).channel_names().size() + 1);
+}
+
 TEST(Layers, OrdersComeLast) {
     const LayerPlan plan("depth,lamp.left", k_rgb, k_lamps, {.orders = 2});
     const Names& names = plan.channel_names();

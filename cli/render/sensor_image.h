@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "cli/render/frame_sequence.h"
+#include "core/image/digital_image.h"
+#include "core/image/film.h"
+#include "core/image/image_metadata.h"
+#include "core/sensor/development.h"
+#include "render/renderer.h"
+
+namespace uw {
+
+/// What a camera stores of an image, and how.
+struct SensorImage {
+    DigitalImage image;
+    DevelopmentDesc desc;
+};
+
+/// Writes it as PNG or JPEG. Throws IoError.
+void write_sensor_image(const std::filesystem::path& file, const SensorImage& sensor,
+                        const ImageMetadata& metadata);
+
+/// Makes the camera's image of a frame, if it is to have one, of what is rendered for it.
+class SensorImager {
+  public:
+    /// `wanted` of the frame otherwise, with a window. Throws as Development.
+    SensorImager(const Frame& frame, const SceneDesc& scene, const RenderOptions& wanted);
+
+    /// What to render: `wanted`, and what the camera's image needs.
+    const RenderOptions& rendered() const { return rendered_; }
+
+    /// The camera's image of the film rendered, which then becomes the one wanted: `plan` has its
+    /// layers.
+    std::optional<SensorImage> take(Film& film, const LayerPlan& plan) const;
+
+  private:
+    std::optional<Development> development_;
+    DevelopmentDesc desc_;
+    PixelWindow window_;  // wanted
+    RenderOptions rendered_;
+};
+
+}  // namespace uw

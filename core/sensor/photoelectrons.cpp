@@ -1,0 +1,132 @@
+#include "core/sensor/photoelectrons.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/colour/band_intervals.h"
+#include "core/tables/csv_file.h"
+
+namespace uw {
+namespace {
+
+// The SI's constants, exact by definition.
+constexpr double k_planck = 6.62607015e-34;       // J s
+constexpr double k_speed_of_light = 299792458.0;  // m/s
+constexpr double k_nanometre = 1e-9;
+
+double pixel_area(const CameraDesc& camera) {
+    if (const auto& pitch = camera.sensor->pixel_pitch) return *pitch * *pitch;
+    const double focal_length = camera.lens->focal_length;
+    return focal_length * focal_length / (camera.intrinsics.fx * camera.intrinsics.fy);
+}
+
+/// (n_air / n_water)^2 where radiance is counted in the water before a port.
+double port_factor_of(const CameraDesc& camera) {
+    if (!camera.port) return 1;
+    return std::visit(
+        [](const auto& port) {
+            const double ratio = port.radiance_in_air ? 1.0 : port.n_air / port.n_water;
+            return ratio * ratio;
+        },
+        *camera.port);
+}
+
+/// Integral of eta(lambda) lambda over the interval, in nm^2: quadratic from sample to sample.
+double integral_with_wavelength(const SampledCurve& efficiency, const BandInterval& interval) {
+    const auto product = [&](double nm) { return nm * efficiency.value(nm); };
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < efficiency.x.size(); ++i) {
+        const double from = std::max(efficiency.x[i], interval.begin);
+        const double to = std::min(efficiency.x[i + 1], interval.end);
+        if (from < to)
+            sum += (to - from) / 6 * (product(from) + 4 * product(0.5 * (from + to)) + product(to));
+    }
+    return sum;
+}
+
+/// The mean of eta(lambda) lambda over a band's interval [nm]; outside its samples eta is 0.
+double mean_with_wavelength(const SampledCurve& efficiency, double band_nm,
+                            const BandInterval& interval) {
+    if (interval.width() > 0)
+        return integral_with_wavelength(efficiency, interval) / interval.width();
+    return efficiency.covers(band_nm) ? band_nm * efficiency.value(band_nm) : 0;
+}
+
+std::vector<SampledCurve> efficiency_curves(const SensorDesc& sensor) {
+    constexpr std::array<std::string_view, 3> k_colours{"r", "g", "b"};
+    const QuantumEfficiencyDesc& desc = sensor.quantum_efficiency;
+    const CsvTable table = read_csv_file(desc.file, desc.where);
+    std::vector<SampledCurve> curves;
+    if (sensor.mosaic == SensorMosaic::mono)
+        curves.push_back(table.curve("wavelength_nm", "qe"));
+    else
+        for (const std::string_view colour : k_colours)
+            curves.push_back(table.curve("wavelength_nm", colour));
+    double most = 0;
+    for (SampledCurve& curve : curves)
+        for (std::size_t i = 0; i < curve.y.size(); ++i) {
+            if (desc.is_per_power) curve.y[i] /= curve.x[i];
+            if (curve.y[i] < 0)
+                throw InputError(
+                    fmt::format("{}: '{}' has a negative value at {:g} nm; efficiencies "
+                                "are 0 or more",
+                                desc.where, table.name(), curve.x[i]));
+            most = std::max(most, curve.y[i]);
+        }
+    if (!desc.peak && most > 1)
+        throw InputError(
+            fmt::format("{}: '{}' has values up to {:g}, more than one electron per "
+                        "photon; if they are up to a factor, add the greatest "
+                        "efficiency: peak: 0.6",
+                        desc.where, table.name(), most));
+    if (desc.peak && most > 0)
+        for (SampledCurve& curve : curves)
+            for (double& value : curve.y) value *= *desc.peak / most;
+    return curves;
+}
+
+}  // namespace
+
+Photoelectrons::Photoelectrons(const SceneDesc& scene)
+    : bands_(scene.water.bands_nm.size()),
+      lens_(RenderDesc::Output::sensor_irradiance, scene.camera.lens),
+      port_factor_(port_factor_of(scene.camera)) {
+    const SensorDesc& sensor = *scene.camera.sensor;
+    if (const auto& focus = scene.camera.lens->focus_distance) focus_distance_ = *focus;
+    const std::vector<double>& bands_nm = scene.water.bands_nm;
+    const std::vector<BandInterval> intervals = band_intervals(bands_nm);
+    const double mean_width = mean_band_width(intervals);
+    const QuantumEfficiencyDesc& efficiency = sensor.quantum_efficiency;
+    std::vector<SampledCurve> curves;
+    if (!efficiency.file.empty()) curves = efficiency_curves(sensor);
+    const double energy_to_count =
+        pixel_area(scene.camera) * *sensor.exposure * k_nanometre / (k_planck * k_speed_of_light);
+    for (std::size_t colour = 0; colour < colour_count(sensor.mosaic); ++colour) {
+        double sum = 0;
+        for (std::size_t b = 0; b < bands_; ++b) {
+            // The power of a band (docs/colour.md).
+            const double share = mean_width > 0 ? intervals[b].width() / mean_width : 1;
+            const double middle = 0.5 * (intervals[b].begin + intervals[b].end);
+            const double mean =
+                curves.empty() ? efficiency.values[colour][b] * middle
+                               : mean_with_wavelength(curves[colour], bands_nm[b], intervals[b]);
+            per_irradiance_[colour][b] = energy_to_count * share * mean;
+            sum += mean;
+        }
+        if (!(sum > 0))
+            throw InputError(
+                fmt::format("{}: {} no light of water.bands; check the efficiencies "
+                            "and their wavelengths",
+                            efficiency.where,
+                            colour_count(sensor.mosaic) == 1
+                                ? "the sensor sees"
+                                : fmt::format("its {} pixels see",
+                                              std::array{"red", "green", "blue"}[colour])));
+    }
+}
+
+}  // namespace uw

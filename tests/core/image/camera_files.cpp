@@ -1,0 +1,110 @@
+// ctest labels: unit
+// The images that cameras store, read back by another library.
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "core/base/error.h"
+#include "core/image/image_writer.h"
+#include "tests/support/full_disk.h"
+#include "tests/support/temp_dir.h"
+
+namespace uw {
+namespace {
+
+namespace fs = std::filesystem;
+using test::limited;
+
+std::string read_bytes(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class CameraFiles : public testing::Test {
+  protected:
+    test::TempDir directory_;
+    fs::path png_ = directory_.path() / "image.png";
+};
+
+/// What a camera stores: numbers whose two bytes differ.
+DigitalImage stored_image(int width, int height, int channels, int bits) {
+    DigitalImage image{width, height, channels, bits, false, {}};
+    for (int i = 0; i < width * height * channels; ++i)
+        image.values.push_back(
+            static_cast<std::uint16_t>(bits == 8 ? i * 7 % 256 : i * 2311 % 65536));
+    return image;
+}
+
+TEST_F(CameraFiles, PngHoldsTheNumbersOfACamera) {
+    for (const int channels : {1, 3})
+        for (const int bits : {8, 16}) {
+            DigitalImage image = stored_image(5, 4, channels, bits);
+            for (const bool is_srgb : {false, true}) {
+                image.is_srgb = is_srgb;
+                write_png(png_, image, {{"uwvdb/frame", "7"}});
+                const auto input = OIIO::ImageInput::open(png_.string());
+                ASSERT_TRUE(input) << OIIO::geterror();
+                EXPECT_EQ(input->spec().format, bits == 8 ? OIIO::TypeUInt8 : OIIO::TypeUInt16);
+                EXPECT_EQ(input->spec().nchannels, channels);
+                EXPECT_EQ(input->spec().get_string_attribute("uwvdb/frame"), "7");
+                // The chunk itself: readers take images without it for sRGB as well.
+                EXPECT_EQ(read_bytes(png_).find("sRGB") != std::string::npos, is_srgb);
+                std::vector<std::uint16_t> values(image.values.size());
+                if (bits == 16) {
+                    ASSERT_TRUE(
+                        input->read_image(0, 0, 0, channels, OIIO::TypeUInt16, values.data()));
+                } else {
+                    std::vector<std::uint8_t> bytes(values.size());
+                    ASSERT_TRUE(
+                        input->read_image(0, 0, 0, channels, OIIO::TypeUInt8, bytes.data()));
+                    std::ranges::copy(bytes, values.begin());
+                }
+                EXPECT_EQ(values, image.values);
+            }
+        }
+}
+
+TEST_F(CameraFiles, JpegHoldsTheImageAsWellAsItsQualityAllows) {
+    const fs::path jpeg = directory_.path() / "image.jpg";
+    for (const int channels : {1, 3}) {
+        DigitalImage image{64, 48, channels, 8, false, {}};
+        for (int y = 0; y < 48; ++y)
+            for (int x = 0; x < 64; ++x)
+                for (int c = 0; c < channels; ++c)
+                    image.values.push_back(static_cast<std::uint16_t>(2 * x + (2 + c) * y / 2));
+        std::uintmax_t last_size = 0;
+        for (const auto& [quality, most] : {std::pair{20, 24}, {60, 9}, {95, 3}}) {
+            write_jpeg(jpeg, image, quality, {{"uwvdb/frame", "7"}, {"exposure", 2.5}});
+            const auto input = OIIO::ImageInput::open(jpeg.string());
+            ASSERT_TRUE(input) << OIIO::geterror();
+            ASSERT_EQ(input->spec().width, 64);
+            ASSERT_EQ(input->spec().height, 48);
+            ASSERT_EQ(input->spec().nchannels, channels);
+            EXPECT_EQ(input->spec().get_string_attribute("ImageDescription"),
+                      "exposure: 2.5\nuwvdb/frame: 7\n");
+            std::vector<std::uint8_t> values(image.values.size());
+            ASSERT_TRUE(input->read_image(0, 0, 0, channels, OIIO::TypeUInt8, values.data()));
+            int worst = 0;
+            for (std::size_t i = 0; i < values.size(); ++i)
+                worst = std::max(worst, std::abs(values[i] - image.values[i]));
+            // Half a quantisation step of the strongest coefficient, 8 of quality 50, and more for
+            // several of them.
+            EXPECT_LE(worst, most) << quality;
+            EXPECT_GT(fs::file_size(jpeg), last_size);
+            last_size = fs::file_size(jpeg);
+        }
+    }
+    std::ofstream(jpeg) << "old";
+    const DigitalImage noise = stored_image(200, 200, 3, 8);
+    EXPECT_THROW(limited(5000, [&] { write_jpeg(jpeg, noise, 90, {}); }), IoError);
+    EXPECT_EQ(read_bytes(jpeg), "old");
+    EXPECT_THROW(write_jpeg(jpeg, stored_image(65536, 1, 1, 8), 90, {}), IoError);
+    EXPECT_EQ(read_bytes(jpeg), "old");
+}
+
+}  // namespace
+}  // namespace uw
