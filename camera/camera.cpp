@@ -13,10 +13,12 @@ Camera::Camera(const CameraDesc& desc)
       camera_from_world_(desc.world_from_camera.inverse()) {
     if (width_ <= 0 || height_ <= 0)
         throw std::logic_error("a camera without resolution: its calibration was not read");
-    if (!desc.port) return;
-    port_.emplace(make_port(*desc.port));
-    port_dims_ = std::visit([](const auto& port) { return port.fresnel || port.radiance_in_air; },
-                            *desc.port);
+    if (desc.port) {
+        port_.emplace(make_port(*desc.port));
+        port_dims_ = std::visit(
+            [](const auto& port) { return port.fresnel || port.radiance_in_air; }, *desc.port);
+    }
+    if (desc.lens && desc.lens->focus_distance) thin_lens_.emplace(desc, port_);
 }
 
 std::optional<Vector3> Camera::lens_direction(double x, double y) const {
@@ -28,10 +30,17 @@ std::optional<Vector3> Camera::lens_direction(double x, double y) const {
 std::optional<Ray> Camera::refracted_ray(double x, double y) const {
     const std::optional<Vector3> in_housing = lens_direction(x, y);
     if (!in_housing) return std::nullopt;
-    std::optional<Ray> in_camera = Ray{Point3{}, *in_housing};
-    if (port_)
-        in_camera =
-            std::visit([&](const auto& port) { return port.refracted_ray(*in_housing); }, *port_);
+    return in_water({Point3{}, *in_housing});
+}
+
+std::optional<Ray> Camera::aperture_ray(double x, double y, const AperturePoint& point) const {
+    const std::optional<Vector3> in_housing = lens_direction(x, y);
+    if (!in_housing) return std::nullopt;
+    return in_water(thin_lens_ ? thin_lens_->ray(*in_housing, point) : Ray{Point3{}, *in_housing});
+}
+
+std::optional<Ray> Camera::in_water(const Ray& in_housing) const {
+    const std::optional<Ray> in_camera = through_port(port_, in_housing);
     if (!in_camera) return std::nullopt;
     return Ray{world_from_camera_ * in_camera->origin,
                glm::normalize(world_from_camera_.apply_to_vector(in_camera->direction))};

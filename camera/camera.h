@@ -4,6 +4,7 @@
 
 #include "camera/lens/lens_model.h"
 #include "camera/port/port.h"
+#include "camera/thin_lens.h"
 #include "core/base/ray_source.h"
 
 namespace uw {
@@ -20,7 +21,7 @@ struct ImagePoint {
 class Camera final : public RaySource {
   public:
     /// Precondition, checked by the scene reader: fx, fy > 0, a rigid pose, a unit port normal, the
-    /// camera within its dome, and a calibration that has been read.
+    /// camera within its dome, and a calibration that has been read. Throws as ThinLens.
     explicit Camera(const CameraDesc& desc);
 
     int width() const override { return width_; }
@@ -29,6 +30,9 @@ class Camera final : public RaySource {
     std::optional<Ray> refracted_ray(double x, double y) const override;
     LensRay lens_ray(double x, double y) const override;
     bool port_dims() const override { return port_dims_; }
+    bool has_aperture() const override { return thin_lens_.has_value(); }
+    std::optional<Ray> aperture_ray(double x, double y, const AperturePoint& point) const override;
+    double focus_vergence() const override { return thin_lens_ ? thin_lens_->vergence() : 0; }
     const Affine& world_from_camera() const override { return world_from_camera_; }
 
     /// The unit direction, in the camera frame inside the housing, that the lens images at (x, y);
@@ -43,12 +47,16 @@ class Camera final : public RaySource {
     std::optional<ImagePoint> project(const Point3& world) const;
 
   private:
+    // The ray in the world of one in the housing, camera frame.
+    std::optional<Ray> in_water(const Ray& in_housing) const;
+
     int width_;
     int height_;
     IntrinsicsDesc intrinsics_;
     LensModel lens_;
     std::optional<Port> port_;
     bool port_dims_ = false;
+    std::optional<ThinLens> thin_lens_;
     Affine world_from_camera_;
     Affine camera_from_world_;
 };

@@ -40,8 +40,9 @@ Angle angle_at(double h, double a) {
 
 }  // namespace
 
-std::optional<DomePort::Passage> DomePort::passage(const Vector3& direction) const {
-    const Vector3 camera = -from_origin(desc_.center);
+std::optional<DomePort::Passage> DomePort::passage(const Point3& from,
+                                                   const Vector3& direction) const {
+    const Vector3 camera = from - desc_.center;
     const Vector3 inner = camera + leave_sphere(camera, direction, desc_.radius) * direction;
     const Vector3 inner_normal = glm::normalize(inner);
     const auto in_glass = refract(direction, inner_normal, desc_.n_air, desc_.n_glass);
@@ -59,14 +60,14 @@ std::optional<DomePort::Passage> DomePort::passage(const Vector3& direction) con
     return result;
 }
 
-std::optional<Ray> DomePort::refracted_ray(const Vector3& direction) const {
-    const auto way = passage(direction);
+std::optional<Ray> DomePort::refracted_ray(const Point3& from, const Vector3& direction) const {
+    const auto way = passage(from, direction);
     if (!way) return std::nullopt;
     return Ray{desc_.center + way->outer, way->in_water};
 }
 
 double DomePort::transmittance(const Vector3& direction) const {
-    const auto way = passage(direction);
+    const auto way = passage(Point3{}, direction);
     if (!way) return 0;
     return port_transmittance(desc_, {way->inner_air, way->outer_glass});
 }

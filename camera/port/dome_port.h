@@ -18,7 +18,11 @@ class DomePort {
     /// The ray in water, camera frame, that leaves the camera centre along `direction` (unit, in
     /// air). Its origin lies on the outer glass surface. Empty if the ray is totally reflected at
     /// either surface, which happens only if air or glass is optically denser than what follows.
-    std::optional<Ray> refracted_ray(const Vector3& direction) const;
+    std::optional<Ray> refracted_ray(const Vector3& direction) const {
+        return refracted_ray(Point3{}, direction);
+    }
+    /// The same from any point within the inner sphere.
+    std::optional<Ray> refracted_ray(const Point3& from, const Vector3& direction) const;
 
     /// As FlatPort::transmittance.
     double transmittance(const Vector3& direction) const;
@@ -37,7 +41,7 @@ class DomePort {
         Vector3 in_water{0, 0, 1};
         double inner_air = 1, outer_glass = 1;  // cosines to the normals
     };
-    std::optional<Passage> passage(const Vector3& direction) const;
+    std::optional<Passage> passage(const Point3& from, const Vector3& direction) const;
 
     DomePortDesc desc_;
 };

@@ -41,7 +41,7 @@ Reach reach(const std::array<Layer, 3>& layers, double n, double u) {
 
 }  // namespace
 
-std::optional<Ray> FlatPort::refracted_ray(const Vector3& direction) const {
+std::optional<Ray> FlatPort::refracted_ray(const Point3& from, const Vector3& direction) const {
     const Vector3& n = desc_.normal;
     const double cos_air = glm::dot(direction, n);
     if (!(cos_air > 0)) return std::nullopt;
@@ -50,7 +50,8 @@ std::optional<Ray> FlatPort::refracted_ray(const Vector3& direction) const {
     const auto in_water = refract(*in_glass, n, desc_.n_glass, desc_.n_water);
     if (!in_water) return std::nullopt;
 
-    const Vector3 inner = (desc_.distance / cos_air) * direction;
+    const double ahead = desc_.distance - glm::dot(from_origin(from), n);
+    const Vector3 inner = from_origin(from) + (ahead / cos_air) * direction;
     const Vector3 outer = inner + (desc_.thickness / glm::dot(*in_glass, n)) * *in_glass;
     const double reached = glm::dot(outer, outer);
     if (!std::isfinite(reached)) return std::nullopt;

@@ -16,7 +16,11 @@ class FlatPort {
     /// The ray in water, camera frame, that leaves the camera centre along `direction` (unit, in
     /// air). Its origin lies on the outer glass surface. Empty if the ray runs away from or along
     /// the glass, or is totally reflected at either surface.
-    std::optional<Ray> refracted_ray(const Vector3& direction) const;
+    std::optional<Ray> refracted_ray(const Vector3& direction) const {
+        return refracted_ray(Point3{}, direction);
+    }
+    /// The same from any point in the housing.
+    std::optional<Ray> refracted_ray(const Point3& from, const Vector3& direction) const;
 
     /// The factor between the radiance in water and what arrives at the camera centre along
     /// `direction` (unit, in air), as the description requests: Fresnel's transmittance for

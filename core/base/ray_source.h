@@ -16,6 +16,12 @@ struct LensRay {
     double port_transmittance = 1;
 };
 
+/// A point of a lens's aperture, in units of its radius from its centre: right and down.
+struct AperturePoint {
+    double u = 0;
+    double v = 0;
+};
+
 /// Generates camera rays: from a pixel to its ray in the water. Thread safe.
 class RaySource {
   public:
@@ -35,6 +41,16 @@ class RaySource {
     virtual LensRay lens_ray(double x, double y) const = 0;
     /// Whether some lens ray's port_transmittance is not 1.
     virtual bool port_dims() const = 0;
+
+    /// Whether the lens has a focus, so that rays through different points of its aperture differ.
+    virtual bool has_aperture() const { return false; }
+    /// The ray in water of image position (x, y) through a point of the aperture; that through its
+    /// centre is refracted_ray.
+    virtual std::optional<Ray> aperture_ray(double x, double y, const AperturePoint&) const {
+        return refracted_ray(x, y);
+    }
+    /// 1 / distance of the plane in focus, as the lens sees it in the housing's air [1/m].
+    virtual double focus_vergence() const { return 0; }
 
     virtual const Affine& world_from_camera() const = 0;
 };

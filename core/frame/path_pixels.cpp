@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/frame/aperture_samples.h"
 #include "core/paths/path_tracer.h"
 #include "core/surfaces/surface_reflection.h"
 
@@ -17,6 +18,16 @@ constexpr int k_together = 64;
 // Each of the estimates of a path has random numbers of its own, after those of its image position.
 enum Stream : std::uint64_t { k_position, k_single, k_water, k_surface };
 constexpr int k_position_dimensions = 2;
+// Beyond the lattice, whose dimensions after those of the position the estimates use.
+constexpr int k_aperture_dimension = 64;
+
+// Through a random point of the aperture, if there is one.
+std::optional<Ray> camera_ray(const RaySource& rays, double x, double y, PathRandom& random) {
+    if (!rays.has_aperture()) return rays.refracted_ray(x, y);
+    random.skip_to(k_aperture_dimension);
+    const double a = random.next(), b = random.next();
+    return rays.aperture_ray(x, y, aperture_point(a, b));
+}
 
 }  // namespace
 
@@ -160,7 +171,7 @@ void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& s
             PathRandom random = batch.random(k_position, i);
             const double across = x + random.next();
             const double down = y + random.next();
-            const std::optional<Ray> ray = pixels_.rays().refracted_ray(across, down);
+            const std::optional<Ray> ray = camera_ray(pixels_.rays(), across, down, random);
             if (!ray) continue;
             rays.push_back(*ray);
             indices.push_back(i);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/frame/aperture_samples.h"
+#include "core/paths/path_random.h"
 #include "core/surfaces/surface_reflection.h"
 
 namespace uw {
@@ -17,11 +19,10 @@ constexpr double k_same_distance = 0.01;
 // does not continue behind the surface it hits.
 constexpr double k_same_surface = 0.25;
 
-// Base-2 radical inverse: 0, 1/2, 1/4, 3/4, ...
-double radical_inverse(unsigned i) {
-    double result = 0, digit = 0.5;
-    for (; i != 0; i >>= 1, digit *= 0.5)
-        if ((i & 1) != 0) result += digit;
+// Base-2 radical inverse: 0, 1/2, 1/4, 3/4, ...; of other bases likewise.
+double radical_inverse(unsigned i, unsigned base = 2) {
+    double result = 0, digit = 1.0 / base;
+    for (; i != 0; i /= base, digit /= base) result += digit * (i % base);
     return result;
 }
 
@@ -35,6 +36,28 @@ ImageOffset sample_offset(int i, int count) {
     const double y = radical_inverse(static_cast<unsigned>(i)) + half_step;
     return {static_cast<double>(i) / count + half_step, count == 1 ? 0.5 : y};
 }
+
+// Where the samples of a pixel pass the aperture: evenly in the aperture, and in pixel and aperture
+// together (Hammersley points of four dimensions), but differently in each pixel, as the same
+// points in all would show as many sharp images.
+class ApertureSamples {
+  public:
+    ApertureSamples(int x, int y) {
+        const auto pixel = static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x);
+        PathRandom random(PathRandom::seed_of(k_seed, pixel), 0);
+        shift_a_ = random.next();
+        shift_b_ = random.next();
+    }
+    AperturePoint operator()(int i) const {
+        const auto number = static_cast<unsigned>(i);
+        return aperture_point(std::fmod(radical_inverse(number, 3) + shift_a_, 1.0),
+                              std::fmod(radical_inverse(number, 5) + shift_b_, 1.0));
+    }
+
+  private:
+    static constexpr std::uint64_t k_seed = 0x61706572;  // other numbers than for light paths
+    double shift_a_, shift_b_;
+};
 
 // Derives the view's distances and weights from its samples, merging distances that agree.
 void group_distances(std::vector<double>& distances, int samples, PixelView& view) {
@@ -131,9 +154,13 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
         add_center(view);
         return;
     }
+    const bool has_aperture = rays_.has_aperture();
+    const ApertureSamples aperture(x, y);
     for (int i = 0; i < samples_; ++i) {
         const ImageOffset offset = sample_offset(i, samples_);
-        const std::optional<Ray> ray = rays_.refracted_ray(x + offset.x, y + offset.y);
+        const std::optional<Ray> ray =
+            has_aperture ? rays_.aperture_ray(x + offset.x, y + offset.y, aperture(i))
+                         : rays_.refracted_ray(x + offset.x, y + offset.y);
         if (!ray) continue;
         if (!view.ray) {
             view.ray = ray;
@@ -190,8 +217,10 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
 
 double PixelRenderer::pixel_factor(const PixelView& view) const {
     if (!view.ray || !(sensor_.uses_lens() || rays_.port_dims())) return 1;
-    return sensor_.pixel_factor(rays_.lens_ray(view.x, view.y),
-                                view.has_hit ? view.range : k_infinitely_far);
+    const double focus = rays_.has_aperture() ? 1 / rays_.focus_vergence()
+                         : view.has_hit       ? view.range
+                                              : k_infinitely_far;
+    return sensor_.pixel_factor(rays_.lens_ray(view.x, view.y), focus);
 }
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {

@@ -97,7 +97,14 @@ void check(const CameraDesc& camera) {
         !std::ranges::all_of(camera.distortion.p, finite))
         checked.fail("a coefficient of its distortion is not a finite number");
     if (camera.port) check(*camera.port, checked);
-    if (camera.lens) checked.length("lens's focal length", camera.lens->focal_length);
+    if (!camera.lens) return;
+    checked.length("lens's focal length", camera.lens->focal_length);
+    if (!camera.lens->focus_distance) return;
+    checked.length("lens's focus distance", *camera.lens->focus_distance);
+    if (camera.distortion.model == DistortionDesc::Model::fisheye)
+        checked.fail(
+            "lens.focus_distance: depth of field is that of a rectilinear lens, and this "
+            "one is a fisheye; leave it out");
 }
 
 std::optional<double> beam_of(const LampProfileDesc& profile) {

@@ -20,6 +20,7 @@ CameraSensor::CameraSensor(const SceneDesc& scene, std::int64_t frame)
 
 void CameraSensor::expose(const RaySource& rays, const LayerPlan& plan, Film& film) const {
     const PixelWindow& window = film.window();
+    const double vergence = rays.focus_vergence();
     parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
         const int y = window.y0 + static_cast<int>(line);
         for (int x = window.x0; x < window.x1; ++x) {
@@ -27,7 +28,7 @@ void CameraSensor::expose(const RaySource& rays, const LayerPlan& plan, Film& fi
             Spectrum irradiance;
             if (pixel[k_alpha] > 0) {
                 const double factor =
-                    photoelectrons_.irradiance_factor(rays.lens_ray(x + 0.5, y + 0.5));
+                    photoelectrons_.irradiance_factor(rays.lens_ray(x + 0.5, y + 0.5), vergence);
                 std::size_t b = 0;
                 for (const float radiance : light_of(plan, pixel))
                     irradiance[b++] = factor * static_cast<double>(radiance);

@@ -96,7 +96,6 @@ Photoelectrons::Photoelectrons(const SceneDesc& scene)
       lens_(RenderDesc::Output::sensor_irradiance, scene.camera.lens),
       port_factor_(port_factor_of(scene.camera)) {
     const SensorDesc& sensor = *scene.camera.sensor;
-    if (const auto& focus = scene.camera.lens->focus_distance) focus_distance_ = *focus;
     const std::vector<double>& bands_nm = scene.water.bands_nm;
     const std::vector<BandInterval> intervals = band_intervals(bands_nm);
     const double mean_width = mean_band_width(intervals);

@@ -24,8 +24,9 @@ class Photoelectrons {
     /// Irradiance on the sensor per radiance in water [sr], for the pixel that `lens_ray` belongs
     /// to: the lens's factor (SensorModel) and, behind a port, (n_air / n_water)^2 unless the
     /// image's radiance is in air already. The port's transmittance is in the radiance.
-    double irradiance_factor(const LensRay& lens_ray) const {
-        return port_factor_ * lens_.pixel_factor({lens_ray.falloff, 1}, focus_distance_);
+    /// `focus_vergence`: RaySource::focus_vergence.
+    double irradiance_factor(const LensRay& lens_ray, double focus_vergence) const {
+        return port_factor_ * lens_.pixel_factor({lens_ray.falloff, 1}, 1 / focus_vergence);
     }
 
     /// The mean number in a pixel of this colour.
@@ -38,7 +39,7 @@ class Photoelectrons {
   private:
     std::size_t bands_;
     SensorModel lens_;
-    double focus_distance_ = k_infinitely_far, port_factor_ = 1;
+    double port_factor_ = 1;
     std::array<Spectrum, 3> per_irradiance_;  // by colour
 };
 

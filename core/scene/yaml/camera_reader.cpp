@@ -112,7 +112,7 @@ DistortionDesc read_distortion(const ConfigValue& value) {
 }
 
 LensDesc read_lens(const ConfigValue& value) {
-    ConfigMap map(value, {"f_number", "focal_length", "transmission"},
+    ConfigMap map(value, {"f_number", "focal_length", "transmission", "focus_distance"},
                   "write {f_number: 2.8, focal_length: 0.0085, transmission: 0.95}");
     LensDesc lens;
     const ConfigValue f_number = map.require("f_number", "give the f-number, such as 2.8");
@@ -128,6 +128,8 @@ LensDesc read_lens(const ConfigValue& value) {
         lens.transmission =
             transmission->within(0, 1, "give the fraction of light the lens lets through");
     }
+    if (const auto focus = map.find("focus_distance"))
+        lens.focus_distance = focus->positive("give metres from the camera along its axis");
     return lens;
 }
 

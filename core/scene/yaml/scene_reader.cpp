@@ -108,6 +108,18 @@ void check_lenses(const SceneDesc& desc) {
                          "focal_length: 0.0085}, or write output: radiance");
 }
 
+/// Blur is the mean over more rays than edges need.
+void refine_blur(SceneDesc& desc) {
+    constexpr int k_samples = 64;
+    const auto blurs = [](const CameraDesc& camera) {
+        return camera.lens && camera.lens->focus_distance;
+    };
+    const bool any =
+        blurs(desc.camera) || std::ranges::any_of(desc.cameras, blurs, &RigCameraDesc::camera);
+    const bool traces_paths = desc.render.integrator == RenderDesc::Integrator::path;
+    if (any && !desc.render.samples && !traces_paths) desc.render.samples = k_samples;
+}
+
 /// Sets the exposure time of the volumes that move.
 void open_shutter(SceneDesc& desc) {
     for (VolumeDesc& volume : desc.volumes) {
@@ -155,6 +167,7 @@ SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& fi
     open_shutter(desc);
     check_lenses(desc);
     complete_sensors(desc);
+    refine_blur(desc);
     check_gltf_imports(desc);
     const bool brings_lamps = std::ranges::any_of(
         desc.geometry, [](const GeometryDesc& object) { return object.import.any_lamps(); });

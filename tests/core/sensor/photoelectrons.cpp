@@ -70,17 +70,18 @@ TEST_F(PhotoelectronsTest, WithoutPitchPixelsAreThoseOfTheFocalLength) {
 TEST_F(PhotoelectronsTest, TheLensGathersByItsFNumberItsFocusAndThePort) {
     const double at_infinity = std::numbers::pi / (4 * 2.8 * 2.8) * 0.95;
     const LensRay ray{0.8, 0.3};  // the port's transmittance is in the radiance already
-    EXPECT_NEAR(Photoelectrons(scene_).irradiance_factor(ray), 0.8 * at_infinity, 1e-15);
-    scene_.camera.lens->focus_distance = 0.5;
+    EXPECT_NEAR(Photoelectrons(scene_).irradiance_factor(ray, 0), 0.8 * at_infinity, 1e-15);
     const double focus = std::pow((0.5 - 0.0085) / 0.5, 2);
-    EXPECT_NEAR(Photoelectrons(scene_).irradiance_factor(ray), 0.8 * focus * at_infinity, 1e-15);
+    EXPECT_NEAR(Photoelectrons(scene_).irradiance_factor(ray, 1 / 0.5), 0.8 * focus * at_infinity,
+                1e-15);
     FlatPortDesc port;
     scene_.camera.port = port;
-    EXPECT_NEAR(Photoelectrons(scene_).irradiance_factor(ray),
+    EXPECT_NEAR(Photoelectrons(scene_).irradiance_factor(ray, 1 / 0.5),
                 0.8 * focus * at_infinity / (1.334 * 1.334), 1e-15);
     port.radiance_in_air = true;
     scene_.camera.port = port;
-    EXPECT_NEAR(Photoelectrons(scene_).irradiance_factor(ray), 0.8 * focus * at_infinity, 1e-15);
+    EXPECT_NEAR(Photoelectrons(scene_).irradiance_factor(ray, 1 / 0.5), 0.8 * focus * at_infinity,
+                1e-15);
 }
 
 /// Light of 1 W/m^2 per band is 3/3 W/m^2 over each mean width of 85 nm (docs/colour.md).
