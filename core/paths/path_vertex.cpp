@@ -132,7 +132,8 @@ std::optional<DrawnDirection> PathVertex::draw(PathRandom& random) const {
     const double v = random.next(), azimuth = random.next();
     DrawnDirection drawn;
     if (point_) {
-        if (!(phase_cumulative_.back() > 0)) return std::nullopt;
+        // Water may hold nothing that scatters.
+        if (phase_cumulative_.empty() || !(phase_cumulative_.back() > 0)) return std::nullopt;
         const HalfTangentDensity& phase =
             tables_.scattering->directions[choose(phase_cumulative_, u).index];
         drawn.direction = direction_around(incoming_, phase.invert(v * phase.mass()), azimuth);

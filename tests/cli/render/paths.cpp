@@ -47,6 +47,27 @@ TEST_F(Paths, HaveLayersAndAHeaderOfTheirOwn) {
     EXPECT_FALSE(single.metadata.contains("uwvdb/scattering"));
 }
 
+/// Walks between surfaces pass through water that has nothing to scatter them with.
+TEST_F(Paths, NeedNoScatteringWater) {
+    const std::string clear = "water.scattering={b: 0, phase: {type: hg, g: 0.9}}";
+    const ImageFile image = render(with({"--samples", "64", "--layers", "all", "--set", clear}));
+    const ImageFile single = render({"--size", "12x8", "--set", clear, "--samples", "64"});
+    double direct = 0, truth = 0, reflected = 0;
+    for (const char* const band : {"R", "G", "B"}) {
+        const std::string layer = std::string("direct.") + band;
+        for (std::size_t i = 0; i < image.channels.at(layer).size(); ++i) {
+            direct += static_cast<double>(image.channels.at(layer)[i]);
+            truth += static_cast<double>(single.channels.at(layer)[i]);
+            EXPECT_EQ(image.channels.at(std::string("backscatter.") + band)[i], 0);
+            EXPECT_EQ(image.channels.at(std::string("multiple.volume.") + band)[i], 0);
+            reflected +=
+                static_cast<double>(image.channels.at(std::string("multiple.surface.") + band)[i]);
+        }
+    }
+    EXPECT_NEAR(direct / truth, 1, 0.02);  // 64 rays in each of 96 pixels, some at an edge
+    EXPECT_GT(reflected, 0);               // the box lights the wall
+}
+
 TEST_F(Paths, AreAsManyAsTheErrorNeeds) {
     const test::ProgramResult result =
         run({"render", "scene.yaml", "-o", "out.exr", "--integrator", "path", "--size", "12x8",
