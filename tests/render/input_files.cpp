@@ -86,6 +86,17 @@ TEST_F(InputFiles, AreAllThatASceneNames) {
     }
 }
 
+TEST_F(InputFiles, OfASensorAreItsTables) {
+    folder_.write("scene.yaml",
+                  "uwvdb: 1\ncamera:\n  resolution: [4, 3]\n  intrinsics: {fov_x: 60}\n"
+                  "  lens: {f_number: 2, focal_length: 0.01}\n"
+                  "  sensor: {exposure: 1, gain: 1, quantum_efficiency: white.csv,\n"
+                  "    image: {response: camera.csv}}\n");
+    const SceneDesc scene = load_scene(folder_.path() / "scene.yaml", {});
+    EXPECT_EQ(names_of(scene),
+              (std::multiset<std::string>{"scene.yaml", "white.csv", "camera.csv"}));
+}
+
 TEST_F(InputFiles, OfASceneWithoutAnyAreTheSceneAlone) {
     folder_.write("scene.yaml",
                   "uwvdb: 1\ncamera: {resolution: [4, 3], intrinsics: {fov_x: 60}}\n"

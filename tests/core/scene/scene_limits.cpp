@@ -96,6 +96,14 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.yaml:2: camera: fy = 1e+12 pixels is beyond 1e+09"},
         BadScene{"centre_far_out", [](SceneDesc& s) { s.camera.intrinsics.cy = -1e9; },
                  "s.yaml:2: camera: fy = "},
+        BadScene{"focus_far_away", [](SceneDesc& s) { s.camera.lens->focus_distance = 1e9; },
+                 "s.yaml:2: camera: its lens's focus distance of 1e+09 is beyond 1e+07"},
+        BadScene{"fisheye_with_focus",
+                 [](SceneDesc& s) {
+                     s.camera.lens->focus_distance = 2;
+                     s.camera.distortion.model = DistortionDesc::Model::fisheye;
+                 },
+                 "s.yaml:2: camera: lens.focus_distance: depth of field is that of a rectilinear"},
         BadScene{"distortion", [](SceneDesc& s) { s.camera.distortion.k[2] = k_nan; },
                  "s.yaml:2: camera: a coefficient of its distortion is not a finite number"},
         BadScene{"port", [](SceneDesc& s) { std::get<DomePortDesc>(*s.camera.port).radius = 1e9; },

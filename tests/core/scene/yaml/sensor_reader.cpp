@@ -126,6 +126,18 @@ TEST_F(SensorReader, EachCameraOfARigHasItsOwn) {
     EXPECT_EQ(scene.cameras[1].camera.sensor.value().exposure, 0.1);
 }
 
+TEST_F(SensorReader, ALensWithAFocusHasMoreSamples) {
+    const SceneDesc sharp = read("");
+    EXPECT_FALSE(sharp.camera.lens->focus_distance);
+    EXPECT_FALSE(sharp.render.samples);
+    const SceneDesc focused = read("", {"camera.lens.focus_distance=1.5"});
+    EXPECT_EQ(focused.camera.lens->focus_distance, 1.5);
+    EXPECT_EQ(focused.render.samples, 64);
+    EXPECT_EQ(read("", {"camera.lens.focus_distance=1.5", "render.samples=9"}).render.samples, 9);
+    EXPECT_FALSE(
+        read("", {"camera.lens.focus_distance=1.5", "render.integrator=path"}).render.samples);
+}
+
 TEST_F(SensorReader, WhatCannotBeMeantIsRefused) {
     const std::string start = std::string(k_start) + "  sensor: {";
     check(
