@@ -33,9 +33,10 @@ std::vector<SurfaceHit> surfaces_in_view(const AssembledScene& scene) {
 }
 
 bool lights(const AssembledScene& scene, const Lamp& lamp, const SurfaceHit& hit) {
-    const Vector3 way = hit.position - lamp.position();
+    const Point3 from = lamp.origin(hit.position);
+    const Vector3 way = hit.position - from;
     return glm::dot(way, hit.normal) < 0 && lamp.relative_intensity(way) > 0 &&
-           !scene.surfaces->occluded(lamp.position(), hit.position);
+           !scene.surfaces->occluded(from, hit.position);
 }
 
 }  // namespace
@@ -45,12 +46,13 @@ std::optional<double> depth_of_nearest_lamp(const AssembledScene& scene) {
     std::vector<double> columns(static_cast<std::size_t>(scene.field->constituent_count()));
     std::optional<double> nearest;
     const auto take = [&](const Lamp& lamp, const Point3& to) {
-        scene.field->column(lamp.position(), to, columns);
+        const Point3 from = lamp.origin(to);
+        scene.field->column(from, to, columns);
         double clearest = k_far;
         for (std::size_t band = 0; band < static_cast<std::size_t>(attenuation.band_count); ++band)
             if (lamp.axis_intensity()[band] > 0)
-                clearest = std::min(clearest, attenuation.optical_depth(
-                                                  band, distance(lamp.position(), to), columns));
+                clearest = std::min(clearest,
+                                    attenuation.optical_depth(band, distance(from, to), columns));
         nearest = std::min(nearest.value_or(k_far), clearest);
     };
     const std::vector<SurfaceHit> hits = surfaces_in_view(scene);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/optics/optical_depth.h"
+
 namespace uw {
 
 namespace {
@@ -11,6 +13,8 @@ namespace {
 // Shadow maps of a lamp's emitters share the texels of a point lamp's, but have no fewer than this
 // along an edge: a shadow narrower than a texel may be missed.
 constexpr int k_least_shadow_resolution = 128;
+// How far from the camera a sun's shadows in the water matter: the optical depth.
+constexpr double k_reach_depth = 15;
 
 }  // namespace
 
@@ -21,10 +25,12 @@ void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowO
                               options_.columns_per_voxel == share.columns_per_voxel &&
                               options_.column_budget == share.column_budget &&
                               options_.column_tolerance == share.column_tolerance;
-    for (Maps& maps : maps_) {
+    const auto drop = [&](auto& maps) {
         if (!same_shadows) maps.shadows.reset();
         if (!same_columns) maps.columns.reset();
-    }
+    };
+    std::ranges::for_each(maps_, drop);
+    std::ranges::for_each(sun_maps_, drop);
     surfaces_ = scene.surfaces;
     field_ = scene.field;
     options_ = share;
@@ -57,28 +63,74 @@ DeepShadows LightSplatter::splat(const AssembledScene& scene, const DeepShadowOp
     DeepShadowOptions share = options;
     share.column_budget /= std::max(std::size_t{1}, scene.emitters.size());
     drop_outdated(scene, share);
-    std::vector<Maps> before = std::exchange(maps_, {});
+    const std::vector<Maps> before = std::exchange(maps_, {});
+    const std::vector<SunMaps> suns_before = std::exchange(sun_maps_, {});
     DeepShadows fields;
     for (const Lamp& emitter : scene.emitters) {
-        const DirectionCone beam = emitter.cone();
-        Maps maps{emitter.position(), shadow_resolution(emitter), nullptr, nullptr};
-        // Lamps at the same position share their maps.
-        for (const std::vector<Maps>* known : {&maps_, &before}) {
-            for (const Maps& other : *known) {
-                if (other.lamp != maps.lamp) continue;
-                if (!maps.columns) maps.columns = other.columns;
-                if (!maps.shadows && other.shadows &&
-                    other.shadow_resolution == maps.shadow_resolution &&
-                    other.shadows->beam().includes(beam))
-                    maps.shadows = other.shadows;
-            }
-        }
-        complete(maps, scene, beam);
-        fields.push_back(std::make_shared<DeepShadowMap>(maps.shadows, maps.columns));
-        maps_.push_back(std::move(maps));
+        fields.push_back(emitter.sunlight() ? splat_sun(scene, emitter, suns_before)
+                                            : splat_lamp(scene, emitter, before));
         progress(static_cast<double>(fields.size()) / static_cast<double>(scene.emitters.size()));
     }
     return fields;
+}
+
+std::shared_ptr<const DeepShadow> LightSplatter::splat_lamp(const AssembledScene& scene,
+                                                            const Lamp& emitter,
+                                                            const std::vector<Maps>& before) {
+    const DirectionCone beam = emitter.cone();
+    Maps maps{emitter.position(), shadow_resolution(emitter), nullptr, nullptr};
+    // Lamps at the same position share their maps.
+    for (const std::vector<Maps>* known : {&std::as_const(maps_), &before}) {
+        for (const Maps& other : *known) {
+            if (other.lamp != maps.lamp) continue;
+            if (!maps.columns) maps.columns = other.columns;
+            if (!maps.shadows && other.shadows &&
+                other.shadow_resolution == maps.shadow_resolution &&
+                other.shadows->beam().includes(beam))
+                maps.shadows = other.shadows;
+        }
+    }
+    complete(maps, scene, beam);
+    maps_.push_back(maps);
+    return std::make_shared<DeepShadowMap>(maps.shadows, maps.columns);
+}
+
+std::shared_ptr<const DeepShadow> LightSplatter::splat_sun(const AssembledScene& scene,
+                                                           const Lamp& emitter,
+                                                           const std::vector<SunMaps>& before) {
+    const Sunlight& sun = *emitter.sunlight();
+    const AttenuationTable attenuation(scene.water.medium);
+    const double least =
+        attenuation.uniform.least(static_cast<std::size_t>(attenuation.band_count));
+    const double reach = least > 0 ? std::min(k_far, k_reach_depth / least) : k_far;
+    const Point3 camera = at_origin_plus(scene.camera->world_from_camera().offset());
+    SunMaps maps{sun, shadow_resolution(emitter),
+                 SunShadowMap::squares_around(camera, reach, scene.surfaces->bounds(), sun),
+                 nullptr, nullptr};
+    for (const std::vector<SunMaps>* known : {&std::as_const(sun_maps_), &before}) {
+        for (const SunMaps& other : *known) {
+            if (other.sun != sun) continue;
+            if (!maps.columns) maps.columns = other.columns;
+            if (!maps.shadows && other.squares == maps.squares &&
+                other.shadow_resolution == maps.shadow_resolution)
+                maps.shadows = other.shadows;
+        }
+    }
+    if (!maps.shadows) {
+        maps.shadows = std::make_shared<SunShadowMap>(*scene.surfaces, sun, maps.squares,
+                                                      maps.shadow_resolution);
+        ++counts_.shadow_maps;
+        counts_.rays += maps.shadows->rays_traced();
+    }
+    if (!maps.columns) {
+        maps.columns =
+            std::make_shared<SunColumnMap>(*scene.field, sun, options_.columns_per_voxel,
+                                           options_.column_budget, options_.column_tolerance);
+        ++counts_.column_maps;
+        counts_.rays += maps.columns->rays_traced();
+    }
+    sun_maps_.push_back(maps);
+    return std::make_shared<SunDeepShadow>(maps.shadows, maps.columns);
 }
 
 }  // namespace uw

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "media/light/deep_shadow_map.h"
+#include "media/light/sun_deep_shadow.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -25,7 +26,8 @@ struct SplatCounts {
 /// the concentration field, the map's resolution and its memory budget. A map is reused if these
 /// are the same as at the previous splat: another camera, or another intensity or colour of a lamp,
 /// needs no splat; a lamp that moved needs its own; another frame of a volume needs new columns
-/// only; a lamp that turned or widened its beam needs new shadows only, within that beam.
+/// only; a lamp that turned or widened its beam needs new shadows only, within that beam. A sun's
+/// shadows are finest around the camera, and follow it where surfaces are wide.
 class LightSplatter {
   public:
     /// The light of every emitter of `scene`, the same to the bit as from a new splatter. Surfaces
@@ -46,6 +48,18 @@ class LightSplatter {
         std::shared_ptr<const ColumnMap> columns;
     };
 
+    struct SunMaps {
+        Sunlight sun;
+        int shadow_resolution;
+        std::vector<LightSquare> squares;
+        std::shared_ptr<const SunShadowMap> shadows;
+        std::shared_ptr<const SunColumnMap> columns;
+    };
+
+    std::shared_ptr<const DeepShadow> splat_lamp(const AssembledScene& scene, const Lamp& emitter,
+                                                 const std::vector<Maps>& before);
+    std::shared_ptr<const DeepShadow> splat_sun(const AssembledScene& scene, const Lamp& emitter,
+                                                const std::vector<SunMaps>& before);
     int shadow_resolution(const Lamp& emitter) const;
     void drop_outdated(const AssembledScene& scene, const DeepShadowOptions& share);
     void complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam);
@@ -54,6 +68,7 @@ class LightSplatter {
     std::weak_ptr<const ConcentrationField> field_;
     DeepShadowOptions options_;  // each lamp's
     std::vector<Maps> maps_;
+    std::vector<SunMaps> sun_maps_;
     SplatCounts counts_;
 };
 

@@ -34,8 +34,14 @@ void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
             desc.file.filename().string()));
         return;
     }
+    const std::optional<WaterSurfaceDesc>& surface = desc.water.surface;
+    if (surface && glm::dot(surface->normal, ray->origin - surface->point) > 0)
+        scene.warnings.push_back(fmt::format(
+            "{}: camera: it lies above water.surface, but all that it sees counts as water; move "
+            "it below",
+            desc.file.filename().string()));
     for (const Lamp& emitter : scene.emitters) {
-        if (distance(emitter.position(), ray->origin) < k_lamp_radius)
+        if (emitter.holds(distance(emitter.position(), ray->origin)))
             scene.warnings.push_back(fmt::format(
                 "{}: the lamp is where the camera's rays enter the water; its in-scatter grows "
                 "without bound there and is cut off at {} m from it; move it aside",

@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "core/integrators/deep_shadow.h"
 #include "core/integrators/light_transport.h"
 #include "core/integrators/lit_scene.h"
 #include "core/integrators/slabs.h"
 #include "core/scene/scene_desc.h"
-#include "media/light/deep_shadow_map.h"
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
 
 namespace uw {
 
 /// The light of every emitter of a scene, in their order.
-using DeepShadows = std::vector<std::shared_ptr<const DeepShadowMap>>;
+using DeepShadows = std::vector<std::shared_ptr<const DeepShadow>>;
 
 /// A scene description turned into the concrete parts that integrators work on.
 struct AssembledScene {

@@ -120,7 +120,7 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     setup.lamp_column = [&deep_shadows, field, emitters](std::size_t emitter, const Point3& x,
                                                          std::span<double> column) {
         if (deep_shadows.empty())
-            field->column((*emitters)[emitter].position(), x, column);
+            field->column((*emitters)[emitter].origin(x), x, column);
         else
             deep_shadows[emitter]->columns(std::span<const Point3>(&x, 1), column);
     };

@@ -42,7 +42,8 @@ double Floor::trace() const {
                 const double s = ray ? scene_.surfaces->hit_distance(*ray) : k_far;
                 if (s >= k_far) continue;
                 for (const Lamp& lamp : scene_.lamps)
-                    lit[tile] += scene_.surfaces->occluded(lamp.position(), ray->at(s)) ? 0 : 1;
+                    lit[tile] +=
+                        scene_.surfaces->occluded(lamp.origin(ray->at(s)), ray->at(s)) ? 0 : 1;
             }
     });
     return std::accumulate(lit.begin(), lit.end(), 0.0);

@@ -43,11 +43,12 @@ class Reach {
 
   private:
     bool reaches(const Lamp& lamp, const Point3& x, const Vector3* normal) const {
-        const Vector3 way = x - lamp.position();
+        const Point3 origin = lamp.origin(x);
+        const Vector3 way = x - origin;
         if (normal != nullptr && glm::dot(way, *normal) >= 0) return false;
-        const double share = lamp.relative_intensity(way) / glm::dot(way, way);
-        if (!(share >= k_reach) || scene_.surfaces->occluded(lamp.position(), x)) return false;
-        const std::vector<double> tau = depth(lamp.position(), x);
+        const double share = lamp.relative_intensity(way) / lamp.spread(glm::length(way));
+        if (!(share >= k_reach) || scene_.surfaces->occluded(origin, x)) return false;
+        const std::vector<double> tau = depth(origin, x);
         for (std::size_t band = 0; band < tau.size(); ++band)
             if (lamp.axis_intensity()[band] > 0 && share * std::exp(-tau[band]) >= k_reach)
                 return true;

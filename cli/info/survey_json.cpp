@@ -44,13 +44,17 @@ Json camera(const SceneSurvey& survey) {
 Json lamps(const AssembledScene& scene) {
     Json out = Json::array();
     for (const Lamp& lamp : scene.lamps) {
-        const Point3& at = lamp.position();
         std::vector<double> intensity(
             lamp.axis_intensity().begin(),
             lamp.axis_intensity().begin() + scene.water.medium.band_count());
-        out.push_back({{"name", lamp.name()},
-                       {"position", point_json(at)},
-                       {"axis_intensity", list_json(intensity)}});
+        if (const Sunlight* const sun = lamp.sunlight())
+            out.push_back({{"name", lamp.name()},
+                           {"direction", vector_json(sun->direction)},
+                           {"irradiance", list_json(intensity)}});
+        else
+            out.push_back({{"name", lamp.name()},
+                           {"position", point_json(lamp.position())},
+                           {"axis_intensity", list_json(intensity)}});
     }
     return out;
 }

@@ -69,10 +69,16 @@ std::string describe_camera(const SceneSurvey& survey) {
 std::string describe_lamps(const AssembledScene& scene) {
     std::string text = scene.lamps.empty() ? "no lamps\n" : "lamps\n";
     for (const Lamp& lamp : scene.lamps) {
-        const Point3& at = lamp.position();
         std::vector<double> intensity(
             lamp.axis_intensity().begin(),
             lamp.axis_intensity().begin() + scene.water.medium.band_count());
+        if (const Sunlight* const sun = lamp.sunlight()) {
+            const Vector3& way = sun->direction;
+            text += fmt::format("  {}: sun along ({:.3g}, {:.3g}, {:.3g}), {} W/m2\n", lamp.name(),
+                                way.x, way.y, way.z, per_band(intensity));
+            continue;
+        }
+        const Point3& at = lamp.position();
         text += fmt::format("  {}: {} at ({:.4g}, {:.4g}, {:.4g}), {} W/sr\n", lamp.name(),
                             lamp.profile_name(), at.x, at.y, at.z, per_band(intensity));
     }

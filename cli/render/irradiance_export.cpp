@@ -42,7 +42,8 @@ Lattice lattice_over(const AssembledScene& scene) {
     double voxel = scene.field->finest_voxel();
     if (bounds.empty()) {
         bounds = scene.surfaces->bounds();
-        for (const Lamp& lamp : scene.emitters) bounds.extend(lamp.position());
+        for (const Lamp& lamp : scene.emitters)
+            if (!lamp.sunlight()) bounds.extend(lamp.position());
         voxel = 0;
     }
     if (bounds.empty() || bounds.diagonal() == 0)
@@ -67,7 +68,7 @@ Lattice lattice_over(const AssembledScene& scene) {
 using Irradiance = std::vector<std::vector<float>>;
 
 // Adds that of one emitter.
-void add_emitter(const AssembledScene& scene, std::size_t emitter_index, const DeepShadowMap& light,
+void add_emitter(const AssembledScene& scene, std::size_t emitter_index, const DeepShadow& light,
                  const Lattice& lattice, const ProgressCallback& progress, Irradiance& result) {
     const Lamp& lamp = scene.emitters[emitter_index];
     const AttenuationTable attenuation(scene.water.medium);
@@ -81,15 +82,16 @@ void add_emitter(const AssembledScene& scene, std::size_t emitter_index, const D
         for (int j = 0; j < lattice.size[1]; ++j) {
             for (int i = 0; i < lattice.size[0]; ++i) {
                 const Point3 x = lattice.at(i, j, k);
-                const Vector3 v = x - lamp.position();
+                const Point3 origin = lamp.origin(x);
+                const Vector3 v = x - origin;
                 const double radius = glm::length(v);
-                if (radius == 0 || scene.surfaces->occluded(lamp.position(), x)) continue;
+                if (radius == 0 || scene.surfaces->occluded(origin, x)) continue;
                 // A voxel that contains the lamp has no single value: that at its edge is used
                 // instead.
                 const double r = std::max(radius, 0.5 * lattice.voxel);
                 light.columns(std::span<const Point3>(&x, 1), column);
                 const Spectrum t = attenuation.transmittance(radius, column);
-                const double relative = lamp.relative_intensity(v) / (r * r);
+                const double relative = lamp.relative_intensity(v) / lamp.spread(r);
                 for (std::size_t b = 0; b < bands; ++b)
                     result[b][lattice.index(i, j, k)] +=
                         static_cast<float>(lamp.axis_intensity()[b] * relative * t[b]);
@@ -108,7 +110,7 @@ void check_irradiance_vdb(const AssembledScene& scene) {
 }
 
 void write_irradiance_vdb(const std::filesystem::path& file, const AssembledScene& scene,
-                          const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows,
+                          const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
                           const ProgressCallback& progress) {
     const Lattice lattice = lattice_over(scene);
     std::vector<Irradiance> values(scene.lamps.size());

@@ -19,7 +19,7 @@ void check_irradiance_vdb(const AssembledScene& scene);
 /// values. World space, y up as in the scene's world. Throws IoError; Interrupted if `progress`,
 /// called from any thread, returns false: then nothing has been written.
 void write_irradiance_vdb(const std::filesystem::path& file, const AssembledScene& scene,
-                          const std::vector<std::shared_ptr<const DeepShadowMap>>& deep_shadows,
+                          const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
                           const ProgressCallback& progress);
 
 }  // namespace uw

@@ -130,13 +130,13 @@ class DirectSum {
             seen.to_camera[i] = hit.distance;
             for (const Lamp& emitter : emitters)
                 seen.to_lamps[i] +=
-                    distance(emitter.position(), hit.position) * emitter.share() / lamps;
+                    distance(emitter.origin(hit.position), hit.position) * emitter.share() / lamps;
             const SurfaceReflection reflection(*trial_.scene().surfaces, sample,
                                                static_cast<int>(bands_));
             Spectrum brdf;
             for (std::size_t j = 0; j < emitters.size(); ++j) {
                 if (!light.visible(0, j)) continue;
-                reflection.brdf(emitters[j].position(), brdf);
+                reflection.brdf(emitters[j].origin(hit.position), brdf);
                 for (std::size_t b = 0; b < bands_; ++b) {
                     seen.irradiance[i][b] += light.irradiance(0, j, b);
                     seen.direct[i][b] += light.irradiance(0, j, b) * brdf[b];

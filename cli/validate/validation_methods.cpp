@@ -63,8 +63,9 @@ void add_scaled(OpticalCoefficients& to, const OpticalCoefficients& from, double
 // Bounds of everything that light passes between lamps and camera before it is extinguished.
 Bounds reach_of(const TrialScene& trial) {
     Bounds bounds = trial.scene().surfaces->bounds();
-    for (const Lamp& lamp : trial.scene().emitters) bounds.extend(lamp.position());
-    bounds.extend(at_origin_plus(trial.scene().camera->world_from_camera().offset()));
+    const Point3 camera = at_origin_plus(trial.scene().camera->world_from_camera().offset());
+    for (const Lamp& lamp : trial.scene().emitters) bounds.extend(lamp.origin(camera));
+    bounds.extend(camera);
     const AttenuationTable c(trial.scene().water.medium);
     const double least = c.uniform.least(static_cast<std::size_t>(c.band_count));
     const double margin = least > 0 ? std::min(k_reach_depths / least, 1e3) : 1e3;
@@ -78,8 +79,9 @@ void append_hard_beam_edges(const Ray& ray, const Lamp& lamp, std::vector<double
     std::vector<double> breaks;
     lamp.append_profile_breaks(ray, breaks);
     for (const double s : breaks) {
-        const double before = lamp.relative_intensity(ray.at(s * (1 - k_step)) - lamp.position());
-        const double after = lamp.relative_intensity(ray.at(s * (1 + k_step)) - lamp.position());
+        const Point3 x = ray.at(s * (1 - k_step)), y = ray.at(s * (1 + k_step));
+        const double before = lamp.relative_intensity(x - lamp.origin(x));
+        const double after = lamp.relative_intensity(y - lamp.origin(y));
         if (std::abs(after - before) > 0.01) edges.push_back(s);
     }
 }

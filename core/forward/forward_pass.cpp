@@ -162,7 +162,7 @@ void ForwardPass::add_surface(const RenderedPixel& pixel, std::size_t sample,
         if (!light.visible(at, j)) continue;
         const std::size_t g = group_of_lamp_[light.emitters()[j].index()];
         add_irradiance(g, j, irradiance);
-        reflection.brdf(light.emitters()[j].position(), brdf);
+        reflection.brdf(light.emitters()[j].origin(surface.hit.position), brdf);
         for (std::size_t b = 0; b < bands_; ++b)
             sums.direct[g][b] += irradiance[b] * brdf[b] * seen * to_camera[b];
     }

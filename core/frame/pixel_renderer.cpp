@@ -255,7 +255,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
         if (!light.visible(sample, j)) continue;
         const Lamp& emitter = light.emitters()[j];
         result.lit += weight * emitter.share() / static_cast<double>(lamp_count());
-        reflection.brdf(emitter.position(), brdf);
+        reflection.brdf(emitter.origin(surface.hit.position), brdf);
         // One loop instead of a spectrum per product: this runs for every sample and every emitter.
         for (std::size_t b = 0; b < bands; ++b) {
             const double irradiance = weight * light.irradiance(sample, j, b);

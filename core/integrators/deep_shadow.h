@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,9 @@ class DeepShadow {
 
     /// Column concentrations from the lamp to each point, [i * constituent_count + k], [unit m].
     virtual void columns(std::span<const Point3> x, std::span<double> column) const = 0;
+
+    /// Of memory.
+    virtual std::size_t bytes() const = 0;
 };
 
 }  // namespace uw

@@ -116,13 +116,14 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
     for (std::size_t i = 0; i < w.samples.size(); ++i) {
         const Sample& sample = w.samples[i];
         const Point3 x = ray.at(sample.s);
-        const Vector3 from_lamp = x - lamp.position();
+        const Point3 origin = lamp.origin(x);
+        const Vector3 from_lamp = x - origin;
         const double radius = glm::length(from_lamp);
-        const double relative = radius < k_lamp_radius ? 0.0 : lamp.relative_intensity(from_lamp);
-        if (relative <= 0 || scene_.surfaces->occluded(lamp.position(), x)) continue;
+        const double relative = lamp.holds(radius) ? 0.0 : lamp.relative_intensity(from_lamp);
+        if (relative <= 0 || scene_.surfaces->occluded(origin, x)) continue;
         w.lit.push_back(i);
         w.path.push_back(radius + sample.s);
-        w.weight.push_back(relative / (radius * radius) * sample.length);
+        w.weight.push_back(relative / lamp.spread(radius) * sample.length);
         // Angle between the directions of travel, lamp to X and X to camera; atan2 is accurate near
         // pi.
         w.psi.push_back(std::atan2(glm::length(glm::cross(ray.direction, from_lamp)),

@@ -11,6 +11,7 @@ namespace {
 // Initial panels of the quadrature: narrower than a phase function's forward peak where it matters,
 // so that no feature is missed between the first nodes.
 constexpr int k_first_panels = 48;
+constexpr double k_least_rate = 1e-3;  // of -e^(-c s) [1/m]
 constexpr int k_deepest_halving = 18;  // 2^-18 of a first panel at a shadow's edge
 
 // Simpson's rule; `sixth` of the panel's width.
@@ -25,11 +26,19 @@ void check_uniform(const LitScene& scene) {
 
 }  // namespace
 
-/// The integral of one lamp's light along one ray over the angle psi.
+/// The integral of one lamp's light along one ray over the angle psi; of a sun's, whose angle is
+/// the same all along it, over -e^(-c s), with the least c, in which its attenuation is nearly
+/// linear.
 class QuadratureIntegrator::RayIntegral {
   public:
     RayIntegral(const QuadratureIntegrator& owner, const Ray& ray, const Lamp& lamp)
         : owner_(owner), ray_(ray), lamp_(lamp) {
+        if (lamp.sunlight()) {
+            psi_ = std::acos(-glm::dot(lamp.sunlight()->direction, ray.direction));
+            const auto bands = static_cast<std::size_t>(owner.attenuation_.band_count);
+            rate_ = std::max(owner.attenuation_.uniform.least(bands), k_least_rate);
+            return;
+        }
         const Vector3 to_lamp = lamp.position() - ray.origin;
         foot_ = glm::dot(to_lamp, ray.direction);
         // A ray straight through the lamp has no angle to integrate over, but one that narrowly
@@ -39,7 +48,7 @@ class QuadratureIntegrator::RayIntegral {
 
     /// In-scatter from `begin` to `end` along the ray.
     Spectrum operator()(double begin, double end) {
-        const double from = angle(begin), to = angle(end);
+        const double from = variable(begin), to = variable(end);
         std::array<Spectrum, 2 * k_first_panels + 1> f;
         for (std::size_t i = 0; i < f.size(); ++i)
             f[i] = integrand(from + (to - from) * static_cast<double>(i) / (2 * k_first_panels));
@@ -59,23 +68,35 @@ class QuadratureIntegrator::RayIntegral {
     }
 
   private:
-    double angle(double s) const { return std::atan2(distance_, foot_ - s); }
+    // The variable of the integral.
+    double variable(double s) const {
+        return lamp_.sunlight() ? -std::exp(-rate_ * s) : std::atan2(distance_, foot_ - s);
+    }
 
-    Spectrum integrand(double psi) const {
-        const double tangent = std::tan(0.5 * psi);
-        const double s = foot_ - distance_ / std::tan(psi);
-        const Point3 x = ray_.at(s);
-        const double relative = lamp_.relative_intensity(x - lamp_.position());
+    Spectrum integrand(double variable) const {
+        if (!lamp_.sunlight())
+            return scattered(variable, foot_ - distance_ / std::tan(variable),
+                             foot_ + distance_ * std::tan(0.5 * variable), 1 / distance_);
+        if (!(variable < 0)) return {};
+        const double s = -std::log(-variable) / rate_;
+        return scattered(psi_, s, s + lamp_.sunlight()->length_to(ray_.at(s)),
+                         -1 / (rate_ * variable));
+    }
+
+    // The light scattered at `s` by `psi`, attenuated over the `path` from the lamp to the camera.
+    Spectrum scattered(double psi, double s, double path, double weight) const {
+        const Point3 x = ray_.at(s), origin = lamp_.origin(x);
+        const double relative = lamp_.relative_intensity(x - origin);
         Spectrum value{};
-        if (relative <= 0 || owner_.scene_.surfaces->occluded(lamp_.position(), x)) return value;
+        if (relative <= 0 || owner_.scene_.surfaces->occluded(origin, x)) return value;
         const Medium& medium = *owner_.scene_.medium;
         for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
             const double p = medium.phase_functions[m]->evaluate(psi);
             value += medium.uniform.scattering[m] * p;
         }
         value *= per_band(static_cast<std::size_t>(medium.band_count()), [&](std::size_t b) {
-            return lamp_.axis_intensity()[b] * relative / distance_ *
-                   std::exp(-owner_.attenuation_.uniform[b] * (foot_ + distance_ * tangent));
+            return lamp_.axis_intensity()[b] * relative * weight *
+                   std::exp(-owner_.attenuation_.uniform[b] * path);
         });
         return value;
     }
@@ -108,7 +129,8 @@ class QuadratureIntegrator::RayIntegral {
     const Lamp& lamp_;
     double foot_ = 0;
     double distance_ = 0;
-    Spectrum scale_{};  // a first estimate of the integral, per band
+    double psi_ = 0, rate_ = 0;  // of a sun
+    Spectrum scale_{};           // a first estimate of the integral, per band
 };
 
 QuadratureIntegrator::QuadratureIntegrator(const LitScene& scene, double tolerance)
@@ -150,12 +172,13 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
         set_transmittance(light.to_camera(i), distance(ray.origin, hit.position));
         for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
             const Lamp& lamp = (*scene_.emitters)[j];
-            const Vector3 v = lamp.position() - hit.position;
+            const Point3 origin = lamp.origin(hit.position);
+            const Vector3 v = origin - hit.position;
             const double r2 = glm::dot(v, v);
-            const double geometry_term =
-                lamp.relative_intensity(-v) * glm::dot(hit.normal, v) / (r2 * std::sqrt(r2));
+            const double geometry_term = lamp.relative_intensity(-v) * glm::dot(hit.normal, v) /
+                                         (lamp.spread(std::sqrt(r2)) * std::sqrt(r2));
             if (geometry_term <= 0 || glm::dot(hit.geometric_normal, v) <= 0 ||
-                scene_.surfaces->occluded(lamp.position(), hit.position))
+                scene_.surfaces->occluded(origin, hit.position))
                 continue;
             light.geometry_term(i, j) = geometry_term;
             set_transmittance(light.from_emitter(i, j), std::sqrt(r2));

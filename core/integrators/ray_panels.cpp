@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/integrators/integrator.h"
+
 namespace uw {
 
 LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
@@ -11,7 +13,19 @@ LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
     distance = glm::length(to_lamp - foot * ray.direction);
 }
 
+LampPassage::LampPassage(const Ray& ray, const Lamp& lamp) : LampPassage(ray, lamp.position()) {
+    const Sunlight* const sun = lamp.sunlight();
+    if (!sun) return;
+    parallel = true;
+    begin_length = sun->length_to(ray.origin);
+    slope = sun->slope(ray.direction);
+    const double sine = glm::length(glm::cross(sun->direction, ray.direction));
+    const double cosine = -glm::dot(sun->direction, ray.direction);  // of psi
+    tangent = cosine > 0 ? sine / (1 + cosine) : (1 - cosine) / sine;
+}
+
 void append_octaves(const LampPassage& passage, const Interval& interval, std::vector<double>& s) {
+    if (passage.parallel) return;
     const auto append = [&](double at) {
         if (at > interval.begin && at < interval.end) s.push_back(at);
     };
@@ -22,6 +36,21 @@ void append_octaves(const LampPassage& passage, const Interval& interval, std::v
         append(passage.foot - u);
         append(passage.foot + u);
     }
+}
+
+Interval inside(const Ray& ray, const Bounds& bounds) {
+    Interval stretch{0, k_far};
+    if (bounds.empty()) return {1, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double d = ray.direction[axis];
+        const double to_min = bounds.min[axis] - ray.origin[axis];
+        const double to_max = bounds.max[axis] - ray.origin[axis];
+        if (d == 0 && (to_min > 0 || to_max < 0)) return {1, 0};
+        if (d == 0) continue;
+        stretch.begin = std::max(stretch.begin, std::min(to_min / d, to_max / d));
+        stretch.end = std::min(stretch.end, std::max(to_min / d, to_max / d));
+    }
+    return stretch;
 }
 
 }  // namespace uw

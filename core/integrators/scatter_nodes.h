@@ -13,8 +13,8 @@ namespace uw {
 /// Quadrature nodes of one lamp along one ray, as structure of arrays; reused between rays.
 struct ScatterNodes {
     std::vector<double> s;              // along the ray [m], ascending
-    std::vector<double> weight;         // ds * relative intensity / R^2 [1/m]
-    std::vector<double> radius;         // distance from the lamp R [m]
+    std::vector<double> weight;         // ds * relative intensity / Lamp::spread [1/m; a sun: m]
+    std::vector<double> radius;         // distance from the light's origin R [m]
     std::vector<double> half_tangent;   // tan(psi / 2) of the scattering angle
     std::vector<std::size_t> distance;  // index of the first requested distance beyond the node
     std::vector<Point3> position;       // world

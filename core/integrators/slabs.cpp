@@ -66,7 +66,7 @@ double reach(const RaySource& rays, const LitScene& scene, double near) {
     const Point3 camera = rays.world_from_camera() * Point3{};
     double farthest_lamp = 0;
     for (const Lamp& lamp : *scene.emitters)
-        farthest_lamp = std::max(farthest_lamp, distance(lamp.position(), camera));
+        farthest_lamp = std::max(farthest_lamp, distance(lamp.origin(camera), camera));
     return std::min(k_far, near + farthest_lamp + k_reach_optical_depth / least_c);
 }
 

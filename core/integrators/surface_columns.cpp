@@ -77,11 +77,13 @@ void SurfaceColumns::take(int path) {
     (*mixing_.deep_shadows)[static_cast<std::size_t>(path)]->columns(positions_, field_columns_);
 }
 
+Point3 SurfaceColumns::origin_of(const Point3& x) const {
+    return (*scene_->emitters)[static_cast<std::size_t>(path_)].origin(x);
+}
+
 void SurfaceColumns::integrate(std::size_t sample, std::span<double> column) const {
     const auto& [ray, hit, x, y] = *samples_[sample];
-    const Point3& end = path_ == k_camera
-                            ? ray.origin
-                            : (*scene_->emitters)[static_cast<std::size_t>(path_)].position();
+    const Point3 end = path_ == k_camera ? ray.origin : origin_of(hit.position);
     scene_->field->column(end, hit.position, column);
 }
 
@@ -148,11 +150,10 @@ bool SurfaceColumns::confirmed(std::size_t cell) {
     if (asked.middle == k_none || !mix(asked.middle, cell, mixture_)) return false;
     exact_.resize(constituents_);
     integrate(asked.middle, exact_);
-    const double length =
-        path_ == k_camera
-            ? samples_[asked.middle]->hit.distance
-            : distance((*scene_->emitters)[static_cast<std::size_t>(path_)].position(),
-                       samples_[asked.middle]->hit.position);
+    const double length = path_ == k_camera
+                              ? samples_[asked.middle]->hit.distance
+                              : distance(origin_of(samples_[asked.middle]->hit.position),
+                                         samples_[asked.middle]->hit.position);
     for (std::size_t band = 0; band < static_cast<std::size_t>(attenuation_->band_count); ++band) {
         const double depth = attenuation_->optical_depth(band, length, exact_);
         const double difference = attenuation_->optical_depth(band, length, mixture_) - depth;

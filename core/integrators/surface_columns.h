@@ -57,6 +57,8 @@ class SurfaceColumns {
 
     void place_nodes();
     void take(int path);
+    // Where the light of the path's emitter that reaches `x` comes from.
+    Point3 origin_of(const Point3& x) const;
     void integrate(std::size_t sample, std::span<double> column) const;
     const double* node_column(std::size_t node);
     std::size_t cell_of(const SurfaceSample& sample) const;

@@ -23,7 +23,7 @@ struct Facing {
         geometry_terms.clear();
         for (std::size_t i = 0; i < all.size(); ++i) {
             const SurfaceHit& hit = all[i]->hit;
-            const Vector3 to_lamp = lamp.position() - hit.position;
+            const Vector3 to_lamp = lamp.origin(hit.position) - hit.position;
             // The geometric normal decides what a lamp can illuminate; the shading normal only
             // affects shading.
             const double towards = glm::dot(hit.normal, to_lamp);
@@ -34,9 +34,18 @@ struct Facing {
             samples.push_back(i);
             positions.push_back(hit.position);
             radii.push_back(radius);
-            geometry_terms.push_back(relative * towards / (radius * radius * radius));
+            geometry_terms.push_back(relative * towards / (lamp.spread(radius) * radius));
         }
         hidden.resize(samples.size());
+    }
+
+    void trace_shadows(const Lamp& lamp, const Surfaces& surfaces) {
+        if (!lamp.sunlight()) {
+            surfaces.occluded_many(lamp.position(), positions, hidden);
+            return;
+        }
+        for (std::size_t n = 0; n < positions.size(); ++n)
+            hidden[n] = surfaces.occluded(lamp.origin(positions[n]), positions[n]) ? 1 : 0;
     }
 };
 
@@ -71,7 +80,7 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
     for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
         const Lamp& lamp = (*scene_.emitters)[j];
         facing.find(lamp, samples);
-        scene_.surfaces->occluded_many(lamp.position(), facing.positions, facing.hidden);
+        facing.trace_shadows(lamp, *scene_.surfaces);
         columns.take_emitter(j);
         for (std::size_t n = 0; n < facing.samples.size(); ++n) {
             if (facing.hidden[n] != 0) continue;

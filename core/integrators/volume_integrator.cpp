@@ -43,8 +43,10 @@ std::vector<double> cotangents_of_breakpoints(const Medium& medium) {
     return all;
 }
 
-// Number of Gauss nodes for a panel, from the relative change of R across it.
-int node_count(double length, double nearest_radius) {
+// Number of Gauss nodes for a panel, from the relative change of R across it; only attenuation
+// changes a sun's light.
+int node_count(double length, double nearest_radius, bool parallel) {
+    if (parallel) return 3;
     if (length < 0.12 * nearest_radius) return 2;
     return length < 0.35 * nearest_radius ? 3 : 4;
 }
@@ -63,15 +65,16 @@ void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, con
     for (int piece = 0; piece < panel.pieces; ++piece) {
         const double begin = panel.stretch.begin + piece * length;
         const double nearest = passage.radius(glm::clamp(passage.foot, begin, begin + length));
-        for (const QuadratureNode& node : gauss_legendre(node_count(length, nearest))) {
+        for (const QuadratureNode& node :
+             gauss_legendre(node_count(length, nearest, passage.parallel))) {
             const double s = begin + node.position * length;
             const double radius = passage.radius(s);
             const Point3 x = ray.at(s);
             const double relative =
-                panel.evenly ? 1.0 : lamp.relative_intensity(x - lamp.position());
+                panel.evenly ? 1.0 : lamp.relative_intensity(x - lamp.origin(x));
             nodes.s.push_back(s);
             nodes.radius.push_back(radius);
-            nodes.weight.push_back(node.weight * length * relative / (radius * radius));
+            nodes.weight.push_back(node.weight * length * relative / lamp.spread(radius));
             nodes.half_tangent.push_back(passage.half_tangent(s, radius));
             nodes.distance.push_back(panel.distance);
             nodes.position.push_back(x);
@@ -161,11 +164,11 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
     result.reset(distances.size(), scene_.lamp_count());
     scene_.field->profile_within(tolerance_, ray, distances.back(), w.profile);
     for (std::size_t j = 0; j < emitters.size(); ++j) {
-        const LampPassage passage(ray, emitters[j].position());
+        const LampPassage passage(ray, emitters[j]);
         double reach = distances.back();
         if (smallest_attenuation_ > 0)
-            reach = std::min(
-                reach, passage.radius(0) + k_negligible_optical_depth / smallest_attenuation_);
+            reach =
+                std::min(reach, passage.reach(k_negligible_optical_depth / smallest_attenuation_));
         deep_shadows_[j]->lit_intervals(ray, emitters[j].beam(ray, {begin, reach}), w.lit);
         w.nodes.clear();
         for (const Interval& interval : w.lit) {
@@ -198,7 +201,7 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     w.marks.clear();
     (*scene_.emitters)[lamp].append_profile_breaks(ray, w.marks);
     for (const double s : w.marks) w.breaks.add_edge(s);
-    if (passage.distance < k_lamp_radius) {
+    if (!passage.parallel && passage.distance < k_lamp_radius) {
         const double half =
             std::sqrt(k_lamp_radius * k_lamp_radius - passage.distance * passage.distance);
         w.breaks.add_edge(passage.foot - half);
@@ -207,7 +210,8 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     w.marks.clear();
     append_octaves(passage, interval, w.marks);
     for (const double s : w.marks) w.breaks.add_mark(s, k_least_relative_panel * passage.radius(s));
-    for (const double cotangent : phase_cotangents_)
+    for (const double cotangent :
+         passage.parallel ? std::span<const double>{} : std::span(phase_cotangents_))
         w.breaks.add_edge(passage.foot - passage.distance * cotangent);
     if (w.profile.constituent_count > 0) {
         add_knots(w.profile, knots_per_panel_, w.breaks);
@@ -229,10 +233,11 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         const Interval panel{breaks[i], breaks[i + 1]};
         const double middle = 0.5 * (panel.begin + panel.end);
         if (panel.length() <= 1e-12 * (1 + middle)) continue;
-        if (passage.radius(middle) < k_lamp_radius) continue;
+        if (source.holds(passage.radius(middle))) continue;
         // A panel lies between the edges of the lamp's cone: dark at the midpoint means dark
         // throughout.
-        const double relative = source.relative_intensity(ray.at(middle) - source.position());
+        const Point3 x = ray.at(middle);
+        const double relative = source.relative_intensity(x - source.origin(x));
         if (relative == 0) continue;
         while (next + 1 < distances.size() && distances[next] < middle) ++next;
         while (knot + 2 < profile.s.size() && profile.s[knot + 1] < middle) ++knot;
@@ -240,8 +245,8 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         for (std::size_t k = 0; k < largest_per_unit_.size(); ++k)
             attenuation +=
                 largest_per_unit_[k] * profile.concentration[knot * largest_per_unit_.size() + k];
-        // Light path s + R: it changes by at most twice the panel's length.
-        const double depth = 2 * attenuation * panel.length();
+        // Of the light path s + R.
+        const double depth = passage.rate() * attenuation * panel.length();
         const int pieces =
             static_cast<int>(std::min(64.0, std::ceil(depth / k_panel_optical_depth)));
         add_nodes(ray, source, passage,

@@ -15,6 +15,17 @@ Lamp::Lamp(std::string name, const Point3& position, LampProfile profile,
       profile_(std::move(profile)),
       axis_intensity_(axis_intensity) {}
 
+Lamp::Lamp(std::string name, const Sunlight& sunlight, const Spectrum& irradiance)
+    : Lamp(std::move(name), sunlight.surface.point, IsotropicProfile{}, irradiance) {
+    sunlight_ = sunlight;
+}
+
+Lamp Lamp::emitter(std::size_t index, const Vector3& direction, double share) const {
+    Lamp beam = emitter(index, position_, share);
+    beam.sunlight_->direction = direction;
+    return beam;
+}
+
 Lamp Lamp::emitter(std::size_t index, const Point3& position, double share) const {
     Lamp point = brightened(share);
     point.index_ = index;
@@ -30,10 +41,12 @@ Lamp Lamp::brightened(double factor) const {
 }
 
 std::string_view Lamp::profile_name() const {
+    if (sunlight_) return "sun";
     return std::visit([](const auto& profile) { return profile.k_name; }, profile_);
 }
 
 double Lamp::relative_intensity(const Vector3& v) const {
+    if (sunlight_) return glm::dot(v, sunlight_->direction) > 0 ? 1 : 0;
     return std::visit([&](const auto& profile) { return profile.relative_intensity(v); }, profile_);
 }
 
@@ -46,6 +59,7 @@ DirectionCone Lamp::cone() const {
 }
 
 Interval Lamp::beam(const Ray& ray, const Interval& stretch) const {
+    if (sunlight_) return below_surface(ray, stretch);
     const DirectionCone lit_cone = cone();
     if (!(stretch.length() > 0) || lit_cone.has_all()) return stretch;
     thread_local std::vector<double> cuts;
@@ -66,7 +80,23 @@ Interval Lamp::beam(const Ray& ray, const Interval& stretch) const {
     return lit;
 }
 
+Interval Lamp::below_surface(const Ray& ray, const Interval& stretch) const {
+    const double length = sunlight_->length_to(ray.origin);
+    const double slope = sunlight_->slope(ray.direction);
+    const Interval dark{stretch.begin, stretch.begin};
+    if (slope == 0) return length > 0 ? stretch : dark;
+    const double crossing = -length / slope;
+    const Interval below = slope > 0 ? Interval{std::max(stretch.begin, crossing), stretch.end}
+                                     : Interval{stretch.begin, std::min(stretch.end, crossing)};
+    return below.length() > 0 ? below : dark;
+}
+
 void Lamp::append_profile_breaks(const Ray& ray, std::vector<double>& s) const {
+    if (sunlight_) {
+        const double slope = sunlight_->slope(ray.direction);
+        if (slope != 0) s.push_back(-sunlight_->length_to(ray.origin) / slope);
+        return;
+    }
     std::visit([&](const auto& profile) { profile.append_breaks(ray, position_, s); }, profile_);
 }
 

@@ -42,10 +42,32 @@ std::vector<PlanePoint> fill(const LampExtentDesc& extent, int count) {
     return points;
 }
 
+// Seen by a plane perpendicular to it, a disc of uniform radiance is one of the directions' sines,
+// with the irradiance spread evenly over it; perpendicular to a direction itself it is greater.
+void append_sun(const SunDesc& sun, const Lamp& lamp, std::size_t index, int thinning,
+                std::vector<Lamp>& emitters) {
+    const Vector3 middle = lamp.sunlight()->direction;
+    const LampPlacement placement{{}, middle};
+    const Vector3 x = placement.across(), y = glm::cross(middle, x);
+    LampExtentDesc disk;
+    disk.shape = LampExtentDesc::Shape::disk;
+    disk.radius = std::sin(glm::radians(0.5 * sun.angle));
+    const int count = std::max(1, sun.samples / thinning);
+    for (const PlanePoint& point : fill(disk, count)) {
+        const double cosine = std::sqrt(1 - point.x * point.x - point.y * point.y);
+        const Vector3 direction = cosine * middle + point.x * x + point.y * y;
+        emitters.push_back(lamp.emitter(index, direction, 1.0 / count).brightened(1 / cosine));
+    }
+}
+
 }  // namespace
 
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                      const Affine& world_from_camera, std::vector<Lamp>& emitters) {
+    if (desc.sun && desc.sun->angle > 0) {
+        append_sun(*desc.sun, lamp, index, thinning, emitters);
+        return;
+    }
     if (!desc.extent) {
         emitters.push_back(lamp.emitter(index, lamp.position(), 1));
         return;

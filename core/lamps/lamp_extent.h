@@ -10,10 +10,10 @@
 namespace uw {
 
 /// Appends the points that `lamp`, made of `desc`, consists of: itself, or, if it has an extent,
-/// points that fill that evenly and share its light equally. They are the same ones in every
-/// render: shadows become as many steps. `index`: of the lamp in the scene. `thinning`: of the
-/// extent's samples only every so many-th is made, at least one. `world_from_camera` places lamps
-/// fixed to the camera.
+/// points that fill that evenly and share its light equally, or of a sun with an angle directions
+/// that fill its disc evenly. They are the same ones in every render: shadows become as many steps.
+/// `index`: of the lamp in the scene. `thinning`: of the extent's samples only every so many-th is
+/// made, at least one. `world_from_camera` places lamps fixed to the camera.
 ///
 /// The points are a golden-ratio lattice, on a disk with area in the place of its first coordinate
 /// (Vogel's spiral), moved so that their mean is the centre. With N of them, what varies smoothly

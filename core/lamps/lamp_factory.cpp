@@ -61,7 +61,7 @@ void resolve_output(LampDesc& desc, const LampProfile& profile, std::span<const 
     else if (desc.power)
         desc.power = per_band(desc.power->front());
     else if (desc.lumens)
-        desc.power = per_band(watts(*desc.lumens));
+        (desc.sun ? desc.intensity : desc.power) = per_band(watts(*desc.lumens));
     else
         desc.intensity = per_band(watts(peak_candelas(profile)));
     const PerBand& values = desc.power ? *desc.power : *desc.intensity;
@@ -91,6 +91,7 @@ Lamp make_lamp(const LampDesc& given, const Affine& world_from_camera,
         make_lamp_profile(desc.profile, {world_from_frame, desc.direction}, warnings);
     resolve_output(desc, profile, bands_nm, warnings);
     const Spectrum intensity = axis_intensity(desc, profile, bands_nm.size());
+    if (desc.sun) return {desc.name, Sunlight{desc.direction, desc.sun->surface}, intensity};
     return {desc.name, world_from_frame * desc.position, std::move(profile), intensity};
 }
 

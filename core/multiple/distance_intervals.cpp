@@ -45,7 +45,7 @@ double fine_reach_of_open_water(const RaySource& rays, const LitScene& scene, do
     const auto ray = rays.refracted_ray(0.5 * rays.width(), 0.5 * rays.height());
     if (!ray) return reach;
     for (const Lamp& lamp : *scene.emitters)
-        reach = std::max(reach, 2 * distance(ray->origin, lamp.position()));
+        reach = std::max(reach, 2 * distance(ray->origin, lamp.origin(ray->origin)));
     return reach;
 }
 

@@ -22,7 +22,8 @@ class LampGathering {
 
     /// The water's: int I b p e^-tau / R^2 ds for a lamp chosen by its share, at a point chosen by
     /// its scattering angle psi, in which 1/R^2 and the forward peak are flat: ds / R^2 = dpsi / D
-    /// with D the lamp's distance from the line. Uses three random numbers. `weights`: a factor for
+    /// with D the lamp's distance from the line; a sun's at one chosen by its attenuation
+    /// (ParallelStretch). Uses three random numbers. `weights`: a factor for
     /// each lamp, or none; lamps whose factor is 0 are not chosen.
     void gather_from_water(const WaterSegment& segment, std::span<const double> weights,
                            const PathState& state, PathRandom& random, PathTerms& terms) const;
@@ -33,11 +34,8 @@ class LampGathering {
                                const PathState& state, PathRandom& random, PathTerms& terms) const;
 
   private:
-    struct Share;
     struct Workspace;
 
-    void find_water_shares(const WaterSegment& segment, std::span<const double> weights,
-                           const PathState& state, Workspace& w) const;
     void column_to_lamp(std::size_t lamp, const Point3& x, std::span<double> column) const;
 
     const WaterOptics& optics_;

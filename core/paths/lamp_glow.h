@@ -15,7 +15,7 @@ class LampGlow {
         : optics_(optics), tables_(tables) {}
 
     /// I e^(-c R) / R of a lamp, with c of the uniform water, summed over the bands with these
-    /// weights [W sr^-1 m^-1].
+    /// weights [W sr^-1 m^-1]; of a sun, E e^(-c R) over the least c.
     double of_lamp(std::size_t lamp, const Point3& x, const Spectrum& weights) const;
     /// Along the ray with this `passage` of a lamp, at the point `x` at `s`: I / R times
     /// ScatteringTables::spread_glow, relative to the lamp's intensity, and R. With e^(-c R) and b,
@@ -27,6 +27,8 @@ class LampGlow {
     Spread spread(std::size_t lamp, const LampPassage& passage, double s, const Point3& x) const;
 
   private:
+    double clearest() const;
+
     const WaterOptics& optics_;
     const ScatteringTables& tables_;
 };

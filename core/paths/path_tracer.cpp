@@ -77,7 +77,7 @@ void PathTracer::begin(const Ray& ray, const SurfaceHit* hit, std::span<const do
     segment.transmittance = {};
     if (hit) optics.transmittances(water.length, w.point.column, segment.transmittance);
     w.passages.clear();
-    for (const Lamp& lamp : *optics.scene().emitters) w.passages.emplace_back(ray, lamp.position());
+    for (const Lamp& lamp : *optics.scene().emitters) w.passages.emplace_back(ray, lamp);
     place_intervals(segment);
     weigh_intervals(surface_light, segment);
 }
@@ -117,6 +117,10 @@ void PathTracer::place_intervals(CameraSegment& segment) const {
     }
     for (double tau = k_far_begin; tau < depth; tau += k_far_step) s.push_back(tau / c);
     for (const LampPassage& passage : w.passages) {
+        if (passage.parallel) {
+            if (passage.slope != 0) s.push_back(-passage.begin_length / passage.slope);
+            continue;
+        }
         for (const double octave : {-1.0, 0.0, 1.0})
             s.push_back(passage.foot + octave * passage.distance);
     }

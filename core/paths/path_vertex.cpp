@@ -87,7 +87,7 @@ void PathVertex::find_lobes(const Spectrum& throughput) {
         tables_.optics->attenuation().uniform[tables_.optics->clearest_band()];
     double total = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
-        const Vector3 to_lamp = lamps[j].position() - x_;
+        const Vector3 to_lamp = lamps[j].origin(x_) - x_;
         const double radius = glm::length(to_lamp);
         if (!(radius > 0) || (segment_ && glm::dot(segment_->hit.normal, to_lamp) <= 0)) continue;
         const double weight = tables_.glow->of_lamp(j, x_, throughput);

@@ -113,8 +113,20 @@ std::optional<double> beam_of(const LampProfileDesc& profile) {
     return std::nullopt;
 }
 
+// All of its directions have to lead into the water.
+void check(const SunDesc& sun, const LampDesc& lamp, const Checked& checked) {
+    const double cosine = -glm::dot(lamp.direction, sun.surface.normal);
+    const double lowest = glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0))) + 0.5 * sun.angle;
+    if (!(lowest <= k_lowest_sun))
+        checked.fail(fmt::format(
+            "its light comes from {:.4g} degrees off the normal of water.surface, beyond {:g}, and "
+            "does not enter the water; give the direction in which it travels, downwards",
+            lowest, k_lowest_sun));
+}
+
 void check(const LampDesc& lamp) {
     const Checked checked(lamp.where);
+    if (lamp.sun) check(*lamp.sun, lamp, checked);
     checked.place("position", lamp.position);
     checked.place("frame", lamp.world_from_mount.offset());
     checked.matrix("frame", lamp.world_from_mount.linear());
@@ -164,6 +176,10 @@ void check(const VolumeDesc& volume) {
 
 void check_limits(const SceneDesc& scene) {
     check(scene.camera);
+    if (scene.water.surface) {
+        const Checked checked(scene.water.where);
+        checked.place("surface's point", scene.water.surface->point);
+    }
     for (const LampDesc& lamp : scene.lamps) check(lamp);
     for (const GeometryDesc& geometry : scene.geometry) check(geometry);
     for (const VolumeDesc& volume : scene.volumes) check(volume);

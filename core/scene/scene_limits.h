@@ -14,6 +14,9 @@ inline constexpr double k_largest_slope = 1e4;
 inline constexpr double k_narrowest_pixel = 1e-9;
 /// The narrowest beam of a lamp [degrees].
 inline constexpr double k_narrowest_beam = 0.01;
+/// Of a sun's light: the greatest angle between any of it, in the water, and the normal of the
+/// water's surface [degrees].
+inline constexpr double k_lowest_sun = 89;
 /// The largest intensity [W/sr], power [W] or flux [lm] of a lamp.
 inline constexpr double k_largest_brightness = 1e12;
 /// The largest concentration [ppm] or coefficient [1/m] per unit of a grid's value.

@@ -8,6 +8,7 @@
 #include "core/scene/per_band.h"
 #include "core/scene/phase_desc.h"
 #include "core/scene/source_location.h"
+#include "core/scene/water_surface_desc.h"
 
 namespace uw {
 
@@ -33,6 +34,7 @@ struct WaterDesc {
     bool mineral_absorption = false;           ///< particles absorb as mineral sediment does
     std::optional<ScatteringDesc> scattering;  ///< instead of that of molecules and particles
     ForwardScatterDesc forward_scatter;
+    std::optional<WaterSurfaceDesc> surface;  ///< above which there is no sunlight
     SourceLocation where;
 
     friend bool operator==(const WaterDesc&, const WaterDesc&) = default;

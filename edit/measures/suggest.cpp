@@ -16,13 +16,15 @@ using Place = std::array<double, 3>;
 
 constexpr double k_finest_step = 0.01;  // [m]
 
-void check_request(const SuggestRequest& request, std::size_t lamps) {
+void check_request(const SuggestRequest& request, const std::vector<LampDesc>& lamps) {
     const auto check = [](bool is_valid, const std::string& what) {
         if (!is_valid) throw UsageError("suggest: " + what);
     };
-    check(request.lamp < lamps, "there is no such lamp");
-    check(!request.partner || (*request.partner < lamps && *request.partner != request.lamp),
+    check(request.lamp < lamps.size(), "there is no such lamp");
+    check(!request.partner || (*request.partner < lamps.size() && *request.partner != request.lamp),
           "the partner must be another lamp of the scene");
+    check(!lamps[request.lamp].sun && !(request.partner && lamps[*request.partner].sun),
+          "a sun has no place to search for");
     const Vector3 diagonal = request.to - request.from;
     check(std::isfinite(glm::length(diagonal)) && glm::length(diagonal) > 0,
           "give two different positions to search between");
@@ -230,7 +232,7 @@ LampDesc mirrored_lamp(const LampDesc& lamp, const Affine& world_from_camera) {
 
 Suggestion suggest_position(TargetProbe& probe, const ResolvedScene& scene,
                             const SuggestRequest& request, const SuggestProgress& progress) {
-    check_request(request, scene.desc().lamps.size());
+    check_request(request, scene.desc().lamps);
     return Search(probe, scene, request, progress).run();
 }
 

@@ -15,8 +15,8 @@ namespace uw {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> k_brightness_keys{"name", "spectrum", "intensity",
-                                                            "power", "lumens"};
+constexpr std::array<std::string_view, 7> k_brightness_keys{
+    "name", "spectrum", "intensity", "power", "lumens", "irradiance", "lux"};
 
 void remove_keys(ConfigNode& map, std::span<const std::string_view> keys) {
     std::erase_if(map.entries, [&](const ConfigNode::Entry& entry) {

@@ -48,7 +48,12 @@ struct ProfileJson {
 
 Json brightness_json(const LampDesc& lamp, const ConfigNode* entry) {
     Json brightness;
-    if (lamp.intensity)
+    if (lamp.sun && lamp.intensity)
+        brightness = {
+            {"kind", "irradiance"}, {"unit", "W/m2"}, {"value", list_json(*lamp.intensity)}};
+    else if (lamp.sun)
+        brightness = {{"kind", "lux"}, {"unit", "lx"}, {"value", *lamp.lumens}};
+    else if (lamp.intensity)
         brightness = {
             {"kind", "intensity"}, {"unit", "W/sr"}, {"value", list_json(*lamp.intensity)}};
     else if (lamp.power)
@@ -65,10 +70,18 @@ Json brightness_json(const LampDesc& lamp, const ConfigNode* entry) {
     return brightness;
 }
 
+// Why the editor does not change a lamp; empty if it does.
+std::string reason_to_lock(const LampDesc& lamp, const ConfigNode* entry) {
+    if (!entry) return "it comes from a glTF file, which is not written here";
+    if (lamp.sun) return "it is a sun, which has no place; change it in the scene file";
+    return "";
+}
+
 std::string_view frame_of(const SceneDesc& desc, const LampDesc& lamp, const ConfigNode* entry) {
     const ConfigNode* frame = entry ? entry->find("frame") : nullptr;
     if (frame && frame->scalar == "world") return "world";
     if (frame && frame->scalar == "rig") return "rig";
+    if (lamp.sun) return "world";
     if (lamp.fixed_to_camera) return "camera";
     if (!entry) return "world";
     return frame || desc.cameras.empty() ? "camera" : "rig";
@@ -87,19 +100,20 @@ Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& t
     for (const ImagePoint& point : beam_outline(*edited.camera, lamp, placed))
         cone.push_back(pixel_json(point));
     const auto half_angle = beam_half_angle(lamp.profile);
+    const std::string why_not = reason_to_lock(lamp, entry);
     return {{"index", index},
             {"name", lamp.name},
             {"path", entry ? Json(fmt::format("lamps[{}]", *known.entry)) : Json(nullptr)},
-            {"editable", entry != nullptr},
-            {"why_not",
-             entry ? Json(nullptr) : Json("it comes from a glTF file, which is not written here")},
+            {"editable", why_not.empty()},
+            {"why_not", why_not.empty() ? Json(nullptr) : Json(why_not)},
             {"on", known.on},
             {"frame", frame_of(desc, lamp, entry)},
             {"position", point_json(lamp.position)},
             {"direction", vector_json(lamp.direction)},
             {"world_position", point_json(placed.position)},
             {"world_direction", vector_json(placed.direction)},
-            {"profile", std::visit(ProfileJson{desc.file.parent_path()}, lamp.profile)},
+            {"profile", lamp.sun ? Json{{"type", "sun"}}
+                                 : std::visit(ProfileJson{desc.file.parent_path()}, lamp.profile)},
             {"half_angle", half_angle ? Json(*half_angle) : Json(nullptr)},
             {"brightness", brightness_json(lamp, entry)},
             {"band_intensity", list_json(known.brightness.first(edited.bands()))},

@@ -99,6 +99,10 @@ std::string SceneChanges::entry_of(std::size_t lamp) const {
         throw UsageError(
             fmt::format("'{}' comes from a glTF file, which is not written here; change it there",
                         this->lamp(lamp).name));
+    if (this->lamp(lamp).sun)
+        throw UsageError(
+            fmt::format("'{}' is a sun, which has no place; change it in the scene file",
+                        this->lamp(lamp).name));
     return fmt::format("lamps[{}]", *entry);
 }
 

@@ -3,20 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "media/light/bounds_corners.h"
+
 namespace uw {
 
 namespace {
 
 constexpr int k_max_resolution = 1 << 16;
 constexpr int k_min_resolution = 16;
-
-std::array<Point3, 8> corners(const Bounds& b) {
-    std::array<Point3, 8> result;
-    for (std::size_t i = 0; i < 8; ++i)
-        result[i] = {(i & 1) != 0 ? b.max.x : b.min.x, (i & 2) != 0 ? b.max.y : b.min.y,
-                     (i & 4) != 0 ? b.max.z : b.min.z};
-    return result;
-}
 
 double farthest_corner(const Bounds& bounds, const Point3& from) {
     double farthest = 0;

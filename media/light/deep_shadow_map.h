@@ -47,7 +47,7 @@ class DeepShadowMap : public DeepShadow {
         columns_->columns(x, column);
     }
 
-    std::size_t bytes() const { return shadows_->bytes() + columns_->bytes(); }
+    std::size_t bytes() const override { return shadows_->bytes() + columns_->bytes(); }
     std::uint64_t rays_traced() const { return shadows_->rays_traced() + columns_->rays_traced(); }
 
   private:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 
 #include "core/base/parallel.h"
 #include "core/integrators/ray_panels.h"
@@ -12,8 +11,6 @@ namespace uw {
 
 namespace {
 
-constexpr float k_nothing = std::numeric_limits<float>::infinity();
-constexpr float k_untraced = -1;
 // Margin that contains a whole cell from any direction in it: its diagonal, doubled.
 constexpr double k_beam_margin_texels = 3;
 // The map's depths are float and its texels are compared with points between their centres; a
@@ -39,7 +36,7 @@ void ShadowMap::trace_face(int face_index) {
     const int padded = n + 2;  // one texel beyond each edge, so that neighbours always exist
     // Contains all samples of the cells that the beam touches.
     const DirectionCone wide = beam_.widened(k_beam_margin_texels * 2.0 / n);
-    Grid2D<float> depth(padded, padded, k_untraced);
+    Grid2D<float> depth(padded, padded, DepthPyramid::k_untraced);
     std::atomic<std::uint64_t> traced = 0;
     parallel_for(static_cast<std::size_t>(padded), [&](std::size_t row) {
         thread_local std::vector<Vector3> directions;
@@ -66,53 +63,12 @@ void ShadowMap::trace_face(int face_index) {
     if (traced == 0) return;
     rays_traced_ += traced;
 
-    Pyramid& pyramid = faces_[static_cast<std::size_t>(face_index)];
-    pyramid.push_back(cell_ranges(depth));
-    while (pyramid.back().width() > 1) pyramid.push_back(halved(pyramid.back()));
-}
-
-// Four samples bound the depths between them: 1 / depth is linear over a plane.
-ShadowMap::Level ShadowMap::cell_ranges(const Grid2D<float>& samples) {
-    const int n = samples.width() - 1;
-    Level level(n, n);
-    for (int v = 0; v < n; ++v) {
-        const float* const above = samples.row(v).data();
-        const float* const below = samples.row(v + 1).data();
-        DepthRange* const cells = level.row(v).data();
-        for (int u = 0; u < n; ++u) {
-            const float nearest = std::min({above[u], above[u + 1], below[u], below[u + 1]});
-            // Cells outside the beam have no bounds.
-            cells[u] = nearest == k_untraced
-                           ? DepthRange{k_nothing, 0}
-                           : DepthRange{nearest,
-                                        std::max({above[u], above[u + 1], below[u], below[u + 1]})};
-        }
-    }
-    return level;
-}
-
-ShadowMap::Level ShadowMap::halved(const Level& fine) {
-    const int size = (fine.width() + 1) / 2, last = fine.width() - 1;
-    Level coarse(size, size);
-    for (int v = 0; v < size; ++v) {
-        const DepthRange* const above = fine.row(2 * v).data();
-        const DepthRange* const below = fine.row(std::min(2 * v + 1, last)).data();
-        DepthRange* const cells = coarse.row(v).data();
-        for (int u = 0; u < size; ++u) {
-            const int left = 2 * u, right = std::min(2 * u + 1, last);
-            cells[u] = {std::min({above[left].nearest, above[right].nearest, below[left].nearest,
-                                  below[right].nearest}),
-                        std::max({above[left].farthest, above[right].farthest, below[left].farthest,
-                                  below[right].farthest})};
-        }
-    }
-    return coarse;
+    faces_[static_cast<std::size_t>(face_index)] = DepthPyramid(depth);
 }
 
 std::size_t ShadowMap::bytes() const {
     std::size_t total = 0;
-    for (const Pyramid& pyramid : faces_)
-        for (const Level& level : pyramid) total += level.size() * sizeof(DepthRange);
+    for (const DepthPyramid& pyramid : faces_) total += pyramid.bytes();
     return total;
 }
 
@@ -181,23 +137,8 @@ class ShadowMap::Search {
         const auto texel = [&](double t) {  // the cell between the samples around t
             return std::clamp(static_cast<int>(std::floor(t + 0.5)), 0, map_.resolution_);
         };
-        int u0 = texel(std::min(a.u, b.u)), u1 = texel(std::max(a.u, b.u));
-        int v0 = texel(std::min(a.v, b.v)), v1 = texel(std::max(a.v, b.v));
-        std::size_t level = 0;
-        while (u1 - u0 > 1 || v1 - v0 > 1) {
-            u0 /= 2, u1 /= 2, v0 /= 2, v1 /= 2;
-            ++level;
-        }
-        const Level& cells = (*pyramid_)[level];
-        DepthRange range{k_nothing, 0};
-        for (int v = v0; v <= v1; ++v) {
-            for (int u = u0; u <= u1; ++u) {
-                const DepthRange& cell = cells(u, v);
-                range.nearest = std::min(range.nearest, cell.nearest);
-                range.farthest = std::max(range.farthest, cell.farthest);
-            }
-        }
-        return range;
+        return pyramid_->bound(texel(std::min(a.u, b.u)), texel(std::min(a.v, b.v)),
+                               texel(std::max(a.u, b.u)), texel(std::max(a.v, b.v)));
     }
 
     bool visible(double s) const { return !map_.surfaces_->occluded(map_.lamp_, ray_.at(s)); }
@@ -242,7 +183,7 @@ class ShadowMap::Search {
     const Ray& ray_;
     std::vector<Interval>& lit_;
     CubeFace face_{0};
-    const Pyramid* pyramid_ = nullptr;
+    const DepthPyramid* pyramid_ = nullptr;
     Interval whole_;
     Seen last_seen_;
 };

@@ -3,10 +3,10 @@
 #include <array>
 #include <vector>
 
-#include "core/base/grid2d.h"
 #include "core/lamps/direction_cone.h"
 #include "core/surfaces/surfaces.h"
 #include "media/light/cube_face.h"
+#include "media/light/depth_pyramid.h"
 
 namespace uw {
 
@@ -32,23 +32,15 @@ class ShadowMap {
     std::size_t bytes() const;
 
   private:
-    struct DepthRange {
-        float nearest;
-        float farthest;
-    };
-    using Level = Grid2D<DepthRange>;
-    using Pyramid = std::vector<Level>;
     class Search;
 
     void trace_face(int face);
-    static Level cell_ranges(const Grid2D<float>& samples);
-    static Level halved(const Level& fine);
 
     const Surfaces* surfaces_;
     Point3 lamp_;
     int resolution_;
     DirectionCone beam_;
-    std::array<Pyramid, 6> faces_;  // empty for faces outside the beam
+    std::array<DepthPyramid, 6> faces_;  // empty for faces outside the beam
     std::uint64_t rays_traced_ = 0;
 };
 

@@ -104,6 +104,7 @@ std::string key_of(const LampDesc& lamp, double distance) {
         key += fmt::format("{} {} {} {} {} {} ", static_cast<int>(extent.shape), extent.width,
                            extent.height, extent.rotate, extent.radius, extent.samples);
     }
+    if (lamp.sun) key += fmt::format("sun {} {} ", lamp.sun->angle, lamp.sun->samples);
     return key + profile_key(lamp.profile);
 }
 

@@ -18,6 +18,10 @@ namespace uw {
 namespace {
 
 constexpr double k_candela_per_watt = 683;  // per sr, as Blender converts
+constexpr std::string_view k_give_surface =
+    "say where the water's surface is, at which such light begins: water: {surface: {point: [0, "
+    "10, "
+    "0], normal: [0, 1, 0]}}";
 constexpr std::size_t k_longest_name = 64;  // of a lamp, as in scene files
 
 template <class Item>
@@ -149,8 +153,14 @@ SpotProfileDesc::Falloff falloff_of(const GltfItems& items) {
                                                             : Falloff::blender;
 }
 
-LampDesc lamp_of(const GltfLight& source, const GeometryDesc& object, const ReflectanceBands& bands,
-                 SpotProfileDesc::Falloff falloff) {
+/// Irradiance [W/m^2] of a directional light of 1.
+double irradiance_of_one(LightUnits units) {
+    // Blender writes a sun's W/m^2 as they are, unless in lux.
+    return units == LightUnits::standard ? 1 / k_candela_per_watt : 1;
+}
+
+LampDesc lamp_of(const GltfLight& source, const GeometryDesc& object, const SceneDesc& scene,
+                 const ReflectanceBands& bands, SpotProfileDesc::Falloff falloff) {
     const Affine world_from_light = object.world_from_object * source.file_from_light;
     LampDesc lamp;
     lamp.where = object.import.lamps_where;
@@ -163,18 +173,22 @@ LampDesc lamp_of(const GltfLight& source, const GeometryDesc& object, const Refl
             SpotProfileDesc{(source.outer_cone + source.inner_cone) * k_degrees,
                             (source.outer_cone - source.inner_cone) * k_degrees, falloff};
     }
+    const bool is_sun = source.type == GltfLight::Type::directional;
+    if (is_sun) lamp.sun = SunDesc{.surface = scene.water.surface.value()};
     const Spectrum color = bands.from_rgb(source.color);
-    const double watts_per_sr = source.intensity * intensity_of_one(object.import.units);
+    const LightUnits units = object.import.units;
+    const double watts =
+        source.intensity * (is_sun ? irradiance_of_one(units) : intensity_of_one(units));
     lamp.intensity.emplace();
     for (std::size_t b = 0; b < static_cast<std::size_t>(bands.count()); ++b) {
-        lamp.intensity->push_back(watts_per_sr * color[b]);
+        lamp.intensity->push_back(watts * color[b]);
     }
     return lamp;
 }
 
-/// The requested lights, each once, in the file's order, without unsupported ones.
+/// The requested lights, each once, in the file's order; without suns if the water has no surface.
 std::vector<const GltfLight*> chosen_lights(const GltfItems& items, const GeometryDesc& object,
-                                            std::vector<std::string>& warnings) {
+                                            SceneDesc& scene) {
     const GltfImportDesc& import = object.import;
     for (const std::string& name : import.lamps) {
         const auto found = std::ranges::find(items.lights, name, &GltfLight::name);
@@ -196,33 +210,33 @@ std::vector<const GltfLight*> chosen_lights(const GltfItems& items, const Geomet
             list += (list.empty() ? "" : ", ") + printable(light.name);
         };
         if (light.has_range) add_to(ranged);
-        if (light.type != GltfLight::Type::directional) {
+        if (light.type != GltfLight::Type::directional || scene.water.surface) {
             chosen.push_back(&light);
         } else if (is_named) {
-            throw InputError(
-                fmt::format("{}: the light '{}' is directional (a sun), but lamps have a position; "
-                            "make it a point "
-                            "or spot light",
-                            import.lamps_where, printable(light.name)));
+            throw InputError(fmt::format("{}: the light '{}' is directional (a sun); {}",
+                                         import.lamps_where, printable(light.name),
+                                         k_give_surface));
         } else {
             add_to(directional);
         }
     }
-    const auto warn = [&](const std::string& names, const char* what) {
+    const auto warn = [&](const std::string& names, std::string_view what, std::string_view mend) {
         if (!names.empty()) {
-            warnings.push_back(fmt::format("{}: {}: {}", import.lamps_where, what, names));
+            scene.warnings.push_back(
+                fmt::format("{}: {}: {}{}", import.lamps_where, what, names, mend));
         }
     };
-    warn(directional, "directional lights (suns) are left out");
-    warn(ranged, "the range of lights is ignored; they go on falling off as 1/r^2");
+    warn(directional, "directional lights (suns) are left out",
+         fmt::format("; {}", k_give_surface));
+    warn(ranged, "the range of lights is ignored; they go on falling off as 1/r^2", "");
     return chosen;
 }
 
 void import_lamps(const GltfItems& items, const GeometryDesc& object, SceneDesc& scene) {
     const ReflectanceBands bands(scene.water.bands_nm);
-    const std::vector<const GltfLight*> lights = chosen_lights(items, object, scene.warnings);
+    const std::vector<const GltfLight*> lights = chosen_lights(items, object, scene);
     for (const GltfLight* light : lights) {
-        LampDesc lamp = lamp_of(*light, object, bands, falloff_of(items));
+        LampDesc lamp = lamp_of(*light, object, scene, bands, falloff_of(items));
         lamp.name = lamp_name(light->name, scene.lamps);
         scene.lamps.push_back(std::move(lamp));
     }

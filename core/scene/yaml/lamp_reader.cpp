@@ -97,32 +97,28 @@ bool is_absolute(const LampProfileDesc& profile) {
     return std::visit([](const auto& desc) { return desc.k_is_absolute; }, profile);
 }
 
-void read_lumens(const ConfigValue& value, LampDesc& lamp) {
-    lamp.lumens = value.positive("give the luminous flux in lm");
+void read_lumens(const ConfigValue& value, std::string_view mend, LampDesc& lamp) {
+    lamp.lumens = value.positive(mend);
     if (!lamp.spectrum) {
         value.fail(
-            "only the lamp's spectrum can convert lumens to watts; give it, such as spectrum: "
+            "only the lamp's spectrum can convert it to watts; give it, such as spectrum: "
             "{type: led, name: LED-B4}");
     }
 }
 
-/// A lamp with a spectrum has a single number, one without has a number per band.
-void read_watts(const ConfigValue& value, bool is_intensity, const SceneContext& context,
-                LampDesc& lamp) {
-    PerBand values;
-    if (lamp.spectrum) {
-        values = {value.non_negative(is_intensity
-                                         ? "with a spectrum, give its total W/sr as one number"
-                                         : "with a spectrum, give its total W as one number")};
-    } else {
-        values = value.non_negative_per_band(
-            context.band_count,
-            is_intensity ? "give W/sr on the axis, per band" : "give the total in W, per band");
-    }
+/// A lamp with a spectrum has a single number, one without has a number per band. `unit`: "W/sr on
+/// the axis".
+PerBand read_watts(const ConfigValue& value, std::string_view unit, const SceneContext& context,
+                   const LampDesc& lamp) {
+    PerBand values = lamp.spectrum
+                         ? PerBand{value.non_negative(fmt::format(
+                               "with a spectrum, give its total {} as one number", unit))}
+                         : value.non_negative_per_band(context.band_count,
+                                                       fmt::format("give {}, per band", unit));
     if (std::all_of(values.begin(), values.end(), [](double x) { return x == 0; })) {
         context.warn(value, "is 0 in every band: this lamp is dark");
     }
-    (is_intensity ? lamp.intensity : lamp.power) = std::move(values);
+    return values;
 }
 
 void read_output(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
@@ -137,9 +133,11 @@ void read_output(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
         lumens->fail("a lamp has either lumens or watts; remove one");
     }
     if (lumens) {
-        read_lumens(*lumens, lamp);
-    } else if (intensity || power) {
-        read_watts(intensity ? *intensity : *power, intensity.has_value(), context, lamp);
+        read_lumens(*lumens, "give the luminous flux in lm", lamp);
+    } else if (intensity) {
+        lamp.intensity = read_watts(*intensity, "W/sr on the axis", context, lamp);
+    } else if (power) {
+        lamp.power = read_watts(*power, "W in all directions", context, lamp);
     } else if (!is_absolute(lamp.profile)) {
         map.value().fail(
             "does not say how bright it is; give intensity in W/sr or power in W, or its spectrum "
@@ -147,16 +145,12 @@ void read_output(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
     }
 }
 
-void read_samples(ConfigMap& map, LampExtentDesc& extent) {
-    if (const auto samples = map.find("samples"))
-        extent.samples = samples->integer(1, 1024, "give the number of points that stand for it");
+void read_samples(ConfigMap& map, int& samples) {
+    if (const auto entry = map.find("samples"))
+        samples = entry->integer(1, 1024, "give the number of points that stand for it");
 }
 
-std::optional<LampExtentDesc> read_point(ConfigMap& /*map*/) {
-    return std::nullopt;
-}
-
-std::optional<LampExtentDesc> read_rectangle(ConfigMap& map) {
+LampExtentDesc read_rectangle(ConfigMap& map) {
     LampExtentDesc extent;
     constexpr auto k_mend = "give the sides of the luminous rectangle in metres";
     extent.width = map.require("width", k_mend).positive(k_mend);
@@ -164,47 +158,76 @@ std::optional<LampExtentDesc> read_rectangle(ConfigMap& map) {
     if (const auto rotate = map.find("rotate"))
         extent.rotate =
             rotate->within(-360, 360, "give the turn about the lamp's direction in degrees");
-    read_samples(map, extent);
+    read_samples(map, extent.samples);
     return extent;
 }
 
-std::optional<LampExtentDesc> read_disk(ConfigMap& map) {
+LampExtentDesc read_disk(ConfigMap& map) {
     LampExtentDesc extent;
     extent.shape = LampExtentDesc::Shape::disk;
     constexpr auto k_mend = "give the radius of the luminous disk in metres";
     extent.radius = map.require("radius", k_mend).positive(k_mend);
-    read_samples(map, extent);
+    read_samples(map, extent.samples);
     return extent;
 }
 
-// The lamp's type, and what only this type has.
-void read_extent(ConfigMap& map, LampDesc& lamp) {
-    using Read = std::optional<LampExtentDesc> (*)(ConfigMap&);
-    constexpr auto k_types = std::to_array<std::pair<std::string_view, Read>>(
-        {{"point", read_point}, {"rectangle", read_rectangle}, {"disk", read_disk}});
+enum class LampType { point, rectangle, disk, sun };
+
+LampType read_type(ConfigMap& map) {
+    constexpr auto k_types =
+        std::to_array<std::pair<std::string_view, LampType>>({{"point", LampType::point},
+                                                              {"rectangle", LampType::rectangle},
+                                                              {"disk", LampType::disk},
+                                                              {"sun", LampType::sun}});
     const auto type = map.find("type");
-    lamp.extent = (type ? type->choice(k_types) : read_point)(map);
-    // A diffuse surface, unless a profile says otherwise.
-    if (lamp.extent) lamp.profile = CosineProfileDesc{120};
+    return type ? type->choice(k_types) : LampType::point;
 }
 
-LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneContext& context) {
-    ConfigMap map(value,
-                  {"name", "type", "position", "direction", "width", "height", "radius", "rotate",
-                   "samples", "profile", "spectrum", "intensity", "power", "lumens", "frame"},
-                  "write {name: left, position: [-1, 0, 0], intensity: 50}");
-    LampDesc lamp;
-    lamp.where = value.location();
-    const auto name = map.find("name");
-    lamp.name = name ? read_short_name(*name, "a layer's name", "name the lamp, such as left")
-                     : fmt::format("lamp{}", number);
+void read_irradiance(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
+    if (const auto entry = map.find("spectrum")) lamp.spectrum = read_spectrum(*entry, context);
+    const auto irradiance = map.find("irradiance");
+    const auto lux = map.find("lux");
+    if (irradiance && lux) lux->fail("a sun has either lux or watts; remove one");
+    if (irradiance)
+        lamp.intensity = read_watts(*irradiance, "W/m2 at the water's surface", context, lamp);
+    else if (lux)
+        read_lumens(*lux, "give the illuminance in lx", lamp);
+    else
+        map.value().fail(
+            "does not say how bright it is; give irradiance in W/m2, or its spectrum and lux");
+}
+
+/// A lamp of type sun. Its direction is the world's, in the water.
+void read_sun(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
+    SunDesc sun;
+    constexpr auto k_mend = "give the direction in which its light travels in the water";
+    lamp.direction = map.require("direction", k_mend).direction(k_mend);
+    if (!context.water_surface)
+        map.value().fail(
+            "a sun's light begins at the water's surface, but the scene does not say where that "
+            "is; "
+            "give water: {surface: {point: [0, 10, 0], normal: [0, 1, 0]}}");
+    sun.surface = *context.water_surface;
+    if (const auto angle = map.find("angle"))
+        sun.angle = angle->within(0, 90, "give the angle across the sun's disc in degrees");
+    read_samples(map, sun.samples);
+    lamp.sun = sun;
+    lamp.fixed_to_camera = false;
+    read_irradiance(map, context, lamp);
+}
+
+/// A lamp that stands somewhere.
+void read_placed(ConfigMap& map, LampType type, const SceneContext& context, LampDesc& lamp) {
     lamp.position =
         at_origin_plus(map.require("position", "give the lamp's position in metres")
                            .vector("give the lamp's position, three lengths in metres"));
     if (const auto entry = map.find("direction")) {
         lamp.direction = entry->direction("give the direction in which the lamp shines, not all 0");
     }
-    read_extent(map, lamp);
+    if (type == LampType::rectangle) lamp.extent = read_rectangle(map);
+    if (type == LampType::disk) lamp.extent = read_disk(map);
+    // A diffuse surface, unless a profile says otherwise.
+    if (lamp.extent) lamp.profile = CosineProfileDesc{120};
     if (const auto entry = map.find("profile")) lamp.profile = read_profile(*entry, context);
     read_output(map, context, lamp);
     enum class Frame { camera, rig, world };
@@ -224,8 +247,26 @@ LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneCont
         lamp.world_from_mount =
             frame == Frame::rig ? context.rig->world_from_rig : context.rig->world_from_camera;
     }
-    const ConfigNode* const type = value.node().find("type");
-    map.finish(fmt::format("a lamp of type '{}'", type ? type->scalar : "point"));
+}
+
+LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneContext& context) {
+    ConfigMap map(value,
+                  {"name", "type", "position", "direction", "width", "height", "radius", "rotate",
+                   "samples", "profile", "spectrum", "intensity", "power", "lumens", "frame",
+                   "angle", "irradiance", "lux"},
+                  "write {name: left, position: [-1, 0, 0], intensity: 50}");
+    LampDesc lamp;
+    lamp.where = value.location();
+    const auto name = map.find("name");
+    lamp.name = name ? read_short_name(*name, "a layer's name", "name the lamp, such as left")
+                     : fmt::format("lamp{}", number);
+    const LampType type = read_type(map);
+    if (type == LampType::sun)
+        read_sun(map, context, lamp);
+    else
+        read_placed(map, type, context, lamp);
+    const ConfigNode* const word = value.node().find("type");
+    map.finish(fmt::format("a lamp of type '{}'", word ? word->scalar : "point"));
     return lamp;
 }
 

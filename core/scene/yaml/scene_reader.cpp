@@ -153,8 +153,7 @@ SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& fi
 
     SceneDesc desc;
     desc.file = file;
-    SceneContext context{file.parent_path(), desc.water.bands_nm.size(), &desc.warnings,
-                         std::nullopt};
+    SceneContext context{file.parent_path(), desc.water.bands_nm.size(), &desc.warnings};
     desc.water.where = scene.location();
     desc.render.planes.where = scene.location() + ": render.planes";
     desc.render.scattering_where = scene.location() + ": render.scattering";
@@ -183,7 +182,7 @@ WaterDesc read_water_overrides(const std::vector<std::string>& overrides) {
     for (const std::string& text : overrides) apply_override(root, text);
     ConfigMap map(ConfigValue(root, ""), {"water"}, "without a scene only water can be set");
     std::vector<std::string> warnings;
-    SceneContext context{{}, 0, &warnings, std::nullopt};
+    SceneContext context{{}, 0, &warnings};
     WaterDesc water = read_water(map.require("water", "give water.bands"), context);
     water.where = "water";  // no file to point into
     return water;

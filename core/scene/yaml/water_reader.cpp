@@ -119,12 +119,22 @@ void read_dissolved(ConfigMap& map, WaterDesc& water) {
     }
 }
 
+WaterSurfaceDesc read_surface(const ConfigValue& value) {
+    constexpr auto k_example = "write {point: [0, 10, 0], normal: [0, 1, 0]}";
+    ConfigMap map(value, {"point", "normal"}, k_example);
+    return {
+        at_origin_plus(map.require("point", k_example)
+                           .vector("give a point on the water's surface, three lengths in metres")),
+        map.require("normal", k_example)
+            .direction("give the direction out of the water, not all 0")};
+}
+
 }  // namespace
 
 WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
     ConfigMap map(value,
                   {"bands", "preset", "salinity", "temperature", "absorption", "cdom",
-                   "chlorophyll", "particles", "scattering", "forward_scatter"},
+                   "chlorophyll", "particles", "scattering", "forward_scatter", "surface"},
                   "write {bands: [620, 540, 450]}");
     WaterDesc water;
     water.where = value.location();
@@ -148,6 +158,8 @@ WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
     if (const auto entry = map.find("particles")) read_particles(*entry, water);
     if (const auto entry = map.find("forward_scatter"))
         water.forward_scatter = read_forward_scatter(*entry);
+    if (const auto entry = map.find("surface")) water.surface = read_surface(*entry);
+    context.water_surface = water.surface;
     return water;
 }
 

@@ -1,6 +1,7 @@
 // Everything about the chosen lamp, to be typed.
 
 import { h } from "../base/dom.js";
+import { hasPlace } from "../base/lamps.js";
 import { add } from "../base/vec.js";
 import { newGroup } from "../server/editing.js";
 import { brightnessFields } from "./brightness_fields.js";
@@ -60,6 +61,7 @@ export class LampForm {
         if (lamp.why_not) {
             parts.push({ element: h("p", { class: "hint locked" }, lamp.why_not), update: () => {} });
         }
+        if (!hasPlace(lamp)) return parts;
         parts.push(
             field(textField({ label: "Name", key: "name", commit:
                 (value, refuse) => this.#rename(lamp.name, value, refuse) }), (now) => now.name),

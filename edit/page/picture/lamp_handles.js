@@ -3,6 +3,7 @@
 
 import { setAttributes, setText, svg } from "../base/dom.js";
 import { arrowStep, onDrag } from "../base/dragging.js";
+import { hasPlace } from "../base/lamps.js";
 import { lampColour } from "../panels/lamp_colours.js";
 import { aimAt, moveInDepth, moveInPlane } from "./lamp_motion.js";
 
@@ -86,6 +87,7 @@ export class LampHandles {
         const turns = lamp.profile.type === "isotropic" ? "hidden" : "visible";
         handle.group.style.setProperty("--lamp", lampColour(index));
         setAttributes(handle.group, {
+            display: hasPlace(lamp) ? null : "none",
             class: `lamp${selected ? " selected" : ""}${lamp.on ? "" : " off"}` +
                 `${lamp.editable ? "" : " locked"}${inside ? "" : " at-rim"}`,
         });

@@ -2,6 +2,7 @@
 
 import { setAttributes, svg } from "../base/dom.js";
 import { arrowStep, onDrag } from "../base/dragging.js";
+import { hasPlace } from "../base/lamps.js";
 import { along, normalize } from "../base/vec.js";
 import { lampColour } from "../panels/lamp_colours.js";
 import { beamOutline } from "./beam.js";
@@ -79,6 +80,7 @@ export class LampMarks {
         const turns = lamp.profile.type !== "isotropic";
         mark.group.style.setProperty("--lamp", lampColour(index));
         setAttributes(mark.group, {
+            display: hasPlace(lamp) ? null : "none",
             class: `lamp${selected ? " selected" : ""}${lamp.on ? "" : " off"}` +
                 `${lamp.editable ? "" : " locked"}`,
         });

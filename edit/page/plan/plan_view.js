@@ -3,6 +3,7 @@
 import { h, svg } from "../base/dom.js";
 import { arrowStep, onDrag } from "../base/dragging.js";
 import { oncePerFrame } from "../base/frame.js";
+import { hasPlace } from "../base/lamps.js";
 import { Backdrop, boxCorners, frustumEnds } from "./backdrop.js";
 import { BarMarks } from "./bar_marks.js";
 import { LampMarks } from "./lamp_marks.js";
@@ -96,7 +97,7 @@ export class PlanView {
         const { camera, lamps, volumes } = this.#scene.value;
         this.#viewport.fit([
             camera.position, ...frustumEnds(camera),
-            ...lamps.flatMap(({ world_position: at, axis_handle: axis }) => [at, axis.point]),
+            ...lamps.filter(hasPlace).flatMap(({ world_position: at, axis_handle: axis }) => [at, axis.point]),
             ...volumes.flatMap(({ bounds }) => (bounds ? boxCorners(bounds) : [])),
         ]);
         this.#drawSoon();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -137,6 +138,25 @@ INSTANTIATE_TEST_SUITE_P(
                      s.lamps[0].extent->radius = 1e8;
                  },
                  "s.yaml:5: lamps[0]: its radius of 1e+08 is beyond 1e+07"},
+        BadScene{"sun_from_below",
+                 [](SceneDesc& s) {
+                     s.lamps[0].direction = {0, -1, 0};
+                     s.lamps[0].sun = SunDesc{.surface = {{0, -3, 0}, {0, -1, 0}}};
+                 },
+                 "s.yaml:5: lamps[0]: its light comes from 180 degrees off the normal of "
+                 "water.surface, beyond 89"},
+        BadScene{"sun_half_below_the_horizon",
+                 [](SceneDesc& s) {
+                     s.lamps[0].direction = {std::sqrt(0.5), std::sqrt(0.5), 0};
+                     s.lamps[0].sun = SunDesc{.angle = 90, .surface = {{0, -3, 0}, {0, -1, 0}}};
+                 },
+                 "s.yaml:5: lamps[0]: its light comes from 90 degrees off"},
+        BadScene{"water_surface_far_away",
+                 [](SceneDesc& s) {
+                     s.water.where = "s.yaml:3: water";
+                     s.water.surface = WaterSurfaceDesc{{0, 1e9, 0}, {0, 1, 0}};
+                 },
+                 "s.yaml:3: water: its surface's point of 1e+09"},
         BadScene{"intensity",
                  [](SceneDesc& s) {
                      s.lamps[0].intensity = PerBand{1, 1e30, 1};

@@ -250,7 +250,8 @@ TEST_F(GltfImport, RefusesInOneLine) {
                   {"scenes", R"([{"nodes":[0,1]}])"}});
     expect_error("the camera 'camera1' is orthographic", ", camera: true", "",
                  {{"nodes", R"([{"camera":1}])"}, {"scenes", R"([{"nodes":[0]}])"}});
-    expect_error("the light 'Sun' is directional (a sun)", ", lamps: [Sun]", own);
+    expect_error("the light 'Sun' is directional (a sun); say where the water's surface is",
+                 ", lamps: [Sun]", own);
     expect_error("has no light 'Bob'; it has Sun, Bulb 1, Bulb.1", ", lamps: [Bob]", own);
     expect_error("light_units: has an effect only with lamps", ", light_units: raw", own);
     expect_error("light_units: unknown value 'rae'; did you mean 'raw'?",

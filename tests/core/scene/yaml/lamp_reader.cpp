@@ -26,9 +26,19 @@ class LampReader : public ::testing::Test {
         return std::get<Desc>(read(lamp).at(0).profile);
     }
 
+    void expect_refused(const std::string& text, const std::string& part) const {
+        try {
+            read(text);
+            FAIL() << text;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+        }
+    }
+
     test::SceneFolder folder_;
     std::vector<std::string> warnings_;
-    SceneContext context_{folder_.path(), 3, &warnings_, std::nullopt};
+    SceneContext context_{folder_.path(), 3, &warnings_};
 };
 
 TEST_F(LampReader, ReadsEachProfile) {
@@ -81,15 +91,41 @@ TEST_F(LampReader, RefusesWhatAnExtentCannotBe) {
           {"type: disk, radius: 1, width: 2", "width"},
           {"radius: 1", "radius"},
           {"type: disk, radius: 1, samples: 0", "samples"},
-          {"type: disc, radius: 1", "did you mean 'disk'?"}}) {
-        try {
-            read(std::string("[{position: [0, 0, 0], intensity: 1, ") + keys + "}]");
-            FAIL() << keys;
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-        }
-    }
+          {"type: disc, radius: 1", "did you mean 'disk'?"}})
+        expect_refused(std::string("[{position: [0, 0, 0], intensity: 1, ") + keys + "}]", part);
+}
+
+TEST_F(LampReader, ReadsSunsInTheWorldUnderTheWatersSurface) {
+    const WaterSurfaceDesc surface{{0, 8, 0}, {0, 1, 0}};
+    context_.water_surface = surface;
+    const LampDesc sun = read("[{type: sun, direction: [0, -2, 0], irradiance: [1, 2, 3]}]").at(0);
+    ASSERT_TRUE(sun.sun);
+    EXPECT_EQ(*sun.sun, (SunDesc{0, 32, surface}));
+    EXPECT_EQ(sun.direction, Vector3(0, -1, 0));
+    EXPECT_EQ(*sun.intensity, (PerBand{1, 2, 3}));
+    EXPECT_FALSE(sun.fixed_to_camera);
+    const LampDesc wide =
+        read(
+            "[{type: sun, direction: [0, -2, 0], lux: 5e4, spectrum: {type: d65}, angle: 0.53, "
+            "samples: 8}]")
+            .at(0);
+    EXPECT_EQ(*wide.sun, (SunDesc{0.53, 8, surface}));
+    EXPECT_EQ(wide.lumens, 5e4);
+    for (const auto& [keys, part] :
+         {std::pair{"irradiance: 1", "'direction' is missing"},
+          {"direction: [0, 0, 0], irradiance: 1", "direction"},
+          {"direction: [0, -1, 0]", "give irradiance in W/m2, or its spectrum and lux"},
+          {"direction: [0, -1, 0], irradiance: 1, lux: 3, spectrum: {type: d65}", "remove one"},
+          {"direction: [0, -1, 0], lux: 3", "spectrum"},
+          {"direction: [0, -1, 0], irradiance: 1, angle: 100", "angle"},
+          {"direction: [0, -1, 0], irradiance: 1, position: [0, 0, 0]", "position"},
+          {"direction: [0, -1, 0], irradiance: 1, frame: camera", "frame"},
+          {"direction: [0, -1, 0], intensity: 1", "irradiance"}})
+        expect_refused(std::string("[{type: sun, ") + keys + "}]", part);
+    expect_refused("[{position: [0, 0, 0], intensity: 1, angle: 1}]", "angle");
+    context_.water_surface.reset();
+    expect_refused("[{type: sun, direction: [0, -1, 0], irradiance: 1}]",
+                   "give water: {surface: {point: [0, 10, 0], normal: [0, 1, 0]}}");
 }
 
 TEST_F(LampReader, OnlyAbsoluteProfilesNeedNoOutput) {
