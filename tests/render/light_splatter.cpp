@@ -7,6 +7,7 @@
 
 #include "render/renderer.h"
 #include "tests/support/field_maker.h"
+#include "tests/support/suns.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {
@@ -113,6 +114,34 @@ TEST_F(LightReuse, ALampThatTurnsOutOfItsShadowsNeedsOthers) {
     change([&](SceneDesc& d) { d.lamps[1].direction = glm::normalize(Vector3(0.5, 0, 1)); });
     expect_splat(1, 0);
     change([](SceneDesc& d) { d.lamps[1].profile = SpotProfileDesc{60, 4}; });
+    expect_splat(1, 0);
+}
+
+TEST_F(LightReuse, ASunNeedsASplatIfItTurnsOrItsSurfaceMoves) {
+    change([](SceneDesc& d) {
+        d.water.surface = k_sea_level;
+        d.lamps[0] = slanting_sun();
+    });
+    expect_splat(2, 2);
+    change([](SceneDesc& d) {
+        d.camera.world_from_camera = Affine::translation({0.2, 0.1, -0.3});
+        d.lamps[0].intensity = PerBand{5, 20, 90};
+    });
+    expect_splat(0, 0);
+    change([](SceneDesc& d) { d.lamps[0].direction = glm::normalize(Vector3(0.4, 1, 0.3)); });
+    expect_splat(1, 1);
+    change([](SceneDesc& d) { d.lamps[0].sun->surface.point.y = -4; });
+    expect_splat(1, 1);
+    change([this](SceneDesc& d) { d.volumes = {volume(2.0)}; });
+    expect_splat(0, 2);
+    // A floor of 80 m has more than one square, which follow the camera.
+    change([](SceneDesc& d) { d.geometry.push_back(box({-40, 3, -40}, {40, 3.1, 40})); });
+    expect_splat(2, 0);
+    change([](SceneDesc& d) {
+        d.camera.world_from_camera = Affine::translation({0.2, 0.1, -0.31});
+    });
+    expect_splat(0, 0);
+    change([](SceneDesc& d) { d.camera.world_from_camera = Affine::translation({0, 0, -8}); });
     expect_splat(1, 0);
 }
 
