@@ -14,7 +14,8 @@ namespace uw {
 namespace {
 
 // Optical depths beyond the farthest lamp, both on the way from the lamp and on the way to the
-// camera: e^-10 = 5e-5 of the light is left.
+// camera: e^-10 = 5e-5 of the light is left. A sun's light may come straight down on the way: twice
+// that to the camera.
 constexpr double k_reach_optical_depth = 5;
 // Maximum number of survey rays along each side of the image, edges included.
 constexpr int k_survey_rays = 256;
@@ -64,10 +65,12 @@ double reach(const RaySource& rays, const LitScene& scene, double near) {
         attenuation.uniform.least(static_cast<std::size_t>(attenuation.band_count));
     if (least_c <= 0) return k_far;
     const Point3 camera = rays.world_from_camera() * Point3{};
-    double farthest_lamp = 0;
-    for (const Lamp& lamp : *scene.emitters)
-        farthest_lamp = std::max(farthest_lamp, distance(lamp.origin(camera), camera));
-    return std::min(k_far, near + farthest_lamp + k_reach_optical_depth / least_c);
+    double farthest = k_reach_optical_depth / least_c;
+    for (const Lamp& lamp : *scene.emitters) {
+        const double depth = (lamp.sunlight() ? 2 : 1) * k_reach_optical_depth;
+        farthest = std::max(farthest, distance(lamp.origin(camera), camera) + depth / least_c);
+    }
+    return std::min(k_far, near + farthest);
 }
 
 }  // namespace

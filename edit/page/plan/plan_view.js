@@ -97,7 +97,8 @@ export class PlanView {
         const { camera, lamps, volumes } = this.#scene.value;
         this.#viewport.fit([
             camera.position, ...frustumEnds(camera),
-            ...lamps.filter(hasPlace).flatMap(({ world_position: at, axis_handle: axis }) => [at, axis.point]),
+            ...lamps.filter(hasPlace)
+                .flatMap(({ world_position: at, axis_handle: axis }) => [at, axis.point]),
             ...volumes.flatMap(({ bounds }) => (bounds ? boxCorners(bounds) : [])),
         ]);
         this.#drawSoon();
