@@ -9,7 +9,7 @@
 
 #include "core/integrators/surface_lighting.h"
 #include "core/paths/path_tracer.h"
-#include "tests/support/gaussian_field.h"
+#include "tests/support/field_maker.h"
 #include "tests/support/paths/ray_batches.h"
 #include "tests/support/suns.h"
 #include "tests/support/test_scene.h"
@@ -111,6 +111,17 @@ double rms_difference(const SceneDesc& desc, RenderDesc::Integrator truth) {
 TEST(Suns, ShadowsInTheWaterAgreeWithTheReference) {
     EXPECT_LT(rms_difference(with_shadows(), RenderDesc::Integrator::reference), 4e-3);
     EXPECT_LT(rms_difference(with_shadows(10, 8), RenderDesc::Integrator::reference), 4e-3);
+}
+
+// The columns of the map, two rays and steps per voxel, against exact ones.
+TEST(Suns, APlumeAndItsShadowAgreeWithTheReference) {
+    FieldMaker maker;
+    VdbFixture fixture = bumpy_fixture();
+    fixture.file_from_index = Affine::translation({-0.3, -0.5, 2}) * Affine::scale(Vector3(0.06));
+    SceneDesc desc = with_shadows();
+    desc.volumes = {maker.volume(fixture)};
+    desc.volumes[0].grids[0].optics = GridMappingDesc::Optics{{0.1, 0.2, 0.3}, {0.4, 0.8, 1.2}, {}};
+    EXPECT_LT(rms_difference(desc, RenderDesc::Integrator::reference), 4e-3);
 }
 
 TEST(Suns, ShadowsInTheWaterAgreeWithThePlanes) {
