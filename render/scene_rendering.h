@@ -12,6 +12,7 @@
 #include "core/frame/path_film.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
+#include "media/light/deep_shadow_map.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
