@@ -28,12 +28,14 @@ class InputCollection {
         add(scene.file, "the scene", true);
         add(scene.camera);
         for (const RigCameraDesc& entry : scene.cameras) add(entry.camera);
+        add(scene.rig_trajectory);
         if (scene.water.scattering) add(scene.water.scattering->phase);
         for (const VolumeDesc& volume : scene.volumes) add(volume);
         for (const GeometryDesc& geometry : scene.geometry) add(geometry);
         for (const LampDesc& lamp : scene.lamps) {
             add_named(lamp.profile, "a lamp profile of the scene");
             if (lamp.spectrum) add(*lamp.spectrum, "a lamp spectrum of the scene");
+            add(lamp.trajectory);
         }
         const ColourDesc& colour = scene.render.colour;
         add(colour.file, "the response of the scene");
@@ -47,9 +49,13 @@ class InputCollection {
     }
     void add(const CameraDesc& camera) {
         if (camera.calibration) add(camera.calibration->file, "a calibration of the scene", true);
+        add(camera.trajectory);
         if (!camera.sensor) return;
         add(camera.sensor->quantum_efficiency.file, "the quantum efficiency of a sensor");
         add(camera.sensor->image.response.file, "the response curve of a camera");
+    }
+    void add(const std::optional<TrajectoryDesc>& trajectory) {
+        if (trajectory) add(trajectory->file, "a trajectory of the scene", true);
     }
     // The file of those alternatives of a variant that have one.
     void add_named(const auto& variant, const char* what) {
@@ -71,6 +77,7 @@ class InputCollection {
     }
     // STL and PLY refer to no other files.
     void add(const GeometryDesc& geometry) {
+        add(geometry.trajectory);
         if (geometry.type != GeometryDesc::Type::file) return;
         add(geometry.file, "a mesh of the scene");
         const std::string ending = lower_ending(geometry.file);

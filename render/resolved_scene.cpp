@@ -9,6 +9,7 @@
 #include "core/base/text.h"
 #include "core/meshes/gltf/gltf_import.h"
 #include "core/scene/scene_limits.h"
+#include "render/scene_motion.h"
 
 namespace uw {
 
@@ -38,7 +39,13 @@ SceneDesc scene_of_image(const SceneDesc& scene, const ImageChoice& choice) {
         result.camera = scene.cameras[choice.camera].camera;
         result.camera_name = scene.cameras[choice.camera].name;
     }
-    if (!choice.frame) return result;
+    if (!choice.frame) {
+        if (has_motion(scene)) set_time(result, first_time(scene), "the first moment");
+        return result;
+    }
+    if (has_motion(scene))
+        set_time(result, time_of_frame(scene, *choice.frame),
+                 fmt::format("frame {}", *choice.frame));
     const auto choose = [&](auto& input) {
         if (!input.is_sequence) return;
         input.file = file_of_frame(input.file, *choice.frame);
@@ -54,6 +61,7 @@ SceneDesc scene_of_image(const SceneDesc& scene, const ImageChoice& choice) {
 
 ResolvedScene::ResolvedScene(SceneDesc&& scene) : desc_(std::move(scene)) {
     refuse_open_sequences(desc_);
+    if (!desc_.time && has_motion(desc_)) set_time(desc_, first_time(desc_), "the first moment");
     import_gltf(desc_);
     check_limits(desc_);
 }

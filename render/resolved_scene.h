@@ -10,19 +10,22 @@ namespace uw {
 
 /// Which of the images that a scene describes to render.
 struct ImageChoice {
-    std::optional<int> frame;  // of its sequences; none: files are named as they are
+    std::optional<int> frame;  // none: files are named as they are, the time is the first
     std::size_t camera = 0;    // of its rig, by index
 
     friend bool operator==(const ImageChoice&, const ImageChoice&) = default;
 };
 
-/// `scene` seen by the chosen camera, with the files of the chosen frame instead of its sequences.
+/// `scene` seen by the chosen camera, with the files of the chosen frame instead of its sequences,
+/// and everything that moves at the frame's time, or without a frame at the first moment
+/// (render/scene_motion.h). Throws InputError for a frame that a trajectory does not have.
 SceneDesc scene_of_image(const SceneDesc& scene, const ImageChoice& choice);
 
 /// The description of one image's scene with nothing left to look up: no sequence without a chosen
-/// frame, and the cameras and lamps of its glTF files included (import_gltf). This is what a
-/// Renderer takes. Constructing one is what imports: a scene cannot be imported twice, as no
-/// function takes a resolved one where it expects one as read.
+/// frame, what moves at some moment (the first, if none was chosen), and the cameras and lamps of
+/// its glTF files included (import_gltf). This is what a Renderer takes. Constructing one is what
+/// imports: a scene cannot be imported twice, as no function takes a resolved one where it expects
+/// one as read.
 class ResolvedScene {
   public:
     /// Consumes the description; a caller that needs it afterwards makes an explicit copy. Throws

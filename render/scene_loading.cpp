@@ -1,6 +1,8 @@
 #include "render/scene_loading.h"
 
 #include "camera/calibration/calibration.h"
+#include "core/meshes/gltf/gltf_time_range.h"
+#include "core/motion/files/trajectory_loading.h"
 #include "core/scene/yaml/config_node.h"
 #include "core/scene/yaml/scene_reader.h"
 
@@ -8,20 +10,43 @@ namespace uw {
 
 namespace {
 
+void add_to_hash(const std::string& hash, SceneDesc& scene) {
+    ConfigNode both;
+    both.kind = ConfigNode::Kind::scalar;
+    both.quoted = true;
+    both.scalar = scene.hash + hash;
+    scene.hash = config_hash(both);
+}
+
 // Reads the calibration file that `camera` names, if any, into it.
 void calibrate(CameraDesc& camera, SceneDesc& scene) {
     const auto calibration = apply_calibration(camera);
     if (!calibration) return;
     scene.warnings.insert(scene.warnings.end(), calibration->warnings.begin(),
                           calibration->warnings.end());
-    ConfigNode both;
-    both.kind = ConfigNode::Kind::scalar;
-    both.quoted = true;
-    both.scalar = scene.hash + calibration->hash;
-    scene.hash = config_hash(both);
+    add_to_hash(calibration->hash, scene);
 }
 
-SceneDesc calibrated(SceneDesc scene) {
+// Makes the trajectories, reading their files, and looks for animations.
+void set_in_motion(SceneDesc& scene) {
+    const auto load = [&](std::optional<TrajectoryDesc>& desc) {
+        if (!desc) return;
+        const std::string hash = load_trajectory(*desc, scene.render.fps);
+        if (!hash.empty()) add_to_hash(hash, scene);
+    };
+    load(scene.camera.trajectory);
+    load(scene.rig_trajectory);
+    for (LampDesc& lamp : scene.lamps) load(lamp.trajectory);
+    for (GeometryDesc& geometry : scene.geometry) {
+        load(geometry.trajectory);
+        const std::string extension = geometry.file.extension().string();
+        if (!geometry.is_sequence && (extension == ".gltf" || extension == ".glb"))
+            geometry.animation = gltf_time_range(geometry.file);
+    }
+}
+
+SceneDesc complete(SceneDesc scene) {
+    set_in_motion(scene);
     if (scene.cameras.empty()) {
         calibrate(scene.camera, scene);
         return scene;
@@ -34,11 +59,11 @@ SceneDesc calibrated(SceneDesc scene) {
 }  // namespace
 
 SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-    return calibrated(read_scene(file, overrides));
+    return complete(read_scene(file, overrides));
 }
 
 SceneDesc load_scene_text(std::string_view text, const std::filesystem::path& file) {
-    return calibrated(read_scene_text(text, file));
+    return complete(read_scene_text(text, file));
 }
 
 }  // namespace uw

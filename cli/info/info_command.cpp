@@ -12,12 +12,14 @@
 #include "cli/console.h"
 #include "cli/info/draft_contrast.h"
 #include "cli/info/grid_choice.h"
+#include "cli/info/path_plot.h"
 #include "cli/info/scene_survey.h"
 #include "cli/info/survey_json.h"
 #include "cli/info/survey_text.h"
 #include "cli/info/vdb_advice.h"
 #include "cli/info/vdb_json.h"
 #include "cli/info/vdb_text.h"
+#include "cli/text_files.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
@@ -26,6 +28,7 @@
 #include "core/image/image_writer.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
+#include "render/scene_motion.h"
 
 namespace uw {
 
@@ -70,8 +73,9 @@ SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>
 }
 
 [[noreturn]] void refuse_frame(const fs::path& subject) {
-    throw UsageError(fmt::format("--frame: '{}' has no sequence; leave the option out",
-                                 printable(subject.string(), 300)));
+    throw UsageError(
+        fmt::format("--frame: '{}' has no sequence and nothing moves; leave the option out",
+                    printable(subject.string(), 300)));
 }
 
 /// The advice on the sequence that `subject` names, and which of its frames to inspect.
@@ -124,6 +128,8 @@ void write_picture(const VdbReport& report, const fs::path& file) {
 }
 
 std::string info_on_vdb(const InfoArguments& a) {
+    if (!a.svg.empty())
+        throw UsageError("--svg: draws the path of a scene's camera; a VDB file has none");
     if (!a.overrides.empty())
         throw UsageError("--set: works only on scenes; a VDB file has nothing to set");
     if (a.scene && a.json)
@@ -168,11 +174,25 @@ std::optional<DraftContrast> draft_contrast(Renderer& renderer, const SceneDesc&
     return draft_contrast(renderer, scene, k_fine_draft_width);
 }
 
+void write_path_plot(const InfoArguments& a, const std::optional<PathSurvey>& path,
+                     const Surfaces& surfaces) {
+    if (!path)
+        throw InputError(fmt::format(
+            "{}: there is no frame in which everything that moves has a pose, so no path to draw",
+            printable(a.subject.filename().string(), 300)));
+    TextFiles files;
+    files.add(a.svg, path_plot(*path, surfaces, a.subject.filename().string()));
+    files.commit();
+}
+
 std::string info_on_scene(const InfoArguments& a) {
     if (a.scene || !a.picture.empty())
         throw UsageError(fmt::format("{}: is for volumes; a scene is rendered with 'uwvdb render'",
                                      a.scene ? "--scene" : "--picture"));
-    SceneDesc desc = load_scene(a.subject, a.overrides);
+    const SceneDesc all = load_scene(a.subject, a.overrides);
+    if (!a.svg.empty() && !has_motion(all))
+        throw UsageError("--svg: draws the path of a camera, but nothing in this scene moves");
+    SceneDesc desc = all;
     std::vector<SequenceReport> sequences;
     std::optional<int> frame = a.frame;
     const auto look = [&](const auto& input) {
@@ -182,13 +202,16 @@ std::string info_on_scene(const InfoArguments& a) {
     };
     std::ranges::for_each(desc.volumes, look);
     std::ranges::for_each(desc.geometry, look);
-    if (sequences.empty() && a.frame) refuse_frame(a.subject);
-    if (!sequences.empty()) desc = scene_of_image(desc, {frame});
+    if (sequences.empty() && a.frame && !has_motion(desc)) refuse_frame(a.subject);
+    if (frame) desc = scene_of_image(desc, {frame});
     Renderer renderer;
     const std::optional<DraftContrast> contrast = draft_contrast(renderer, desc);
     renderer.set_scene(std::move(desc));
     SceneSurvey survey = survey_scene(renderer.assemble(), contrast);
     survey.sequences = std::move(sequences);
+    const Surfaces& surfaces = *renderer.assembled().surfaces;
+    survey.path = survey_path(all, surfaces);
+    if (!a.svg.empty()) write_path_plot(a, survey.path, surfaces);
     return a.json ? survey_json(survey) : survey_text(survey);
 }
 

@@ -8,6 +8,7 @@ const char* const k_info_examples = R"(Examples:
   uwvdb info smoke.vdb --scene --picture smoke.png > scene.yaml
   uwvdb info plume.yaml --set 'volumes[0].grids.density.large=50'
   uwvdb info plume.yaml --json
+  uwvdb info dive.yaml --svg path.svg
 
 For a VDB or NanoVDB file: every grid in metres, what is wrong with it, which to map and how, and a
 `volumes:` block to paste into a scene, or a whole scene that shows it. For a scene: water, camera,
@@ -21,11 +22,14 @@ Options info_options(InfoArguments& a) {
         .required = true;
     options.set(a.overrides);
     options.integer("--frame", "N", a.frame, 0, 999'999'999,
-                    "which frame of a sequence; default: the first that holds something");
+                    "which frame of a sequence, or of a scene that moves; default: the first that "
+                    "holds something");
     options.flag("--scene", a.scene,
                  "of a volume: print a whole scene that shows it, ready to render, and nothing "
                  "else");
     options.path("--picture", "OUT.png", a.picture, "of a volume: write a thumbnail of that scene");
+    options.path("--svg", "OUT.svg", a.svg,
+                 "of a scene that moves: draw the camera's path over it, from above and by height");
     options.flag("--json", a.json, "print everything as JSON");
     return options;
 }

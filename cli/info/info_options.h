@@ -17,6 +17,7 @@ struct InfoArguments {
     bool json = false;
     bool scene = false;             // --scene: print a whole scene instead, of a VDB file
     std::filesystem::path picture;  // --picture: a thumbnail of that scene; empty: none
+    std::filesystem::path svg;      // --svg: the camera's path over a scene; empty: none
 };
 
 /// What `uwvdb info --help` ends with.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/info/draft_contrast.h"
+#include "cli/info/path_survey.h"
 #include "cli/info/vdb_report.h"
 #include "render/scene_assembly.h"
 
@@ -55,6 +56,7 @@ struct SceneSurvey {
     ViewSurvey view;
     std::optional<DraftContrast> contrast;  // of the volumes; none without volumes or lamps
     std::array<double, 2> field_of_view{};  // in the water, through the centre [degrees]
+    std::optional<PathSurvey> path;         // of the camera; none: nothing moves
     std::vector<std::string> warnings;      // the scene's, then what will be black or opaque
 };
 

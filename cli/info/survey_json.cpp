@@ -103,6 +103,27 @@ Json contrast_json(const std::optional<DraftContrast>& contrast) {
             {"optical_depth", contrast->depth}};
 }
 
+Json path_json(const std::optional<PathSurvey>& path) {
+    if (!path) return nullptr;
+    Json points = Json::array();
+    for (const PathPoint& point : path->points)
+        points.push_back({{"frame", point.frame},
+                          {"time", point.time},
+                          {"position", point_json(point.position)},
+                          {"height", number_json(point.height)}});
+    const auto frame = [&](const std::optional<std::size_t>& index) {
+        return index ? Json(path->points[*index].frame) : Json(nullptr);
+    };
+    return {{"first_frame", path->frames.first},
+            {"last_frame", path->frames.last},
+            {"length", path->length},
+            {"top_speed", path->top_speed},
+            {"leaves_floor", frame(path->leaves_floor)},
+            {"enters", frame(path->enters)},
+            {"entered", path->entered},
+            {"points", std::move(points)}};
+}
+
 }  // namespace
 
 std::string survey_json(const SceneSurvey& survey) {
@@ -136,6 +157,7 @@ std::string survey_json(const SceneSurvey& survey) {
                     {"lit", view.lit},           {"hidden", view.hidden},
                     {"nearest", view.nearest},   {"farthest", view.farthest}};
     json["contrast"] = contrast_json(survey.contrast);
+    json["path"] = path_json(survey.path);
     json["reach"] = k_reach;
     json["warnings"] = survey.warnings;
     return json_text(json);

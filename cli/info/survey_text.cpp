@@ -144,6 +144,7 @@ std::string survey_text(const SceneSurvey& survey) {
                             percent(grid.in_reach), percent(grid.in_both));
     }
     text += describe_view(survey);
+    if (survey.path) text += path_text(*survey.path);
     if (survey.contrast)
         text += fmt::format(
             "  contrast of the volumes {}, where they are seen ({} of the image; a draft with and "

@@ -14,6 +14,7 @@
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
 #include "media/volumes/volume_sequence.h"
+#include "render/scene_motion.h"
 
 namespace uw {
 
@@ -249,9 +250,9 @@ bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
 
 std::optional<std::string> frame_warning(const RenderArguments& a, const SceneDesc& scene) {
     if (!a.frames.empty() && has_sensor(scene)) return std::nullopt;  // noise of its own
-    if (a.frames.size() > 1 && !has_sequence(scene))
-        return "--frames: all frames are alike, because no file of the scene has a placeholder for "
-               "the frame number, such as file: smoke_####.vdb";
+    if (a.frames.size() > 1 && !has_sequence(scene) && !has_motion(scene))
+        return "--frames: all frames are alike, because nothing in the scene moves and no file has "
+               "a placeholder for the frame number, such as file: smoke_####.vdb";
     if (!a.frames.empty()) return std::nullopt;
     for (const fs::path* name : {&a.output, &a.stats, &a.irradiance_vdb})
         if (!name->empty() && !is_file(*name) && differs_by_frame(*name))

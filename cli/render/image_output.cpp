@@ -109,6 +109,7 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
         m["uwvdb/error_requested"] = *paths.error;
     }
     if (frame) m["uwvdb/frame"] = fmt::format("{}", *frame);
+    if (scene.time) m["uwvdb/time_s"] = *scene.time;
     if (!scene.camera_name.empty()) m["uwvdb/camera"] = scene.camera_name;
     const IntrinsicsDesc& k = scene.camera.intrinsics;
     m["uwvdb/intrinsics_fx_fy_cx_cy_px"] =

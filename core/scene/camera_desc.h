@@ -10,6 +10,7 @@
 #include "core/base/vec.h"
 #include "core/scene/sensor_desc.h"
 #include "core/scene/source_location.h"
+#include "core/scene/trajectory_desc.h"
 
 /// The camera of a scene as inert data (docs/scene-file.md). Lengths in metres, angles in degrees.
 namespace uw {
@@ -86,6 +87,8 @@ struct CameraDesc {
     std::optional<LensDesc> lens;
     std::optional<SensorDesc> sensor;
     Affine world_from_camera;  ///< rigid; x right, y down, z forward
+    /// How it moves; then world_from_camera is that of the scene's moment (render/scene_motion.h).
+    std::optional<TrajectoryDesc> trajectory;
     /// The source of resolution, intrinsics, distortion and port, if they are not in the scene
     /// (camera/calibration/calibration.h).
     std::optional<CalibrationDesc> calibration;

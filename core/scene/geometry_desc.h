@@ -9,6 +9,7 @@
 #include "core/base/vec.h"
 #include "core/scene/per_band.h"
 #include "core/scene/source_location.h"
+#include "core/scene/trajectory_desc.h"
 
 namespace uw {
 
@@ -33,13 +34,25 @@ struct GltfImportDesc {
     friend bool operator==(const GltfImportDesc&, const GltfImportDesc&) = default;
 };
 
+/// A span of time [s], both ends included.
+struct TimeRange {
+    double first = 0, last = 0;
+
+    friend bool operator==(const TimeRange&, const TimeRange&) = default;
+};
+
 /// One entry of the scene's geometry: the meshes of a file, or a shape.
 struct GeometryDesc {
     enum class Type { file, plane, box, sphere };
     Type type = Type::file;
     std::filesystem::path file;
-    bool is_sequence = false;            ///< `file` has a pattern for the frame number
-    Affine world_from_object;            ///< of a file's meshes, in metres
+    bool is_sequence = false;  ///< `file` has a pattern for the frame number
+    /// When the nodes of a glTF file move, unless it is one of a sequence (load_scene).
+    std::optional<TimeRange> animation;
+    std::optional<double> time;  ///< of the animation [s]; none: as its nodes are written
+    Affine world_from_object;    ///< of a file's meshes or a shape, in metres
+    /// How it moves; then world_from_object is that of the scene's moment.
+    std::optional<TrajectoryDesc> trajectory;
     Point3 point;                        ///< of a plane, world [m]
     Vector3 normal{0, 0, 1};             ///< of a plane, world, unit
     Point3 min, max;                     ///< of a box, world [m]

@@ -13,6 +13,7 @@
 #include "core/scene/per_band.h"
 #include "core/scene/source_location.h"
 #include "core/scene/sun_desc.h"
+#include "core/scene/trajectory_desc.h"
 
 namespace uw {
 
@@ -34,6 +35,9 @@ struct LampDesc {
     std::optional<LampSpectrumDesc> spectrum;
     bool fixed_to_camera = true;  ///< its frame is the camera's, else world_from_mount
     Affine world_from_mount;      ///< rigid
+    bool fixed_to_rig = false;    ///< world_from_mount moves with the rig
+    /// How its frame moves; then world_from_mount is that of the scene's moment.
+    std::optional<TrajectoryDesc> trajectory;
     SourceLocation where;
 
     /// Maps the lamp's frame to the world.

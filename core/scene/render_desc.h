@@ -51,6 +51,12 @@ struct RenderDesc {
     /// the integrator needs (samples_of).
     std::optional<int> samples;
     double shutter = 0;  ///< exposure time [s], 0..60; 0: no motion blur
+    double fps = 25;     ///< frames per second: frame n is at n/fps, > 0
+    /// What the frames' times are: those of `fps`, or frame n is at the time of pose n of the
+    /// camera's or the rig's trajectory.
+    enum class Times { fps, trajectory };
+    Times times = Times::fps;
+    SourceLocation times_where = "render.times";
     /// Draft is for previews: within 3 % of the final image, at a fraction of its cost. Exact is
     /// for comparison: in-scatter is integrated along every pixel's own ray (InScatterLattice).
     enum class Quality { draft, final, exact };

@@ -8,6 +8,7 @@
 #include "core/scene/geometry_desc.h"
 #include "core/scene/lamp_desc.h"
 #include "core/scene/render_desc.h"
+#include "core/scene/trajectory_desc.h"
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
 
@@ -29,6 +30,11 @@ struct SceneDesc {
     CameraDesc camera;                   ///< of a rig, the one rendered: initially its first
     std::string camera_name;             ///< empty: the scene has one camera, no rig
     std::vector<RigCameraDesc> cameras;  ///< of a rig; else none
+    /// How the rig moves: until the scene's moment is set, its cameras and lamps have poses in the
+    /// rig's axes.
+    std::optional<TrajectoryDesc> rig_trajectory;
+    /// The moment that all poses are of [s]; none: not set (render/scene_motion.h).
+    std::optional<double> time;
     WaterDesc water;
     std::vector<VolumeDesc> volumes;
     std::vector<GeometryDesc> geometry;

@@ -135,7 +135,7 @@ class Builder {
             case GeometryDesc::Type::file:
                 add_file(desc, read_mesh(desc.file, warnings,
                                          {desc.import.camera || desc.import.any_lamps(),
-                                          desc.is_pbr, desc.is_material_given}));
+                                          desc.is_pbr, desc.is_material_given, desc.time}));
                 break;
             case GeometryDesc::Type::box:
                 add_mesh(desc, box_mesh(desc), name_object(desc, "box"), reflectance(desc));

@@ -82,6 +82,7 @@ std::string_view frame_of(const SceneDesc& desc, const LampDesc& lamp, const Con
     if (frame && frame->scalar == "world") return "world";
     if (frame && frame->scalar == "rig") return "rig";
     if (lamp.sun) return "world";
+    if (lamp.trajectory) return "trajectory";
     if (lamp.fixed_to_camera) return "camera";
     if (!entry) return "world";
     return frame || desc.cameras.empty() ? "camera" : "rig";

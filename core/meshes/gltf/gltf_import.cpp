@@ -254,7 +254,7 @@ void name_unused_lights(SceneDesc& scene) {
         const std::string extension = object.file.extension().string();
         if (extension != ".gltf" && extension != ".glb") continue;
         if (object.import.any_lamps()) continue;
-        const GltfItems items = read_gltf_items(object.file);
+        const GltfItems items = read_gltf_items(object.file, object.time);
         if (items.lights.empty()) continue;
         scene.warnings.push_back(fmt::format(
             "{}: '{}' has lights that no key asks for: {}; take them with lamps: all", object.where,
@@ -267,7 +267,7 @@ void name_unused_lights(SceneDesc& scene) {
 void import_gltf(SceneDesc& scene) {
     for (const GeometryDesc& object : scene.geometry) {
         if (!object.import.camera && !object.import.any_lamps()) continue;
-        const GltfItems items = read_gltf_items(object.file);
+        const GltfItems items = read_gltf_items(object.file, object.time);
         if (object.import.camera) import_camera(items, object, scene);
         if (object.import.any_lamps()) import_lamps(items, object, scene);
     }

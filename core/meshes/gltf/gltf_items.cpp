@@ -11,6 +11,8 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/meshes/gltf/gltf_animation.h"
+#include "core/meshes/gltf/gltf_inspection.h"
 #include "core/meshes/gltf/gltf_nodes.h"
 
 namespace uw {
@@ -123,11 +125,11 @@ std::optional<BlenderVersion> blender_version(const GltfDocument& document) {
     return version;
 }
 
-GltfItems read_items(const GltfDocument& document) {
+GltfItems read_items(const GltfDocument& document, const GltfPoses& poses) {
     const Json& lights = document.list(document.extension(document.root(), k_lights), "lights");
     GltfItems items;
     items.written_by_blender = blender_version(document);
-    for (const GltfNode& node : gltf_nodes(document)) {
+    for (const GltfNode& node : gltf_nodes(document, poses)) {
         if (node.json->contains("camera")) {
             const Json& json = document.element("cameras", *node.json, "camera");
             GltfCamera camera = read_camera(document, json);
@@ -150,9 +152,13 @@ GltfItems read_items(const GltfDocument& document) {
 
 }  // namespace
 
-GltfItems read_gltf_items(const std::filesystem::path& file) {
+GltfItems read_gltf_items(const std::filesystem::path& file, const std::optional<double>& time) {
     try {
-        return read_items(GltfDocument(file));
+        const GltfDocument document(file);
+        if (!time) return read_items(document, {});
+        inspect_gltf(document, {});  // the accessors
+        GltfBytes bytes(document);
+        return read_items(document, gltf_poses(document, bytes, *time));
     } catch (const Json::exception& error) {
         throw InputError(
             fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));

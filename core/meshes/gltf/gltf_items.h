@@ -47,8 +47,9 @@ struct GltfItems {
     std::optional<BlenderVersion> written_by_blender;  // the version, of a file that Blender wrote
 };
 
-/// Reads the cameras and lights of a glTF file; no mesh or image is loaded. Throws IoError,
-/// InputError.
-GltfItems read_gltf_items(const std::filesystem::path& file);
+/// Reads the cameras and lights of a glTF file, where its animations have them at `time` [s], or
+/// where its nodes are written; no mesh or image is loaded. Throws IoError, InputError.
+GltfItems read_gltf_items(const std::filesystem::path& file,
+                          const std::optional<double>& time = {});
 
 }  // namespace uw

@@ -29,7 +29,27 @@ std::uint32_t little_endian(const std::string& bytes, std::size_t at) {
     return value;
 }
 
-std::string json_text(const std::filesystem::path& file) {
+void check_nesting(const std::string& json, const std::string& name) {
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t k = 0; k < json.size(); ++k) {
+        const char c = json[k];
+        if (in_string) {
+            if (c == '\\') ++k;
+            if (c == '"') in_string = false;
+        } else if (c == '"') {
+            in_string = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > k_max_nesting) throw InputError(name + ": the glTF is nested too deeply");
+        } else if (c == '}' || c == ']') {
+            --depth;
+        }
+    }
+}
+
+}  // namespace
+
+std::string read_gltf_text(const std::filesystem::path& file) {
     const std::string name = file.string();
     std::error_code status;
     // A pipe or device under a mesh's name would block the reader.
@@ -56,28 +76,8 @@ std::string json_text(const std::filesystem::path& file) {
     return read_bytes(in, length);
 }
 
-void check_nesting(const std::string& json, const std::string& name) {
-    int depth = 0;
-    bool in_string = false;
-    for (std::size_t k = 0; k < json.size(); ++k) {
-        const char c = json[k];
-        if (in_string) {
-            if (c == '\\') ++k;
-            if (c == '"') in_string = false;
-        } else if (c == '"') {
-            in_string = true;
-        } else if (c == '{' || c == '[') {
-            if (++depth > k_max_nesting) throw InputError(name + ": the glTF is nested too deeply");
-        } else if (c == '}' || c == ']') {
-            --depth;
-        }
-    }
-}
-
-}  // namespace
-
 nlohmann::json load_gltf_json(const std::filesystem::path& file) {
-    const std::string text = json_text(file);
+    const std::string text = read_gltf_text(file);
     check_nesting(text, file.string());
     nlohmann::json document = nlohmann::json::parse(text);
     if (!document.is_object() || !document.contains("asset")) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/meshes/gltf/gltf_animation.h"
 
 namespace uw {
 namespace {
@@ -29,11 +30,12 @@ std::string listed_nodes(const GltfDocument& document, const std::set<std::size_
 
 }  // namespace
 
-std::string unused_motion_of(const GltfDocument& document) {
+std::string unused_motion_of(const GltfDocument& document, const GltfUse& use) {
     const nlohmann::json& nodes = document.list("nodes");
     std::set<std::size_t> animated, skinned;
     for (const nlohmann::json& animation : document.list("animations")) {
         for (const nlohmann::json& channel : document.list(animation, "channels")) {
+            if (use.time && moves_node(document, channel)) continue;
             const std::uint64_t node =
                 document.whole_number(document.object(channel, "target"), "node", UINT64_MAX);
             if (node < nodes.size()) animated.insert(node);
@@ -44,7 +46,9 @@ std::string unused_motion_of(const GltfDocument& document) {
     }
     if (animated.empty() && skinned.empty()) return {};
     std::string what;
-    if (!animated.empty()) what = "animations of " + listed_nodes(document, animated);
+    if (!animated.empty())
+        what = (use.time ? "morph animations of " : "animations of ") +
+               listed_nodes(document, animated);
     if (!skinned.empty())
         what += fmt::format("{}skins of {}", what.empty() ? "" : " and ",
                             listed_nodes(document, skinned));

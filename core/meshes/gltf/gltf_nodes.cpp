@@ -36,15 +36,19 @@ Matrix3 rotation_of(const GltfDocument& document, const std::array<double, 4>& q
                    s * (x * z + y * w), s * (y * z - x * w), 1 - s * (x * x + y * y));
 }
 
-Affine parent_from_node(const GltfDocument& document, const Json& node) {
+Affine parent_from_node(const GltfDocument& document, const Json& node, const GltfPose& pose) {
     if (node.contains("matrix")) {
+        if (pose.translation || pose.rotation || pose.scale)
+            document.fail(
+                "a glTF node with a matrix is animated; export it with its "
+                "translation, rotation and scale");
         const auto m = numbers<16>(document, node, "matrix", {});  // by columns
         return {Matrix3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]),
                 Vector3(m[12], m[13], m[14])};
     }
-    const auto t = numbers<3>(document, node, "translation", {0, 0, 0});
-    const auto r = numbers<4>(document, node, "rotation", {0, 0, 0, 1});
-    const auto s = numbers<3>(document, node, "scale", {1, 1, 1});
+    const auto t = pose.translation.value_or(numbers<3>(document, node, "translation", {0, 0, 0}));
+    const auto r = pose.rotation.value_or(numbers<4>(document, node, "rotation", {0, 0, 0, 1}));
+    const auto s = pose.scale.value_or(numbers<3>(document, node, "scale", {1, 1, 1}));
     Matrix3 linear = rotation_of(document, r);
     for (int column = 0; column < 3; ++column) linear[column] *= s[std::size_t(column)];
     return {linear, Vector3(t[0], t[1], t[2])};
@@ -104,7 +108,7 @@ std::vector<std::size_t> roots_of(const GltfDocument& document,
 
 }  // namespace
 
-std::vector<GltfNode> gltf_nodes(const GltfDocument& document) {
+std::vector<GltfNode> gltf_nodes(const GltfDocument& document, const GltfPoses& poses) {
     const Json& nodes = document.list("nodes");
     struct Open {
         std::size_t index = 0;
@@ -120,7 +124,10 @@ std::vector<GltfNode> gltf_nodes(const GltfDocument& document) {
         const Open next = open.back();
         open.pop_back();
         const Json& node = nodes[next.index];
-        const Affine file_from_node = next.file_from_parent * parent_from_node(document, node);
+        const auto posed = poses.find(next.index);
+        const Affine file_from_node =
+            next.file_from_parent *
+            parent_from_node(document, node, posed == poses.end() ? GltfPose() : posed->second);
         result.push_back({next.index, &node, file_from_node});
         const Json& children = document.list(node, "children");
         for (std::size_t k = children.size(); k-- > 0;) {

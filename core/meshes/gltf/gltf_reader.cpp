@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/meshes/gltf/gltf_animation.h"
 #include "core/meshes/gltf/gltf_inspection.h"
 #include "core/meshes/gltf/gltf_joiner.h"
 #include "core/meshes/gltf/gltf_motion.h"
@@ -33,9 +34,9 @@ struct MeshUse {
 /// Names what a file shows and sorts it into what is there once and what several nodes share.
 class GltfContents {
   public:
-    explicit GltfContents(const GltfDocument& document)
+    GltfContents(const GltfDocument& document, const GltfPoses& poses)
         : document_(document), uses_(document.list("meshes").size()) {
-        for (const GltfNode& node : gltf_nodes(document)) {
+        for (const GltfNode& node : gltf_nodes(document, poses)) {
             if (node.json->contains("mesh")) add(node);
         }
         for (const Json& material : document.list("materials")) {
@@ -140,13 +141,15 @@ MeshFile read_gltf(const std::filesystem::path& file, const GltfUse& use,
             warnings.push_back(
                 fmt::format("{}: ignored: {}", file.string(), fmt::join(ignored, ", ")));
         }
-        if (const std::string motion = unused_motion_of(document); !motion.empty()) {
+        if (const std::string motion = unused_motion_of(document, use); !motion.empty()) {
             warnings.push_back(fmt::format("{}: {}", file.string(), motion));
         }
         GltfBytes bytes(document);
         GltfMaterials materials(document, bytes, use);
         GltfJoiner joiner(document, bytes, materials);
-        MeshFile result = GltfContents(document).read(joiner);
+        GltfPoses poses;
+        if (use.time) poses = gltf_poses(document, bytes, *use.time);
+        MeshFile result = GltfContents(document, poses).read(joiner);
         if (joiner.colors_out_of_range() > 0) {
             warnings.push_back(fmt::format("{}: {} vertex colours are outside 0..1; clamped",
                                            file.string(), joiner.colors_out_of_range()));

@@ -2,16 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
 
+#include "core/base/error.h"
 #include "core/scene/yaml/camera_values.h"
 #include "core/scene/yaml/config_map.h"
 #include "core/scene/yaml/name_reader.h"
 #include "core/scene/yaml/pose_reader.h"
 #include "core/scene/yaml/sensor_reader.h"
+#include "core/scene/yaml/trajectory_reader.h"
 
 namespace uw {
 namespace {
@@ -152,10 +155,10 @@ CalibrationDesc read_calibration_name(const ConfigValue& value, const SceneConte
 }  // namespace
 
 CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(
-        value,
-        {"resolution", "intrinsics", "distortion", "port", "pose", "lens", "sensor", "calibration"},
-        "write {resolution: [1920, 1080], intrinsics: {fov_x: 60}}");
+    ConfigMap map(value,
+                  {"resolution", "intrinsics", "distortion", "port", "pose", "trajectory", "lens",
+                   "sensor", "calibration"},
+                  "write {resolution: [1920, 1080], intrinsics: {fov_x: 60}}");
     CameraDesc camera;
     if (const auto calibration = map.find("calibration")) {
         camera.calibration = read_calibration_name(*calibration, context);
@@ -178,9 +181,67 @@ CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
     if (const auto entry = map.find("lens")) camera.lens = read_lens(*entry);
     if (const auto entry = map.find("sensor")) camera.sensor = read_sensor(*entry, context);
     const auto pose = map.find("pose");
-    camera.has_pose = pose.has_value();
+    const auto trajectory = map.find("trajectory");
+    camera.has_pose = pose || trajectory;
     if (pose) camera.world_from_camera = read_pose(*pose);
+    if (trajectory) {
+        if (pose)
+            trajectory->fail(
+                "a camera has either a pose or a trajectory; remove one (a camera with a pose in "
+                "a moving body is a rig of one)");
+        camera.trajectory = read_trajectory(*trajectory, context, true);
+    }
     return camera;
+}
+
+namespace {
+
+RigCameraDesc read_rig_camera(const ConfigValue& value, const SceneContext& context) {
+    constexpr auto k_mend = "name the camera, such as left";
+    const ConfigNode* const name = value.node().find("name");
+    if (name == nullptr) value.fail(fmt::format("'name' is missing; {}", k_mend));
+    RigCameraDesc camera;
+    camera.name =
+        read_short_name(ConfigValue(*name, value.path() + ".name"), "a file's name", k_mend);
+    // The rest is a camera like that of a single-camera scene.
+    ConfigNode unnamed = value.node();
+    std::erase_if(unnamed.entries, [](const auto& entry) { return entry.key == "name"; });
+    camera.camera = read_camera(ConfigValue(unnamed, value.path()), context);
+    if (const auto& trajectory = camera.camera.trajectory)
+        throw InputError(
+            fmt::format("{}: the cameras of a rig are fixed to it; give rig: {{trajectory: ...}}",
+                        trajectory->where));
+    return camera;
+}
+
+}  // namespace
+
+std::vector<RigCameraDesc> read_cameras(const ConfigValue& value,
+                                        const std::optional<ConfigValue>& rig,
+                                        SceneContext& context) {
+    Affine world_from_rig;
+    if (rig) {
+        constexpr auto k_mend = "write rig: {pose: {position: [0, 0, 0], look_at: [0, 0, 1]}}";
+        ConfigMap map(*rig, {"pose", "trajectory"}, k_mend);
+        if (const auto trajectory = map.find("trajectory")) {
+            map.finish("a rig with a trajectory");
+            context.rig_trajectory = read_trajectory(*trajectory, context, true);
+        } else {
+            world_from_rig = read_pose(map.require("pose", k_mend));
+        }
+    }
+    std::vector<RigCameraDesc> cameras;
+    for (const ConfigValue& entry : value.list("write one '- {name: left, ...}' per camera")) {
+        RigCameraDesc camera = read_rig_camera(entry, context);
+        if (std::ranges::find(cameras, camera.name, &RigCameraDesc::name) != cameras.end())
+            entry.fail(fmt::format("the name '{}' is taken by another camera; give each its own",
+                                   camera.name));
+        camera.camera.world_from_camera = world_from_rig * camera.camera.world_from_camera;
+        cameras.push_back(std::move(camera));
+    }
+    if (cameras.empty()) value.fail("is empty; write one '- {name: left, ...}' per camera");
+    context.rig = {world_from_rig, cameras.front().camera.world_from_camera};
+    return cameras;
 }
 
 }  // namespace uw

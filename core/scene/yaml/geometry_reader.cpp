@@ -7,6 +7,7 @@
 #include "core/scene/yaml/config_map.h"
 #include "core/scene/yaml/name_reader.h"
 #include "core/scene/yaml/pose_reader.h"
+#include "core/scene/yaml/trajectory_reader.h"
 
 namespace uw {
 namespace {
@@ -124,13 +125,15 @@ void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
 GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) {
     ConfigMap map(value,
                   {"file", "transform", "reflectance", "type", "point", "normal", "min", "max",
-                   "center", "radius", "camera", "lamps", "light_units", "material"},
+                   "center", "radius", "camera", "lamps", "light_units", "material", "trajectory"},
                   "write {file: seabed.glb} or {type: sphere, center: [0, 0, 2], radius: 0.2}");
     GeometryDesc object;
     object.where = value.location();
     if (const auto entry = map.find("reflectance")) {
         object.reflectance = read_reflectance(*entry, context);
     }
+    if (const auto entry = map.find("trajectory"))
+        object.trajectory = read_trajectory(*entry, context, false);
     if (const auto type = map.find("type")) {
         read_shape(map, *type, object);
         return object;

@@ -12,6 +12,7 @@
 #include "core/scene/yaml/config_map.h"
 #include "core/scene/yaml/name_reader.h"
 #include "core/scene/yaml/spectrum_reader.h"
+#include "core/scene/yaml/trajectory_reader.h"
 
 namespace uw {
 namespace {
@@ -216,11 +217,39 @@ void read_sun(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
     read_irradiance(map, context, lamp);
 }
 
+// What the lamp is fixed to.
+void read_frame(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
+    enum class Frame { camera, rig, world };
+    constexpr std::array<std::pair<std::string_view, Frame>, 3> k_frames{
+        {{"camera", Frame::camera}, {"rig", Frame::rig}, {"world", Frame::world}}};
+    Frame frame = context.rig ? Frame::rig : Frame::camera;
+    if (lamp.trajectory) frame = Frame::world;
+    if (const auto entry = map.find("frame")) {
+        frame = entry->choice(k_frames);
+        if (frame == Frame::rig && !context.rig) {
+            entry->fail(
+                "there is no rig in this scene; use camera or world, or give cameras: a list of "
+                "named cameras");
+        }
+        if (lamp.trajectory && frame != Frame::world)
+            entry->fail("a lamp with a trajectory of its own is fixed to nothing else; remove one");
+    }
+    lamp.fixed_to_camera = frame == Frame::camera && !context.rig;
+    if (context.rig && frame != Frame::world) {
+        lamp.fixed_to_rig = true;
+        lamp.world_from_mount =
+            frame == Frame::rig ? context.rig->world_from_rig : context.rig->world_from_camera;
+    }
+}
+
 /// A lamp that stands somewhere.
 void read_placed(ConfigMap& map, LampType type, const SceneContext& context, LampDesc& lamp) {
-    lamp.position =
-        at_origin_plus(map.require("position", "give the lamp's position in metres")
-                           .vector("give the lamp's position, three lengths in metres"));
+    if (const auto entry = map.find("trajectory"))
+        lamp.trajectory = read_trajectory(*entry, context, false);
+    if (!lamp.trajectory || map.has("position"))
+        lamp.position =
+            at_origin_plus(map.require("position", "give the lamp's position in metres")
+                               .vector("give the lamp's position, three lengths in metres"));
     if (const auto entry = map.find("direction")) {
         lamp.direction = entry->direction("give the direction in which the lamp shines, not all 0");
     }
@@ -230,30 +259,14 @@ void read_placed(ConfigMap& map, LampType type, const SceneContext& context, Lam
     if (lamp.extent) lamp.profile = CosineProfileDesc{120};
     if (const auto entry = map.find("profile")) lamp.profile = read_profile(*entry, context);
     read_output(map, context, lamp);
-    enum class Frame { camera, rig, world };
-    constexpr std::array<std::pair<std::string_view, Frame>, 3> k_frames{
-        {{"camera", Frame::camera}, {"rig", Frame::rig}, {"world", Frame::world}}};
-    Frame frame = context.rig ? Frame::rig : Frame::camera;
-    if (const auto entry = map.find("frame")) {
-        frame = entry->choice(k_frames);
-        if (frame == Frame::rig && !context.rig) {
-            entry->fail(
-                "there is no rig in this scene; use camera or world, or give cameras: a list of "
-                "named cameras");
-        }
-    }
-    lamp.fixed_to_camera = frame == Frame::camera && !context.rig;
-    if (context.rig && frame != Frame::world) {
-        lamp.world_from_mount =
-            frame == Frame::rig ? context.rig->world_from_rig : context.rig->world_from_camera;
-    }
+    read_frame(map, context, lamp);
 }
 
 LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneContext& context) {
     ConfigMap map(value,
                   {"name", "type", "position", "direction", "width", "height", "radius", "rotate",
                    "samples", "profile", "spectrum", "intensity", "power", "lumens", "frame",
-                   "angle", "irradiance", "lux"},
+                   "angle", "irradiance", "lux", "trajectory"},
                   "write {name: left, position: [-1, 0, 0], intensity: 50}");
     LampDesc lamp;
     lamp.where = value.location();

@@ -14,14 +14,15 @@ constexpr double k_smallest_scale = 1e-9;
 /// Closer to the view direction than this angle [rad], `up` leaves the roll undefined.
 constexpr double k_smallest_up_angle = 1e-6;
 
-Affine read_look_at(ConfigMap& map) {
+Affine read_rotate(const ConfigValue& value) {
+    return Affine::rotation_xyz_degrees(
+        value.vector("give three angles in degrees, about x, then y, then z"));
+}
+
+Affine read_look_at(ConfigMap& map, const Point3& position) {
     const Vector3 default_up(0, 1, 0);
-    Point3 position;
-    if (const auto value = map.find("position")) {
-        position = at_origin_plus(value->vector("give the camera's position in metres"));
-    }
-    const ConfigValue target_value =
-        map.require("look_at", "give a point the camera looks at, or the pose as a 4x4 matrix");
+    const ConfigValue target_value = map.require(
+        "look_at", "give a point the camera looks at, rotate, or the pose as a 4x4 matrix");
     const Point3 target =
         at_origin_plus(target_value.vector("give a point the camera looks at, in metres"));
     const auto up_value = map.find("up");
@@ -84,14 +85,27 @@ Affine read_matrix(const ConfigValue& value) {
 
 }  // namespace
 
-Affine read_pose(const ConfigValue& value) {
-    ConfigMap map(value, {"position", "look_at", "up", "matrix"},
-                  "write {position: [0, 0, 0], look_at: [0, 0, 1]}");
+Affine read_pose_keys(ConfigMap& map, bool is_view) {
     if (const auto matrix = map.find("matrix")) {
         map.finish("a pose with 'matrix'");
         return read_matrix(*matrix);
     }
-    return read_look_at(map);
+    Point3 position;
+    if (const auto value = map.find("position"))
+        position = at_origin_plus(value->vector("give the position in metres"));
+    const auto rotate = map.find("rotate");
+    if (rotate || (!is_view && !map.has("look_at"))) {
+        map.finish("a pose without 'look_at', or with 'rotate',");
+        const Affine moved = Affine::translation(from_origin(position));
+        return rotate ? moved * read_rotate(*rotate) : moved;
+    }
+    return read_look_at(map, position);
+}
+
+Affine read_pose(const ConfigValue& value) {
+    ConfigMap map(value, {"position", "look_at", "up", "rotate", "matrix"},
+                  "write {position: [0, 0, 0], look_at: [0, 0, 1]}");
+    return read_pose_keys(map, true);
 }
 
 Affine read_transform(const ConfigValue& value) {
@@ -107,16 +121,13 @@ Affine read_transform(const ConfigValue& value) {
             entry->fail("must not be 0 or closer to 0 than 1e-9; give one factor, or one per axis");
         }
     }
-    Vector3 degrees(0.0);
-    if (const auto entry = map.find("rotate")) {
-        degrees = entry->vector("give three angles in degrees, about x, then y, then z");
-    }
+    Affine rotation;
+    if (const auto entry = map.find("rotate")) rotation = read_rotate(*entry);
     Vector3 offset(0.0);
     if (const auto entry = map.find("translate")) {
         offset = entry->vector("give three lengths in metres");
     }
-    return Affine::translation(offset) * Affine::rotation_xyz_degrees(degrees) *
-           Affine::scale(scale);
+    return Affine::translation(offset) * rotation * Affine::scale(scale);
 }
 
 }  // namespace uw

@@ -68,13 +68,27 @@ ColourDesc read_colour(ConfigMap& map, const SceneContext& context) {
     return colour;
 }
 
+/// `fps` and `times` of `render`.
+void read_times(ConfigMap& map, RenderDesc& render) {
+    if (const auto entry = map.find("fps")) {
+        constexpr double k_least = 1e-6, k_most = 1e6;
+        render.fps = entry->within(k_least, k_most, "give the frames per second, such as 25");
+    }
+    if (const auto entry = map.find("times")) {
+        constexpr std::array<std::pair<std::string_view, RenderDesc::Times>, 2> k_times{
+            {{"fps", RenderDesc::Times::fps}, {"trajectory", RenderDesc::Times::trajectory}}};
+        render.times = entry->choice(k_times);
+        render.times_where = entry->location();
+    }
+}
+
 }  // namespace
 
 RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(
-        value,
-        {"integrator", "scattering", "output", "planes", "samples", "shutter", "response", "white"},
-        "write {samples: 4}");
+    ConfigMap map(value,
+                  {"integrator", "scattering", "output", "planes", "samples", "shutter", "response",
+                   "white", "fps", "times"},
+                  "write {samples: 4}");
     RenderDesc render;
     render.planes.where = value.location() + ".planes";
     if (const auto entry = map.find("integrator"))
@@ -104,6 +118,7 @@ RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
         if (render.shutter > k_longest)
             entry->fail("must not be more than a minute; give seconds, such as 0.02");
     }
+    read_times(map, render);
     render.colour = read_colour(map, context);
     return render;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/affine.h"
+#include "core/scene/trajectory_desc.h"
 #include "core/scene/water_surface_desc.h"
 #include "core/scene/yaml/config_value.h"
 
@@ -24,6 +25,7 @@ struct SceneContext {
         Affine world_from_rig, world_from_camera;  // the first camera's
     };
     std::optional<RigFrames> rig{};
+    std::optional<TrajectoryDesc> rig_trajectory{};  // likewise
 
     /// Adds the warning "<location>: <what>".
     void warn(const ConfigValue& value, const std::string& what) const {

@@ -12,7 +12,6 @@
 #include "core/scene/yaml/geometry_reader.h"
 #include "core/scene/yaml/lamp_reader.h"
 #include "core/scene/yaml/render_reader.h"
-#include "core/scene/yaml/rig_reader.h"
 #include "core/scene/yaml/scene_context.h"
 #include "core/scene/yaml/scene_override.h"
 #include "core/scene/yaml/sensor_reader.h"
@@ -93,6 +92,7 @@ void read_camera_or_rig(ConfigMap& map, SceneContext& context, SceneDesc& desc) 
     if (const auto camera = map.find("camera"))
         camera->fail("a scene has either camera or cameras; remove one");
     desc.cameras = read_cameras(*cameras, rig, context);
+    desc.rig_trajectory = context.rig_trajectory;
     desc.camera = desc.cameras.front().camera;
     desc.camera_name = desc.cameras.front().name;
 }
@@ -118,6 +118,13 @@ void refine_blur(SceneDesc& desc) {
         blurs(desc.camera) || std::ranges::any_of(desc.cameras, blurs, &RigCameraDesc::camera);
     const bool traces_paths = desc.render.integrator == RenderDesc::Integrator::path;
     if (any && !desc.render.samples && !traces_paths) desc.render.samples = k_samples;
+}
+
+void check_times(const SceneDesc& desc) {
+    if (desc.render.times == RenderDesc::Times::fps) return;
+    if (!desc.camera.trajectory && !desc.rig_trajectory)
+        throw InputError(desc.render.times_where +
+                         ": needs camera.trajectory or rig.trajectory; add it, or remove this");
 }
 
 /// Sets the exposure time of the volumes that move.
@@ -167,6 +174,7 @@ SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& fi
     check_lenses(desc);
     complete_sensors(desc);
     refine_blur(desc);
+    check_times(desc);
     check_gltf_imports(desc);
     const bool brings_lamps = std::ranges::any_of(
         desc.geometry, [](const GeometryDesc& object) { return object.import.any_lamps(); });

@@ -66,7 +66,8 @@ export class LampForm {
             field(textField({ label: "Name", key: "name", commit:
                 (value, refuse) => this.#rename(lamp.name, value, refuse) }), (now) => now.name),
             field(selectField({ label: "Frame", key: "frame",
-                options: ["camera", ...(scene.rig ? ["rig"] : []), "world"]
+                options: ["camera", ...(scene.rig ? ["rig"] : []), "world",
+                    ...(lamp.frame === "trajectory" ? ["trajectory"] : [])]
                     .map((frame) => ({ value: frame, label: frame })),
                 commit: (frame, refuse) => this.#setFrame(lamp, frame, refuse) }), (now) => now.frame),
             field(numbersField({ label: "Position", unit: "m", key: "position", names: ["x", "y", "z"],
