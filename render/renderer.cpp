@@ -53,6 +53,12 @@ const AssembledScene& Renderer::assemble() {
     if (is_assembled_) return scene_;
     AssembledScene before;
     std::swap(before, before_);
+    if (ahead_.are_of(scene_.desc) && before.desc.water.bands_nm == ahead_.bands_nm) {
+        before.desc.geometry = std::move(ahead_.geometry);
+        before.surfaces = std::move(ahead_.surfaces);
+        before.geometry_warnings = std::move(ahead_.warnings);
+        ahead_ = {};
+    }
     AssembledScene assembled = assemble_scene(
         scene_.desc, [this](const std::string& stage) { begin(stage); }, std::move(before));
     assembled.desc = std::move(scene_.desc);
@@ -171,14 +177,18 @@ const Film& Renderer::render(const RenderOptions& options) {
     LightTransport own;
     if (!options.transport) own = make_light_transport(scene_, light_);
     is_film_clear_ = false;
-    render_scene(scene_, light_, options.transport ? *options.transport : own, *plan_, *colour_,
-                 *film_,
-                 [this](const std::string& stage, double fraction) {
-                     return !progress_ || progress_(stage, fraction);
-                 },
-                 {samples_of(scene_.desc.render), options.paths.error},
-                 {[this](const PathAccuracy& so_far) { report_.paths = so_far; },
-                  [this](double error) { report_.multiple_error = error; }});
+    const Correspondences others(scene_, *plan_, ahead_);
+    report_.warnings.insert(report_.warnings.end(), others.warnings().begin(),
+                            others.warnings().end());
+    render_scene(
+        scene_, light_, options.transport ? *options.transport : own, *plan_, *colour_, *film_,
+        [this](const std::string& stage, double fraction) {
+            return !progress_ || progress_(stage, fraction);
+        },
+        {samples_of(scene_.desc.render), options.paths.error},
+        {[this](const PathAccuracy& so_far) { report_.paths = so_far; },
+         [this](double error) { report_.multiple_error = error; }},
+        others.matchers());
     if (sensor_) sensor_->expose(*scene_.camera, *plan_, *film_);
     warn_of_error(options.paths);
     warn_of_multiple_error();

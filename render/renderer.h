@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/sensor/camera_sensor.h"
+#include "render/correspondences.h"
 #include "render/light_splatter.h"
 #include "render/resolved_scene.h"
 #include "render/scene_assembly.h"
@@ -124,6 +125,7 @@ class Renderer {
     RenderProgress progress_;
     AssembledScene scene_;  // its `desc` alone until it is assembled
     bool is_assembled_ = false, is_edited_ = false;
+    SurfacesAhead ahead_;    // of the next frame
     AssembledScene before_;  // what the scene reuses when it is assembled
     LightSplatter splatter_;
     DeepShadows light_;             // of the scene; empty: not splatted

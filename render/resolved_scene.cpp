@@ -35,6 +35,8 @@ void refuse_open_sequences(const SceneDesc& scene) {
 
 SceneDesc scene_of_image(const SceneDesc& scene, const ImageChoice& choice) {
     SceneDesc result = scene;
+    result.whole = std::make_shared<SceneDesc>(scene);
+    result.choice = choice;
     if (!scene.cameras.empty()) {
         result.camera = scene.cameras[choice.camera].camera;
         result.camera_name = scene.cameras[choice.camera].name;

@@ -1,20 +1,10 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
 #include <utility>
 
 #include "core/scene/scene_desc.h"
 
 namespace uw {
-
-/// Which of the images that a scene describes to render.
-struct ImageChoice {
-    std::optional<int> frame;  // none: files are named as they are, the time is the first
-    std::size_t camera = 0;    // of its rig, by index
-
-    friend bool operator==(const ImageChoice&, const ImageChoice&) = default;
-};
 
 /// `scene` seen by the chosen camera, with the files of the chosen frame instead of its sequences,
 /// and everything that moves at the frame's time, or without a frame at the first moment

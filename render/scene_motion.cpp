@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <limits>
+#include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/frame_pattern.h"
 
 namespace uw {
 
@@ -99,6 +102,16 @@ std::optional<FrameRange> frames_of(const SceneDesc& scene) {
     TimeRange times = common_times(scene);
     if (times.first == -k_infinity) times = animated_times(scene);
     return frames_within(scene, times);
+}
+
+bool has_frame(const SceneDesc& scene, int frame) {
+    const auto frames = frames_within(scene, common_times(scene));
+    if (!frames || frame < frames->first || frame > frames->last) return false;
+    return std::ranges::all_of(scene.geometry, [&](const GeometryDesc& geometry) {
+        std::error_code ignored;
+        return !geometry.is_sequence ||
+               std::filesystem::is_regular_file(file_of_frame(geometry.file, frame), ignored);
+    });
 }
 
 double time_of_frame(const SceneDesc& scene, int frame) {

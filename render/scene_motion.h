@@ -20,6 +20,10 @@ bool has_motion(const SceneDesc& scene);
 /// no frame is in all of them.
 std::optional<FrameRange> frames_of(const SceneDesc& scene);
 
+/// Whether everything that has a trajectory has a pose in a frame, and meshes that are one file for
+/// each frame have one for it.
+bool has_frame(const SceneDesc& scene, int frame);
+
 /// The time of a frame (RenderDesc::times) [s]. Throws InputError for one that a scene with the
 /// times of a trajectory does not have.
 double time_of_frame(const SceneDesc& scene, int frame);

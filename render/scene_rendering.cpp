@@ -183,24 +183,27 @@ LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const Pat
     return {request, scene.water.bands_nm, names,
             LayerSupply{.multiple = scattering_of(scene.render) == RenderDesc::Scattering::multiple,
                         .error = traces_paths && several,
+                        .flow = scene.choice.frame.has_value(),
+                        .disparity = scene.cameras.size() > 1,
                         .orders = paths.orders,
                         .sensor_values = sensor ? value_count(sensor->mosaic) : 0}};
 }
 
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
-                             const InScatterParts& parts) {
+                             const InScatterParts& parts, const PointMatchers& matchers) {
     int samples = samples_of(scene.desc.render);
     if (integrator_kind(scene.desc.render.integrator).traces_paths)
         samples = std::min(samples, k_most_samples_beside_paths);
     return {*scene.camera,           scene.lit(), transport, samples, scene.slabs,
-            SensorModel(scene.desc), parts};
+            SensorModel(scene.desc), parts,       matchers};
 }
 
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const RenderProgress& progress, const PathGoal& goal,
-                  const AccuracyCallbacks& reached) {
-    const PixelRenderer renderer = pixel_renderer(scene, transport, in_scatter_parts(plan));
+                  const AccuracyCallbacks& reached, const PointMatchers& matchers) {
+    const PixelRenderer renderer =
+        pixel_renderer(scene, transport, in_scatter_parts(plan), matchers);
     const double tolerance = in_scatter_tolerance(scene.desc.render);
     const auto told = [&progress](const std::string& stage) {
         return [&progress, stage](double fraction) { return progress(stage, fraction); };

@@ -42,7 +42,7 @@ double in_scatter_tolerance(const RenderDesc& render);
 
 /// Renders the pixels of `scene` by `transport`, one at a time. Both outlive the result.
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
-                             const InScatterParts& parts = {});
+                             const InScatterParts& parts = {}, const PointMatchers& matchers = {});
 
 /// Whom to tell how accurate an image is; either may be empty.
 struct AccuracyCallbacks {
@@ -59,7 +59,7 @@ struct AccuracyCallbacks {
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const RenderProgress& progress, const PathGoal& goal = {},
-                  const AccuracyCallbacks& reached = {});
+                  const AccuracyCallbacks& reached = {}, const PointMatchers& matchers = {});
 
 /// How the light of `scene` is scattered forward. If the integrator sums slabs the water is split
 /// into them, else into slabs that grow with the distance. `deep_shadows` and `scene` outlive the

@@ -1,6 +1,7 @@
 #include "core/frame/pixel_layers.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "core/image/film.h"
@@ -80,6 +81,9 @@ void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     pixel_factor = 1;
     has_hit = false;
     hit = {};
+    constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
+    flow = flow_back = disparity = {k_none, k_none};
+    flow_occluded = disparity_occluded = k_none;
     for (Spectrum* const values :
          {&direct, &forward, &backscatter, &backscatter_first, &multiple_volume, &multiple_surface,
           &error, &irradiance, &exitance, &clean, &transmittance})

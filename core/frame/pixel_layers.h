@@ -44,6 +44,14 @@ struct PixelResult {
     double depth_z = 0;  // camera-frame z of the hit
     double range = 0;    // from the camera's centre to the hit
     double path = 0;     // in water, from the outer glass surface to the hit
+    // Where the centre's point is in other images (PointMatchers), relative to the pixel's centre
+    // [pixels], and whether it is hidden there, as 0 or 1; NaN where there is no point or no such
+    // image.
+    std::array<double, 2> flow, flow_back;
+    double flow_occluded = 0;
+    /// In the image of the pair's first camera less in that of the other.
+    std::array<double, 2> disparity;
+    double disparity_occluded = 0;
 
     /// Resets to an empty pixel, with 0 for each of `lamp_count` lamps. Storage is reused. `bands`:
     /// as many as any pixel that it has held; clearing all costs a tenth of a simple image's time.
@@ -75,6 +83,11 @@ void multiple(const PixelResult& pixel, std::span<float> channels);
 /// The sum of direct, forward, backscatter and `multiple`, in this order, each rounded to float
 /// before the addition, so that in the image they add up to the total to the bit.
 void total(const PixelResult& pixel, std::span<float> channels);
+/// Several numbers.
+template <std::array<double, 2> PixelResult::*values>
+void pair(const PixelResult& pixel, std::span<float> channels) {
+    for (std::size_t i = 0; i < 2; ++i) channels[i] = static_cast<float>((pixel.*values)[i]);
+}
 void albedo(const PixelResult& pixel, std::span<float> channels);
 void normal(const PixelResult& pixel, std::span<float> channels);
 void position(const PixelResult& pixel, std::span<float> channels);
@@ -142,6 +155,12 @@ inline constexpr std::array<PixelLayer, k_layer_count> k_pixel_layers{{
     {.layer = Layer::id, .fill = layer_channels::id, .of_hit = true},
     {.layer = Layer::material, .fill = layer_channels::material, .of_hit = true},
     {.layer = Layer::sensor, .fill = layer_channels::later},
+    {.layer = Layer::flow, .fill = layer_channels::pair<&PixelResult::flow>},
+    {.layer = Layer::flow_back, .fill = layer_channels::pair<&PixelResult::flow_back>},
+    {.layer = Layer::flow_occluded, .fill = layer_channels::number<&PixelResult::flow_occluded>},
+    {.layer = Layer::disparity, .fill = layer_channels::pair<&PixelResult::disparity>},
+    {.layer = Layer::disparity_occluded,
+     .fill = layer_channels::number<&PixelResult::disparity_occluded>},
 }};
 static_assert(has_every_layer(k_pixel_layers));
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/frame/aperture_samples.h"
+#include "core/frame/pixel_matches.h"
 #include "core/paths/path_random.h"
 #include "core/surfaces/surface_reflection.h"
 
@@ -81,7 +82,8 @@ void group_distances(std::vector<double>& distances, int samples, PixelView& vie
 
 PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
                              const LightTransport& transport, int samples, const Slabs& slabs,
-                             const SensorModel& sensor, const InScatterParts& parts)
+                             const SensorModel& sensor, const InScatterParts& parts,
+                             const PointMatchers& matchers)
     : rays_(rays),
       scene_(scene),
       transport_(transport),
@@ -89,6 +91,7 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
       sensor_(sensor),
       in_scatter_(*transport.integrator, rays.world_from_camera(), slabs, lamp_count(),
                   band_count(), parts),
+      matchers_(matchers),
       camera_from_world_(rays.world_from_camera().inverse()) {}
 
 void PixelRenderer::trace(int x, int y, PixelView& view) const {
@@ -204,6 +207,7 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
         result.depth_z = view.depth_z;
         result.range = view.range;
         result.path = view.path;
+        find_matches(matchers_, view, result);
     }
     for (std::size_t i = 0; i < view.samples.size(); ++i)
         add_surface(view.samples[i], light, first_sample + i, result);

@@ -7,6 +7,7 @@
 #include "core/base/ray_source.h"
 #include "core/frame/pixel_layers.h"
 #include "core/frame/pixel_view.h"
+#include "core/frame/point_matcher.h"
 #include "core/frame/ray_in_scatter.h"
 #include "core/image/film.h"
 #include "core/integrators/light_transport.h"
@@ -21,10 +22,11 @@ class PixelRenderer {
   public:
     /// All references must outlive the renderer. `samples` >= 1 per pixel; a single one lies at the
     /// centre. The first of `slabs` is the water of `backscatter_first`. `sensor` determines the
-    /// quantity that the image holds: by default radiance.
+    /// quantity that the image holds: by default radiance. `matchers` look for the points of the
+    /// image in others.
     PixelRenderer(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
                   int samples, const Slabs& slabs, const SensorModel& sensor = {},
-                  const InScatterParts& parts = {});
+                  const InScatterParts& parts = {}, const PointMatchers& matchers = {});
 
     int lamp_count() const { return static_cast<int>(scene_.lamp_count()); }
     int band_count() const { return scene_.medium->band_count(); }
@@ -69,6 +71,7 @@ class PixelRenderer {
     int samples_;
     SensorModel sensor_;
     RayInScatter in_scatter_;
+    PointMatchers matchers_;
     Affine camera_from_world_;
 };
 

@@ -12,8 +12,6 @@
 namespace uw {
 namespace {
 
-constexpr std::array<std::string_view, 3> k_not_supported{"flow", "flow_back", "flow_occluded"};
-
 /// Layers by how often light was scattered, and reflected.
 constexpr std::array<std::string_view, 2> k_orders{"order", "reflections"};
 
@@ -73,6 +71,15 @@ std::string_view mend_of_missing(Layer layer, const LayerSupply& supply) {
         case Layer::sensor:
             if (supply.sensor_values > 0) return {};
             return "the camera has no sensor; add camera.sensor to the scene";
+        case Layer::flow:
+        case Layer::flow_back:
+        case Layer::flow_occluded:
+            if (supply.flow) return {};
+            return "other frames are those of a sequence; give its --frames";
+        case Layer::disparity:
+        case Layer::disparity_occluded:
+            if (supply.disparity) return {};
+            return "needs a rig of at least two cameras; give cameras: a list of them";
         default:
             return {};
     }
@@ -144,8 +151,6 @@ void LayerPlan::Selection::add(std::string_view item, std::span<const std::strin
         throw UsageError(fmt::format(
             "--layers: {}: layers by order are written with --orders N; give that instead",
             printable(item)));
-    } else if (std::ranges::find(k_not_supported, item) != k_not_supported.end()) {
-        throw UsageError(fmt::format("--layers: {}: not supported yet; leave it out", item));
     } else {
         throw UsageError(
             fmt::format("--layers: '{}': unknown layer; {}", printable(item), mend_of(item)));
@@ -153,8 +158,11 @@ void LayerPlan::Selection::add(std::string_view item, std::span<const std::strin
 }
 
 void LayerPlan::Selection::add_all() {
-    for (std::size_t i = 0; i < k_layer_count; ++i)
-        if (mend_of_missing(static_cast<Layer>(i), supply).empty()) layers[i] = true;
+    for (std::size_t i = 0; i < k_layer_count; ++i) {
+        const auto layer = static_cast<Layer>(i);
+        if (!is_about_another_image(layer) && mend_of_missing(layer, supply).empty())
+            layers[i] = true;
+    }
 }
 
 void LayerPlan::Selection::add_layer(std::size_t layer) {

@@ -36,6 +36,11 @@ enum class Layer {
     id,
     material,
     sensor,
+    flow,
+    flow_back,
+    flow_occluded,
+    disparity,
+    disparity_occluded,
     count,  // not a layer: the number of layers
 };
 inline constexpr auto k_layer_count = static_cast<std::size_t>(Layer::count);
@@ -74,7 +79,17 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::id, "id", "V"},
     {Layer::material, "material", "V"},
     {Layer::sensor, "sensor", "RGB"},
+    {Layer::flow, "flow", "XY"},
+    {Layer::flow_back, "flow_back", "XY"},
+    {Layer::flow_occluded, "flow_occluded", "V"},
+    {Layer::disparity, "disparity", "XY"},
+    {Layer::disparity_occluded, "disparity_occluded", "V"},
 }};
+
+/// Whether a layer says where points are in another image: `all` leaves it out.
+constexpr bool is_about_another_image(Layer layer) {
+    return layer >= Layer::flow;
+}
 
 /// Whether a table holds one line for every layer, in order.
 template <class Line>
@@ -92,8 +107,10 @@ bool is_image_channel(std::string_view channel_name);
 
 /// What an image can hold besides what every image can.
 struct LayerSupply {
-    bool multiple = false;  // light scattered or reflected more than once
-    bool error = false;     // the standard error
+    bool multiple = false;   // light scattered or reflected more than once
+    bool error = false;      // the standard error
+    bool flow = false;       // where points are in other frames
+    bool disparity = false;  // where points are in another camera
     /// The light by how often it was scattered, and by how often it was reflected, each 0 to this;
     /// 0: not at all. These layers are in the plan without being requested.
     int orders = 0;
@@ -107,17 +124,19 @@ struct LayerSupply {
 /// decimal point is written as an underscore (`direct.540_5nm`), since readers take everything
 /// before the last point as the layer. Then the total per band is a layer of its own, `total`; with
 /// three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`, `normal.X .Y .Z`,
-/// `position.X .Y .Z`, `id.V`, `material.V`, `sensor.V` or `sensor.R .G .B`. A lamp's own light is
-/// `lamp.<name>.R` and so on; light scattered n times is `order.<n>.R`, what is scattered more
-/// often than LayerSupply::orders `order.more.R`, and by reflections likewise `reflections.<n>.R`.
+/// `position.X .Y .Z`, `id.V`, `material.V`, `sensor.V` or `sensor.R .G .B`, `flow.X .Y`,
+/// `flow_back.X .Y`, `flow_occluded.V`, `disparity.X .Y`, `disparity_occluded.V`. A lamp's own
+/// light is `lamp.<name>.R` and so on; light scattered n times is `order.<n>.R`, what is scattered
+/// more often than LayerSupply::orders `order.more.R`, and by reflections likewise
+/// `reflections.<n>.R`.
 class LayerPlan {
   public:
     /// `request` is the argument of --layers: comma-separated layers, including `lamps` for every
     /// lamp, `lamp.<name>` for one, `all`, and `default` for the image with its depth. Empty means
     /// `default`. Order and repetition do not matter. `sensor` brings `total` with it. `all` leaves
-    /// out what is not in `supply`. Throws UsageError for an unknown layer or lamp, for one that is
-    /// not supported yet and for one that is not in `supply`; InputError if bands or lamps cannot
-    /// be distinguished by name or a lamp's name is not valid in a channel name.
+    /// out what is not in `supply` and what is about another image. Throws UsageError for an
+    /// unknown layer or lamp, and for one that is not in `supply`; InputError if bands or lamps
+    /// cannot be distinguished by name or a lamp's name is not valid in a channel name.
     LayerPlan(std::string_view request, std::span<const double> bands_nm,
               std::span<const std::string> lamp_names, const LayerSupply& supply = {});
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +27,14 @@ struct RigCameraDesc {
     CameraDesc camera;
 };
 
+/// Which of the images that a scene describes to render.
+struct ImageChoice {
+    std::optional<int> frame;  // none: files are named as they are, the time is the first
+    std::size_t camera = 0;    // of its rig, by index
+
+    friend bool operator==(const ImageChoice&, const ImageChoice&) = default;
+};
+
 /// All of a scene file.
 struct SceneDesc {
     std::filesystem::path file;          ///< the scene file itself
@@ -35,6 +46,10 @@ struct SceneDesc {
     std::optional<TrajectoryDesc> rig_trajectory;
     /// The moment that all poses are of [s]; none: not set (render/scene_motion.h).
     std::optional<double> time;
+    /// The scene as it was read, of which this is the image `choice`, for what other frames show;
+    /// null: it is that itself (scene_of_image).
+    std::shared_ptr<const SceneDesc> whole;
+    ImageChoice choice;
     WaterDesc water;
     std::vector<VolumeDesc> volumes;
     std::vector<GeometryDesc> geometry;

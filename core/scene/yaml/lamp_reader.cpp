@@ -206,8 +206,7 @@ void read_sun(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
     if (!context.water_surface)
         map.value().fail(
             "a sun's light begins at the water's surface, but the scene does not say where that "
-            "is; "
-            "give water: {surface: {point: [0, 10, 0], normal: [0, 1, 0]}}");
+            "is; give water: {surface: {point: [0, 10, 0], normal: [0, 1, 0]}}");
     sun.surface = *context.water_surface;
     if (const auto angle = map.find("angle"))
         sun.angle = angle->within(0, 90, "give the angle across the sun's disc in degrees");
@@ -226,11 +225,10 @@ void read_frame(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
     if (lamp.trajectory) frame = Frame::world;
     if (const auto entry = map.find("frame")) {
         frame = entry->choice(k_frames);
-        if (frame == Frame::rig && !context.rig) {
+        if (frame == Frame::rig && !context.rig)
             entry->fail(
                 "there is no rig in this scene; use camera or world, or give cameras: a list of "
                 "named cameras");
-        }
         if (lamp.trajectory && frame != Frame::world)
             entry->fail("a lamp with a trajectory of its own is fixed to nothing else; remove one");
     }
@@ -250,9 +248,8 @@ void read_placed(ConfigMap& map, LampType type, const SceneContext& context, Lam
         lamp.position =
             at_origin_plus(map.require("position", "give the lamp's position in metres")
                                .vector("give the lamp's position, three lengths in metres"));
-    if (const auto entry = map.find("direction")) {
+    if (const auto entry = map.find("direction"))
         lamp.direction = entry->direction("give the direction in which the lamp shines, not all 0");
-    }
     if (type == LampType::rectangle) lamp.extent = read_rectangle(map);
     if (type == LampType::disk) lamp.extent = read_disk(map);
     // A diffuse surface, unless a profile says otherwise.

@@ -153,10 +153,10 @@ TEST(Layers, ManyBandsAndLamps) {
 }
 
 TEST(Layers, RefusesWithOneUsefulLine) {
-    EXPECT_EQ(message_of<UsageError>("flow"), "--layers: flow: not supported yet; leave it out");
-    for (const char* name : {"flow_back", "flow_occluded"}) {
-        EXPECT_NE(message_of<UsageError>(name).find("not supported yet"), std::string::npos);
-    }
+    for (const char* name : {"flow", "flow_back", "flow_occluded"})
+        EXPECT_NE(message_of<UsageError>(name).find("give its --frames"), std::string::npos);
+    for (const char* name : {"disparity", "disparity_occluded"})
+        EXPECT_NE(message_of<UsageError>(name).find("a rig of at least"), std::string::npos);
     const std::string unknown = message_of<UsageError>("depth,dirct");
     EXPECT_NE(unknown.find("'dirct'"), std::string::npos);
     EXPECT_NE(unknown.find("did you mean 'direct'?"), std::string::npos);
