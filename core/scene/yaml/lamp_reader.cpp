@@ -102,7 +102,7 @@ void read_lumens(const ConfigValue& value, std::string_view mend, LampDesc& lamp
     lamp.lumens = value.positive(mend);
     if (!lamp.spectrum) {
         value.fail(
-            "only the lamp's spectrum can convert it to watts; give it, such as spectrum: "
+            "only the lamp's spectrum can convert lumens to watts; give it, such as spectrum: "
             "{type: led, name: LED-B4}");
     }
 }
