@@ -115,6 +115,15 @@ bool has_sequence(const SceneDesc& scene) {
 
 }  // namespace
 
+std::vector<int> all_frames(const SceneDesc& scene) {
+    const std::optional<FrameRange> range = frames_of(scene);
+    if (!range)
+        throw UsageError(
+            "--frames all: nothing in the scene has a trajectory or is animated; list the frames, "
+            "such as 0-47");
+    return parse_frame_list(fmt::format("{}-{}", range->first, range->last));
+}
+
 FrameSequence frames_of(const RenderArguments& a) {
     const OutputFiles names = output_files(a);
     if (a.frames.empty()) {

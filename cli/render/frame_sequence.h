@@ -32,6 +32,9 @@ struct FrameSequence {
     std::filesystem::path contact_sheet{};  // likewise
 };
 
+/// The frames of `--frames all`. Throws UsageError if nothing in the scene moves.
+std::vector<int> all_frames(const SceneDesc& scene);
+
 /// The images that the arguments request. Throws UsageError for several frames with one name, and
 /// for a name whose ending is not that of its format.
 FrameSequence frames_of(const RenderArguments& arguments);

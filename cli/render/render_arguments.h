@@ -27,7 +27,8 @@ struct PreviewExposure {
 struct RenderArguments {
     std::filesystem::path scene;
     std::filesystem::path output;        // empty: the scene's name with .exr, in the working folder
-    std::vector<int> frames;             // --frames; empty: no sequence
+    std::vector<int> frames;             // --frames; empty: no sequence, or
+    bool all_frames = false;             // all that the scene has
     bool resume = false;                 // --resume
     std::vector<std::string> overrides;  // --set key.path=value
     std::optional<std::array<int, 2>> size;  // --size WxH

@@ -193,18 +193,19 @@ void render_frames(const FrameSequence& sequence, FrameScenes& scenes, FrameRend
 
 }  // namespace
 
-void run_render(const RenderArguments& a) {
-    if (a.resume && a.frames.empty())
+void run_render(const RenderArguments& typed) {
+    RenderArguments a = typed;
+    if (a.resume && a.frames.empty() && !a.all_frames)
         throw UsageError("--resume: only continues a sequence; give its --frames");
     const auto start = std::chrono::steady_clock::now();
     RunStats stats;
     const ThreadLimit limit(a.threads);
     a.exr();  // throws for a word that does not exist
-    FrameSequence sequence = frames_of(a);
-
     stats.begin_stage("scene");
     SceneDesc desc = load_scene(a.scene, a.overrides);
     apply_arguments(a, desc);
+    if (a.all_frames) a.frames = all_frames(desc);
+    FrameSequence sequence = frames_of(a);
     add_cameras(sequence, desc, a.camera);
     add_sensor_images(sequence, desc);
     const std::vector<PixelWindow> windows = windows_of(a, desc);

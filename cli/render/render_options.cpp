@@ -95,9 +95,13 @@ Options render_options(RenderArguments& a) {
         "EXR to write, or a PNG or the camera's image alone; default: the scene's name, in "
         "this folder");
     options.parsed(
-        "--frames", "1-10,20-40:2",
-        [&a](const std::string& text) { a.frames = parse_frame_list(text); },
-        "render these frames; file names contain %04d, ####, $F4 or {frame}");
+        "--frames", "1-10,20-40:2|all",
+        [&a](const std::string& text) {
+            a.all_frames = text == "all";
+            if (!a.all_frames) a.frames = parse_frame_list(text);
+        },
+        "render these frames, or all in which everything that moves has a pose; file names "
+        "contain %04d, ####, $F4 or {frame}");
     options.flag("--resume", a.resume, "with --frames: skip frames that already exist");
     options.set(a.overrides);
     options.size(a.size, "render at this size, the intrinsics scaled with it");

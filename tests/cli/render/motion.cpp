@@ -85,6 +85,15 @@ TEST_F(MovingScenes, FramesAreTheScenesThatStandStillThere) {
                       whole.channels.at("G")[y * 33 + x]);
 }
 
+TEST_F(MovingScenes, AllFramesAreThoseWithAPose) {
+    expect_runs({"render", "dive.yaml", "--frames", "all", "-o", "out_#.exr", "--size", "8x5"});
+    for (int frame = 0; frame <= 4; ++frame)  // 0 to 2 s at 2 frames per second
+        EXPECT_TRUE(exists("out_" + std::to_string(frame) + ".exr")) << frame;
+    EXPECT_FALSE(exists("out_5.exr"));
+    expect_failure({"render", "scene.yaml", "--frames", "all", "-o", "still_#.exr"}, 2,
+                   "--frames all: nothing in the scene has a trajectory");
+}
+
 TEST_F(MovingScenes, FramesWithoutAPoseEndTheRunBeforeItBegins) {
     expect_failure({"render", "dive.yaml", "--frames", "3-5", "-o", "out_#.exr"}, 3,
                    "camera.trajectory: has no pose for frame 5, at 2.5 s; its poses are from 0 to "
