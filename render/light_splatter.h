@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "media/light/deep_shadow_map.h"
-#include "media/light/sun_deep_shadow.h"
 #include "render/scene_assembly.h"
 
 namespace uw {

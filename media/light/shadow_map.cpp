@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/integrators/ray_panels.h"
+#include "media/light/lit_edges.h"
 
 namespace uw {
 
@@ -76,10 +77,10 @@ std::size_t ShadowMap::bytes() const {
 class ShadowMap::Search {
   public:
     Search(const ShadowMap& map, const Ray& ray, std::vector<Interval>& lit)
-        : map_(map), ray_(ray), lit_(lit) {}
+        : map_(map), ray_(ray), edges_(*map.surfaces_, {map.lamp_}, ray, lit) {}
 
     void run(const Interval& stretch) {
-        whole_ = stretch;
+        edges_.set_stretch(stretch);
         thread_local std::vector<FaceSegment> segments;
         split_by_face(ray_, map_.lamp_, stretch, segments);
         for (const FaceSegment& segment : segments) {
@@ -90,14 +91,13 @@ class ShadowMap::Search {
         }
     }
 
-    void append(const Interval& interval) {
-        if (!lit_.empty() && lit_.back().end == interval.begin)
-            lit_.back().end = interval.end;
-        else
-            lit_.push_back(interval);
-    }
+    void append(const Interval& interval) { edges_.append(interval); }
 
   private:
+    struct FromLamp {
+        Point3 lamp;
+        const Point3& operator()(const Point3& /*x*/) const { return lamp; }
+    };
     struct MapPoint {
         double s;      // along the ray
         double depth;  // along the face's axis
@@ -115,7 +115,7 @@ class ShadowMap::Search {
     void descend(const MapPoint& a, const MapPoint& b) {
         const DepthRange range = bound(a, b);
         if (std::max(a.depth, b.depth) * (1 + k_margin) < range.nearest)
-            append({a.s, b.s});
+            edges_.append({a.s, b.s});
         else if (std::min(a.depth, b.depth) > range.farthest * (1 + k_margin))
             return;
         else if (std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) <= 1.0 &&
@@ -141,51 +141,17 @@ class ShadowMap::Search {
                                texel(std::max(a.u, b.u)), texel(std::max(a.v, b.v)));
     }
 
-    bool visible(double s) const { return !map_.surfaces_->occluded(map_.lamp_, ray_.at(s)); }
-
-    // Visibility at the end of an interval; slightly inside it at the ends of the whole interval,
-    // which may lie on a surface, since a surface occludes nothing within 1e-5 of the distance
-    // (Surfaces::occluded).
-    bool visible_at_end(double s, double into) {
-        if (s == last_seen_.s) return last_seen_.visible;
-        const bool is_end = s == whole_.begin || s == whole_.end;
-        const double inset =
-            std::min(0.25 * std::abs(into - s), 3e-5 * distance(map_.lamp_, ray_.at(s)));
-        last_seen_ = {s, visible(is_end ? s + std::copysign(inset, into - s) : s)};
-        return last_seen_.visible;
-    }
-
-    // Resolves an interval of at most a texel that the map cannot decide.
+    // An interval of at most a texel that the map cannot decide.
     void resolve(double begin, double end) {
-        const bool lit_at_begin = visible_at_end(begin, end);
-        const bool lit_at_end = visible_at_end(end, begin);
-        if (lit_at_begin == lit_at_end) {
-            if (lit_at_begin) append({begin, end});
-            return;
-        }
-        double a = begin, b = end;
-        const double width = k_edge_width * distance(map_.lamp_, ray_.at(0.5 * (begin + end)));
-        while (b - a > width) {
-            const double middle = 0.5 * (a + b);
-            (visible(middle) == lit_at_begin ? a : b) = middle;
-        }
-        const double edge = 0.5 * (a + b);
-        append(lit_at_begin ? Interval{begin, edge} : Interval{edge, end});
+        edges_.resolve(begin, end,
+                       k_edge_width * distance(map_.lamp_, ray_.at(0.5 * (begin + end))));
     }
-
-    // Neighbouring intervals share an end.
-    struct Seen {
-        double s = -1;
-        bool visible = false;
-    };
 
     const ShadowMap& map_;
     const Ray& ray_;
-    std::vector<Interval>& lit_;
+    LitEdges<FromLamp> edges_;
     CubeFace face_{0};
     const DepthPyramid* pyramid_ = nullptr;
-    Interval whole_;
-    Seen last_seen_;
 };
 
 void ShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,

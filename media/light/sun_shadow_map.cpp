@@ -5,6 +5,7 @@
 
 #include "core/base/parallel.h"
 #include "media/light/bounds_corners.h"
+#include "media/light/lit_edges.h"
 
 namespace uw {
 
@@ -102,11 +103,13 @@ class SunShadowMap::Search {
     Search(const SunShadowMap& map, const Ray& ray, const Interval& whole,
            std::vector<Interval>& lit)
         : map_(map),
-          ray_(ray),
           whole_(whole),
           begin_(map.frame_.point(ray.origin)),
           rates_(map.frame_.rates(ray.direction)),
-          lit_(lit) {}
+          edges_(*map.surfaces_, {map.frame_.sun()}, ray, lit),
+          edge_width_(k_sun_edge_width * whole.length()) {
+        edges_.set_stretch(whole);
+    }
 
     // By the squares from this one on.
     void run(std::size_t square, const Interval& stretch) {
@@ -129,6 +132,10 @@ class SunShadowMap::Search {
     }
 
   private:
+    struct FromSurface {
+        const Sunlight& sun;
+        Point3 operator()(const Point3& x) const { return sun.entry(x); }
+    };
     struct MapPoint {
         double s;      // along the ray
         double depth;  // from the level's first
@@ -154,11 +161,11 @@ class SunShadowMap::Search {
         const double margin = k_sun_margin_texels * 2 * level_->square.half / map_.resolution_ +
                               k_float_rounding * most;
         if (most + margin < range.nearest) {
-            append({a.s, b.s});
+            edges_.append({a.s, b.s});
         } else if (least - margin > range.farthest) {
             return;
         } else if (std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) <= 1) {
-            resolve(a.s, b.s);
+            edges_.resolve(a.s, b.s, edge_width_);
         } else {
             const MapPoint middle = project(0.5 * (a.s + b.s));
             descend(a, middle);
@@ -171,64 +178,17 @@ class SunShadowMap::Search {
         const auto pieces = static_cast<int>(std::ceil(stretch.length() / least));
         const double length = stretch.length() / pieces;
         for (int i = 0; i < pieces; ++i)
-            resolve(stretch.begin + i * length,
-                    i + 1 < pieces ? stretch.begin + (i + 1) * length : stretch.end);
+            edges_.resolve(stretch.begin + i * length,
+                           i + 1 < pieces ? stretch.begin + (i + 1) * length : stretch.end,
+                           edge_width_);
     }
-
-    void append(const Interval& interval) {
-        if (!lit_.empty() && lit_.back().end == interval.begin)
-            lit_.back().end = interval.end;
-        else
-            lit_.push_back(interval);
-    }
-
-    bool visible(double s) const {
-        const Point3 x = ray_.at(s);
-        return !map_.surfaces_->occluded(map_.frame_.sun().entry(x), x);
-    }
-
-    // As at the end of an interval; slightly inside the whole one at its ends, which may lie on a
-    // surface, since a surface occludes nothing within 1e-5 of the distance (Surfaces::occluded).
-    bool visible_at_end(double s, double into) {
-        if (s == last_seen_.s) return last_seen_.visible;
-        const bool is_end = s == whole_.begin || s == whole_.end;
-        const double length = std::abs(map_.frame_.sun().length_to(ray_.at(s)));
-        const double inset = std::min(0.25 * std::abs(into - s), 3e-5 * length);
-        last_seen_ = {s, visible(is_end ? s + std::copysign(inset, into - s) : s)};
-        return last_seen_.visible;
-    }
-
-    // Finds the one edge in an interval.
-    void resolve(double begin, double end) {
-        const bool lit_at_begin = visible_at_end(begin, end);
-        const bool lit_at_end = visible_at_end(end, begin);
-        if (lit_at_begin == lit_at_end) {
-            if (lit_at_begin) append({begin, end});
-            return;
-        }
-        double a = begin, b = end;
-        const double width = k_sun_edge_width * whole_.length();
-        while (b - a > width) {
-            const double middle = 0.5 * (a + b);
-            (visible(middle) == lit_at_begin ? a : b) = middle;
-        }
-        const double edge = 0.5 * (a + b);
-        append(lit_at_begin ? Interval{begin, edge} : Interval{edge, end});
-    }
-
-    // Neighbouring intervals share an end.
-    struct Seen {
-        double s = -1;
-        bool visible = false;
-    };
 
     const SunShadowMap& map_;
-    const Ray& ray_;
     Interval whole_;
     LightPoint begin_, rates_;
-    std::vector<Interval>& lit_;
+    LitEdges<FromSurface> edges_;
+    double edge_width_;  // [m]
     const Level* level_ = nullptr;
-    Seen last_seen_;
 };
 
 void SunShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,

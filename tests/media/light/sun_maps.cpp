@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "media/light/sun_deep_shadow.h"
+#include "media/light/deep_shadow_map.h"
 #include "tests/support/gaussian_field.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/sphere_surface.h"

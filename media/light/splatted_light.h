@@ -4,17 +4,16 @@
 #include <utility>
 
 #include "core/integrators/deep_shadow.h"
-#include "media/light/sun_column_map.h"
-#include "media/light/sun_shadow_map.h"
 
 namespace uw {
 
-/// A sun's light, splatted into the scene: what a DeepShadowMap is for a lamp.
-class SunDeepShadow final : public DeepShadow {
+/// The light of a lamp or sun, splatted into the scene (docs/design.md): a map of the shadows of
+/// surfaces and one of columns, either of which may be shared with others.
+template <class Shadows, class Columns>
+class SplattedLight : public DeepShadow {
   public:
-    /// Both for the same sun.
-    SunDeepShadow(std::shared_ptr<const SunShadowMap> shadows,
-                  std::shared_ptr<const SunColumnMap> columns)
+    /// Both of the same light.
+    SplattedLight(std::shared_ptr<const Shadows> shadows, std::shared_ptr<const Columns> columns)
         : shadows_(std::move(shadows)), columns_(std::move(columns)) {}
 
     void lit_intervals(const Ray& ray, const Interval& stretch,
@@ -29,10 +28,11 @@ class SunDeepShadow final : public DeepShadow {
         columns_->columns(x, column);
     }
     std::size_t bytes() const override { return shadows_->bytes() + columns_->bytes(); }
+    std::uint64_t rays_traced() const { return shadows_->rays_traced() + columns_->rays_traced(); }
 
   private:
-    std::shared_ptr<const SunShadowMap> shadows_;
-    std::shared_ptr<const SunColumnMap> columns_;
+    std::shared_ptr<const Shadows> shadows_;
+    std::shared_ptr<const Columns> columns_;
 };
 
 }  // namespace uw
