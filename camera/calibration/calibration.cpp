@@ -84,11 +84,7 @@ Calibration read_calibration(const std::filesystem::path& file, const std::strin
                                                   : fmt::format(", '{}'", printable(result.camera)),
                             printable(camera)));
     }
-    ConfigNode content;
-    content.kind = ConfigNode::Kind::scalar;
-    content.quoted = true;
-    content.scalar = text;
-    result.hash = config_hash(content);
+    result.hash = text_hash(text);
     return result;
 }
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/integrators/integrator.h"
 #include "core/optics/optical_depth.h"
 
@@ -33,23 +35,36 @@ View survey(const RaySource& rays, const Surfaces& surfaces) {
     const Affine camera_from_world = rays.world_from_camera().inverse();
     const int columns = std::min(k_survey_rays, rays.width()),
               rows = std::min(k_survey_rays, rays.height());
-    View view;
-    bool all_enter = true, any_enters = false;
-    for (int j = 0; j <= rows; ++j) {
+    struct Row {
+        View view;
+        bool all_enter = true, any_enters = false;
+    };
+    std::vector<Row> seen(static_cast<std::size_t>(rows) + 1);
+    parallel_for(seen.size(), [&](std::size_t j) {
+        Row& row = seen[j];
         for (int i = 0; i <= columns; ++i) {
             const auto ray = rays.refracted_ray(static_cast<double>(i) * rays.width() / columns,
                                                 static_cast<double>(j) * rays.height() / rows);
             if (!ray) {
-                all_enter = false;
+                row.all_enter = false;
                 continue;
             }
-            any_enters = true;
+            row.any_enters = true;
             const RayDepth depth(camera_from_world, *ray);
-            view.near = std::min(view.near, std::max(0.0, depth.z(0)));
+            row.view.near = std::min(row.view.near, std::max(0.0, depth.z(0)));
             const double surface = surfaces.hit_distance(*ray);
-            view.open = view.open || surface > k_far;
-            if (surface <= k_far) view.deepest = std::max(view.deepest, depth.z(surface));
+            row.view.open = row.view.open || surface > k_far;
+            if (surface <= k_far) row.view.deepest = std::max(row.view.deepest, depth.z(surface));
         }
+    });
+    View view;
+    bool all_enter = true, any_enters = false;
+    for (const Row& row : seen) {
+        view.near = std::min(view.near, row.view.near);
+        view.deepest = std::max(view.deepest, row.view.deepest);
+        view.open = view.open || row.view.open;
+        all_enter = all_enter && row.all_enter;
+        any_enters = any_enters || row.any_enters;
     }
     // The least z of a flat port is at the image's border, provided that all border rays pass
     // through it.

@@ -40,11 +40,7 @@ PoseFile read_pose_file(const std::filesystem::path& file, PoseFormat format,
     const std::string text = read_text_file(file, origin, k_most_bytes, "file of poses");
     PoseFile poses = read_text(text, format, origin);
     if (poses.poses.empty()) throw InputError(origin + ": has no pose");
-    ConfigNode content;
-    content.kind = ConfigNode::Kind::scalar;
-    content.quoted = true;
-    content.scalar = text;
-    poses.hash = config_hash(content);
+    poses.hash = text_hash(text);
     return poses;
 }
 

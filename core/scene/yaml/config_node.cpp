@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/text.h"
 
@@ -105,6 +106,14 @@ std::string config_hash(const ConfigNode& root) {
     Fnv1a hash;
     add_node(hash, root);
     return fmt::format("{:016x}", hash.value());
+}
+
+std::string text_hash(std::string text) {
+    ConfigNode content;
+    content.kind = ConfigNode::Kind::scalar;
+    content.quoted = true;
+    content.scalar = std::move(text);
+    return config_hash(content);
 }
 
 }  // namespace uw

@@ -51,5 +51,7 @@ struct ConfigNode::Entry {
 /// 64-bit FNV-1a hash of the tree's meaning, as 16 hex digits: comments, layout, the order of keys
 /// and the spelling of numbers (1, 1.0, 1e0) do not affect it.
 std::string config_hash(const ConfigNode& root);
+/// The same of the text of another file, which counts as it is.
+std::string text_hash(std::string text);
 
 }  // namespace uw
