@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 
 #include "core/base/error.h"
 #include "core/image/image_writer.h"
+#include "tests/support/file_bytes.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"
 
@@ -18,11 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::limited;
-
-std::string read_bytes(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class CameraFiles : public testing::Test {
   protected:
@@ -52,7 +47,7 @@ TEST_F(CameraFiles, PngHoldsTheNumbersOfACamera) {
                 EXPECT_EQ(input->spec().nchannels, channels);
                 EXPECT_EQ(input->spec().get_string_attribute("uwvdb/frame"), "7");
                 // The chunk itself: readers take images without it for sRGB as well.
-                EXPECT_EQ(read_bytes(png_).find("sRGB") != std::string::npos, is_srgb);
+                EXPECT_EQ(test::file_bytes(png_).find("sRGB") != std::string::npos, is_srgb);
                 std::vector<std::uint16_t> values(image.values.size());
                 if (bits == 16) {
                     ASSERT_TRUE(
@@ -101,9 +96,9 @@ TEST_F(CameraFiles, JpegHoldsTheImageAsWellAsItsQualityAllows) {
     std::ofstream(jpeg) << "old";
     const DigitalImage noise = stored_image(200, 200, 3, 8);
     EXPECT_THROW(limited(5000, [&] { write_jpeg(jpeg, noise, 90, {}); }), IoError);
-    EXPECT_EQ(read_bytes(jpeg), "old");
+    EXPECT_EQ(test::file_bytes(jpeg), "old");
     EXPECT_THROW(write_jpeg(jpeg, stored_image(65536, 1, 1, 8), 90, {}), IoError);
-    EXPECT_EQ(read_bytes(jpeg), "old");
+    EXPECT_EQ(test::file_bytes(jpeg), "old");
 }
 
 }  // namespace

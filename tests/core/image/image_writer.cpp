@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/layers.h"
+#include "tests/support/file_bytes.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/image_file.h"
 #include "tests/support/temp_dir.h"
@@ -22,11 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::limited;
-
-std::string read_bytes(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// A value that no other channel or pixel has, and that a half float cannot hold.
 float value_of(int x, int y, std::size_t channel) {
@@ -147,7 +142,7 @@ TEST_F(ImageWriterTest, BytesDoNotDependOnThreads) {
         const ThreadLimit limit(threads);
         write_exr(exr_, film, {});
         write_png(png_, preview, {});
-        written.push_back(read_bytes(exr_) + read_bytes(png_));
+        written.push_back(test::file_bytes(exr_) + test::file_bytes(png_));
     }
     EXPECT_EQ(written[0], written[1]);
     EXPECT_EQ(written[0], written[2]);
@@ -224,7 +219,7 @@ TEST_F(ImageWriterTest, TheSameFilmGivesTheSameBytes) {
     const fs::path again = directory_.path() / "again.exr";
     write_exr(exr_, film, {{"uwvdb:seed", 1.0}});
     write_exr(again, film, {{"uwvdb:seed", 1.0}});
-    EXPECT_EQ(read_bytes(exr_), read_bytes(again));
+    EXPECT_EQ(test::file_bytes(exr_), test::file_bytes(again));
     // Written within the same second they would agree on the clock, too.
     const auto input = OIIO::ImageInput::open(exr_.string());
     ASSERT_TRUE(input) << OIIO::geterror();
@@ -251,8 +246,8 @@ TEST_F(ImageWriterTest, AFullDiskLeavesTheOldFile) {
     }
     EXPECT_THROW(limited(0, [&] { write_exr(exr_, film, {}); }), IoError);
     EXPECT_THROW(limited(0, [&] { write_png(png_, noise, {}); }), IoError);
-    EXPECT_EQ(read_bytes(exr_), "old");
-    EXPECT_EQ(read_bytes(png_), "old");
+    EXPECT_EQ(test::file_bytes(exr_), "old");
+    EXPECT_EQ(test::file_bytes(png_), "old");
     EXPECT_EQ(std::distance(fs::directory_iterator(directory_.path()), fs::directory_iterator()),
               2);
 }

@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <fstream>
-#include <iterator>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/input_files.h"
+#include "tests/support/file_bytes.h"
 #include "tests/support/message_of.h"
 #include "tests/support/scene_folder.h"
 
@@ -21,11 +20,6 @@ namespace fs = std::filesystem;
 constexpr auto k_scene =
     "# a scene\nuwvdb: 1\ncamera: {resolution: [64, 48], intrinsics: {fov_x: 60}}\n"
     "render: {samples: 1}  # one\n";
-
-std::string content(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 class Documents : public testing::Test {
   protected:
@@ -60,10 +54,10 @@ TEST_F(Documents, SaveTheirTextAndKeepTheFilesPermissions) {
     EXPECT_FALSE(document.is_unsaved());
     set_samples(document, "3");
     EXPECT_TRUE(document.is_unsaved());
-    EXPECT_EQ(content(file_), k_scene);
+    EXPECT_EQ(file_bytes(file_), k_scene);
     document.save();
     EXPECT_FALSE(document.is_unsaved());
-    EXPECT_EQ(content(file_), with_samples("3"));
+    EXPECT_EQ(file_bytes(file_), with_samples("3"));
     EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
     EXPECT_EQ(document.disk_state(), DiskState::same);
     EXPECT_EQ(files(), 1U);
@@ -89,7 +83,7 @@ TEST_F(Documents, AreTheOnlyInputsThatMayBeReplaced) {
                   document.save_as(table, Overwrite::yes);
               }).find("a file that this run reads"),
               std::string::npos);
-    EXPECT_EQ(content(table), "x");
+    EXPECT_EQ(file_bytes(table), "x");
     EXPECT_EQ(document.file(), file_);
 }
 
@@ -100,7 +94,7 @@ TEST_F(Documents, AreWrittenThroughALink) {
     set_samples(document, "3");
     document.save();
     EXPECT_TRUE(fs::is_symlink(link));
-    EXPECT_EQ(content(file_), with_samples("3"));
+    EXPECT_EQ(file_bytes(file_), with_samples("3"));
     EXPECT_EQ(document.disk_state(), DiskState::same);
 }
 
@@ -113,7 +107,7 @@ TEST_F(Documents, NoticeChangesByOtherPrograms) {
     EXPECT_EQ(document.disk_state(), DiskState::changed);
     EXPECT_NE(message_of<IoError>([&] { document.save(); }).find("changed by another program"),
               std::string::npos);
-    EXPECT_EQ(content(file_), with_samples("9"));
+    EXPECT_EQ(file_bytes(file_), with_samples("9"));
     document.reload();
     EXPECT_EQ(document.scene().text(), with_samples("9"));
     EXPECT_FALSE(document.is_unsaved());
@@ -121,11 +115,11 @@ TEST_F(Documents, NoticeChangesByOtherPrograms) {
     EXPECT_EQ(document.scene().text(), with_samples("3")) << "what was not saved is not lost";
     write_elsewhere(with_samples("8"));
     document.save(Overwrite::yes);
-    EXPECT_EQ(content(file_), with_samples("3"));
+    EXPECT_EQ(file_bytes(file_), with_samples("3"));
     fs::remove(file_);
     EXPECT_EQ(document.disk_state(), DiskState::missing);
     document.save();
-    EXPECT_EQ(content(file_), with_samples("3"));
+    EXPECT_EQ(file_bytes(file_), with_samples("3"));
 }
 
 TEST_F(Documents, StayAsTheyAreWhenTheFileIsBroken) {
@@ -145,8 +139,8 @@ TEST_F(Documents, AreSavedUnderAnotherNameInTheirFolder) {
     set_samples(document, "3");
     const fs::path other = folder_.path() / "other.yaml";
     document.save_as(other);
-    EXPECT_EQ(content(other), with_samples("3"));
-    EXPECT_EQ(content(file_), k_scene);
+    EXPECT_EQ(file_bytes(other), with_samples("3"));
+    EXPECT_EQ(file_bytes(file_), k_scene);
     EXPECT_EQ(document.file(), other);
     EXPECT_EQ(document.scene().origin(), other.string());
     EXPECT_FALSE(document.is_unsaved());
@@ -157,9 +151,9 @@ TEST_F(Documents, AreSavedUnderAnotherNameInTheirFolder) {
     const fs::path there = folder_.write("there.yaml", "x");
     EXPECT_NE(message_of<IoError>([&] { document.save_as(there); }).find("there is such a file"),
               std::string::npos);
-    EXPECT_EQ(content(there), "x");
+    EXPECT_EQ(file_bytes(there), "x");
     document.save_as(there, Overwrite::yes);
-    EXPECT_EQ(content(there), with_samples("3"));
+    EXPECT_EQ(file_bytes(there), with_samples("3"));
     EXPECT_EQ(files(), 3U);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/column_errors.h"
 #include "tests/support/gaussian_field.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/tolerance.h"
@@ -35,27 +36,10 @@ class WideField : public ConcentrationField {
 };
 
 TEST(ColumnMap, MatchesTheClosedFormAndErrorFallsWithTheSquareOfTheVoxel) {
-    const Point3 center{0.2, -0.1, 2.5};
     const Point3 lamp{-1.2, 0.4, 0};
-    double error[2];
-    double peak = 0;
-    for (int level = 0; level < 2; ++level) {
-        const GaussianField field(center, 0.3, 2.0, level == 0 ? 0.08 : 0.04);
-        const ColumnMap map(field, lamp, 2, 1 << 28);
-        std::mt19937 rng(3);
-        std::vector<Point3> points(4000);
-        for (Point3& p : points)
-            p = center + std::uniform_real_distribution<double>(0, 2)(rng) * random_direction(rng);
-        std::vector<double> columns(points.size());
-        map.columns(points, columns);
-        error[level] = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            double truth = 0;
-            field.column(lamp, points[i], std::span<double>(&truth, 1));
-            error[level] = std::max(error[level], std::abs(columns[i] - truth));
-            peak = std::max(peak, truth);
-        }
-    }
+    const auto [error, peak] = column_errors(
+        [&](const GaussianField& field) { return ColumnMap(field, lamp, 2, 1 << 28); },
+        [&](const Point3& /*x*/) { return lamp; });
     // Bilinear interpolation over texels one voxel wide: h^2/8 of the second derivative, which is
     // peak/sigma^2 for a Gaussian, in two directions plus that along the ray.
     EXPECT_LT(error[0], 3 * 0.08 * 0.08 / 8 / (0.3 * 0.3) * peak);

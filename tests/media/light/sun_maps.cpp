@@ -5,6 +5,7 @@
 #include <random>
 
 #include "media/light/deep_shadow_map.h"
+#include "tests/support/column_errors.h"
 #include "tests/support/gaussian_field.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/sphere_surface.h"
@@ -119,25 +120,9 @@ TEST(SunShadowMap, SquaresFollowTheCameraInSteps) {
 }
 
 TEST(SunColumnMap, MatchesTheClosedFormAndErrorFallsWithTheSquareOfTheVoxel) {
-    const Point3 center{0.2, -0.1, 2.5};
-    double error[2], peak = 0;
-    for (int level = 0; level < 2; ++level) {
-        const GaussianField field(center, 0.3, 2.0, level == 0 ? 0.08 : 0.04);
-        const SunColumnMap map(field, k_sun, 2, 1 << 28);
-        std::mt19937 rng(3);
-        std::vector<Point3> points(4000);
-        for (Point3& p : points)
-            p = center + std::uniform_real_distribution<double>(0, 2)(rng) * random_direction(rng);
-        std::vector<double> columns(points.size());
-        map.columns(points, columns);
-        error[level] = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            double truth = 0;
-            field.column(k_sun.entry(points[i]), points[i], std::span<double>(&truth, 1));
-            error[level] = std::max(error[level], std::abs(columns[i] - truth));
-            peak = std::max(peak, truth);
-        }
-    }
+    const auto [error, peak] = column_errors(
+        [&](const GaussianField& field) { return SunColumnMap(field, k_sun, 2, 1 << 28); },
+        [&](const Point3& x) { return k_sun.entry(x); });
     // As ColumnMap's.
     EXPECT_LT(error[0], 3 * 0.08 * 0.08 / 8 / (0.3 * 0.3) * peak);
     EXPECT_LT(error[1], 0.35 * error[0]);

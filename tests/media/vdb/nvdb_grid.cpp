@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 #include "media/vdb/vdb_inspect.h"
+#include "tests/support/file_bytes.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_loading.h"
 
@@ -30,11 +30,6 @@ VdbFixture blob() {
     fixture.boxes = {{{128, 0, 0}, {255, 127, 127}, 0.5}};  // a tile
     fixture.file_from_index = Affine(Matrix3(0.1, 0, 0, 0, 0.2, 0, 0.05, 0, 0.1), {1, 2, 3});
     return fixture;
-}
-
-std::string read_bytes(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 struct Precision {
@@ -90,7 +85,7 @@ TEST(Nvdb, DamageIsRefused) {
     const TempDir dir;
     for (const auto& [precision, codec] : {std::pair{"float", 0}, {"float", 2}, {"fpN", 0}}) {
         test::write_nvdb_fixture(dir / "a.nvdb", blob(), precision, codec);
-        const std::string bytes = read_bytes(dir / "a.nvdb");
+        const std::string bytes = test::file_bytes(dir / "a.nvdb");
         for (std::size_t size = 9; size < bytes.size(); size += bytes.size() / 23) {
             std::ofstream(dir / "cut.nvdb", std::ios::binary) << bytes.substr(0, size);
             test::refusal(dir / "cut.nvdb", "density");

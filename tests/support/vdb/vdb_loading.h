@@ -4,12 +4,12 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include "core/base/error.h"
 #include "media/vdb/vdb_file.h"
 #include "media/vdb/vdb_header_reader.h"
+#include "tests/support/file_bytes.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw::test {
@@ -42,10 +42,6 @@ inline void expect_contains(const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is missing in: " << text;
 }
 
-inline std::string file_bytes(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 inline void write_file_bytes(const std::filesystem::path& file, const std::string& bytes) {
     std::ofstream(file, std::ios::binary) << bytes;
 }
