@@ -129,7 +129,9 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
 
 DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium& medium) {
     DeepShadowOptions options;
-    if (quality != RenderDesc::Quality::exact)
+    if (quality == RenderDesc::Quality::exact)
+        options.shadow_resolution = 2048;
+    else
         options.column_tolerance = DepthTolerance(medium, k_column_tolerance);
     if (quality != RenderDesc::Quality::draft) return options;
     options.shadow_resolution = 128;

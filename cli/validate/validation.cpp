@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "cli/validate/direct_sum.h"
+#include "cli/validate/image_differences.h"
 #include "core/base/error.h"
-#include "core/integrators/planes_integrator.h"
 #include "core/integrators/quadrature_integrator.h"
 #include "core/integrators/reference_integrator.h"
 
@@ -16,7 +16,6 @@ namespace uw {
 namespace {
 
 constexpr double k_quadrature_tolerance = 1e-5;
-constexpr int k_fewest_planes = 8;
 
 // In a plume as rough as its voxels, interpolating columns between a lamp's rays, and linearly
 // between a ray's knots, leaves an error of 0.2 %; this many tolerances.
@@ -37,8 +36,6 @@ constexpr double k_dark_in_mixtures = 1;
 // like those of uniform water, but in other places.
 constexpr double k_cut_slabs = 5;
 constexpr double k_other_slabs = 3;
-// Otherwise pixels darker than this fraction of the mean are compared with that.
-constexpr double k_dark = 0.01;
 
 const char* const k_volume = "volume";
 const char* const k_planes_limit = "planes, limit";
@@ -48,10 +45,6 @@ const char* const k_reference = "reference";
 const char* const k_volume_on_grids = "volume, own grids";
 const char* const k_reference_on_grids = "reference, own grids";
 const char* const k_direct_sum = "direct sum";
-
-std::string planes_name(int count) {
-    return "planes, " + std::to_string(count);
-}
 
 ResolvedScene small_image(ResolvedScene scene, int longest_side) {
     SceneDesc& small = scene.edit();
@@ -71,29 +64,6 @@ bool scatters_in_all_bands(const Medium& medium) {
     const Spectrum b = medium.uniform.total_scattering();
     return std::ranges::all_of(b.first(medium.wavelengths_nm.size()),
                                [](double of_band) { return of_band != 0; });
-}
-
-// Over the pixels that `counted` marks; those darker than the fraction `dark` of the mean count as
-// that bright.
-double largest_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
-                          const std::vector<char>& counted, std::size_t band, double dark) {
-    const double floor = dark * mean_over_pixels(b, band);
-    double largest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const double difference = std::abs(a[i][band] - b[i][band]);
-        if (counted[i] != 0 && difference > 0)
-            largest = std::max(largest, difference / std::max(b[i][band], floor));
-    }
-    return largest;
-}
-
-double rms_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
-                      std::size_t band) {
-    double squares = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        squares += (a[i][band] - b[i][band]) * (a[i][band] - b[i][band]);
-    const double mean = mean_over_pixels(b, band);
-    return squares == 0 ? 0 : std::sqrt(squares / static_cast<double>(a.size())) / mean;
 }
 
 /// Collects images and compares them.
@@ -131,7 +101,7 @@ class SceneTrial {
              std::make_unique<UniformWaterLighting>(uniform.scene().lit())});
         compare(k_volume, k_quadrature, both, {});
         sum_planes(uniform);
-        compare(k_volume, k_planes_limit, both, {.where = k_smooth});
+        compare(k_volume, k_planes_limit, both, {.where = k_smooth, .coarser = &coarser_sum_});
         TrialScene grid = with_constant_grid(uniform, scene_, 1, options_.proceed);
         render(k_constant_grid, grid, on_trial(grid));
         compare(k_constant_grid, k_volume, both, {});
@@ -218,6 +188,9 @@ class SceneTrial {
         Where where = k_all;
         double tolerances = 1;  // `largest` may be this many times the requested one
         double dark = k_dark;   // fraction of the mean
+        // The right method's image in steps twice as wide: that its error halves from the one to
+        // the other, as it does where the integrand jumps, leaves it as large as the change.
+        const MethodImage* coarser = nullptr;
     };
 
     void compare(const std::string& left, const std::string& right,
@@ -235,54 +208,35 @@ class SceneTrial {
                 check.rms = rms_difference(a, b, band);
                 check.tolerance = measure.tolerances * options_.tolerance;
                 check.rms_tolerance = 3 * options_.tolerance;
+                if (measure.coarser) {
+                    const std::vector<Spectrum>& coarser = measure.coarser->*component.image;
+                    check.own = largest_difference(b, coarser, counted, band, measure.dark);
+                    check.tolerance += check.own;
+                    check.rms_tolerance += rms_difference(b, coarser, band);
+                }
                 result_.checks.push_back(check);
             }
         }
     }
 
-    // Sums over ever more slabs; the midpoint rule's error falls with the square of the thickness,
-    // so (4 fine - coarse) / 3 is their limit (Richardson).
     void sum_planes(const TrialScene& uniform) {
-        std::vector<MethodImage> sums;
-        for (int count = k_fewest_planes; count <= options_.most_planes; count *= 2) {
-            const Slabs slabs = planes_of(uniform, count);
-            const LightTransport transport{
-                std::make_unique<PlanesIntegrator>(
-                    uniform.scene().lit(), uniform.scene().camera->world_from_camera(), slabs),
-                std::make_unique<DirectLighting>(uniform.scene().lit())};
-            options_.say(result_.name + ": " + planes_name(count));
-            sums.push_back(render_method(uniform, transport, options_.proceed));
-        }
-        MethodImage limit = sums.back();
-        const MethodImage& coarse = sums[sums.size() - 2];
-        for (std::size_t i = 0; i < limit.backscatter.size(); ++i)
-            limit.backscatter[i] += (limit.backscatter[i] - coarse.backscatter[i]) / 3;
-        for (std::size_t n = 0; n < sums.size(); ++n) {
-            PlanesStep step{k_fewest_planes << n, 0, 0};
-            for (std::size_t band = 0; band < result_.bands_nm.size(); ++band)
-                step.error =
-                    std::max(step.error, largest_difference(sums[n].backscatter, limit.backscatter,
-                                                            result_.smooth, band, k_dark));
-            if (n > 0 && step.error > 0)
-                step.order = std::log2(result_.planes.back().error / step.error);
-            result_.planes.push_back(step);
-        }
-        result_.images[k_planes_limit] = std::move(limit);
-        result_.images[planes_name(result_.planes.back().count)] = std::move(sums.back());
+        PlaneSums sums = sum_planes_to_limit(
+            uniform, result_.smooth,
+            {options_.tolerance, options_.most_planes, options_.proceed,
+             [&](const std::string& sum) { options_.say(result_.name + ": " + sum); }});
+        result_.images[k_planes_limit] = std::move(sums.limit);
+        result_.images[planes_name(sums.steps.back().count)] = std::move(sums.finest);
+        coarser_sum_ = std::move(sums.coarser);
+        result_.planes = std::move(sums.steps);
     }
 
     ResolvedScene scene_;
     const ValidationOptions& options_;
     SceneValidation result_;
+    MethodImage coarser_sum_;  // over half the slabs of the finest sum
 };
 
 }  // namespace
-
-double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band) {
-    double sum = 0;
-    for (const Spectrum& pixel : image) sum += pixel[band];
-    return sum / static_cast<double>(image.size());
-}
 
 bool SceneValidation::passed() const {
     return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed(); });

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/validate/plane_sums.h"
 #include "cli/validate/validation_methods.h"
 
 namespace uw {
@@ -17,7 +18,7 @@ struct ValidationOptions {
     double tolerance = 1e-3;              // largest relative difference allowed at a smooth pixel
     int longest_side = 48;                // of the image that is compared [pixels]
     int longest_side_of_all_light = 320;  // where all light is compared [pixels]
-    int most_planes = 512;                // slabs of the finest sum
+    int most_planes = 512;    // slabs of the finest sum, and more where shadow edges leave it rough
     TransportWrapper volume;  // of the volume integrator's; empty: it is tested as it is
     std::function<bool()> proceed = [] { return true; };  // false stops with Interrupted
     std::function<void(const std::string&)> say = [](const std::string&) {};
@@ -44,16 +45,10 @@ struct Check {
     double dark = 0;           // darker pixels count as this fraction of the mean
     double largest = 0;        // relative, over these pixels
     double rms = 0;            // over all pixels, of the image's mean
-    double tolerance = 0;      // of `largest`
+    double own = 0;            // what `right` may itself be off by
+    double tolerance = 0;      // of `largest`, with `own`
     double rms_tolerance = 0;  // of `rms`
     bool passed() const { return largest <= tolerance && rms <= rms_tolerance; }
-};
-
-/// One sum over slabs, compared with the limit of many.
-struct PlanesStep {
-    int count = 0;
-    double error = 0;  // largest relative difference to the limit over smooth pixels and bands
-    double order = 0;  // log2 of how much smaller it is than with half the slabs; 0 for the first
 };
 
 /// The results for one scene.
@@ -69,9 +64,6 @@ struct SceneValidation {
 
     bool passed() const;
 };
-
-/// The mean of one band.
-double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band);
 
 /// Compares every way of computing `scene`: sums over McGlamery's planes and their limit, adaptive
 /// quadrature, the reference integrator and a VDB of constant value against the volume integrator,

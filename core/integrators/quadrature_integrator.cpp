@@ -9,8 +9,8 @@ namespace uw {
 namespace {
 
 // Initial panels of the quadrature: narrower than a phase function's forward peak where it matters,
-// so that no feature is missed between the first nodes.
-constexpr int k_first_panels = 48;
+// and than the shadows of thin things, so that no feature is missed between the first nodes.
+constexpr std::size_t k_first_panels = 500;
 constexpr double k_least_rate = 1e-3;  // of -e^(-c s) [1/m]
 constexpr int k_deepest_halving = 18;  // 2^-18 of a first panel at a shadow's edge
 
@@ -49,11 +49,11 @@ class QuadratureIntegrator::RayIntegral {
     /// In-scatter from `begin` to `end` along the ray.
     Spectrum operator()(double begin, double end) {
         const double from = variable(begin), to = variable(end);
-        std::array<Spectrum, 2 * k_first_panels + 1> f;
+        std::vector<Spectrum> f(2 * k_first_panels + 1);
         for (std::size_t i = 0; i < f.size(); ++i)
             f[i] = integrand(from + (to - from) * static_cast<double>(i) / (2 * k_first_panels));
         const double h = (to - from) / k_first_panels;
-        std::array<Spectrum, k_first_panels> coarse;
+        std::vector<Spectrum> coarse(k_first_panels);
         scale_ = Spectrum{};
         for (std::size_t p = 0; p < k_first_panels; ++p) {
             coarse[p] = simpson(f[2 * p], f[2 * p + 1], f[2 * p + 2], h / 6);

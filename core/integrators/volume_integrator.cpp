@@ -16,18 +16,16 @@ constexpr double k_panel_optical_depth = 1.5;
 // Light whose path exceeds the least optical depth by this much adds less than 1e-6 of the total.
 constexpr double k_negligible_optical_depth = 15;
 
-// A break that only marks a change of scale is dropped if its predecessor is closer than this,
-// relative to the distance from the lamp.
-constexpr double k_least_relative_panel = 0.35;
-
 // Parameters by quality. A step of the profile along a ray may be off by k_depth_tolerance; the
 // integral over hundreds of steps, whose errors differ in sign, is off by far less. The
 // transmittance error of surfaces due to interpolated columns is far below what the eye or a 12-bit
 // camera can resolve.
 constexpr double k_depth_tolerance = 1e-3;
 constexpr double k_draft_depth_tolerance = 0.02;
-constexpr int k_knots_per_panel = 2;
-constexpr int k_draft_knots_per_panel = 6;
+constexpr VolumeIntegrator::Fineness k_fineness;
+constexpr VolumeIntegrator::Fineness k_draft_fineness{.knots_per_panel = 6};
+// A measured profile (IES) bends where its angles were taken, anywhere on a panel.
+constexpr VolumeIntegrator::Fineness k_exact_fineness{.least_relative_panel = 0.1, .pieces = 2};
 constexpr double k_column_tolerance = 1e-3;
 constexpr double k_draft_column_tolerance = 0.01;
 
@@ -100,20 +98,21 @@ void add_knots(const ConcentrationProfile& profile, int knots, PanelBreaks& brea
 LightTransport make_volume(const IntegratorInputs& inputs) {
     using Quality = RenderDesc::Quality;
     const LitScene& scene = inputs.scene;
-    const auto make = [&](double depth_tolerance, int knots_per_panel, double column_tolerance) {
+    const auto make = [&](double depth_tolerance, const VolumeIntegrator::Fineness& fineness,
+                          double column_tolerance) {
         return LightTransport{
             std::make_unique<VolumeIntegrator>(scene, inputs.deep_shadows,
                                                DepthTolerance(*scene.medium, depth_tolerance),
-                                               knots_per_panel),
+                                               fineness),
             std::make_unique<DirectLighting>(scene, inputs.deep_shadows, column_tolerance)};
     };
     switch (inputs.quality) {
         case Quality::draft:
-            return make(k_draft_depth_tolerance, k_draft_knots_per_panel, k_draft_column_tolerance);
+            return make(k_draft_depth_tolerance, k_draft_fineness, k_draft_column_tolerance);
         case Quality::final:
-            return make(k_depth_tolerance, k_knots_per_panel, k_column_tolerance);
+            return make(k_depth_tolerance, k_fineness, k_column_tolerance);
         case Quality::exact:
-            return make(0, k_knots_per_panel, 0);
+            return make(0, k_exact_fineness, 0);
     }
     throw InputError("unknown quality");
 }
@@ -136,10 +135,10 @@ struct VolumeIntegrator::Workspace {
 
 VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
                                    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
-                                   const DepthTolerance& tolerance, int knots_per_panel)
+                                   const DepthTolerance& tolerance, const Fineness& fineness)
     : scene_(scene),
       tolerance_(tolerance),
-      knots_per_panel_(knots_per_panel),
+      fineness_(fineness),
       deep_shadows_(std::move(deep_shadows)),
       phase_cotangents_(cotangents_of_breakpoints(*scene.medium)),
       phases_(*scene.medium),
@@ -209,15 +208,16 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     }
     w.marks.clear();
     append_octaves(passage, interval, w.marks);
-    for (const double s : w.marks) w.breaks.add_mark(s, k_least_relative_panel * passage.radius(s));
+    for (const double s : w.marks)
+        w.breaks.add_mark(s, fineness_.least_relative_panel * passage.radius(s));
     for (const double cotangent :
          passage.parallel ? std::span<const double>{} : std::span(phase_cotangents_))
         w.breaks.add_edge(passage.foot - passage.distance * cotangent);
     if (w.profile.constituent_count > 0) {
-        add_knots(w.profile, knots_per_panel_, w.breaks);
+        add_knots(w.profile, fineness_.knots_per_panel, w.breaks);
         w.marks.clear();
         deep_shadows_[lamp]->append_column_breaks(ray, interval, w.marks);
-        const double spacing = knots_per_panel_ * scene_.field->finest_voxel();
+        const double spacing = fineness_.knots_per_panel * scene_.field->finest_voxel();
         for (const double s : w.marks) w.breaks.add_mark(s, spacing);
     }
     return w.breaks.kept();
@@ -250,7 +250,8 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         const int pieces =
             static_cast<int>(std::min(64.0, std::ceil(depth / k_panel_optical_depth)));
         add_nodes(ray, source, passage,
-                  {panel, std::max(1, pieces), relative == 1 && source.has_even_core(), next},
+                  {panel, std::max(fineness_.pieces, pieces),
+                   relative == 1 && source.has_even_core(), next},
                   nodes);
     }
 }

@@ -18,12 +18,21 @@ class VolumeIntegrator final : public Integrator {
     /// For every scene whose lamps have been splatted.
     static const IntegratorKind k_kind;
 
+    /// How finely a ray's panels resolve the light on it.
+    struct Fineness {
+        // Knots of the concentrations per panel, which has at least two nodes; large values are
+        // for drafts.
+        int knots_per_panel = 2;
+        // A break that only marks a change of scale is dropped if its predecessor is closer than
+        // this, relative to the distance from the lamp.
+        double least_relative_panel = 0.35;
+        int pieces = 1;  // that every panel is cut into at least
+    };
+
     /// `deep_shadows`: one per emitter of `scene`. `tolerance`: of the concentrations along a ray.
-    /// `knots_per_panel`: how finely their variation is resolved, with at least two nodes per
-    /// panel; large values are for drafts.
     VolumeIntegrator(const LitScene& scene,
                      std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
-                     const DepthTolerance& tolerance, int knots_per_panel);
+                     const DepthTolerance& tolerance, const Fineness& fineness);
 
     void in_scatter(const Ray& ray, std::span<const double> distances,
                     InScatter& result) const override;
@@ -43,7 +52,7 @@ class VolumeIntegrator final : public Integrator {
 
     LitScene scene_;
     DepthTolerance tolerance_;
-    int knots_per_panel_;
+    Fineness fineness_;
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;
     std::vector<double> phase_cotangents_;  // of all phase functions' breakpoints
     PhaseTable phases_;
