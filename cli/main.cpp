@@ -7,6 +7,7 @@
 #include "cli/calibration/calibration_command.h"
 #include "cli/command_line.h"
 #include "cli/console.h"
+#include "cli/dataset/dataset_command.h"
 #include "cli/edit/edit_command.h"
 #include "cli/info/info_command.h"
 #include "cli/points/project_command.h"
@@ -32,6 +33,7 @@ int fail(uw::ExitCode code, const char* what) {
 // Adds the program's commands in the order in which --help lists them.
 void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::render_command());
+    commands.push_back(uw::dataset_command());
     commands.push_back(uw::info_command());
     commands.push_back(uw::water_command());
     commands.push_back(uw::sweep_command());

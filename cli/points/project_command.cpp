@@ -11,10 +11,10 @@
 #include "cli/console.h"
 #include "cli/points/coordinate_table.h"
 #include "cli/points/observed_scene.h"
-#include "cli/points/seen_point.h"
 #include "cli/stop_signal.h"
 #include "cli/text_files.h"
 #include "core/base/parallel.h"
+#include "render/seen_point.h"
 
 namespace uw {
 

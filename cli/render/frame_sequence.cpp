@@ -9,11 +9,11 @@
 
 #include "cli/camera_choice.h"
 #include "cli/frame_list.h"
-#include "cli/render/id_table.h"
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
 #include "media/volumes/volume_sequence.h"
+#include "render/id_table.h"
 #include "render/scene_motion.h"
 
 namespace uw {

@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "cli/render/id_table.h"
 #include "cli/version.h"
 #include "cli/word_of.h"
 #include "core/image/preview.h"
 #include "core/integrators/integrator_table.h"
 #include "core/integrators/sensor.h"
+#include "render/id_table.h"
 
 namespace uw {
 

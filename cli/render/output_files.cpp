@@ -5,10 +5,10 @@
 #include <system_error>
 #include <vector>
 
-#include "cli/render/id_table.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "render/id_table.h"
 
 namespace uw {
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/render/id_table.h"
+#include "render/id_table.h"
 
 #include <algorithm>
 #include <cstdint>

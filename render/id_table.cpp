@@ -1,4 +1,4 @@
-#include "cli/render/id_table.h"
+#include "render/id_table.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "cli/points/seen_point.h"
+#include "render/seen_point.h"
 
 #include <cmath>
 

@@ -1,0 +1,182 @@
+#include "cli/dataset/dataset_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/console.h"
+#include "cli/dataset/dataset_options.h"
+#include "cli/dataset/missing_views.h"
+#include "cli/dataset/set_definition.h"
+#include "cli/dataset/view_renderer.h"
+#include "cli/progress.h"
+#include "cli/render/frame_sequence.h"
+#include "cli/stop_signal.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/base/text.h"
+#include "dataset/formats/format_table.h"
+#include "dataset/set/completion.h"
+#include "dataset/set/data_card.h"
+#include "dataset/set/dataset_file.h"
+#include "dataset/set/point_seeds.h"
+#include "dataset/set/view_writer.h"
+#include "dataset/set_files.h"
+
+namespace uw {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void complete(const fs::path& folder, const DatasetFile& set, bool check, bool quiet) {
+    begin_orderly_stop();
+    {
+        Progress progress("completing the set", "", 1, quiet);
+        complete_dataset(folder, set, check, [&](double share) {
+            progress.update(share);
+            return !stop_requested();
+        });
+    }
+    if (!quiet)
+        print_message(
+            fmt::format("{}: complete, {} views\n", folder.string(), set.definition.view_count()));
+}
+
+void merge(const DatasetArguments& a) {
+    const auto refuse = [](bool is_given, const char* option) {
+        if (is_given)
+            throw UsageError(fmt::format(
+                "{}: --merge takes everything from the set in its folder; leave it out", option));
+    };
+    refuse(!a.image.scene.empty(), "SCENE");
+    refuse(!a.image.output.empty(), "-o");
+    refuse(!a.formats.empty(), "--format");
+    refuse(a.shard.has_value(), "--shard");
+    const auto set = read_dataset_file(a.merge);
+    if (!set)
+        throw IoError(fmt::format("{}: no data set is there; give the folder of its shards",
+                                  printable(a.merge.string(), 300)));
+    complete(a.merge, *set, true, a.image.quiet);
+}
+
+/// Checks before the work that the scene can be rendered in all frames and written in all formats.
+void check(const DatasetDefinition& definition, const SceneDesc& scene) {
+    FrameSequence sequence;
+    for (const std::optional<int>& frame : definition.frames)
+        sequence.frames.push_back({frame, {}, 0, ""});
+    check_frames(sequence, scene);
+    const ResolvedScene first(scene_of_image(scene, choice_of(definition, scene, {})));
+    for (const std::string& name : definition.formats)
+        if (const auto check = dataset_format(name).check) check(definition, first.desc());
+    layer_plan(first.desc(), layers_of(definition));  // throws for what does not exist
+    const auto refuse_jpeg = [](const CameraDesc& camera) {
+        if (camera.sensor && camera.sensor->image.format == DevelopmentDesc::Format::jpeg)
+            throw UsageError(
+                "camera.sensor.image.format: the images of data sets are PNG; give --set "
+                "camera.sensor.image.format=png");
+    };
+    refuse_jpeg(scene.camera);
+    for (const RigCameraDesc& entry : scene.cameras) refuse_jpeg(entry.camera);
+}
+
+class DatasetRun {
+  public:
+    explicit DatasetRun(const DatasetArguments& arguments) : a_(arguments) {
+        if (a_.image.scene.empty())
+            throw UsageError("SCENE: is missing; give a scene file, or --merge FOLDER");
+        if (a_.image.output.empty()) a_.image.output = a_.image.scene.stem().string() + "-dataset";
+    }
+
+    void run() {
+        scene_ = scene_of_draw(a_, {});
+        DatasetDefinition wanted = definition_of(a_, scene_);
+        scene_ = scene_of_draw(a_, wanted.draws.front());
+        check(wanted, scene_);
+        begin(std::move(wanted));
+        const ShardArgument shard = a_.shard.value_or(ShardArgument{});
+        const ViewRange range = shard_of(set_.definition, shard.number, shard.count);
+        const std::vector<std::size_t> missing = missing_views(a_, set_.definition, range);
+        if (!a_.image.quiet && missing.size() < range.end - range.begin)
+            print_message(fmt::format("{} of {} views are there already\n",
+                                      range.end - range.begin - missing.size(),
+                                      range.end - range.begin));
+        render(missing);
+        if (shard.count == 1) complete(a_.image.output, set_, false, a_.image.quiet);
+    }
+
+  private:
+    /// Continues the set that is in the folder, or begins it.
+    void begin(DatasetDefinition wanted) {
+        const fs::path& folder = a_.image.output;
+        if (auto there = read_dataset_file(folder)) {
+            check_same_set(folder, there->definition, wanted);
+            set_ = std::move(*there);
+            return;
+        }
+        const AtomicFile probe(folder / k_dataset_file);  // before the work rather than after it
+        set_.definition = std::move(wanted);
+        const ImageChoice first = choice_of(set_.definition, scene_, {});
+        set_.exposure = set_.definition.exposure
+                            ? *set_.definition.exposure
+                            : ViewRenderer(a_, 1).exposure_of(scene_of_image(scene_, first));
+        set_.facts = facts_of(ResolvedScene(scene_of_image(scene_, first)).desc());
+        SetFiles(folder).add_bytes("set", k_dataset_file, dataset_text(set_));
+        // What is read again is what all others read.
+        set_ = read_dataset_file(folder).value();
+    }
+
+    void render(const std::vector<std::size_t>& views) {
+        if (views.empty()) return;
+        ViewRenderer renderer(a_, views.size());
+        begin_orderly_stop();
+        try {
+            for (const std::size_t index : views) {
+                const View view = set_.definition.view(index);
+                load_draw(view.draw);
+                renderer.render(set_, view, scene_);
+            }
+            renderer.finish();
+        } catch (const Interrupted&) {
+            renderer.finish();
+            throw Interrupted(
+                fmt::format("interrupted; {} of {} views are done; the same command "
+                            "continues",
+                            renderer.done(), views.size()));
+        }
+    }
+
+    void load_draw(std::size_t draw) {
+        if (draw == draw_) return;
+        scene_ = scene_of_draw(a_, set_.definition.draws[draw]);
+        draw_ = draw;
+    }
+
+    DatasetArguments a_;
+    SceneDesc scene_;  // of the draw
+    std::size_t draw_ = 0;
+    DatasetFile set_;
+};
+
+}  // namespace
+
+void run_dataset(const DatasetArguments& a) {
+    const ThreadLimit limit(a.image.threads);
+    if (!a.merge.empty())
+        merge(a);
+    else
+        DatasetRun(a).run();
+}
+
+Command dataset_command() {
+    const auto arguments = std::make_shared<DatasetArguments>();
+    return {"dataset", "render a data set with ground truth, in the formats of other tools",
+            dataset_examples(), dataset_options(*arguments), [arguments] {
+                install_stop_signal();
+                run_dataset(*arguments);
+                return k_exit_done;
+            }};
+}
+
+}  // namespace uw

@@ -1,0 +1,124 @@
+#include "cli/dataset/view_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "camera/image_size.h"
+#include "cli/console.h"
+#include "cli/render/image_output.h"
+#include "cli/stop_signal.h"
+#include "core/base/available_memory.h"
+#include "core/base/error.h"
+#include "core/image/preview.h"
+#include "core/sensor/development.h"
+#include "dataset/set/point_seeds.h"
+#include "dataset/set/view_writer.h"
+#include "dataset/set_files.h"
+#include "dataset/surface_points.h"
+
+namespace uw {
+
+namespace {
+
+constexpr int k_draft_width = 160;  // of the image that the exposure follows from [pixels]
+
+}  // namespace
+
+ViewRenderer::ViewRenderer(const DatasetArguments& arguments, std::size_t count)
+    : arguments_(arguments),
+      clock_(count, "view"),
+      renderer_(
+          [this](const std::string& stage, double fraction) { return proceed(stage, fraction); }) {}
+
+ViewRenderer::~ViewRenderer() = default;
+
+bool ViewRenderer::proceed(const std::string& stage, double fraction) {
+    const std::lock_guard lock(mutex_);
+    if (stage != stage_) {
+        stage_ = stage;
+        progress_ = std::make_unique<Progress>(clock_.label(stage), "", 1, arguments_.image.quiet,
+                                               clock_.seconds_left());
+    }
+    if (progress_) progress_->update(fraction);
+    return !stop_requested();
+}
+
+void ViewRenderer::warn(const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
+        if (warned_.insert(warning).second) print_message(fmt::format("warning: {}\n", warning));
+}
+
+double ViewRenderer::exposure_of(SceneDesc first) {
+    CameraDesc& camera = first.camera;
+    first.render.quality = RenderDesc::Quality::draft;
+    first.render.samples = 1;
+    if (camera.width > k_draft_width)
+        resize_image(camera, k_draft_width,
+                     std::max(1, static_cast<int>(std::lround(static_cast<double>(camera.height) *
+                                                              k_draft_width /
+                                                              static_cast<double>(camera.width)))));
+    stage_.clear();
+    renderer_.set_scene(ResolvedScene(std::move(first)));
+    const double exposure = automatic_exposure(renderer_.render()).value_or(1);
+    progress_.reset();
+    return exposure;
+}
+
+void ViewRenderer::load_points(const DatasetFile& set, std::size_t draw, const SceneDesc& scene) {
+    const DatasetDefinition& definition = set.definition;
+    if (!needs_points(definition) || (points_ && draw_of_points_ == draw)) return;
+    const std::string name = points_file(definition, draw);
+    const std::filesystem::path& folder = arguments_.image.output;
+    std::error_code error;
+    if (!std::filesystem::exists(folder / name, error)) {
+        renderer_.set_scene(scene_of_image(scene, choice_of(definition, scene, {draw, 0, 0})));
+        SetFiles(folder).add_bytes(
+            "points", name,
+            points_csv(point_seeds(definition, draw, scene, *renderer_.assemble().surfaces)));
+    }
+    points_ = std::make_shared<const std::vector<SurfacePoint>>(read_points(folder / name));
+    draw_of_points_ = draw;
+}
+
+void ViewRenderer::render(const DatasetFile& set, const View& view, const SceneDesc& scene) {
+    const DatasetDefinition& definition = set.definition;
+    load_points(set, view.draw, scene);
+    const std::optional<int> number = definition.frames[view.frame];
+    RenderOptions options{.layers = layers_of(definition), .frame = number.value_or(0)};
+    stage_.clear();
+    renderer_.set_scene(scene_of_image(scene, choice_of(definition, scene, view)));
+    const std::optional<SensorDesc> sensor = renderer_.scene().camera.sensor;
+    if (sensor) options.layers += ",sensor";
+    renderer_.render(options);
+    progress_.reset();
+    warn(renderer_.report().warnings);
+    const SceneDesc& rendered = renderer_.scene();
+    const double time = rendered.time ? *rendered.time : number.value_or(0) / rendered.render.fps;
+    auto images = std::make_shared<ViewImages>(ViewImages{
+        definition, view, time, rendered.camera, rendered.render.colour, rendered.water.bands_nm,
+        renderer_.release_film(), layer_plan(rendered, options.layers), std::nullopt, set.exposure,
+        metadata_of(renderer_.assembled(), number, options.paths, renderer_.report()),
+        renderer_.assembled().surfaces, points_});
+    if (sensor) images->sensor = Development(*sensor)(images->film, images->film.window());
+    finish();
+    clock_.finish_image();
+    const std::size_t bytes = images->film.values().size_bytes();
+    writing_ = std::make_unique<BackgroundTask>(
+        [images = std::move(images), folder = arguments_.image.output, sum = sum_of(definition)] {
+            write_view(folder, sum, *images);
+        });
+    if (2 * bytes > available_memory_bytes()) finish();
+}
+
+void ViewRenderer::finish() {
+    if (!writing_) return;
+    const std::unique_ptr<BackgroundTask> writing = std::move(writing_);
+    writing->finish();
+    ++done_;
+}
+
+}  // namespace uw

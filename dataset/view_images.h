@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image/digital_image.h"
+#include "core/image/film.h"
+#include "core/image/image_metadata.h"
+#include "core/image/layers.h"
+#include "core/scene/scene_desc.h"
+#include "core/surfaces/surfaces.h"
+#include "dataset/definition.h"
+#include "dataset/set_files.h"
+
+namespace uw {
+
+/// A point of a surface that does not move, by which cameras of a set can be related.
+struct SurfacePoint {
+    Point3 position;  // world
+};
+
+/// A view that has been rendered: what formats write files of.
+struct ViewImages {
+    const DatasetDefinition& definition;
+    View view;
+    double time = 0;    // [s]
+    CameraDesc camera;  // with its pose
+    ColourDesc colour;  // how bands become R G B
+    std::vector<double> bands_nm;
+    Film film;
+    LayerPlan plan;                      // of the film
+    std::optional<DigitalImage> sensor;  // the camera's own image
+    double exposure = 1;                 // of tone-mapped images
+    ImageMetadata metadata;
+    std::shared_ptr<const Surfaces> surfaces;
+    std::shared_ptr<const std::vector<SurfacePoint>> points;  // null: no format needs them
+
+    int width() const { return film.width(); }
+    int height() const { return film.height(); }
+    bool has(Layer layer) const { return plan.has(layer); }
+    /// A layer's values at a pixel. Precondition: has(layer).
+    std::span<const float> at(Layer layer, int x, int y) const {
+        return film.pixel(x, y).subspan(static_cast<std::size_t>(plan.first_channel(layer)));
+    }
+
+    /// Whether any of a layer's values is a number: a frame without a next one has no flow.
+    bool has_values(Layer layer) const;
+};
+
+/// Writes the view's image as a PNG: the camera's own if it has a sensor, else R G B times the
+/// exposure as sRGB, of 8 or 16 bits. It is encoded once, for the first of its files.
+void write_image(const ViewImages& images, SetFiles& files, const std::string& role,
+                 const std::string& path);
+
+/// Writes the surfaces' distance along the camera's axis as a PNG of 16 bits: times `scale`
+/// [1/m], rounded; 0 where there is no surface or it is beyond DatasetDefinition::depth_far.
+/// Throws InputError for a distance that 16 bits cannot hold.
+void write_depth(const ViewImages& images, SetFiles& files, const std::string& role,
+                 const std::string& path, double scale);
+
+}  // namespace uw
