@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/base/sha256.h"
-#include "tests/support/cli_test.h"
+#include "tests/support/dataset_scenes.h"
 #include "tests/support/full_disk.h"
 
 namespace uw {
@@ -17,33 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The small scene with a camera that moves and a rig's worth of formats.
-constexpr const char* k_moving_scene = R"(uwvdb: 1
-camera:
-  resolution: [40, 30]
-  intrinsics: {fov_x: 60}
-  trajectory:
-    keyframes:
-      - {time: 0, position: [0, 0, 0], look_at: [0, 0, 4], up: [0, -1, 0]}
-      - {time: 1, position: [0.5, 0.1, 0.2], look_at: [0.1, 0, 4], up: [0, -1, 0]}
-water:
-  absorption: [0.35, 0.08, 0.05]
-  scattering: {b: [0.20, 0.22, 0.25], phase: {type: hg, g: 0.8}}
-geometry:
-  - {type: plane, point: [0, 0, 4], normal: [0, 0, -1]}
-  - {type: box, min: [0.2, -0.3, 1.5], max: [0.6, 0.2, 1.9], reflectance: [0.7, 0.4, 0.2]}
-lamps:
-  - {name: left, position: [-0.5, -0.2, 0], intensity: [50, 40, 30]}
-render: {fps: 6, samples: 1}
-)";
-
 constexpr const char* k_all_formats =
     "png,exr,depth,mask,ids,clean,npy,flow,kitti,colmap,nerfstudio,tum,euroc,calibration";
 
-class DatasetCommand : public test::CliTest {
+class DatasetCommand : public test::DatasetTest {
   protected:
-    DatasetCommand() { write("moving.yaml", k_moving_scene); }
-
     std::vector<std::string> command(const std::string& folder,
                                      const std::vector<std::string>& more = {}) const {
         std::vector<std::string> arguments{"dataset",  "moving.yaml", "-o",     folder,
@@ -117,7 +95,6 @@ TEST_F(DatasetCommand, RepairsWhatIsDamagedAndKeepsTheRest) {
 }
 
 TEST_F(DatasetCommand, RendersAgainWhatAnInputHasChangedSince) {
-    write("moving.yaml", std::string(k_moving_scene) + "\n");
     write("wall.obj", "v -1 -1 3\nv 1 -1 3\nv 0 1 3\nf 1 2 3\n");
     const std::vector<std::string> arguments =
         command("set", {"--set", "geometry=[{file: wall.obj}]", "--frames", "0-1"});
