@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/base/sha256.h"
-#include "tests/support/dataset_scenes.h"
+#include "tests/support/dataset/dataset_scenes.h"
 #include "tests/support/full_disk.h"
 
 namespace uw {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "core/image/image_reader.h"
-#include "tests/support/dataset_scenes.h"
+#include "tests/support/dataset/dataset_scenes.h"
 
 namespace uw {
 namespace {

@@ -11,7 +11,7 @@
 #include "camera/camera.h"
 #include "core/image/image_reader.h"
 #include "core/motion/files/pose_file_reader.h"
-#include "tests/support/dataset_scenes.h"
+#include "tests/support/dataset/dataset_scenes.h"
 
 namespace uw {
 namespace {
