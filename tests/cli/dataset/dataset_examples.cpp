@@ -20,8 +20,8 @@ class DatasetExamples : public test::DatasetTest {
     /// What one of the programs prints about the set.
     std::string output_of(const std::string& program) const {
         const std::string command =
-            fmt::format("python3 '{}/examples/datasets/{}' '{}' 2>&1", UWVDB_SOURCE_DIR, program,
-                        (folder_ / "set").string());
+            fmt::format("PYTHONDONTWRITEBYTECODE=1 python3 '{}/examples/datasets/{}' '{}' 2>&1",
+                        UWVDB_SOURCE_DIR, program, (folder_ / "set").string());
         FILE* const pipe = ::popen(command.c_str(), "r");
         std::string text;
         for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
