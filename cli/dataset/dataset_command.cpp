@@ -103,7 +103,13 @@ class DatasetRun {
                                       range.end - range.begin - missing.size(),
                                       range.end - range.begin));
         render(missing);
-        if (shard.count == 1) complete(a_.image.output, set_, false, a_.image.quiet);
+        if (shard.count == 1)
+            complete(a_.image.output, set_, false, a_.image.quiet);
+        else if (!a_.image.quiet)
+            print_message(fmt::format(
+                "shard {} of {}: {} views are done; when all shards are, uwvdb dataset --merge "
+                "completes the set\n",
+                shard.number, shard.count, range.end - range.begin));
     }
 
   private:

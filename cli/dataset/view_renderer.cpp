@@ -30,26 +30,26 @@ constexpr int k_draft_width = 160;  // of the image that the exposure follows fr
 
 ViewRenderer::ViewRenderer(const DatasetArguments& arguments, std::size_t count)
     : arguments_(arguments),
-      clock_(count, "view"),
+      count_(count),
+      progress_("views", "views", static_cast<double>(count), arguments.image.quiet),
       renderer_(
           [this](const std::string& stage, double fraction) { return proceed(stage, fraction); }) {}
 
 ViewRenderer::~ViewRenderer() = default;
 
 bool ViewRenderer::proceed(const std::string& stage, double fraction) {
-    const std::lock_guard lock(mutex_);
-    if (stage != stage_) {
-        stage_ = stage;
-        progress_ = std::make_unique<Progress>(clock_.label(stage), "", 1, arguments_.image.quiet,
-                                               clock_.seconds_left());
-    }
-    if (progress_) progress_->update(fraction);
+    // Of a view's time nearly all is this stage.
+    const double share = stage == "render" ? fraction : 0;
+    progress_.update((static_cast<double>(rendered_) + share) / static_cast<double>(count_));
     return !stop_requested();
 }
 
 void ViewRenderer::warn(const std::vector<std::string>& warnings) {
     for (const std::string& warning : warnings)
-        if (warned_.insert(warning).second) print_message(fmt::format("warning: {}\n", warning));
+        if (warned_.insert(warning).second) {
+            progress_.end_line();
+            print_message(fmt::format("warning: {}\n", warning));
+        }
 }
 
 double ViewRenderer::exposure_of(SceneDesc first) {
@@ -61,10 +61,8 @@ double ViewRenderer::exposure_of(SceneDesc first) {
                      std::max(1, static_cast<int>(std::lround(static_cast<double>(camera.height) *
                                                               k_draft_width /
                                                               static_cast<double>(camera.width)))));
-    stage_.clear();
     renderer_.set_scene(ResolvedScene(std::move(first)));
     const double exposure = automatic_exposure(renderer_.render()).value_or(1);
-    progress_.reset();
     return exposure;
 }
 
@@ -89,12 +87,10 @@ void ViewRenderer::render(const DatasetFile& set, const View& view, const SceneD
     load_points(set, view.draw, scene);
     const std::optional<int> number = definition.frames[view.frame];
     RenderOptions options{.layers = layers_of(definition), .frame = number.value_or(0)};
-    stage_.clear();
     renderer_.set_scene(scene_of_image(scene, choice_of(definition, scene, view)));
     const std::optional<SensorDesc> sensor = renderer_.scene().camera.sensor;
     if (sensor) options.layers += ",sensor";
     renderer_.render(options);
-    progress_.reset();
     warn(renderer_.report().warnings);
     const SceneDesc& rendered = renderer_.scene();
     const double time = rendered.time ? *rendered.time : number.value_or(0) / rendered.render.fps;
@@ -105,7 +101,7 @@ void ViewRenderer::render(const DatasetFile& set, const View& view, const SceneD
         renderer_.assembled().surfaces, points_});
     if (sensor) images->sensor = Development(*sensor)(images->film, images->film.window());
     finish();
-    clock_.finish_image();
+    ++rendered_;
     const std::size_t bytes = images->film.values().size_bytes();
     writing_ = std::make_unique<BackgroundTask>(
         [images = std::move(images), folder = arguments_.image.output, sum = sum_of(definition)] {

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,7 +9,6 @@
 #include "cli/dataset/dataset_arguments.h"
 #include "cli/progress.h"
 #include "cli/render/background_task.h"
-#include "cli/render/sequence_clock.h"
 #include "dataset/set/dataset_file.h"
 #include "dataset/view_images.h"
 #include "render/renderer.h"
@@ -50,12 +47,10 @@ class ViewRenderer {
     void load_points(const DatasetFile& set, std::size_t draw, const SceneDesc& scene);
 
     const DatasetArguments& arguments_;
-    SequenceClock clock_;
+    std::size_t count_, rendered_ = 0;
+    Progress progress_;
     Renderer renderer_;
     std::set<std::string> warned_;
-    std::mutex mutex_;  // of the stage: updated from any thread
-    std::string stage_;
-    std::unique_ptr<Progress> progress_;
     std::shared_ptr<const std::vector<SurfacePoint>> points_;  // null: none are needed
     std::size_t draw_of_points_ = 0;
     std::size_t done_ = 0;
