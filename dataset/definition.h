@@ -17,6 +17,14 @@ struct View {
     friend bool operator==(const View&, const View&) = default;
 };
 
+/// What images are multiplied by before they are encoded as sRGB, the same for all of a set.
+struct Exposures {
+    double image = 1;
+    double clean = 1;  // of the images without water
+
+    friend bool operator==(const Exposures&, const Exposures&) = default;
+};
+
 /// What a data set is: which views it has, and what is written of each. Two processes that work on
 /// the same folder have the same, as its file `dataset.json` says.
 struct DatasetDefinition {

@@ -21,11 +21,11 @@ void write_new_image(const ViewImages& images, const std::filesystem::path& file
         write_png(file, *images.sensor, metadata);
         return;
     }
-    metadata["exposure"] = images.exposure;
+    metadata["exposure"] = images.exposures.image;
     if (images.definition.is_16_bit)
-        write_png(file, make_preview16(images.film, images.exposure), metadata);
+        write_png(file, make_preview16(images.film, images.exposures.image), metadata);
     else
-        write_png(file, make_preview(images.film, images.exposure), metadata);
+        write_png(file, make_preview(images.film, images.exposures.image), metadata);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ struct ViewImages {
     Film film;
     LayerPlan plan;                      // of the film
     std::optional<DigitalImage> sensor;  // the camera's own image
-    double exposure = 1;                 // of tone-mapped images
+    Exposures exposures;
     ImageMetadata metadata;
     std::shared_ptr<const Surfaces> surfaces;
     std::shared_ptr<const std::vector<SurfacePoint>> points;  // null: no format needs them

@@ -124,9 +124,10 @@ class DatasetRun {
         const AtomicFile probe(folder / k_dataset_file);  // before the work rather than after it
         set_.definition = std::move(wanted);
         const ImageChoice first = choice_of(set_.definition, scene_, {});
-        set_.exposure = set_.definition.exposure
-                            ? *set_.definition.exposure
-                            : ViewRenderer(a_, 1).exposure_of(scene_of_image(scene_, first));
+        if (const auto& exposure = set_.definition.exposure)
+            set_.exposures = {*exposure, *exposure};
+        else
+            set_.exposures = ViewRenderer(a_, 1).exposures_of(set_.definition, scene_);
         set_.facts = facts_of(ResolvedScene(scene_of_image(scene_, first)).desc());
         SetFiles(folder).add_bytes("set", k_dataset_file, dataset_text(set_));
         // What is read again is what all others read.

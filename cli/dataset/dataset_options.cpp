@@ -94,7 +94,7 @@ void add_output_options(Options& options, DatasetArguments& a) {
                     "--exposure: expected a number above 0 or auto, found '{}'", printable(text)));
             a.exposure = factor;
         },
-        "of the images of a camera without sensor; auto: that of the first view, for all");
+        "of the images of a camera without sensor; auto: one that suits all views");
     Option& bits = options.parsed(
         "--image-bits", "N",
         [&a](const std::string& text) {

@@ -15,6 +15,7 @@
 #include "core/base/error.h"
 #include "core/image/preview.h"
 #include "core/sensor/development.h"
+#include "dataset/formats/clean_film.h"
 #include "dataset/set/point_seeds.h"
 #include "dataset/set/view_writer.h"
 #include "dataset/set_files.h"
@@ -24,7 +25,17 @@ namespace uw {
 
 namespace {
 
-constexpr int k_draft_width = 160;  // of the image that the exposure follows from [pixels]
+constexpr int k_draft_width = 160;  // of the images that exposures follow from [pixels]
+constexpr std::size_t k_most_drafts = 5;
+
+void shrink_to_draft(SceneDesc& scene) {
+    CameraDesc& camera = scene.camera;
+    scene.render.quality = RenderDesc::Quality::draft;
+    scene.render.samples = 1;
+    if (camera.width <= k_draft_width) return;
+    const double height = static_cast<double>(camera.height) * k_draft_width / camera.width;
+    resize_image(camera, k_draft_width, std::max(1, static_cast<int>(std::lround(height))));
+}
 
 }  // namespace
 
@@ -52,18 +63,30 @@ void ViewRenderer::warn(const std::vector<std::string>& warnings) {
         }
 }
 
-double ViewRenderer::exposure_of(SceneDesc first) {
-    CameraDesc& camera = first.camera;
-    first.render.quality = RenderDesc::Quality::draft;
-    first.render.samples = 1;
-    if (camera.width > k_draft_width)
-        resize_image(camera, k_draft_width,
-                     std::max(1, static_cast<int>(std::lround(static_cast<double>(camera.height) *
-                                                              k_draft_width /
-                                                              static_cast<double>(camera.width)))));
-    renderer_.set_scene(ResolvedScene(std::move(first)));
-    const double exposure = automatic_exposure(renderer_.render()).value_or(1);
-    return exposure;
+Exposures ViewRenderer::exposures_of(const DatasetDefinition& definition, const SceneDesc& scene) {
+    const bool with_clean = definition.has_format("clean");
+    const std::string layers = with_clean ? "clean" : "depth";
+    const std::size_t views = definition.frames.size() * definition.cameras.size();
+    const std::size_t drafts = std::min(views, k_most_drafts);
+    std::optional<double> least, least_clean;  // none: all black so far
+    const auto take = [](std::optional<double>& least_so_far, const Film& film) {
+        if (const auto exposure = automatic_exposure(film))
+            least_so_far = std::min(*exposure, least_so_far.value_or(*exposure));
+    };
+    for (std::size_t i = 0; i < drafts; ++i) {
+        const std::size_t index = drafts > 1 ? i * (views - 1) / (drafts - 1) : 0;
+        ResolvedScene draft(
+            scene_of_image(scene, choice_of(definition, scene, definition.view(index))));
+        shrink_to_draft(draft.edit());
+        renderer_.set_scene(std::move(draft));
+        const Film& film = renderer_.render({.layers = layers});
+        take(least, film);
+        if (with_clean)
+            take(least_clean,
+                 clean_film(film, layer_plan(renderer_.scene(), layers),
+                            renderer_.scene().render.colour, renderer_.scene().water.bands_nm));
+    }
+    return {least.value_or(1), least_clean.value_or(1)};
 }
 
 void ViewRenderer::load_points(const DatasetFile& set, std::size_t draw, const SceneDesc& scene) {
@@ -96,7 +119,7 @@ void ViewRenderer::render(const DatasetFile& set, const View& view, const SceneD
     const double time = rendered.time ? *rendered.time : number.value_or(0) / rendered.render.fps;
     auto images = std::make_shared<ViewImages>(ViewImages{
         definition, view, time, rendered.camera, rendered.render.colour, rendered.water.bands_nm,
-        renderer_.release_film(), layer_plan(rendered, options.layers), std::nullopt, set.exposure,
+        renderer_.release_film(), layer_plan(rendered, options.layers), std::nullopt, set.exposures,
         metadata_of(renderer_.assembled(), number, options.paths, renderer_.report()),
         renderer_.assembled().surfaces, points_});
     if (sensor) images->sensor = Development(*sensor)(images->film, images->film.window());

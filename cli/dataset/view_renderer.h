@@ -27,8 +27,9 @@ class ViewRenderer {
     ViewRenderer(ViewRenderer&&) = delete;
     ViewRenderer& operator=(ViewRenderer&&) = delete;
 
-    /// The exposure that brings the set's first view to a good brightness: that of a small draft.
-    double exposure_of(SceneDesc first);
+    /// The exposures that bring the brightest of a few views of the first draw to a good
+    /// brightness, by small drafts of them. `scene`: of that draw.
+    Exposures exposures_of(const DatasetDefinition& definition, const SceneDesc& scene);
 
     /// Renders a view in `scene`, that of its draw, and has it written. Throws InputError; IoError,
     /// of this view or the one before; Interrupted, and then nothing of this view is written.

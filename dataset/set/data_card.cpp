@@ -162,7 +162,11 @@ std::string data_card(const DatasetFile& set, std::uint64_t bytes) {
         set.facts.at("integrator").get<std::string>(),
         set.facts.at("scattering").get<std::string>(), set.facts.at("quality").get<std::string>(),
         set.facts.at("samples").get<int>(), set.facts.at("frames_per_second").get<double>());
-    text += fmt::format("- exposure of tone-mapped images: R G B × {:.6g}\n", set.exposure);
+    text +=
+        fmt::format("- exposure of images without a sensor: R G B × {:.6g}", set.exposures.image);
+    if (d.has_format("clean"))
+        text += fmt::format("; of those without water × {:.6g}", set.exposures.clean);
+    text += "\n";
     text += "\n## Cameras\n\n";
     for (const Json& camera : set.facts.at("cameras")) text += camera_lines(camera);
     text +=

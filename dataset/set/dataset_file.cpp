@@ -29,7 +29,8 @@ bool has_files(const fs::path& folder) {
 std::string dataset_text(const DatasetFile& file) {
     return json_text({{"uwvdb_dataset", k_dataset_version},
                       {"set", definition_json(file.definition)},
-                      {"exposure", file.exposure},
+                      {"exposure", file.exposures.image},
+                      {"clean_exposure", file.exposures.clean},
                       {"facts", file.facts}});
 }
 
@@ -48,8 +49,10 @@ std::optional<DatasetFile> read_dataset_file(const fs::path& folder) {
         const Json json = Json::parse(in);
         if (json.at("uwvdb_dataset") != k_dataset_version)
             throw InputError(shown + ": is of another version of uwvdb; give another folder");
-        return DatasetFile{definition_from_json(json.at("set"), shown),
-                           json.at("exposure").get<double>(), json.at("facts")};
+        return DatasetFile{
+            definition_from_json(json.at("set"), shown),
+            {json.at("exposure").get<double>(), json.at("clean_exposure").get<double>()},
+            json.at("facts")};
     } catch (const Json::exception& error) {
         throw InputError(fmt::format("{}: is not the description of a data set: {}", shown,
                                      printable(error.what(), 200)));

@@ -12,8 +12,8 @@ namespace uw {
 /// What the file `dataset.json` says, by which every process that works on a set has the same.
 struct DatasetFile {
     DatasetDefinition definition;
-    double exposure = 1;  // of tone-mapped images
-    Json facts;           // about water, lamps and cameras, for the data card
+    Exposures exposures;
+    Json facts;  // about water, lamps and cameras, for the data card
 
     friend bool operator==(const DatasetFile&, const DatasetFile&) = default;
 };
