@@ -22,6 +22,9 @@ std::string html_text(const std::string& text) {
             case '"':
                 escaped += "&quot;";
                 break;
+            case '\'':
+                escaped += "&#39;";
+                break;
             default:
                 escaped += c;
         }

@@ -60,6 +60,20 @@ TEST_F(DatasetCommand, IsTheSameInShardsAndOnOneThread) {
     EXPECT_EQ(sums("parts"), whole);
 }
 
+TEST_F(DatasetCommand, ShardsMayRunAtTheSameTime) {
+    expect_runs(command("whole", {"--frames", "0-3"}));
+    {
+        test::Program first(command("parts", {"--frames", "0-3", "--shard", "1/2"}),
+                            {.folder = folder_.path()});
+        test::Program second(command("parts", {"--frames", "0-3", "--shard", "2/2"}),
+                             {.folder = folder_.path()});
+        EXPECT_EQ(first.wait().exit_code, 0);
+        EXPECT_EQ(second.wait().exit_code, 0);
+    }
+    expect_runs({"dataset", "--merge", "parts", "--quiet"});
+    EXPECT_EQ(sums("parts"), sums("whole"));
+}
+
 TEST_F(DatasetCommand, ShardsMayBeMoreThanFrames) {
     expect_runs(command("whole", {"--frames", "0-1"}));
     for (const char* shard : {"1/4", "2/4", "3/4", "4/4"})
