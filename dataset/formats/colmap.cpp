@@ -10,6 +10,7 @@
 #include "camera/calibration/colmap_models.h"
 #include "camera/camera.h"
 #include "core/base/error.h"
+#include "core/image/output_file.h"
 #include "dataset/formats/formats.h"
 #include "dataset/formats/observations.h"
 #include "dataset/formats/poses.h"
@@ -92,58 +93,64 @@ std::vector<Track> tracks_of(const CompleteSequence& sequence,
     return tracks;
 }
 
-std::string images_text(const CompleteSequence& sequence, const std::vector<Track>& tracks,
-                        const SetFiles& files) {
+/// Image by image: of thousands the observations would fill the memory.
+void write_colmap_images(const CompleteSequence& sequence, const std::vector<Track>& tracks,
+                         const SetFiles& files, const std::filesystem::path& file) {
     std::size_t observed = 0;
     for (const Track& track : tracks) observed += track.is_kept() ? track.places.size() : 0;
-    std::string text = fmt::format(
-        "# Image list with two lines of data per image:\n"
-        "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
-        "#   POINTS2D[] as (X, Y, POINT3D_ID)\n"
-        "# Number of images: {}, mean observations per image: {}\n",
-        sequence.records.size(),
-        static_cast<double>(observed) / static_cast<double>(sequence.records.size()));
+    OutputFile out(file);
+    out.write(
+        fmt::format("# Image list with two lines of data per image:\n"
+                    "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
+                    "#   POINTS2D[] as (X, Y, POINT3D_ID)\n"
+                    "# Number of images: {}, mean observations per image: {}\n",
+                    sequence.records.size(),
+                    static_cast<double>(observed) / static_cast<double>(sequence.records.size())));
     for (std::size_t i = 0; i < sequence.records.size(); ++i) {
         const ViewRecord& record = sequence.records[i];
         const auto [position, world_from_camera] = camera_pose(record.camera);
         const Rotation q = world_from_camera.inverse();
         const Vector3 t = -(q.matrix() * from_origin(position));
-        text +=
+        std::string text =
             fmt::format("{} {} {} {} {} {} {} {} {} {}\n", i + 1, q.w, q.x, q.y, q.z, t.x, t.y, t.z,
                         record.view.camera + 1, within(sequence, "images/", *record.file("image")));
-        std::string line;
-        for (const Observation& o : read_observations(observation_file(record, files)))
-            line += fmt::format("{}{} {} {}", line.empty() ? "" : " ", o.x, o.y,
+        const char* separator = "";
+        for (const Observation& o : read_observations(observation_file(record, files))) {
+            text += fmt::format("{}{} {} {}", separator, o.x, o.y,
                                 tracks[o.point].is_kept() ? std::to_string(o.point + 1) : "-1");
-        text += line + "\n";
+            separator = " ";
+        }
+        out.write(text + "\n");
     }
-    return text;
+    out.commit();
 }
 
-std::string points_text(const std::vector<SurfacePoint>& points, const std::vector<Track>& tracks) {
+void write_colmap_points(const std::vector<SurfacePoint>& points, const std::vector<Track>& tracks,
+                         const std::filesystem::path& file) {
     std::size_t count = 0, observed = 0;
     for (const Track& track : tracks)
         if (track.is_kept()) {
             ++count;
             observed += track.places.size();
         }
-    std::string text = fmt::format(
+    OutputFile out(file);
+    out.write(fmt::format(
         "# 3D point list with one line of data per point:\n"
         "#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n"
         "# Number of points: {}, mean track length: {}\n",
-        count, count > 0 ? static_cast<double>(observed) / static_cast<double>(count) : 0);
+        count, count > 0 ? static_cast<double>(observed) / static_cast<double>(count) : 0));
     for (std::size_t i = 0; i < tracks.size(); ++i) {
         const Track& track = tracks[i];
         if (!track.is_kept()) continue;
         const Point3& p = points[i].position;
-        text += fmt::format("{} {} {} {} {} {} {} {:.6g}", i + 1, p.x, p.y, p.z, track.rgb[0],
-                            track.rgb[1], track.rgb[2],
-                            track.error / static_cast<double>(track.places.size()));
+        std::string text = fmt::format("{} {} {} {} {} {} {} {:.6g}", i + 1, p.x, p.y, p.z,
+                                       track.rgb[0], track.rgb[1], track.rgb[2],
+                                       track.error / static_cast<double>(track.places.size()));
         for (const Track::Place& place : track.places)
             text += fmt::format(" {} {}", place.image, place.observation);
-        text += "\n";
+        out.write(text + "\n");
     }
-    return text;
+    out.commit();
 }
 
 void write_model(const CompleteSequence& sequence, SetFiles& files) {
@@ -152,8 +159,12 @@ void write_model(const CompleteSequence& sequence, SetFiles& files) {
     const std::vector<Track> tracks = tracks_of(sequence, points, files);
     const std::string folder = sequence.folder + "sparse/0/";
     files.add_bytes("colmap", folder + "cameras.txt", cameras_text(sequence, false));
-    files.add_bytes("colmap", folder + "images.txt", images_text(sequence, tracks, files));
-    files.add_bytes("colmap", folder + "points3D.txt", points_text(points, tracks));
+    files.add("colmap", folder + "images.txt", [&](const std::filesystem::path& file) {
+        write_colmap_images(sequence, tracks, files, file);
+    });
+    files.add("colmap", folder + "points3D.txt", [&](const std::filesystem::path& file) {
+        write_colmap_points(points, tracks, file);
+    });
     if (has_ports(sequence))
         files.add_bytes("colmap", sequence.folder + "sparse/refractive/cameras.txt",
                         cameras_text(sequence, true));
