@@ -248,6 +248,9 @@ TEST_F(DatasetImages, AreTheSensorsWhereThereIsOne) {
         "quantum_efficiency: {r: [0.5, 0.1, 0], g: [0.1, 0.5, 0.1], b: [0, 0.1, 0.5]}, full_well: "
         "20000, "
         "bit_depth: 12}"};
+    expect_failure({"dataset", "moving.yaml", "-o", "set", "--frames", "3", sensor[0], sensor[1],
+                    sensor[2], sensor[3], "--set", "camera.sensor.image={format: jpeg}"},
+                   2, "the images of data sets are PNG");
     make("moving.yaml", "png", {"--frames", "3", sensor[0], sensor[1], sensor[2], sensor[3]});
     const auto result = run({"render", "moving.yaml", "--frames", "3", "-o", "r.####.sensor.png",
                              sensor[0], sensor[1], sensor[2], sensor[3], "--quiet"});
