@@ -96,6 +96,26 @@ TEST_F(DatasetCommand, IsTheSameAfterBeingKilled) {
     EXPECT_EQ(sums("killed"), sums("whole"));
 }
 
+TEST_F(DatasetCommand, CanBeInterruptedAndContinued) {
+    const std::vector<std::string> arguments = command("set", {"--size", "200x150"});
+    test::Program program(arguments, {.folder = folder_.path()});
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!exists("set/views/000000.json") && std::chrono::steady_clock::now() < deadline)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    program.signal(SIGINT);
+    const test::ProgramResult result = program.wait();
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_EQ(test::line_count(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(" of 7 views are done; the same command continues"),
+              std::string::npos)
+        << result.err;
+    EXPECT_FALSE(exists("set/SHA256SUMS"));
+    const auto kept = fs::last_write_time(folder_ / "set/views/000000.json");
+    expect_runs(arguments);
+    EXPECT_EQ(fs::last_write_time(folder_ / "set/views/000000.json"), kept);
+    EXPECT_TRUE(exists("set/SHA256SUMS"));
+}
+
 TEST_F(DatasetCommand, RepairsWhatIsDamagedAndKeepsTheRest) {
     expect_runs(command("set"));
     const auto whole = sums("set");
