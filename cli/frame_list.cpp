@@ -17,18 +17,27 @@ constexpr int k_last_frame = 999'999'999;
 constexpr std::size_t k_most_frames = 1'000'000;
 constexpr std::size_t k_most_runs = 50;  // named in a message
 
-[[noreturn]] void refuse(std::string_view part, const std::string& why) {
-    throw UsageError(fmt::format("--frames: '{}': {}", printable(part), why));
-}
+// The option being read, for messages.
+struct ListOption {
+    const char* name;
+    const char* what;
+
+    [[noreturn]] void refuse(std::string_view part, const std::string& why) const {
+        throw UsageError(fmt::format("{}: '{}': {}", name, printable(part), why));
+    }
+    [[noreturn]] void refuse_form(std::string_view part) const {
+        refuse(part,
+               fmt::format("expected {} such as 7, 1-10 or 20-40:2, separated by commas", what));
+    }
+};
 
 // Removes a number from the beginning of `text`.
-int take_number(std::string_view& text, std::string_view part) {
+int take_number(std::string_view& text, std::string_view part, const ListOption& option) {
     int number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc::result_out_of_range || number > k_last_frame)
-        refuse(part, fmt::format("frames are numbers from 0 to {}", k_last_frame));
-    if (error != std::errc() || number < 0)
-        refuse(part, "expected frames such as 7, 1-10 or 20-40:2, separated by commas");
+        option.refuse(part, fmt::format("{} are numbers from 0 to {}", option.what, k_last_frame));
+    if (error != std::errc() || number < 0) option.refuse_form(part);
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     return number;
 }
@@ -43,36 +52,39 @@ struct FrameRange {
     int first = 0, last = 0, step = 1;
 };
 
-FrameRange parse_range(std::string_view part) {
+FrameRange parse_range(std::string_view part, const ListOption& option) {
     std::string_view text = part;
     FrameRange range;
-    range.first = range.last = take_number(text, part);
+    range.first = range.last = take_number(text, part, option);
     if (take(text, '-')) {
-        range.last = take_number(text, part);
-        if (take(text, ':')) range.step = take_number(text, part);
+        range.last = take_number(text, part, option);
+        if (take(text, ':')) range.step = take_number(text, part, option);
     }
-    if (!text.empty())
-        refuse(part, "expected frames such as 7, 1-10 or 20-40:2, separated by commas");
+    if (!text.empty()) option.refuse_form(part);
     if (range.last < range.first)
-        refuse(part, fmt::format("begins after its end; write {}-{}", range.last, range.first));
-    if (range.step == 0) refuse(part, "a step of 0 leads nowhere; write 1 or more after the colon");
+        option.refuse(part,
+                      fmt::format("begins after its end; write {}-{}", range.last, range.first));
+    if (range.step == 0)
+        option.refuse(part, "a step of 0 leads nowhere; write 1 or more after the colon");
     return range;
 }
 
 }  // namespace
 
-std::vector<int> parse_frame_list(const std::string& text) {
+std::vector<int> parse_frame_list(const std::string& text, const char* name, const char* what) {
+    const ListOption option{name, what};
     std::vector<int> frames;
     std::unordered_set<int> known;
     std::size_t at = 0;
     while (at <= text.size()) {
         const std::size_t comma = std::min(text.find(',', at), text.size());
-        const FrameRange range = parse_range(std::string_view(text).substr(at, comma - at));
+        const FrameRange range = parse_range(std::string_view(text).substr(at, comma - at), option);
         for (long frame = range.first; frame <= range.last; frame += range.step) {
             const int number = static_cast<int>(frame);
             if (known.insert(number).second) frames.push_back(number);
             if (frames.size() > k_most_frames)
-                refuse(text, "more than a million frames; render them in parts");
+                option.refuse(text,
+                              fmt::format("more than a million {}; render them in parts", what));
         }
         at = comma + 1;
     }

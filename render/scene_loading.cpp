@@ -3,6 +3,7 @@
 #include "camera/calibration/calibration.h"
 #include "core/meshes/gltf/gltf_time_range.h"
 #include "core/motion/files/trajectory_loading.h"
+#include "core/scene/variations/variations_reader.h"
 #include "core/scene/yaml/config_node.h"
 #include "core/scene/yaml/scene_reader.h"
 
@@ -58,12 +59,20 @@ SceneDesc complete(SceneDesc scene) {
 
 }  // namespace
 
+SceneDesc load_scene_tree(const ConfigNode& tree, const std::filesystem::path& file) {
+    return complete(scene_of_tree(tree, file));
+}
+
 SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-    return complete(read_scene(file, overrides));
+    const ConfigNode tree = read_scene_tree(file, overrides);
+    read_variations(tree, file);
+    return load_scene_tree(tree, file);
 }
 
 SceneDesc load_scene_text(std::string_view text, const std::filesystem::path& file) {
-    return complete(read_scene_text(text, file));
+    const ConfigNode tree = scene_tree(text, file);
+    read_variations(tree, file);
+    return load_scene_tree(tree, file);
 }
 
 }  // namespace uw

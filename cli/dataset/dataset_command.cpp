@@ -10,7 +10,7 @@
 #include "cli/dataset/set_definition.h"
 #include "cli/dataset/view_renderer.h"
 #include "cli/progress.h"
-#include "cli/render/frame_sequence.h"
+#include "cli/render/frame_check.h"
 #include "cli/stop_signal.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -65,8 +65,8 @@ void merge(const DatasetArguments& a) {
 void check(const DatasetDefinition& definition, const SceneDesc& scene) {
     FrameSequence sequence;
     for (const std::optional<int>& frame : definition.frames)
-        sequence.frames.push_back({frame, {}, 0, ""});
-    check_frames(sequence, scene);
+        sequence.frames.push_back({frame, {}, 0, "", {}, {}});
+    check_frames(sequence, [&](std::optional<int>) -> const SceneDesc& { return scene; });
     const ResolvedScene first(scene_of_image(scene, choice_of(definition, scene, {})));
     for (const std::string& name : definition.formats)
         if (const auto check = dataset_format(name).check) check(definition, first.desc());

@@ -29,12 +29,15 @@
 #include "render/renderer.h"
 #include "render/scene_loading.h"
 #include "render/scene_motion.h"
+#include "render/scene_variations.h"
 
 namespace uw {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int k_shown_variations = 3;
 
 bool is_there(const fs::path& file) {
     std::error_code ignored;
@@ -185,6 +188,18 @@ void write_path_plot(const InfoArguments& a, const std::optional<PathSurvey>& pa
     files.commit();
 }
 
+/// Draws the first few variations of a scene and reads their scenes; none if it has no variations.
+std::optional<VariationsSurvey> survey_variations(const InfoArguments& a) {
+    const SceneVariations variations(a.subject, a.overrides);
+    if (!variations.desc()) return std::nullopt;
+    VariationsSurvey survey{*variations.desc(), {}};
+    for (int i = 0; i < k_shown_variations; ++i) {
+        variations.scene(i);  // throws if it is none
+        survey.first.push_back(variations.values(i));
+    }
+    return survey;
+}
+
 std::string info_on_scene(const InfoArguments& a) {
     if (a.scene || !a.picture.empty())
         throw UsageError(fmt::format("{}: is for volumes; a scene is rendered with 'uwvdb render'",
@@ -211,6 +226,7 @@ std::string info_on_scene(const InfoArguments& a) {
     survey.sequences = std::move(sequences);
     const Surfaces& surfaces = *renderer.assembled().surfaces;
     survey.path = survey_path(all, surfaces);
+    survey.variations = survey_variations(a);
     if (!a.svg.empty()) write_path_plot(a, survey.path, surfaces);
     return a.json ? survey_json(survey) : survey_text(survey);
 }

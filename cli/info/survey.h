@@ -8,6 +8,7 @@
 #include "cli/info/draft_contrast.h"
 #include "cli/info/path_survey.h"
 #include "cli/info/vdb_report.h"
+#include "core/scene/variations/draw.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -45,6 +46,12 @@ struct ViewSurvey {
     double nearest = 0, farthest = 0;  // surface [m]
 };
 
+/// What a scene's variations draw.
+struct VariationsSurvey {
+    VariationsDesc desc;
+    std::vector<std::vector<DrawnValue>> first;  // the values of the first few
+};
+
 /// What `uwvdb info` reports about a scene without rendering it.
 struct SceneSurvey {
     explicit SceneSurvey(const AssembledScene& of) : scene(of) {}
@@ -57,7 +64,8 @@ struct SceneSurvey {
     std::optional<DraftContrast> contrast;  // of the volumes; none without volumes or lamps
     std::array<double, 2> field_of_view{};  // in the water, through the centre [degrees]
     std::optional<PathSurvey> path;         // of the camera; none: nothing moves
-    std::vector<std::string> warnings;      // the scene's, then what will be black or opaque
+    std::optional<VariationsSurvey> variations;
+    std::vector<std::string> warnings;  // the scene's, then what will be black or opaque
 };
 
 }  // namespace uw

@@ -124,6 +124,25 @@ Json path_json(const std::optional<PathSurvey>& path) {
             {"points", std::move(points)}};
 }
 
+Json variations_json(const std::optional<VariationsSurvey>& survey) {
+    if (!survey) return nullptr;
+    Json keys = Json::array();
+    for (const DrawnKey& key : survey->desc.keys)
+        keys.push_back({{"key", key.key}, {"drawn_from", key.text}});
+    Json together = Json::array();
+    for (const DrawnRows& rows : survey->desc.together)
+        together.push_back({{"keys", rows.keys}, {"rows", rows.rows.size()}});
+    Json first = Json::array();
+    for (const std::vector<DrawnValue>& values : survey->first) {
+        Json& of_one = first.emplace_back(Json::array());
+        for (const DrawnValue& value : values) of_one.push_back(value.override_text());
+    }
+    return {{"seed", survey->desc.seed},
+            {"keys", std::move(keys)},
+            {"together", std::move(together)},
+            {"first", std::move(first)}};
+}
+
 }  // namespace
 
 std::string survey_json(const SceneSurvey& survey) {
@@ -158,6 +177,7 @@ std::string survey_json(const SceneSurvey& survey) {
                     {"nearest", view.nearest},   {"farthest", view.farthest}};
     json["contrast"] = contrast_json(survey.contrast);
     json["path"] = path_json(survey.path);
+    json["variations"] = variations_json(survey.variations);
     json["reach"] = k_reach;
     json["warnings"] = survey.warnings;
     return json_text(json);

@@ -1,6 +1,7 @@
 #include "cli/info/survey_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -130,6 +131,18 @@ std::string describe_sequences(const SceneSurvey& survey) {
     return text;
 }
 
+std::string variations_text(const VariationsSurvey& survey) {
+    std::string text = fmt::format("variations, seed {}\n", survey.desc.seed);
+    for (const DrawnKey& key : survey.desc.keys)
+        text += fmt::format("  {}: {}\n", key.key, key.text);
+    for (const DrawnRows& together : survey.desc.together)
+        text += fmt::format("  {}: together, one of {} rows\n", fmt::join(together.keys, ", "),
+                            together.rows.size());
+    for (std::size_t i = 0; i < survey.first.size(); ++i)
+        text += fmt::format("  variation {}: {}\n", i, values_text(survey.first[i]));
+    return text;
+}
+
 }  // namespace
 
 std::string survey_text(const SceneSurvey& survey) {
@@ -145,6 +158,7 @@ std::string survey_text(const SceneSurvey& survey) {
     }
     text += describe_view(survey);
     if (survey.path) text += path_text(*survey.path);
+    if (survey.variations) text += variations_text(*survey.variations);
     if (survey.contrast)
         text += fmt::format(
             "  contrast of the volumes {}, where they are seen ({} of the image; a draft with and "

@@ -60,12 +60,10 @@ struct FrameRenderer::Written {
     std::vector<Line> lines{};
 };
 
-FrameRenderer::FrameRenderer(const RenderArguments& arguments, const SceneDesc& scene,
-                             const std::vector<PixelWindow>& windows, std::size_t count, Done done)
+FrameRenderer::FrameRenderer(const RenderArguments& arguments, std::size_t count, std::string noun,
+                             Done done)
     : arguments_(arguments),
-      all_frames_(scene),
-      windows_(windows),
-      clock_(count, scene.cameras.empty() ? "frame" : "image"),
+      clock_(count, std::move(noun)),
       renderer_(
           [this](const std::string& stage, double fraction) { return proceed(stage, fraction); }),
       done_(std::move(done)) {}
@@ -77,11 +75,10 @@ void FrameRenderer::say(const std::string& line) const {
 }
 
 void FrameRenderer::warn(const Frame& frame, bool is_first, const std::string& line) {
-    if (!warned_.insert(without_frame(line, renderer_.scene(), all_frames_)).second) return;
-    std::string which;
-    if (!is_first && frame.number) which = fmt::format("frame {}: ", *frame.number);
-    if (!is_first && !frame.camera_name.empty())
-        which += fmt::format("camera {}: ", frame.camera_name);
+    const SceneDesc& scene = renderer_.scene();
+    const SceneDesc& all_frames = scene.whole ? *scene.whole : scene;
+    if (!warned_.insert(without_frame(line, scene, all_frames)).second) return;
+    const std::string which = is_first ? "" : place_in_run(frame);
     print_message(fmt::format("warning: {}{}\n", which, line));
 }
 
@@ -160,7 +157,7 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
     const OutputFiles& files = frame.files;
     const bool with_irradiance = !files.irradiance_vdb.empty();
     RenderOptions options{
-        .layers = arguments_.layers, .window = windows_[frame.camera], .paths = arguments_.paths()};
+        .layers = arguments_.layers, .window = frame.window, .paths = arguments_.paths()};
     if (!arguments_.numbers.empty())
         options.layers = (options.layers.empty() ? "default" : options.layers) + "," +
                          layers_to_measure(scene.desc()) +

@@ -27,10 +27,9 @@ class FrameRenderer {
     /// Receives each frame that has been written, with its statistics, from any thread.
     using Done = std::function<void(const Frame& frame, RunStats stats)>;
 
-    /// `scene`: of all frames; `windows`: the pixels written, by camera; `count`: the number of
-    /// images to come. All references outlive the renderer.
-    FrameRenderer(const RenderArguments& arguments, const SceneDesc& scene,
-                  const std::vector<PixelWindow>& windows, std::size_t count, Done done);
+    /// `count`: the number of images to come; `noun`: what messages call one of them. `arguments`
+    /// outlive the renderer.
+    FrameRenderer(const RenderArguments& arguments, std::size_t count, std::string noun, Done done);
     ~FrameRenderer();
     FrameRenderer(const FrameRenderer&) = delete;
     FrameRenderer& operator=(const FrameRenderer&) = delete;
@@ -71,8 +70,6 @@ class FrameRenderer {
     bool is_first() const { return clock_.images_done() == 0; }
 
     const RenderArguments& arguments_;
-    const SceneDesc& all_frames_;
-    const std::vector<PixelWindow>& windows_;
     SequenceClock clock_;
     Renderer renderer_;
     std::set<std::string> warned_;

@@ -12,7 +12,6 @@
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
-#include "media/volumes/volume_sequence.h"
 #include "render/id_table.h"
 #include "render/scene_motion.h"
 
@@ -39,45 +38,18 @@ fs::path expanded(const fs::path& name, int frame) {
     return name.empty() ? name : file_of_frame(name, frame);
 }
 
-// Lists the frames that lack a file of a sequence in the scene.
-class MissingFrames {
-  public:
-    void look(const SourceLocation& where, const fs::path& name, const FrameSequence& sequence) {
-        std::vector<int> missing;
-        for (const Frame& frame : sequence.frames)
-            if (frame.camera == sequence.frames.front().camera &&
-                !is_file(file_of_frame(name, *frame.number)))
-                missing.push_back(*frame.number);
-        if (missing.empty()) return;
-        text_ += fmt::format("{}{}.file: '{}' has no file for {} {}", text_.empty() ? "" : "; ",
-                             where, printable(name.string(), 300),
-                             missing.size() == 1 ? "frame" : "frames", format_frame_list(missing));
-    }
-    void refuse() const {
-        if (!text_.empty())
-            throw IoError(text_ + "; choose --frames that exist, or add the missing files");
-    }
+constexpr std::string_view k_camera_place = "{camera}";
+constexpr std::string_view k_variation_place = "{variation}";
 
-  private:
-    std::string text_;
-};
-
-void check_volumes(const FrameSequence& sequence, const SceneDesc& scene) {
-    for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
-        if (!scene.volumes[v].is_sequence) continue;
-        VolumeSequenceCheck check;
-        for (const Frame& frame : sequence.frames)
-            if (frame.camera == sequence.frames.front().camera)
-                check.take(scene_of_image(scene, frame.choice()).volumes[v]);
-    }
+bool has_place(const fs::path& file, std::string_view place) {
+    return file.string().find(place) != std::string::npos;
 }
 
-constexpr std::string_view k_camera_place = "{camera}";
-
-// The file of one camera: its name replaces the placeholder, or goes before the ending.
-fs::path of_camera(const fs::path& file, const std::string& camera) {
-    std::string name = file.string();
-    std::size_t at = name.find(k_camera_place);
+// The file of one of several: `name` replaces the placeholder, or `word` goes before the ending.
+fs::path of_one(const fs::path& file, std::string_view place, const std::string& name,
+                const std::string& word) {
+    std::string text = file.string();
+    std::size_t at = text.find(place);
     if (at == std::string::npos) {
         fs::path with_name = file;
         std::string ending = file.extension().string();
@@ -86,26 +58,27 @@ fs::path of_camera(const fs::path& file, const std::string& camera) {
             ending.insert(0, k_sensor_ending);
             with_name.replace_extension();
         }
-        with_name += "." + camera + ending;
+        with_name += "." + word + ending;
         return with_name;
     }
-    for (; at != std::string::npos; at = name.find(k_camera_place, at + camera.size()))
-        name.replace(at, k_camera_place.size(), camera);
-    return name;
+    for (; at != std::string::npos; at = text.find(place, at + name.size()))
+        text.replace(at, place.size(), name);
+    return text;
 }
 
-void refuse_camera_places(const FrameSequence& sequence) {
+// The same of all files of a frame but its statistics, and the irradiance.
+void name_images(OutputFiles& files, std::string_view place, const std::string& name,
+                 const std::string& word) {
+    for (fs::path* file : {&files.image, &files.preview, &files.sensor})
+        if (!file->empty()) *file = of_one(*file, place, name, word);
+    if (!files.ids.empty()) files.ids = id_table_beside(files.image);
+}
+
+void refuse_place(const FrameSequence& sequence, std::string_view place, const char* why) {
     for (const Frame& frame : sequence.frames)
-        if (frame.files.main().string().find(k_camera_place) != std::string::npos)
-            throw UsageError(
-                fmt::format("-o {}: the scene has one camera, which has no name; take {} out",
-                            printable(frame.files.main().string(), 300), k_camera_place));
-}
-
-bool has_sensor(const SceneDesc& scene) {
-    return scene.camera.sensor || std::ranges::any_of(scene.cameras, [](const auto& entry) {
-               return entry.camera.sensor.has_value();
-           });
+        if (has_place(frame.files.main(), place))
+            throw UsageError(fmt::format("-o {}: {}; take {} out",
+                                         printable(frame.files.main().string(), 300), why, place));
 }
 
 bool has_sequence(const SceneDesc& scene) {
@@ -114,6 +87,20 @@ bool has_sequence(const SceneDesc& scene) {
 }
 
 }  // namespace
+
+std::string place_in_run(const Frame& frame) {
+    std::string place;
+    if (frame.variation) place += fmt::format("variation {}: ", *frame.variation);
+    if (frame.number) place += fmt::format("frame {}: ", *frame.number);
+    if (!frame.camera_name.empty()) place += fmt::format("camera {}: ", frame.camera_name);
+    return place;
+}
+
+bool has_sensor(const SceneDesc& scene) {
+    return scene.camera.sensor || std::ranges::any_of(scene.cameras, [](const auto& entry) {
+               return entry.camera.sensor.has_value();
+           });
+}
 
 std::vector<int> all_frames(const SceneDesc& scene) {
     const std::optional<FrameRange> range = frames_of(scene);
@@ -130,7 +117,10 @@ FrameSequence frames_of(const RenderArguments& a) {
         OutputFiles files = names;
         files.numbers.clear();
         files.contact_sheet.clear();
-        return {{{std::nullopt, std::move(files), 0, ""}}, {}, names.numbers, names.contact_sheet};
+        return {{{std::nullopt, std::move(files), 0, "", {}, {}}},
+                {},
+                names.numbers,
+                names.contact_sheet};
     }
     if (a.frames.size() > 1) {
         require_place("-o", names.main());
@@ -149,15 +139,34 @@ FrameSequence frames_of(const RenderArguments& a) {
         if (!names.ids.empty()) files.ids = id_table_beside(files.image);
         if (one_each) files.stats = expanded(names.stats, number);
         files.irradiance_vdb = expanded(names.irradiance_vdb, number);
-        sequence.frames.push_back({number, std::move(files), 0, ""});
+        sequence.frames.push_back({number, std::move(files), 0, "", {}, {}});
     }
     return sequence;
 }
 
+void set_variation(FrameSequence& sequence, int variation) {
+    const std::string name = fmt::format("{:04}", variation);
+    for (Frame& frame : sequence.frames) {
+        frame.variation = variation;
+        OutputFiles& files = frame.files;
+        name_images(files, k_variation_place, name, "v" + name);
+        if (!files.irradiance_vdb.empty())
+            files.irradiance_vdb =
+                of_one(files.irradiance_vdb, k_variation_place, name, "v" + name);
+        if (frame.number || has_place(files.stats, k_variation_place)) {
+            if (!files.stats.empty())
+                files.stats = of_one(files.stats, k_variation_place, name, "v" + name);
+        } else if (!files.stats.empty()) {
+            sequence.stats = std::exchange(files.stats, {});  // one file about all of them
+        }
+    }
+}
+
 void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::string& only) {
     if (!only.empty()) camera_called(only, scene.cameras);
+    refuse_place(sequence, k_variation_place, "the scene itself is rendered, not its --variations");
     if (scene.cameras.empty()) {
-        refuse_camera_places(sequence);
+        refuse_place(sequence, k_camera_place, "the scene has one camera, which has no name");
         return;
     }
     std::vector<Frame> frames;
@@ -166,21 +175,23 @@ void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::str
         for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
             const std::string& name = scene.cameras[i].name;
             if (!only.empty() && name != only) continue;
-            OutputFiles files = frame.files;
-            if (!files.image.empty()) files.image = of_camera(files.image, name);
-            if (!files.preview.empty()) files.preview = of_camera(files.preview, name);
-            if (!files.sensor.empty()) files.sensor = of_camera(files.sensor, name);
-            if (!files.ids.empty()) files.ids = id_table_beside(files.image);
-            if (frame.number && !files.stats.empty()) files.stats = of_camera(files.stats, name);
+            Frame of_camera = frame;
+            OutputFiles& files = of_camera.files;
+            name_images(files, k_camera_place, name, name);
+            if ((frame.number || frame.variation) && !files.stats.empty())
+                files.stats = of_one(files.stats, k_camera_place, name, name);
             if (!is_first) files.irradiance_vdb.clear();
             is_first = false;
-            frames.push_back({frame.number, std::move(files), i, name});
+            of_camera.camera = i;
+            of_camera.camera_name = name;
+            frames.push_back(std::move(of_camera));
         }
     }
     sequence.frames = std::move(frames);
-    if (sequence.frames.size() == 1 || sequence.frames.front().number) return;
-    // Without --frames the statistics of all cameras go to one file.
-    sequence.stats = sequence.frames.front().files.stats;
+    const Frame& first = sequence.frames.front();
+    if (sequence.frames.size() == 1 || first.number || first.variation) return;
+    // The statistics of all cameras go to one file.
+    sequence.stats = first.files.stats;
     for (Frame& frame : sequence.frames) frame.files.stats.clear();
 }
 
@@ -210,32 +221,6 @@ void add_sensor_images(FrameSequence& sequence, const SceneDesc& scene) {
                           : "the camera's image is a JPEG; give a name that ends in .jpg, or leave "
                             "out camera.sensor.image.format");
     }
-}
-
-void check_frames(const FrameSequence& sequence, const SceneDesc& scene) {
-    const bool numbered = !sequence.frames.empty() && sequence.frames.front().number;
-    if (numbered) {
-        MissingFrames missing;
-        for (const VolumeDesc& volume : scene.volumes) {
-            if (volume.is_sequence) missing.look(volume.where, volume.file, sequence);
-            if (volume.motion && volume.motion->is_sequence && volume.motion->file != volume.file)
-                missing.look(volume.motion->where, volume.motion->file, sequence);
-        }
-        for (const GeometryDesc& mesh : scene.geometry)
-            if (mesh.is_sequence) missing.look(mesh.where, mesh.file, sequence);
-        missing.refuse();
-        check_volumes(sequence, scene);
-    }
-    OutputCheck outputs;
-    MeshSideFiles known;
-    for (const Frame& frame : sequence.frames)
-        outputs.take_inputs(input_files(scene_of_image(scene, frame.choice()), known));
-    for (const Frame& frame : sequence.frames) outputs.take_outputs(frame.files);
-    OutputFiles about_all;
-    about_all.stats = sequence.stats;
-    about_all.numbers = sequence.numbers;
-    about_all.contact_sheet = sequence.contact_sheet;
-    outputs.take_outputs(about_all);
 }
 
 bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,

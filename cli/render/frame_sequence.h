@@ -8,6 +8,7 @@
 
 #include "cli/render/output_files.h"
 #include "cli/render/render_arguments.h"
+#include "core/image/film.h"
 #include "core/scene/scene_desc.h"
 #include "render/input_files.h"
 #include "render/resolved_scene.h"
@@ -18,11 +19,17 @@ namespace uw {
 struct Frame {
     std::optional<int> number;  // none: the run renders the scene as it is, without --frames
     OutputFiles files;
-    std::size_t camera = 0;   // of a rig's, by its index
-    std::string camera_name;  // empty: the scene has one camera
+    std::size_t camera = 0;          // of a rig's, by its index
+    std::string camera_name;         // empty: the scene has one camera
+    std::optional<int> variation{};  // of the scene; none: the scene itself
+    PixelWindow window{};            // the pixels that are written
 
     ImageChoice choice() const { return {number, camera}; }
 };
+
+/// Where an image belongs, to begin a message with: "variation 17: frame 3: camera left: ". Empty
+/// for the only one.
+std::string place_in_run(const Frame& frame);
 
 /// The images of a run, in the order they are rendered.
 struct FrameSequence {
@@ -30,6 +37,7 @@ struct FrameSequence {
     std::filesystem::path stats;            // one file about all of them; empty: none, or one each
     std::filesystem::path numbers{};        // one file about all of them; empty: none
     std::filesystem::path contact_sheet{};  // likewise
+    std::filesystem::path manifest_csv{}, manifest_json{};  // of variations; empty: none
 };
 
 /// The frames of `--frames all`. Throws UsageError if nothing in the scene moves.
@@ -39,21 +47,23 @@ std::vector<int> all_frames(const SceneDesc& scene);
 /// for a name whose ending is not that of its format.
 FrameSequence frames_of(const RenderArguments& arguments);
 
+/// Makes all frames those of one variation of the scene: its number, of four digits, replaces
+/// {variation} in the names of files, or goes before their ending as v0017.
+void set_variation(FrameSequence& sequence, int variation);
+
 /// Turns every frame into one for each camera of a rig, whose name replaces {camera} in the names
 /// of files, or goes before their ending. `only`: this camera alone; empty: all. What is the same
 /// for all cameras, the irradiance, is written with the first. Throws UsageError for a camera that
-/// does not exist, and for {camera} in names without a rig.
+/// does not exist, and for {camera} or {variation} in names without a rig or variations.
 void add_cameras(FrameSequence& sequence, const SceneDesc& scene, const std::string& only);
+
+/// Whether a camera of the scene has a sensor.
+bool has_sensor(const SceneDesc& scene);
 
 /// Adds the images of the cameras that have a sensor (`camera.sensor`), beside the others or, where
 /// that is all there is, under the name requested. Throws UsageError for a camera without sensor
 /// where there would be nothing else, and for a name whose ending is not that of its format.
 void add_sensor_images(FrameSequence& sequence, const SceneDesc& scene);
-
-/// Checks what all frames read and write before the first is rendered. Throws IoError that names
-/// all frames whose files are missing; InputError for a frame that does not match the others (see
-/// VolumeSequenceCheck); and as OutputCheck does.
-void check_frames(const FrameSequence& sequence, const SceneDesc& scene);
 
 /// Whether `frame`, one of a sequence, has been rendered: all its files but the statistics exist,
 /// the image is one that `is_image_of` accepts, and none of `inputs` is newer than it. Inputs that

@@ -30,6 +30,8 @@ std::vector<NamedFile> named(const OutputFiles& files) {
     if (!files.contact_sheet.empty()) result.push_back({"--contact-sheet", files.contact_sheet});
     if (!files.numbers.empty()) result.push_back({"--numbers", files.numbers});
     if (!files.ids.empty()) result.push_back({"the table of ids", files.ids});
+    if (!files.manifest_csv.empty()) result.push_back({"the manifest", files.manifest_csv});
+    if (!files.manifest_json.empty()) result.push_back({"the manifest", files.manifest_json});
     if (!files.irradiance_vdb.empty()) result.push_back({"--irradiance-vdb", files.irradiance_vdb});
     return result;
 }

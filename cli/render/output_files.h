@@ -22,6 +22,7 @@ struct OutputFiles {
     std::filesystem::path numbers{};        // CSV about all images; empty: none
     std::filesystem::path ids{};            // CSV of names; empty: no layer of numbers
     std::filesystem::path contact_sheet{};  // PNG of all images; empty: none
+    std::filesystem::path manifest_csv{}, manifest_json{};  // of all variations; empty: none
 
     /// The EXR, or the preview or the camera's image where that is all.
     const std::filesystem::path& main() const {

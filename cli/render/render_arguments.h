@@ -29,6 +29,8 @@ struct RenderArguments {
     std::filesystem::path output;        // empty: the scene's name with .exr, in the working folder
     std::vector<int> frames;             // --frames; empty: no sequence, or
     bool all_frames = false;             // all that the scene has
+    std::optional<int> variation_count;  // --variations: of the set; none: not a whole set
+    std::vector<int> variations;         // --variation: of these only; empty: all of the set
     bool resume = false;                 // --resume
     std::vector<std::string> overrides;  // --set key.path=value
     std::optional<std::array<int, 2>> size;  // --size WxH
@@ -53,6 +55,8 @@ struct RenderArguments {
 
     /// Throws UsageError for words that do not exist.
     ExrOptions exr() const;
+    /// Whether the scene itself is rendered, rather than its variations.
+    bool is_scene_itself() const { return !variation_count && variations.empty(); }
     bool prints_numbers() const { return numbers == "-"; }
     PathRequest paths() const { return {.error = error, .orders = orders.value_or(0)}; }
 };

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -11,19 +13,20 @@
 
 #include "cli/console.h"
 #include "cli/progress.h"
-#include "cli/render/apply_arguments.h"
+#include "cli/render/frame_check.h"
 #include "cli/render/frame_renderer.h"
 #include "cli/render/frame_sequence.h"
 #include "cli/render/image_output.h"
 #include "cli/render/resume.h"
+#include "cli/render/run_scenes.h"
 #include "cli/render/stats.h"
+#include "cli/render/variation_manifest.h"
 #include "cli/stop_signal.h"
 #include "cli/text_files.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/contact_sheet.h"
 #include "core/image/image_writer.h"
-#include "render/scene_loading.h"
 
 namespace uw {
 
@@ -46,75 +49,89 @@ PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
     return {x0, y0, x1, y1};
 }
 
-// The pixels that are written, by camera.
-std::vector<PixelWindow> windows_of(const RenderArguments& a, const SceneDesc& desc) {
-    if (desc.cameras.empty()) return {window_of(a, desc.camera)};
-    std::vector<PixelWindow> windows;
-    for (const RigCameraDesc& entry : desc.cameras)
-        windows.push_back(a.camera.empty() || a.camera == entry.name ? window_of(a, entry.camera)
-                                                                     : PixelWindow{});
-    return windows;
-}
-
-bool is_whole(const PixelWindow& window, const CameraDesc& camera) {
-    return window == PixelWindow{0, 0, camera.width, camera.height};
+// Sets the pixels that are written.
+void set_windows(FrameSequence& sequence, const RenderArguments& a, const SceneDesc& desc) {
+    for (Frame& frame : sequence.frames)
+        frame.window =
+            window_of(a, desc.cameras.empty() ? desc.camera : desc.cameras[frame.camera].camera);
 }
 
 // Warnings about the run that need nothing of the scene loaded.
-void append_warnings(const RenderArguments& a, const Frame& first,
-                     const std::vector<PixelWindow>& windows, SceneDesc& desc) {
-    if (const auto warning = frame_warning(a, desc)) desc.warnings.push_back(*warning);
+std::vector<std::string> warnings_of(const RenderArguments& a, const Frame& first,
+                                     const SceneDesc& desc, const RunScenes& scenes) {
+    std::vector<std::string> warnings;
+    if (const auto warning = frame_warning(a, desc)) warnings.push_back(*warning);
     const CameraDesc& camera =
         desc.cameras.empty() ? desc.camera : desc.cameras[first.camera].camera;
-    if (desc.water.forward_scatter.K > 0 && !is_whole(windows[first.camera], camera))
-        desc.warnings.push_back(
+    const PixelWindow whole{0, 0, camera.width, camera.height};
+    if (desc.water.forward_scatter.K > 0 && first.window != whole)
+        warnings.emplace_back(
             "--crop: forward scatter takes light from the whole image: all of it is rendered, then "
             "cropped; set water.forward_scatter.K=0 to save that time");
+    if (!a.is_scene_itself() && has_sensor(desc) &&
+        std::ranges::none_of(drawn_keys(*scenes.variations().desc()),
+                             [](const auto& key) { return key.ends_with("sensor.seed"); }))
+        warnings.emplace_back(
+            "variations: the camera's noise is the same in all of them; draw its seed, too: "
+            "camera.sensor.seed: {integer: [0, 2000000000]}");
+    return warnings;
 }
 
 // The scenes of frames one after the other, each resolved once. The first is resolved before
 // anything is rendered: its lamps name layers, and all frames must have the same.
 class FrameScenes {
   public:
-    FrameScenes(const SceneDesc& desc, const Frame& first)
-        : desc_(desc),
-          first_choice_(first.choice()),
-          first_(scene_of_image(desc, first_choice_)),
-          lamp_names_(names_of(first_->desc().lamps)) {}
+    FrameScenes(RunScenes& scenes, const Frame& first, std::vector<std::string> warnings)
+        : scenes_(scenes), warnings_(std::move(warnings)), first_frame_(first) {
+        first_ = resolved(first);
+        lamp_names_ = names_of(first_->desc().lamps);
+    }
 
     const SceneDesc& first() const { return first_->desc(); }
 
     ResolvedScene take(const Frame& frame) {
         std::optional<ResolvedScene> first = std::exchange(first_, std::nullopt);
-        if (first && frame.choice() == first_choice_) return std::move(*first);
-        ResolvedScene scene(scene_of_image(desc_, frame.choice()));
+        if (first && frame.choice() == first_frame_.choice() &&
+            frame.variation == first_frame_.variation)
+            return std::move(*first);
+        ResolvedScene scene = resolved(frame);
         const std::vector<std::string> names = names_of(scene.desc().lamps);
         if (names != lamp_names_)
             throw InputError(fmt::format(
-                "frame {}: its lamps are {}, but those of the first frame are {}; export the same "
-                "lights in all frames",
-                frame.number.value_or(0), fmt::join(names, ", "), fmt::join(lamp_names_, ", ")));
+                "{}its lamps are {}, but those of the first are {}; all images have the same "
+                "lights",
+                place_in_run(frame), fmt::join(names, ", "), fmt::join(lamp_names_, ", ")));
         return scene;
     }
 
   private:
-    const SceneDesc& desc_;
-    ImageChoice first_choice_;
+    ResolvedScene resolved(const Frame& frame) {
+        SceneDesc scene = scene_of_image(scenes_.of(frame.variation), frame.choice());
+        scene.warnings.insert(scene.warnings.end(), warnings_.begin(), warnings_.end());
+        return {std::move(scene)};
+    }
+
+    RunScenes& scenes_;
+    std::vector<std::string> warnings_;  // about the run
+    Frame first_frame_;
     std::optional<ResolvedScene> first_;  // until a frame is taken
     std::vector<std::string> lamp_names_;
 };
 
-// A row for each frame of a rig's cameras.
+// A row for each frame of a rig's cameras, or each variation's frames.
 void write_contact_sheet(const FrameSequence& sequence, bool quiet) {
     if (sequence.contact_sheet.empty()) return;
     std::vector<std::filesystem::path> pictures;
-    std::size_t cameras = 0;
+    int cameras = 0, frames = 0;  // of the first frame, of the first variation
+    const Frame& first = sequence.frames.front();
     for (const Frame& frame : sequence.frames) {
         pictures.push_back(frame.files.picture());
-        if (frame.number == sequence.frames.front().number) ++cameras;
+        if (frame.variation != first.variation) continue;
+        ++frames;
+        if (frame.number == first.number) ++cameras;
     }
-    write_png(sequence.contact_sheet,
-              contact_sheet(pictures, cameras > 1 ? static_cast<int>(cameras) : 0), {});
+    const int row = cameras > 1 ? cameras : first.variation && frames > 1 ? frames : 0;
+    write_png(sequence.contact_sheet, contact_sheet(pictures, row), {});
     if (!quiet) print_message(fmt::format("wrote {}\n", sequence.contact_sheet.string()));
 }
 
@@ -136,6 +153,31 @@ void write_numbers(const RenderArguments& a, const std::filesystem::path& file,
     std::string csv = RunStats::numbers_csv_header();
     for (const RunStats& stats : done) csv += stats.numbers_csv();
     write_text(file, csv, a.quiet);
+}
+
+// All images that are to be rendered, of which the manifest is told as well, and of those of its
+// set that are not.
+FrameSequence images_of(const RenderArguments& a, RunScenes& scenes, VariationManifest& manifest) {
+    FrameSequence sequence = frames_of(a);
+    const std::vector<Frame> frames = std::exchange(sequence.frames, {});
+    for (const std::optional<int> variation : scenes.all()) {
+        const SceneDesc& desc = scenes.of(variation);
+        FrameSequence of_scene = sequence;
+        of_scene.frames = frames;
+        if (variation) set_variation(of_scene, *variation);
+        add_cameras(of_scene, desc, a.camera);
+        add_sensor_images(of_scene, desc);
+        if (variation) manifest.add(*variation, *scenes.variations().desc(), desc.hash, of_scene);
+        sequence.stats = of_scene.stats;
+        if (!scenes.is_wanted(variation)) continue;
+        if (variation && !a.variation_count && !a.quiet)  // which no manifest lists
+            print_message(fmt::format("variation {}: {}\n", *variation,
+                                      values_text(scenes.variations().values(*variation))));
+        set_windows(of_scene, a, desc);
+        std::ranges::move(of_scene.frames, std::back_inserter(sequence.frames));
+    }
+    manifest.name_files(sequence);
+    return sequence;
 }
 
 // Renders all frames; `stats` are those of the first so far. Whatever ends the run, the frames that
@@ -161,39 +203,43 @@ void render_frames(const FrameSequence& sequence, FrameScenes& scenes, FrameRend
 
 void run_render(const RenderArguments& typed) {
     RenderArguments a = typed;
-    if (a.resume && a.frames.empty() && !a.all_frames)
-        throw UsageError("--resume: only continues a sequence; give its --frames");
+    if (a.resume && a.frames.empty() && !a.all_frames && a.is_scene_itself())
+        throw UsageError("--resume: only continues a sequence; give its --frames or --variations");
     const auto start = std::chrono::steady_clock::now();
     RunStats stats;
     const ThreadLimit limit(a.threads);
     a.exr();  // throws for a word that does not exist
     stats.begin_stage("scene");
-    SceneDesc desc = load_scene(a.scene, a.overrides);
-    apply_arguments(a, desc);
-    if (a.all_frames) a.frames = all_frames(desc);
-    FrameSequence sequence = frames_of(a);
-    add_cameras(sequence, desc, a.camera);
-    add_sensor_images(sequence, desc);
-    const std::vector<PixelWindow> windows = windows_of(a, desc);
-    append_warnings(a, sequence.frames.front(), windows, desc);
-    FrameScenes scenes(desc, sequence.frames.front());
-    layer_plan(scenes.first(), a.layers, a.paths());  // throws for what does not exist
+    RunScenes scenes(a);
+    if (a.all_frames) a.frames = all_frames(scenes.of(scenes.all().front()));
+    VariationManifest manifest(a);
+    FrameSequence sequence = images_of(a, scenes, manifest);
+    const Frame first = sequence.frames.front();
+    FrameScenes frame_scenes(scenes, first,
+                             warnings_of(a, first, scenes.of(first.variation), scenes));
+    layer_plan(frame_scenes.first(), a.layers, a.paths());  // throws for what does not exist
     const FrameSequence all = sequence;
     std::optional<double> exposure;
-    if (a.resume) exposure = leave_out_rendered(sequence, desc, a, windows);
+    if (a.resume) exposure = leave_out_rendered(sequence, scenes, a);
     if (sequence.frames.empty()) {
+        manifest.write(a.quiet);
         write_contact_sheet(all, a.quiet);
         return;
     }
-    check_measures(a, scenes.first(), windows[sequence.frames.front().camera]);
-    check_frames(sequence, desc);
+    check_measures(a, frame_scenes.first(), sequence.frames.front().window);
+    check_frames(sequence, [&](std::optional<int> variation) -> const SceneDesc& {
+        return scenes.of(variation);
+    });
+    manifest.write(a.quiet);
     std::vector<RunStats> done;
-    FrameRenderer renderer(
-        a, desc, windows, sequence.frames.size(), [&](const Frame& frame, RunStats of_frame) {
-            if (!frame.files.stats.empty())
-                of_frame.write_json(frame.files.stats, desc.file.filename().string());
-            done.push_back(std::move(of_frame));
-        });
+    FrameRenderer renderer(a, sequence.frames.size(),
+                           first.camera_name.empty() && !first.variation ? "frame" : "image",
+                           [&](const Frame& frame, RunStats of_frame) {
+                               if (!frame.files.stats.empty())
+                                   of_frame.write_json(frame.files.stats,
+                                                       a.scene.filename().string());
+                               done.push_back(std::move(of_frame));
+                           });
     if (exposure) renderer.keep_exposure(*exposure);
     const auto write_stats = [&] {
         write_numbers(a, sequence.numbers, done);
@@ -202,7 +248,7 @@ void run_render(const RenderArguments& typed) {
             RunStats::write_json(sequence.stats, a.scene.filename().string(), done);
     };
     try {
-        render_frames(sequence, scenes, renderer, std::move(stats), done);
+        render_frames(sequence, frame_scenes, renderer, std::move(stats), done);
     } catch (...) {
         write_stats();  // of the frames done
         throw;

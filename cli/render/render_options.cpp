@@ -19,6 +19,7 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.exr --resume
   uwvdb render smoke.yaml --frames 1-48 -o out/smoke.####.png --exposure first --contact-sheet s.png
   uwvdb render stereo.yaml -o 'out/{camera}.exr'
+  uwvdb render varied.yaml --variations 100 -o 'out/{variation}.exr' --resume
   uwvdb render camera.yaml -o camera.sensor.png --set camera.sensor.exposure=0.01
   uwvdb render plume.yaml --integrator path --error 0.02 --size 320x180
   uwvdb render plume.yaml --numbers - --object seabed
@@ -33,11 +34,15 @@ Writes OUT.exr (the image and its depth; more with --layers) and OUT.png beside 
 the EXR holds. A camera with a sensor (camera.sensor) also writes its own image, OUT.sensor.png or
 .jpg, or that alone with -o OUT.sensor.png or -o OUT.jpg. Folders are made. With --frames, a volume's
 file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of several cameras
-becomes an image of each, OUT.NAME.exr, or with NAME in place of {camera}.
+becomes an image of each, OUT.NAME.exr, or with NAME in place of {camera}. --variations makes
+OUT.v0000.exr and so on, or 0000 in place of {variation}, and SCENE.variations.csv and .json beside
+them, which list every value drawn.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted. More: docs/command-line.md)";
 
 namespace {
+
+constexpr int k_most_variations = 1'000'000;
 
 // The most layers of --orders, of either kind.
 constexpr int k_most_orders = 64;
@@ -102,7 +107,17 @@ Options render_options(RenderArguments& a) {
         },
         "render these frames, or all in which everything that moves has a pose; file names "
         "contain %04d, ####, $F4 or {frame}");
-    options.flag("--resume", a.resume, "with --frames: skip frames that already exist");
+    options.integer("--variations", "N", a.variation_count, 1, k_most_variations,
+                    "render N scenes whose values are drawn as the scene's section variations "
+                    "says, and write a manifest of the values");
+    options.parsed(
+        "--variation", "0-9,17",
+        [&a](const std::string& text) {
+            a.variations = parse_frame_list(text, "--variation", "variations");
+        },
+        "render these variations only, counted from 0; the same images as among all of them");
+    options.flag("--resume", a.resume,
+                 "with --frames or --variations: skip images that already exist");
     options.set(a.overrides);
     options.size(a.size, "render at this size, the intrinsics scaled with it");
     options.window("--crop", a.crop, "render these pixels only; x1 and y1 are excluded");

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "core/base/bit_mixing.h"
+
 namespace uw {
 
 namespace {
@@ -11,16 +13,6 @@ namespace {
 constexpr std::array<std::uint32_t, 24> k_generator{
     1,      182667, 469891, 498753, 110745, 446247, 250185, 118627, 245333, 283199, 408519, 391023,
     246327, 126539, 399185, 461527, 300343, 69681,  516695, 436179, 106383, 238523, 413283, 70841};
-
-// Steele, Lea and Flood 2014: splitmix64.
-constexpr std::uint64_t k_step = 0x9e3779b97f4a7c15U;
-
-std::uint64_t mixed(std::uint64_t x) {
-    x += k_step;
-    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
-    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
-    return x ^ (x >> 31U);
-}
 
 std::uint32_t reversed(std::uint32_t x) {
     x = (x << 16U) | (x >> 16U);
@@ -33,18 +25,18 @@ std::uint32_t reversed(std::uint32_t x) {
 }  // namespace
 
 PathRandom::PathRandom(std::uint64_t seed, std::uint32_t index)
-    : seed_(seed), stream_(mixed(seed ^ mixed(index))), point_(reversed(index)) {}
+    : seed_(seed), stream_(mixed_bits(seed ^ mixed_bits(index))), point_(reversed(index)) {}
 
 double PathRandom::next() {
     const auto dimension = static_cast<std::uint64_t>(dimension_++);
     const bool in_lattice = dimension < k_generator.size();
-    std::uint64_t bits = mixed((in_lattice ? seed_ : stream_) + k_step * dimension);
+    std::uint64_t bits = mixed_bits((in_lattice ? seed_ : stream_) + k_bit_mixing_step * dimension);
     if (in_lattice) bits += std::uint64_t{point_ * k_generator[dimension]} << 32U;
     return static_cast<double>(bits >> 11U) * 0x1p-53;
 }
 
 std::uint64_t PathRandom::seed_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
-    return mixed(mixed(mixed(a) ^ b) ^ c);
+    return mixed_bits(mixed_bits(mixed_bits(a) ^ b) ^ c);
 }
 
 }  // namespace uw

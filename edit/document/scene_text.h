@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/scene/text/number_text.h"
 #include "core/scene/yaml/config_node.h"
-#include "edit/document/number_text.h"
 
 namespace uw {
 

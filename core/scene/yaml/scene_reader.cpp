@@ -138,24 +138,44 @@ void open_shutter(SceneDesc& desc) {
     }
 }
 
+/// What the scene itself is made of: an image of a variation is that of the same scene without the
+/// section.
+ConfigNode without_variations(ConfigNode root) {
+    std::erase_if(root.entries, [](const auto& entry) { return entry.key == k_variations_key; });
+    return root;
+}
+
 }  // namespace
 
+ConfigNode read_scene_tree(const std::filesystem::path& file,
+                           const std::vector<std::string>& overrides) {
+    return scene_tree(read_text_file(file, origin_of(file), YamlLimits{}.bytes, "scene"), file,
+                      overrides);
+}
+
+ConfigNode scene_tree(std::string_view text, const std::filesystem::path& file,
+                      const std::vector<std::string>& overrides) {
+    ConfigNode root = parse_yaml(text, origin_of(file));
+    for (const std::string& change : overrides) apply_override(root, change);
+    return root;
+}
+
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-    return read_scene_text(read_text_file(file, origin_of(file), YamlLimits{}.bytes, "scene"), file,
-                           overrides);
+    return scene_of_tree(read_scene_tree(file, overrides), file);
 }
 
 SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& file,
                           const std::vector<std::string>& overrides) {
-    ConfigNode root = parse_yaml(text, origin_of(file));
-    for (const std::string& change : overrides) apply_override(root, change);
+    return scene_of_tree(scene_tree(text, file, overrides), file);
+}
 
+SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& file) {
     const ConfigValue scene(root, "");
     check_version(scene);
-    ConfigMap map(
-        scene,
-        {"uwvdb", "camera", "cameras", "rig", "water", "volumes", "geometry", "lamps", "render"},
-        "a scene starts with 'uwvdb: 1'");
+    ConfigMap map(scene,
+                  {"uwvdb", "camera", "cameras", "rig", "water", "volumes", "geometry", "lamps",
+                   "render", k_variations_key},
+                  "a scene starts with 'uwvdb: 1'");
     map.require("uwvdb", "a scene starts with 'uwvdb: 1'");
 
     SceneDesc desc;
@@ -181,7 +201,7 @@ SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& fi
     if (desc.lamps.empty() && !brings_lamps) {
         context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
     }
-    desc.hash = config_hash(root);
+    desc.hash = config_hash(without_variations(root));
     return desc;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/scene/scene_desc.h"
+#include "core/scene/yaml/config_node.h"
 
 namespace uw {
 
@@ -19,6 +20,18 @@ SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::s
 /// belongs, for messages and the names of files, and is not read.
 SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& file,
                           const std::vector<std::string>& overrides = {});
+
+/// The section of a scene that says how others are made of it. It is no part of the scene itself:
+/// it is passed over here, and read by core/scene/variations.
+inline constexpr std::string_view k_variations_key = "variations";
+
+/// In two steps: the tree of a scene with its overrides, and the scene that it describes. Both
+/// throw as read_scene.
+ConfigNode read_scene_tree(const std::filesystem::path& file,
+                           const std::vector<std::string>& overrides);
+ConfigNode scene_tree(std::string_view text, const std::filesystem::path& file,
+                      const std::vector<std::string>& overrides = {});
+SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& file);
 
 /// The `water` of a scene without a file: the defaults, with `overrides` such as
 /// "water.preset=jerlov-II" applied as read_scene does. Keys of other sections are errors; file

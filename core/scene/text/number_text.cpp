@@ -1,4 +1,4 @@
-#include "edit/document/number_text.h"
+#include "core/scene/text/number_text.h"
 
 #include <fmt/format.h>
 

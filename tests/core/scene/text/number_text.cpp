@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "edit/document/number_text.h"
+#include "core/scene/text/number_text.h"
 
 #include <gtest/gtest.h>
 
