@@ -152,14 +152,16 @@ std::vector<KeyStep> parse_key_path(std::string_view path) {
 }
 
 std::string joined_key(const ConfigNode& map, const std::vector<KeyStep>& steps, std::size_t& i) {
-    if (i + 1 < steps.size() && steps[i + 1].index && map.kind == ConfigNode::Kind::map) {
-        std::string joined = steps[i].key + steps[i + 1].text();
-        if (map.find(joined) != nullptr) {
-            ++i;
-            return joined;
-        }
+    std::string found = steps[i].key;
+    if (map.kind != ConfigNode::Kind::map) return found;
+    std::string joined = found;
+    for (std::size_t next = i + 1; next < steps.size(); ++next) {
+        joined += (steps[next].index ? "" : ".") + steps[next].text();
+        if (map.find(joined) == nullptr) continue;
+        found = joined;
+        i = next;
     }
-    return steps[i].key;
+    return found;
 }
 
 std::string entry_name(const ConfigNode& list, std::size_t entry, std::string_view list_path) {

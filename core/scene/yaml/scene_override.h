@@ -24,8 +24,8 @@ struct KeyStep {
 /// or deeper than any key.
 std::vector<KeyStep> parse_key_path(std::string_view path);
 
-/// Joins the step `i` of a path with the index after it if `map` has such a key: a grid may be
-/// called density[1]. `i` is then that of the index.
+/// Joins the step `i` of a path with those after it if `map` has such a key: a grid may be called
+/// density[1], and keys of `variations` are paths themselves. `i` is then that of the last of them.
 std::string joined_key(const ConfigNode& map, const std::vector<KeyStep>& steps, std::size_t& i);
 
 /// The name by which paths know an entry of the list at the path `list_path`: its `name`; a lamp

@@ -9,6 +9,7 @@
 #include "core/scene/variations/draw.h"
 #include "core/scene/variations/draw_random.h"
 #include "core/scene/variations/variations_reader.h"
+#include "core/scene/yaml/scene_override.h"
 #include "core/scene/yaml/yaml_document.h"
 #include "tests/support/message_of.h"
 #include "tests/support/scene_folder.h"
@@ -149,6 +150,16 @@ TEST(Variations, WhatIsWrongIsSaidWithItsPlaceAndMend) {
     expect("variations: {together: [{rows: [{a: 1}, {b: 1}]}]}",
            "scene.yaml:2:41: variations.together[0].rows[1]: 'a' is missing; all rows have the "
            "same keys");
+}
+
+TEST(Variations, AnOverrideReplacesWhatAKeyIsDrawnFrom) {
+    ConfigNode tree = parse_yaml("variations: {keys: {lamps.left.power: {uniform: [1, 2]}}}", "x");
+    apply_override(tree, "variations.keys.lamps.left.power.uniform[1]=1.5");
+    apply_override(tree, "variations.seed=8");
+    const VariationsDesc variations = *read_variations(tree, "scene.yaml");
+    EXPECT_EQ(variations.seed, 8U);
+    ASSERT_EQ(variations.keys.size(), 1U);
+    EXPECT_EQ(variations.keys[0].text, "{uniform: [1, 1.5]}");
 }
 
 TEST(Variations, NothingIsDrawnTwiceHoweverItsPathIsWritten) {
