@@ -1,6 +1,8 @@
 #include "camera/camera.h"
 
+#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace uw {
 
@@ -21,6 +23,13 @@ Camera::Camera(const CameraDesc& desc)
     if (desc.lens && desc.lens->focus_distance) thin_lens_.emplace(desc, port_);
 }
 
+Camera::Camera(const CameraDesc& desc, std::shared_ptr<const CameraMotion> motion,
+               const RowExposure& rows)
+    : Camera(desc) {
+    motion_ = std::move(motion);
+    rows_ = rows;
+}
+
 std::optional<Vector3> Camera::lens_direction(double x, double y) const {
     const NormalizedPoint image{(x - intrinsics_.cx) / intrinsics_.fx,
                                 (y - intrinsics_.cy) / intrinsics_.fy};
@@ -30,20 +39,25 @@ std::optional<Vector3> Camera::lens_direction(double x, double y) const {
 std::optional<Ray> Camera::refracted_ray(double x, double y) const {
     const std::optional<Vector3> in_housing = lens_direction(x, y);
     if (!in_housing) return std::nullopt;
-    return in_water({Point3{}, *in_housing});
+    const Ray ray{Point3{}, *in_housing};
+    return motion_ ? in_water(ray, world_from_camera_at(y)) : in_water(ray, world_from_camera_);
 }
 
-std::optional<Ray> Camera::aperture_ray(double x, double y, const AperturePoint& point) const {
+std::optional<Ray> Camera::aperture_ray(double x, double y, const AperturePoint& point,
+                                        double moment) const {
     const std::optional<Vector3> in_housing = lens_direction(x, y);
     if (!in_housing) return std::nullopt;
-    return in_water(thin_lens_ ? thin_lens_->ray(*in_housing, point) : Ray{Point3{}, *in_housing});
+    const Ray ray = thin_lens_ ? thin_lens_->ray(*in_housing, point) : Ray{Point3{}, *in_housing};
+    if (!motion_) return in_water(ray, world_from_camera_);
+    const TimeSpan exposed = rows_.at(y);
+    return in_water(ray, motion_->at(exposed.begin + moment * exposed.length()));
 }
 
-std::optional<Ray> Camera::in_water(const Ray& in_housing) const {
+std::optional<Ray> Camera::in_water(const Ray& in_housing, const Affine& world_from_camera) const {
     const std::optional<Ray> in_camera = through_port(port_, in_housing);
     if (!in_camera) return std::nullopt;
-    return Ray{world_from_camera_ * in_camera->origin,
-               glm::normalize(world_from_camera_.apply_to_vector(in_camera->direction))};
+    return Ray{world_from_camera * in_camera->origin,
+               glm::normalize(world_from_camera.apply_to_vector(in_camera->direction))};
 }
 
 LensRay Camera::lens_ray(double x, double y) const {
@@ -58,7 +72,24 @@ LensRay Camera::lens_ray(double x, double y) const {
 }
 
 std::optional<ImagePoint> Camera::project(const Point3& world) const {
-    const Point3 point = camera_from_world_ * world;
+    if (!motion_ || rows_.line_time == 0)
+        return project_in_camera(motion_ ? world_from_camera_at(0).inverse() * world
+                                         : camera_from_world_ * world);
+    // The row depends on the time, and the time on the row: by iteration, since a point crosses far
+    // fewer rows in the time between two than one.
+    constexpr int k_most_steps = 50;
+    constexpr double k_close = 1e-9;  // [pixels]
+    double row = 0.5 * height_;
+    std::optional<ImagePoint> image;
+    for (int step = 0; step < k_most_steps; ++step) {
+        image = project_in_camera(world_from_camera_at(row).inverse() * world);
+        if (!image || std::abs(image->y - row) < k_close) break;
+        row = image->y;
+    }
+    return image;
+}
+
+std::optional<ImagePoint> Camera::project_in_camera(const Point3& point) const {
     std::optional<Vector3> in_housing;
     if (port_) {
         in_housing = std::visit([&](const auto& port) { return port.direction_to(point); }, *port_);

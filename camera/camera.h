@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
+#include "camera/camera_motion.h"
 #include "camera/lens/lens_model.h"
 #include "camera/port/port.h"
 #include "camera/thin_lens.h"
@@ -23,6 +25,10 @@ class Camera final : public RaySource {
     /// Precondition, checked by the scene reader: fx, fy > 0, a rigid pose, a unit port normal, the
     /// camera within its dome, and a calibration that has been read. Throws as ThinLens.
     explicit Camera(const CameraDesc& desc);
+    /// A camera that moves while its rows are exposed. `desc` has its pose at the frame's time, or
+    /// of a part of the exposure, which stands for all of its rows where one pose must do.
+    Camera(const CameraDesc& desc, std::shared_ptr<const CameraMotion> motion,
+           const RowExposure& rows);
 
     int width() const override { return width_; }
     int height() const override { return height_; }
@@ -31,9 +37,15 @@ class Camera final : public RaySource {
     LensRay lens_ray(double x, double y) const override;
     bool port_dims() const override { return port_dims_; }
     bool has_aperture() const override { return thin_lens_.has_value(); }
-    std::optional<Ray> aperture_ray(double x, double y, const AperturePoint& point) const override;
+    bool moves() const override { return motion_ != nullptr && rows_.shutter > 0; }
+    std::optional<Ray> aperture_ray(double x, double y, const AperturePoint& point,
+                                    double moment = 0.5) const override;
     double focus_vergence() const override { return thin_lens_ ? thin_lens_->vergence() : 0; }
     const Affine& world_from_camera() const override { return world_from_camera_; }
+    bool is_rolling() const override { return motion_ != nullptr && rows_.line_time > 0; }
+    Affine world_from_camera_at(double y) const override {
+        return motion_ ? motion_->at(rows_.at(y).middle()) : world_from_camera_;
+    }
 
     /// The unit direction, in the camera frame inside the housing, that the lens images at (x, y);
     /// empty where the lens has no ray.
@@ -43,12 +55,14 @@ class Camera final : public RaySource {
     /// 1e-6 pixel, whether inside the image or not. Occluding surfaces are ignored. Empty where
     /// there is no such ray: behind a pinhole, outside the field of the lens, inside the housing or
     /// its glass. Behind a port this solves one equation in one unknown, which has a single root if
-    /// glass and water are at least as dense optically as the port's air.
+    /// glass and water are at least as dense optically as the port's air. With a rolling shutter it
+    /// is where the row shows it that is exposed when it is there.
     std::optional<ImagePoint> project(const Point3& world) const;
 
   private:
-    // The ray in the world of one in the housing, camera frame.
-    std::optional<Ray> in_water(const Ray& in_housing) const;
+    // The ray in the water, camera frame, of one in the housing, seen from a pose.
+    std::optional<Ray> in_water(const Ray& in_housing, const Affine& world_from_camera) const;
+    std::optional<ImagePoint> project_in_camera(const Point3& point) const;
 
     int width_;
     int height_;
@@ -59,6 +73,8 @@ class Camera final : public RaySource {
     std::optional<ThinLens> thin_lens_;
     Affine world_from_camera_;
     Affine camera_from_world_;
+    std::shared_ptr<const CameraMotion> motion_;  // null: it stands still
+    RowExposure rows_;
 };
 
 }  // namespace uw

@@ -1,9 +1,13 @@
 #include "render/correspondences.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "camera/image_size.h"
+#include "core/base/error.h"
 #include "core/surfaces/geometry_scene.h"
+#include "render/exposure.h"
 #include "render/object_motion.h"
 #include "render/resolved_scene.h"
 #include "render/scene_motion.h"
@@ -12,20 +16,37 @@ namespace uw {
 
 namespace {
 
-/// The frame `step` later; none if there is none.
+/// Where a row's exposure differs from another's, points on what moves would have to be looked for
+/// at many times.
+void refuse_rolling_surfaces(const SceneDesc& scene) {
+    const auto moves = [](const GeometryDesc& geometry) {
+        return geometry.trajectory || geometry.animation;
+    };
+    const auto entry = std::ranges::find_if(scene.geometry, moves);
+    if (scene.camera.line_time == 0 || entry == scene.geometry.end()) return;
+    throw InputError(fmt::format(
+        "{}.line_time: with a rolling shutter there is no flow or disparity of a scene in which "
+        "surfaces move ({}); leave out their layers, or line_time",
+        scene.camera.where, entry->where));
+}
+
+/// The frame `step` later, with an image of this scene's size; none if there is none.
 std::optional<SceneDesc> neighbour(const SceneDesc& scene, int step) {
     if (!scene.whole || !scene.choice.frame) return std::nullopt;
     const int frame = *scene.choice.frame + step;
     if (!has_frame(*scene.whole, frame)) return std::nullopt;
     ResolvedScene resolved(scene_of_image(*scene.whole, {frame, scene.choice.camera}));
-    return std::move(resolved).release();
+    SceneDesc desc = std::move(resolved).release();
+    resize_image(desc.camera, scene.camera.width, scene.camera.height);
+    return desc;
 }
 
-/// A neighbour's camera, with an image of this scene's size.
-CameraDesc camera_of(const SceneDesc& neighbour, const SceneDesc& scene) {
-    CameraDesc camera = neighbour.camera;
-    resize_image(camera, scene.camera.width, scene.camera.height);
-    return camera;
+/// The camera of the same moment that is another of the rig.
+Camera other_camera(const SceneDesc& scene, std::size_t index) {
+    SceneDesc other = scene;
+    other.camera = scene.cameras[index].camera;
+    other.choice.camera = index;
+    return camera_of_truth(other);
 }
 
 std::shared_ptr<const Surfaces> surfaces_of(const SceneDesc& next, const AssembledScene& scene,
@@ -43,23 +64,27 @@ std::shared_ptr<const Surfaces> surfaces_of(const SceneDesc& next, const Assembl
 Correspondences::Correspondences(const AssembledScene& scene, const LayerPlan& plan,
                                  SurfacesAhead& ahead) {
     const SceneDesc& now = scene.desc;
+    for (std::size_t i = 0; i < k_layer_count; ++i)
+        if (const auto layer = static_cast<Layer>(i);
+            is_about_another_image(layer) && plan.has(layer))
+            refuse_rolling_surfaces(now);
     const bool finds_occluded = plan.has(Layer::flow_occluded);
     const auto motions_until = [&](const SceneDesc& then) {
         return object_motions(now, then, scene.surfaces->names(), warnings_);
     };
     if (plan.has(Layer::flow) || finds_occluded) {
         if (const auto next = neighbour(now, 1))
-            next_.emplace(camera_of(*next, now), motions_until(*next),
+            next_.emplace(camera_of_truth(*next), motions_until(*next),
                           finds_occluded ? surfaces_of(*next, scene, ahead) : nullptr);
     }
     if (plan.has(Layer::flow_back)) {
         if (const auto previous = neighbour(now, -1))
-            previous_.emplace(camera_of(*previous, now), motions_until(*previous), nullptr);
+            previous_.emplace(camera_of_truth(*previous), motions_until(*previous), nullptr);
     }
     if (!plan.has(Layer::disparity) && !plan.has(Layer::disparity_occluded)) return;
     if (now.cameras.size() < 2) return;
     is_first_camera_ = now.choice.camera == 0;
-    other_camera_.emplace(now.cameras[is_first_camera_ ? 1 : 0].camera, ObjectMotions(),
+    other_camera_.emplace(other_camera(now, is_first_camera_ ? 1 : 0), ObjectMotions(),
                           scene.surfaces);
 }
 

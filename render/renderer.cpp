@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/colour/colour_response.h"
 #include "core/integrators/integrator_table.h"
+#include "render/exposed_image.h"
 #include "render/far_lamps.h"
 
 namespace uw {
@@ -168,27 +169,54 @@ void Renderer::warn_of_multiple_error() {
         100 * *report_.multiple_error));
 }
 
+DeepShadows Renderer::light_of_part(const AssembledScene& part) {
+    if (!needs_light()) return {};
+    const DeepShadows light =
+        splatter_.splat(part, deep_shadow_options(scene_.desc.render.quality, scene_.water.medium));
+    splat_rays_ += splatter_.counts().rays;
+    return light;
+}
+
+void Renderer::render_film(const RenderOptions& options) {
+    LightTransport own;
+    if (!options.transport) own = make_light_transport(scene_, light_);
+    const LightTransport& transport = options.transport ? *options.transport : own;
+    const Correspondences others(scene_, *plan_, ahead_);
+    report_.warnings.insert(report_.warnings.end(), others.warnings().begin(),
+                            others.warnings().end());
+    const RenderProgress progress = [this](const std::string& stage, double fraction) {
+        return !progress_ || progress_(stage, fraction);
+    };
+    const AccuracyCallbacks reached{[this](const PathAccuracy& so_far) { report_.paths = so_far; },
+                                    [this](double error) { report_.multiple_error = error; }};
+    const Exposure exposure(scene_);
+    report_.exposure_parts = static_cast<std::uint64_t>(exposure.part_count());
+    report_.exposure_samples = static_cast<std::uint64_t>(exposure.samples());
+    report_.motion_pixels = exposure.motion_pixels();
+    if (exposure.part_count() == 0) {
+        render_scene(scene_, light_, transport, *plan_, *colour_, *film_, progress,
+                     {samples_of(scene_.desc.render), options.paths.error}, reached,
+                     others.matchers());
+        return;
+    }
+    if (options.paths.error)
+        throw UsageError(
+            "--error: is not known of an image in which something moves while the shutter is "
+            "open; give --samples instead");
+    render_exposure(
+        exposure, scene_, transport,
+        [this](const AssembledScene& part) { return light_of_part(part); }, *plan_, *colour_,
+        *film_, progress, reached, others.matchers());
+}
+
 const Film& Renderer::render(const RenderOptions& options) {
     prepare(options);
     if (needs_light())
         splat();
     else
         begin("splat");
-    LightTransport own;
-    if (!options.transport) own = make_light_transport(scene_, light_);
     is_film_clear_ = false;
-    const Correspondences others(scene_, *plan_, ahead_);
-    report_.warnings.insert(report_.warnings.end(), others.warnings().begin(),
-                            others.warnings().end());
-    render_scene(
-        scene_, light_, options.transport ? *options.transport : own, *plan_, *colour_, *film_,
-        [this](const std::string& stage, double fraction) {
-            return !progress_ || progress_(stage, fraction);
-        },
-        {samples_of(scene_.desc.render), options.paths.error},
-        {[this](const PathAccuracy& so_far) { report_.paths = so_far; },
-         [this](double error) { report_.multiple_error = error; }},
-        others.matchers());
+    render_film(options);
     if (sensor_) sensor_->expose(*scene_.camera, *plan_, *film_);
     warn_of_error(options.paths);
     warn_of_multiple_error();

@@ -43,6 +43,10 @@ struct RenderReport {
     /// The stated standard error of light scattered more than once, where the integrator volume
     /// renders it (MultipleLight::error), relative to the image's mean.
     std::optional<double> multiple_error;
+    /// Of an image during whose exposure something moves: its parts (Exposure), the samples per
+    /// pixel of all of them, and how far it moves in the image, at most [pixels]. 0: nothing does.
+    std::uint64_t exposure_parts = 0, exposure_samples = 0;
+    double motion_pixels = 0;
 };
 
 /// Renders images of scenes: the only path from a scene description to pixels.
@@ -121,6 +125,8 @@ class Renderer {
     void count_work();
     void warn_of_error(const PathRequest& request);
     void warn_of_multiple_error();
+    void render_film(const RenderOptions& options);
+    DeepShadows light_of_part(const AssembledScene& part);
 
     RenderProgress progress_;
     AssembledScene scene_;  // its `desc` alone until it is assembled

@@ -32,4 +32,9 @@ class ResolvedScene {
     SceneDesc desc_;
 };
 
+/// A resolved scene at another moment of its frame's exposure [s]: the poses of everything that
+/// moves, and of what its glTF files show, are those of then; nothing else changes. Precondition:
+/// it has SceneDesc::whole and a time.
+SceneDesc scene_at(const SceneDesc& scene, double time);
+
 }  // namespace uw

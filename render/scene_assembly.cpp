@@ -107,6 +107,16 @@ void take_over_surfaces(const SceneDesc& desc, AssembledScene& scene, AssembledS
     before.surfaces.reset();
 }
 
+void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
+    for (const LampDesc& lamp : desc.lamps) {
+        scene.lamps.push_back(make_lamp(lamp, desc.camera.world_from_camera,
+                                        scene.water.medium.wavelengths_nm, scene.warnings));
+        append_emitters(lamp, scene.lamps.back(), scene.lamps.size() - 1,
+                        desc.render.quality == RenderDesc::Quality::draft ? k_draft_thinning : 1,
+                        desc.camera.world_from_camera, scene.emitters);
+    }
+}
+
 }  // namespace
 
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
@@ -130,16 +140,27 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
         scene.surfaces =
             build_surfaces(desc.geometry, medium.wavelengths_nm, scene.geometry_warnings);
     append(scene.warnings, scene.geometry_warnings);
-    for (const LampDesc& lamp : desc.lamps) {
-        scene.lamps.push_back(
-            make_lamp(lamp, desc.camera.world_from_camera, medium.wavelengths_nm, scene.warnings));
-        append_emitters(lamp, scene.lamps.back(), scene.lamps.size() - 1,
-                        desc.render.quality == RenderDesc::Quality::draft ? k_draft_thinning : 1,
-                        desc.camera.world_from_camera, scene.emitters);
-    }
+    place_lamps(desc, scene);
     warn_of_lamps_at_the_camera(desc, scene);
     scene.slabs = place_slabs(desc.render.planes, *scene.camera, scene.lit());
     return scene;
+}
+
+AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
+                          std::unique_ptr<Camera> camera) {
+    AssembledScene moved;
+    moved.camera = std::move(camera);
+    moved.water = scene.water;
+    moved.field = scene.field;
+    moved.surfaces = scene.surfaces;
+    if (desc.geometry != scene.desc.geometry)
+        moved.surfaces = build_surfaces(desc.geometry, scene.water.medium.wavelengths_nm,
+                                        moved.geometry_warnings);
+    place_lamps(desc, moved);
+    moved.slabs = place_slabs(desc.render.planes, *moved.camera, moved.lit());
+    moved.warnings.clear();
+    moved.desc = std::move(desc);
+    return moved;
 }
 
 LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows) {

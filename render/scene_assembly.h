@@ -29,6 +29,8 @@ struct AssembledScene {
     std::vector<Lamp> lamps;     // as the description has them, each at its centre
     std::vector<Lamp> emitters;  // the points that they consist of (LitScene::emitters)
     Slabs slabs;
+    /// Of a part of an exposure (render/exposure.h); 0: all of it.
+    int first_sample = 0, total_samples = 0;
     std::vector<VolumeReport> volume_reports;
     std::vector<std::string> warnings;  // one line each, in the order met
 
@@ -50,6 +52,12 @@ using StageCallback = std::function<void(const std::string& stage)>;
 /// InputError and IoError of one line each.
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
                               AssembledScene before = {});
+
+/// The scene, assembled, with what moves at another moment: `desc` is what scene_at makes of its
+/// description. It shares the rest with `scene`; it has nothing for a next scene to reuse, and no
+/// warnings. `camera`: that of the part of the exposure, made of `desc`. Throws as build_surfaces.
+AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
+                          std::unique_ptr<Camera> camera);
 
 /// The light transport of the integrator that the scene requests, from light splatted before;
 /// `deep_shadows` may be empty unless IntegratorKind::needs_deep_shadows. In-scatter is weighted by

@@ -88,6 +88,30 @@ Affine pose_at(const TrajectoryDesc& desc, double time, const SceneDesc& scene,
         frames ? fmt::format(", which is frames {}-{}", frames->first, frames->last) : ""));
 }
 
+/// Sets `scene.time`, and all poses to those that `pose_of` gives their trajectories.
+void move_all(SceneDesc& scene, double time,
+              const std::function<Affine(const TrajectoryDesc&)>& pose_of) {
+    if (scene.camera.trajectory) scene.camera.world_from_camera = pose_of(*scene.camera.trajectory);
+    if (scene.rig_trajectory) {
+        const Affine world_from_rig = pose_of(*scene.rig_trajectory);
+        const auto move = [&](Affine& world_from_mount) {
+            world_from_mount = world_from_rig * world_from_mount;
+        };
+        move(scene.camera.world_from_camera);
+        for (RigCameraDesc& entry : scene.cameras) move(entry.camera.world_from_camera);
+        for (LampDesc& lamp : scene.lamps)
+            if (lamp.fixed_to_rig) move(lamp.world_from_mount);
+    }
+    for (LampDesc& lamp : scene.lamps)
+        if (lamp.trajectory) lamp.world_from_mount = pose_of(*lamp.trajectory);
+    for (GeometryDesc& geometry : scene.geometry) {
+        if (geometry.trajectory)
+            geometry.world_from_object = pose_of(*geometry.trajectory) * geometry.world_from_object;
+        if (geometry.animation) geometry.time = time;
+    }
+    scene.time = time;
+}
+
 }  // namespace
 
 bool has_motion(const SceneDesc& scene) {
@@ -128,28 +152,14 @@ double first_time(const SceneDesc& scene) {
 }
 
 void set_time(SceneDesc& scene, double time, const std::string& subject) {
-    const auto pose_of = [&](const TrajectoryDesc& desc) {
-        return pose_at(desc, time, scene, subject);
-    };
-    if (scene.camera.trajectory) scene.camera.world_from_camera = pose_of(*scene.camera.trajectory);
-    if (scene.rig_trajectory) {
-        const Affine world_from_rig = pose_of(*scene.rig_trajectory);
-        const auto move = [&](Affine& world_from_mount) {
-            world_from_mount = world_from_rig * world_from_mount;
-        };
-        move(scene.camera.world_from_camera);
-        for (RigCameraDesc& entry : scene.cameras) move(entry.camera.world_from_camera);
-        for (LampDesc& lamp : scene.lamps)
-            if (lamp.fixed_to_rig) move(lamp.world_from_mount);
-    }
-    for (LampDesc& lamp : scene.lamps)
-        if (lamp.trajectory) lamp.world_from_mount = pose_of(*lamp.trajectory);
-    for (GeometryDesc& geometry : scene.geometry) {
-        if (geometry.trajectory)
-            geometry.world_from_object = pose_of(*geometry.trajectory) * geometry.world_from_object;
-        if (geometry.animation) geometry.time = time;
-    }
-    scene.time = time;
+    move_all(scene, time,
+             [&](const TrajectoryDesc& desc) { return pose_at(desc, time, scene, subject); });
+}
+
+void set_time_of_exposure(SceneDesc& scene, double time) {
+    move_all(scene, time, [&](const TrajectoryDesc& desc) {
+        return desc.trajectory->at_or_beyond(time).affine();
+    });
 }
 
 }  // namespace uw

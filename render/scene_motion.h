@@ -38,4 +38,8 @@ double first_time(const SceneDesc& scene);
 /// trajectory has no pose, with the frames that it has. Precondition: it was not set before.
 void set_time(SceneDesc& scene, double time, const std::string& subject);
 
+/// The same for a moment while a frame is exposed, which may begin before the first pose and end
+/// after the last: Trajectory::at_or_beyond.
+void set_time_of_exposure(SceneDesc& scene, double time);
+
 }  // namespace uw

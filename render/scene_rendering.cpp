@@ -196,8 +196,10 @@ PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& 
     int samples = samples_of(scene.desc.render);
     if (integrator_kind(scene.desc.render.integrator).traces_paths)
         samples = std::min(samples, k_most_samples_beside_paths);
-    return {*scene.camera,           scene.lit(), transport, samples, scene.slabs,
-            SensorModel(scene.desc), parts,       matchers};
+    return {*scene.camera, scene.lit(),
+            transport,     {samples, scene.total_samples, scene.first_sample},
+            scene.slabs,   SensorModel(scene.desc),
+            parts,         matchers};
 }
 
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,

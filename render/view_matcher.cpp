@@ -4,9 +4,9 @@
 
 namespace uw {
 
-ViewMatcher::ViewMatcher(const CameraDesc& camera, ObjectMotions motions,
+ViewMatcher::ViewMatcher(Camera camera, ObjectMotions motions,
                          std::shared_ptr<const Surfaces> surfaces)
-    : camera_(camera), motions_(std::move(motions)), surfaces_(std::move(surfaces)) {}
+    : camera_(std::move(camera)), motions_(std::move(motions)), surfaces_(std::move(surfaces)) {}
 
 std::optional<PointMatch> ViewMatcher::match(const SurfaceHit& hit) const {
     Point3 point = hit.position;

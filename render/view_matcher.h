@@ -18,8 +18,7 @@ class ViewMatcher final : public PointMatcher {
   public:
     /// `motions`: of the objects that the points are of; empty: none moves. `surfaces`: at the
     /// other moment; null: whether a point is hidden is not asked.
-    ViewMatcher(const CameraDesc& camera, ObjectMotions motions,
-                std::shared_ptr<const Surfaces> surfaces);
+    ViewMatcher(Camera camera, ObjectMotions motions, std::shared_ptr<const Surfaces> surfaces);
 
     std::optional<PointMatch> match(const SurfaceHit& hit) const override;
 

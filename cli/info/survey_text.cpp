@@ -59,12 +59,20 @@ std::string describe_camera(const SceneSurvey& survey) {
     const Vector3& at = camera.world_from_camera.offset();
     const Vector3 to = camera.world_from_camera.apply_to_vector({0, 0, 1});
     const std::string name = survey.scene.desc.camera_name;
+    const double shutter = survey.scene.desc.render.shutter;
+    std::string exposure;
+    if (shutter > 0) exposure += fmt::format("  exposed for {:.4g} ms\n", 1e3 * shutter);
+    if (camera.line_time > 0)
+        exposure +=
+            fmt::format("  a rolling shutter: {:.4g} us from row to row, {:.4g} ms in all\n",
+                        1e6 * camera.line_time, 1e3 * camera.line_time * camera.height);
     return fmt::format(
         "camera{}\n  {} x {} pixels, {:.4g} x {:.4g} degrees in the water, {}\n"
-        "  at ({:.4g}, {:.4g}, {:.4g}) looking along ({:.3g}, {:.3g}, {:.3g})\n",
+        "  at ({:.4g}, {:.4g}, {:.4g}) looking along ({:.3g}, {:.3g}, {:.3g})\n{}",
         name.empty() ? "" : " '" + name + "', the first of the rig", camera.width, camera.height,
         survey.field_of_view[0], survey.field_of_view[1],
-        camera.port ? "behind a port" : "without a port", at.x, at.y, at.z, to.x, to.y, to.z);
+        camera.port ? "behind a port" : "without a port", at.x, at.y, at.z, to.x, to.y, to.z,
+        exposure);
 }
 
 std::string describe_lamps(const AssembledScene& scene) {

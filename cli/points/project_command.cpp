@@ -14,13 +14,16 @@
 #include "cli/stop_signal.h"
 #include "cli/text_files.h"
 #include "core/base/parallel.h"
+#include "render/exposure.h"
 #include "render/seen_point.h"
 
 namespace uw {
 
 void run_project(const PointsArguments& a) {
     const ThreadLimit limit(a.threads);
-    const AssembledScene scene = with_surfaces(observed_scene(a));
+    const ResolvedScene observed = observed_scene(a);
+    const Camera camera = camera_of_truth(observed.desc());
+    const AssembledScene scene = with_surfaces(observed);
     const std::array<std::vector<std::string_view>, 1> names{{{"x", "y", "z"}}};
     const CoordinateTable points = read_coordinates(a.table, names);
     std::atomic<std::size_t> visible = 0, occluded = 0, outside = 0;
@@ -28,8 +31,7 @@ void run_project(const PointsArguments& a) {
         {"pixel_x", "pixel_y", "path", "in_image", "visible"},
         [&](std::size_t row, std::string& text) {
             const std::span<const double> at = points.coordinates(row);
-            const SeenPoint seen =
-                seen_point({at[0], at[1], at[2]}, *scene.camera, *scene.surfaces);
+            const SeenPoint seen = seen_point({at[0], at[1], at[2]}, camera, *scene.surfaces);
             if (seen.visible)
                 ++visible;
             else if (seen.in_image)

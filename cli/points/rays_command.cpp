@@ -13,6 +13,7 @@
 #include "cli/stop_signal.h"
 #include "cli/text_files.h"
 #include "core/base/parallel.h"
+#include "render/exposure.h"
 #include "render/seen_point.h"
 
 namespace uw {
@@ -20,7 +21,7 @@ namespace uw {
 void run_rays(const PointsArguments& a) {
     const ThreadLimit limit(a.threads);
     const ResolvedScene scene = observed_scene(a);
-    const Camera camera(scene.desc().camera);
+    const Camera camera = camera_of_truth(scene.desc());
     const std::array<std::vector<std::string_view>, 2> names{{{"pixel_x", "pixel_y"}, {"x", "y"}}};
     const CoordinateTable pixels = read_coordinates(a.table, names);
     std::atomic<std::size_t> outside = 0, without_ray = 0;

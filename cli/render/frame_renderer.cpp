@@ -137,6 +137,8 @@ void FrameRenderer::count_work(RunStats& stats) const {
     stats.count("triangles", report.triangles);
     stats.count("lamps", report.lamps);
     stats.count("bands", report.bands);
+    if (report.exposure_parts > 0) stats.count("exposure_parts", report.exposure_parts);
+    if (report.exposure_parts > 0) stats.measure("motion_pixels", report.motion_pixels);
     if (report.multiple_error) stats.measure("multiple_error", *report.multiple_error);
     if (report.paths.samples == 0) return;
     stats.count("samples", static_cast<std::uint64_t>(report.paths.samples));

@@ -110,6 +110,8 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
     }
     if (frame) m["uwvdb/frame"] = fmt::format("{}", *frame);
     if (scene.time) m["uwvdb/time_s"] = *scene.time;
+    if (scene.render.shutter > 0) m["uwvdb/shutter_s"] = scene.render.shutter;
+    if (scene.camera.line_time > 0) m["uwvdb/line_time_s"] = scene.camera.line_time;
     if (!scene.camera_name.empty()) m["uwvdb/camera"] = scene.camera_name;
     const IntrinsicsDesc& k = scene.camera.intrinsics;
     m["uwvdb/intrinsics_fx_fy_cx_cy_px"] =
@@ -144,6 +146,10 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
     if (report.paths.samples > 0) m["uwvdb/samples"] = static_cast<double>(report.paths.samples);
     if (report.paths.error) m["uwvdb/error"] = *report.paths.error;
     if (report.multiple_error) m["uwvdb/multiple_error"] = *report.multiple_error;
+    if (report.exposure_parts > 0) {
+        m["uwvdb/exposure_parts"] = static_cast<double>(report.exposure_parts);
+        m["uwvdb/exposure_samples"] = static_cast<double>(report.exposure_samples);
+    }
     const Medium& medium = scene.water.medium;
     std::vector<double> a, b, c;
     for (int band = 0; band < medium.band_count(); ++band) {

@@ -177,7 +177,7 @@ MethodImage render_method(const TrialScene& trial, const LightTransport& transpo
     MethodImage image;
     image.direct.resize(pixels);
     image.backscatter.resize(pixels);
-    const PixelRenderer renderer(*trial.scene().camera, trial.scene().lit(), transport, 1,
+    const PixelRenderer renderer(*trial.scene().camera, trial.scene().lit(), transport, {},
                                  trial.scene().slabs);
     parallel_for(static_cast<std::size_t>(trial.height()), [&](std::size_t row) {
         if (!proceed()) throw Interrupted();

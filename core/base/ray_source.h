@@ -44,15 +44,23 @@ class RaySource {
 
     /// Whether the lens has a focus, so that rays through different points of its aperture differ.
     virtual bool has_aperture() const { return false; }
-    /// The ray in water of image position (x, y) through a point of the aperture; that through its
-    /// centre is refracted_ray.
-    virtual std::optional<Ray> aperture_ray(double x, double y, const AperturePoint&) const {
+    /// Whether the camera moves while a pixel is exposed, so that rays at different moments differ.
+    virtual bool moves() const { return false; }
+    /// The ray in water of image position (x, y) through a point of the aperture, at a moment of
+    /// the pixel's exposure (0 its begin, 1 its end); through the centre, in the middle, it is
+    /// refracted_ray.
+    virtual std::optional<Ray> aperture_ray(double x, double y, const AperturePoint& /*point*/,
+                                            double /*moment*/ = 0.5) const {
         return refracted_ray(x, y);
     }
     /// 1 / distance of the plane in focus, as the lens sees it in the housing's air [1/m].
     virtual double focus_vergence() const { return 0; }
 
     virtual const Affine& world_from_camera() const = 0;
+    /// Whether the pose differs from row to row: a rolling shutter.
+    virtual bool is_rolling() const { return false; }
+    /// The pose that refracted_ray has at image row `y`.
+    virtual Affine world_from_camera_at(double /*y*/) const { return world_from_camera(); }
 };
 
 }  // namespace uw

@@ -21,12 +21,16 @@ constexpr int k_position_dimensions = 2;
 // Beyond the lattice, whose dimensions after those of the position the estimates use.
 constexpr int k_aperture_dimension = 64;
 
-// Through a random point of the aperture, if there is one.
+// Parts of an exposure have batches of their own, far from each other's.
+constexpr unsigned k_part_shift = 24;
+
+// Through a random point of the aperture, if there is one, at a random moment.
 std::optional<Ray> camera_ray(const RaySource& rays, double x, double y, PathRandom& random) {
-    if (!rays.has_aperture()) return rays.refracted_ray(x, y);
+    if (!rays.has_aperture() && !rays.moves()) return rays.refracted_ray(x, y);
     random.skip_to(k_aperture_dimension);
     const double a = random.next(), b = random.next();
-    return rays.aperture_ray(x, y, aperture_point(a, b));
+    return rays.aperture_ray(x, y, rays.has_aperture() ? aperture_point(a, b) : AperturePoint{},
+                             random.next());
 }
 
 }  // namespace
@@ -102,7 +106,8 @@ void PathPixels::render(int x, int y, const PathRound& round, const TracedCallba
         const auto i = static_cast<std::size_t>(b);
         // As equal as can be.
         sizes[i] = (b + 1) * round.samples / batches - b * round.samples / batches;
-        const auto number = static_cast<std::uint64_t>(round.number) * PathRound::k_batches + i;
+        const auto number = (static_cast<std::uint64_t>(pixels_.first_sample()) << k_part_shift) +
+                            static_cast<std::uint64_t>(round.number) * PathRound::k_batches + i;
         sum.begin_batch();
         trace(x, y, {pixel, number, sizes[i]}, view, sum, traced);
         means[i] = sum.batch() / sizes[i];

@@ -47,31 +47,14 @@ void mix_channels(std::span<float> mean, std::span<const float> more, double wei
     }
 }
 
-/// Makes sums of layers, where the image holds all of their terms, sums to the bit again, in the
-/// order of layer_channels::total.
-void restore_sums(const LayerPlan& plan, const BandColour& colour, std::span<float> channels) {
-    const bool parts = plan.has(Layer::multiple_volume) && plan.has(Layer::multiple_surface);
-    std::array<float, k_max_bands> sums{};
-    const std::span<float> total = std::span(sums).first(plan.band_count());
-    if (parts) {
-        std::ranges::copy(plan.channels(Layer::multiple_volume, channels), total.begin());
-        add_channels(total, plan.channels(Layer::multiple_surface, channels));
-        if (plan.has(Layer::multiple))
-            std::ranges::copy(total, plan.channels(Layer::multiple, channels).begin());
-    } else if (plan.has(Layer::multiple)) {
-        std::ranges::copy(plan.channels(Layer::multiple, channels), total.begin());
-    } else {
-        return;
-    }
-    if (!plan.has(Layer::direct) || !plan.has(Layer::backscatter)) return;
-    const std::span<const float> direct = plan.channels(Layer::direct, channels);
-    const std::span<const float> backscatter = plan.channels(Layer::backscatter, channels);
-    // Nothing is scattered forward by a blur: `forward` is 0.
-    for (std::size_t b = 0; b < total.size(); ++b)
-        total[b] = (direct[b] + backscatter[b]) + total[b];
-    if (plan.has(Layer::total))
-        std::ranges::copy(total, plan.channels(Layer::total, channels).begin());
-    store_colour(total, colour, channels);
+void store_layer(const PixelLayer& layer, const PixelResult& pixel, const LayerPlan& plan,
+                 std::span<float> channels) {
+    if (!plan.has(layer.layer)) return;
+    const std::span<float> own = plan.channels(layer.layer, channels);
+    if (layer.of_hit && !pixel.has_hit)
+        std::ranges::fill(own, 0.0F);
+    else
+        layer.fill(pixel, own);
 }
 
 }  // namespace
@@ -145,14 +128,7 @@ void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColo
                  std::span<float> channels) {
     store_colour(pixel, plan.band_count(), colour, channels);
     channels[k_alpha] = static_cast<float>(pixel.alpha);
-    for (const PixelLayer& layer : k_pixel_layers) {
-        if (!plan.has(layer.layer)) continue;
-        const std::span<float> own = plan.channels(layer.layer, channels);
-        if (layer.of_hit && !pixel.has_hit)
-            std::ranges::fill(own, 0.0F);
-        else
-            layer.fill(pixel, own);
-    }
+    for (const PixelLayer& layer : k_pixel_layers) store_layer(layer, pixel, plan, channels);
     for (std::size_t j = 0; j < pixel.lamps.size(); ++j)
         store_radiance(pixel.lamps[j], pixel.pixel_factor, plan.lamp_channels(j, channels));
     for (std::size_t order = 0; order < plan.order_count(); ++order) {
@@ -161,6 +137,36 @@ void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColo
         store_radiance(pixel.reflections[order], pixel.pixel_factor,
                        plan.reflection_channels(order, channels));
     }
+}
+
+void store_truth(const PixelResult& pixel, const LayerPlan& plan, std::span<float> channels) {
+    for (const PixelLayer& layer : k_pixel_layers)
+        if (!layer.of_exposure) store_layer(layer, pixel, plan, channels);
+}
+
+void restore_sums(const LayerPlan& plan, const LightTerms& terms, const BandColour& colour,
+                  std::span<float> channels) {
+    const auto layer = [&](Layer which) { return plan.channels(which, channels); };
+    std::array<float, k_max_bands> multiple{}, sums{};
+    const std::span<float> more = std::span(multiple).first(plan.band_count());
+    if (plan.has(Layer::multiple_volume) && plan.has(Layer::multiple_surface)) {
+        std::ranges::copy(layer(Layer::multiple_volume), more.begin());
+        add_channels(more, layer(Layer::multiple_surface));
+        if (plan.has(Layer::multiple)) std::ranges::copy(more, layer(Layer::multiple).begin());
+    } else if (plan.has(Layer::multiple)) {
+        std::ranges::copy(layer(Layer::multiple), more.begin());
+    } else if (terms.multiple) {
+        return;
+    }
+    if (!plan.has(Layer::direct) || !plan.has(Layer::backscatter)) return;
+    if (terms.forward && !plan.has(Layer::forward)) return;
+    const std::span<float> total = std::span(sums).first(plan.band_count());
+    std::ranges::copy(layer(Layer::direct), total.begin());
+    if (terms.forward) add_channels(total, layer(Layer::forward));
+    add_channels(total, layer(Layer::backscatter));
+    add_channels(total, more);
+    if (plan.has(Layer::total)) std::ranges::copy(total, layer(Layer::total).begin());
+    store_colour(total, colour, channels);
 }
 
 void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
@@ -181,7 +187,8 @@ void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
         merge([&](std::span<float> all) { return plan.order_channels(order, all); });
         merge([&](std::span<float> all) { return plan.reflection_channels(order, all); });
     }
-    restore_sums(plan, colour, channels);
+    // Nothing is scattered forward by a blur.
+    restore_sums(plan, {.forward = false, .multiple = true}, colour, channels);
 }
 
 void store_forward_scatter(const PixelResult& pixel, const LayerPlan& plan,

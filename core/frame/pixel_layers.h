@@ -107,6 +107,7 @@ struct PixelLayer {
     void (*fill)(const PixelResult& pixel, std::span<float> channels);
     ForwardScatter forward_scatter = ForwardScatter::leaves;
     bool of_paths = false;          // a mean over light paths: merge_paths
+    bool of_exposure = false;       // a mean over the exposure's time, else of its middle
     bool of_hit = false;            // 0 where the centre's ray hits no surface
     bool needs_first_slab = false;  // of the in-scatter
 };
@@ -116,36 +117,56 @@ inline constexpr std::array<PixelLayer, k_layer_count> k_pixel_layers{{
     {.layer = Layer::total,
      .fill = layer_channels::total,
      .forward_scatter = PixelLayer::ForwardScatter::replaces,
-     .of_paths = true},
+     .of_paths = true,
+     .of_exposure = true},
     {.layer = Layer::direct,
      .fill = layer_channels::radiance<&PixelResult::direct>,
      .forward_scatter = PixelLayer::ForwardScatter::replaces,
-     .of_paths = true},
+     .of_paths = true,
+     .of_exposure = true},
     {.layer = Layer::forward,
      .fill = layer_channels::radiance<&PixelResult::forward>,
-     .forward_scatter = PixelLayer::ForwardScatter::replaces},
+     .forward_scatter = PixelLayer::ForwardScatter::replaces,
+     .of_exposure = true},
     {.layer = Layer::backscatter,
      .fill = layer_channels::radiance<&PixelResult::backscatter>,
      .forward_scatter = PixelLayer::ForwardScatter::replaces,
-     .of_paths = true},
+     .of_paths = true,
+     .of_exposure = true},
     {.layer = Layer::backscatter_first,
      .fill = layer_channels::radiance<&PixelResult::backscatter_first>,
      .forward_scatter = PixelLayer::ForwardScatter::adds,
      .of_paths = true,
+     .of_exposure = true,
      .needs_first_slab = true},
-    {.layer = Layer::multiple, .fill = layer_channels::multiple, .of_paths = true},
+    {.layer = Layer::multiple,
+     .fill = layer_channels::multiple,
+     .of_paths = true,
+     .of_exposure = true},
     {.layer = Layer::multiple_volume,
      .fill = layer_channels::radiance<&PixelResult::multiple_volume>,
-     .of_paths = true},
+     .of_paths = true,
+     .of_exposure = true},
     {.layer = Layer::multiple_surface,
      .fill = layer_channels::radiance<&PixelResult::multiple_surface>,
-     .of_paths = true},
-    {.layer = Layer::error, .fill = layer_channels::spectrum<&PixelResult::error>},
-    {.layer = Layer::irradiance, .fill = layer_channels::spectrum<&PixelResult::irradiance>},
-    {.layer = Layer::exitance, .fill = layer_channels::spectrum<&PixelResult::exitance>},
-    {.layer = Layer::lit, .fill = layer_channels::number<&PixelResult::lit>},
-    {.layer = Layer::clean, .fill = layer_channels::radiance<&PixelResult::clean>},
-    {.layer = Layer::transmittance, .fill = layer_channels::spectrum<&PixelResult::transmittance>},
+     .of_paths = true,
+     .of_exposure = true},
+    {.layer = Layer::error,
+     .fill = layer_channels::spectrum<&PixelResult::error>,
+     .of_exposure = true},
+    {.layer = Layer::irradiance,
+     .fill = layer_channels::spectrum<&PixelResult::irradiance>,
+     .of_exposure = true},
+    {.layer = Layer::exitance,
+     .fill = layer_channels::spectrum<&PixelResult::exitance>,
+     .of_exposure = true},
+    {.layer = Layer::lit, .fill = layer_channels::number<&PixelResult::lit>, .of_exposure = true},
+    {.layer = Layer::clean,
+     .fill = layer_channels::radiance<&PixelResult::clean>,
+     .of_exposure = true},
+    {.layer = Layer::transmittance,
+     .fill = layer_channels::spectrum<&PixelResult::transmittance>,
+     .of_exposure = true},
     {.layer = Layer::albedo, .fill = layer_channels::albedo, .of_hit = true},
     {.layer = Layer::depth, .fill = layer_channels::number<&PixelResult::depth_z>, .of_hit = true},
     {.layer = Layer::range, .fill = layer_channels::number<&PixelResult::range>, .of_hit = true},
@@ -176,6 +197,20 @@ void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColo
 /// of all, in which those of `pixel` have the share `weight`. Everything else stays.
 void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
                  const BandColour& colour, std::span<float> channels);
+
+/// Writes what belongs to the middle of an exposure alone, its ground truth: layers not
+/// PixelLayer::of_exposure.
+void store_truth(const PixelResult& pixel, const LayerPlan& plan, std::span<float> channels);
+
+/// Whether light of these kinds is in an image; else it is 0.
+struct LightTerms {
+    bool forward = false, multiple = false;
+};
+
+/// Makes sums of layers, as far as the image holds all of their terms, sums to the bit, in the
+/// order of layer_channels::total: after the terms were averaged and rounded.
+void restore_sums(const LayerPlan& plan, const LightTerms& terms, const BandColour& colour,
+                  std::span<float> channels);
 
 /// Writes the changes due to forward scatter into channels previously filled by store_pixel, except
 /// for the lamps. `pixel` holds the light after forward scatter, but in `backscatter_first` only

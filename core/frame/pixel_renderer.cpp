@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/frame/aperture_samples.h"
 #include "core/frame/pixel_matches.h"
-#include "core/paths/path_random.h"
 #include "core/surfaces/surface_reflection.h"
 
 namespace uw {
@@ -19,46 +17,6 @@ constexpr double k_same_distance = 0.01;
 // this close to it: to first order the mean over a slanted surface is its centre, and the water ray
 // does not continue behind the surface it hits.
 constexpr double k_same_surface = 0.25;
-
-// Base-2 radical inverse: 0, 1/2, 1/4, 3/4, ...; of other bases likewise.
-double radical_inverse(unsigned i, unsigned base = 2) {
-    double result = 0, digit = 1.0 / base;
-    for (; i != 0; i /= base, digit /= base) result += digit * (i % base);
-    return result;
-}
-
-struct ImageOffset {
-    double x, y;
-};
-
-// Hammersley points: every sample has its own row and column of the pixel. One sample: the centre.
-ImageOffset sample_offset(int i, int count) {
-    const double half_step = 0.5 / count;
-    const double y = radical_inverse(static_cast<unsigned>(i)) + half_step;
-    return {static_cast<double>(i) / count + half_step, count == 1 ? 0.5 : y};
-}
-
-// Where the samples of a pixel pass the aperture: evenly in the aperture, and in pixel and aperture
-// together (Hammersley points of four dimensions), but differently in each pixel, as the same
-// points in all would show as many sharp images.
-class ApertureSamples {
-  public:
-    ApertureSamples(int x, int y) {
-        const auto pixel = static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x);
-        PathRandom random(PathRandom::seed_of(k_seed, pixel), 0);
-        shift_a_ = random.next();
-        shift_b_ = random.next();
-    }
-    AperturePoint operator()(int i) const {
-        const auto number = static_cast<unsigned>(i);
-        return aperture_point(std::fmod(radical_inverse(number, 3) + shift_a_, 1.0),
-                              std::fmod(radical_inverse(number, 5) + shift_b_, 1.0));
-    }
-
-  private:
-    static constexpr std::uint64_t k_seed = 0x61706572;  // other numbers than for light paths
-    double shift_a_, shift_b_;
-};
 
 // Derives the view's distances and weights from its samples, merging distances that agree.
 void group_distances(std::vector<double>& distances, int samples, PixelView& view) {
@@ -81,9 +39,9 @@ void group_distances(std::vector<double>& distances, int samples, PixelView& vie
 }  // namespace
 
 PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
-                             const LightTransport& transport, int samples, const Slabs& slabs,
-                             const SensorModel& sensor, const InScatterParts& parts,
-                             const PointMatchers& matchers)
+                             const LightTransport& transport, const PixelSamples& samples,
+                             const Slabs& slabs, const SensorModel& sensor,
+                             const InScatterParts& parts, const PointMatchers& matchers)
     : rays_(rays),
       scene_(scene),
       transport_(transport),
@@ -153,24 +111,27 @@ void PixelRenderer::add_center(PixelView& view) {
 void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
     thread_local std::vector<double> distances;
     distances.clear();
-    if (samples_ == 1) {
+    const int count = samples_.count;
+    if (count == 1 && samples_.total == 0) {
         add_center(view);
         return;
     }
     const bool has_aperture = rays_.has_aperture();
-    const ApertureSamples aperture(x, y);
-    for (int i = 0; i < samples_; ++i) {
-        const ImageOffset offset = sample_offset(i, samples_);
+    const bool differ = has_aperture || rays_.moves();
+    const PixelSampling sampling(samples_, x, y);
+    for (int i = 0; i < count; ++i) {
+        const ImageOffset offset = sampling.offset(i);
+        const AperturePoint point = has_aperture ? sampling.aperture(i) : AperturePoint{};
         const std::optional<Ray> ray =
-            has_aperture ? rays_.aperture_ray(x + offset.x, y + offset.y, aperture(i))
-                         : rays_.refracted_ray(x + offset.x, y + offset.y);
+            differ ? rays_.aperture_ray(x + offset.x, y + offset.y, point, sampling.moment(i))
+                   : rays_.refracted_ray(x + offset.x, y + offset.y);
         if (!ray) continue;
         if (!view.ray) {
             view.ray = ray;
             view.x = x + offset.x;
             view.y = y + offset.y;
         }
-        view.alpha += 1.0 / samples_;
+        view.alpha += 1.0 / count;
         SurfaceSample& sample = view.samples.emplace_back();
         sample.ray = *ray;
         sample.x = x + offset.x;
@@ -184,7 +145,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
                                std::abs(sample.hit.distance / view.path - 1) < k_same_surface;
         distances.push_back(at_center ? view.path : sample.hit.distance);
     }
-    group_distances(distances, samples_, view);
+    group_distances(distances, count, view);
 }
 
 void PixelRenderer::light_surfaces(std::span<const PixelView> views, SurfaceLight& light) const {
@@ -201,14 +162,7 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
     const auto bands = static_cast<std::size_t>(band_count());
     result.reset(in_scatter_.parts().lamps ? scene_.lamp_count() : 0, bands);
     result.alpha = view.alpha;
-    result.has_hit = view.has_hit;
-    if (view.has_hit) {
-        result.hit = view.hit;
-        result.depth_z = view.depth_z;
-        result.range = view.range;
-        result.path = view.path;
-        find_matches(matchers_, view, result);
-    }
+    store_truth(view, result);
     for (std::size_t i = 0; i < view.samples.size(); ++i)
         add_surface(view.samples[i], light, first_sample + i, result);
     if (!view.samples.empty())
@@ -217,6 +171,25 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
     if (!view.ray) return;
     add_water(in_scatter, result);
     result.pixel_factor = pixel_factor(view);
+}
+
+void PixelRenderer::store_truth(const PixelView& view, PixelResult& result) const {
+    result.has_hit = view.has_hit;
+    if (!view.has_hit) return;
+    result.hit = view.hit;
+    result.depth_z = view.depth_z;
+    result.range = view.range;
+    result.path = view.path;
+    find_matches(matchers_, view, result);
+}
+
+void PixelRenderer::find_truth(int x, int y, PixelResult& result) const {
+    thread_local PixelView view;
+    result.reset(0);
+    begin_view(x, y, view);
+    view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
+    finish_ground_truth(view);
+    store_truth(view, result);
 }
 
 double PixelRenderer::pixel_factor(const PixelView& view) const {
@@ -241,7 +214,7 @@ void PixelRenderer::render(int x, int y, PixelResult& result) const {
 void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight& light,
                                 std::size_t sample, PixelResult& result) const {
     const SurfaceHit& hit = surface.hit;
-    const double weight = 1.0 / samples_;
+    const double weight = 1.0 / samples_.count;
     const double seen = sensor_.surface_factor(hit.distance);
     const auto bands = static_cast<std::size_t>(band_count());
     const std::span<const double> to_camera = light.to_camera(sample);
@@ -288,7 +261,9 @@ void PixelRenderer::add_water(std::span<const double> in_scatter, PixelResult& r
 
 void PixelRenderer::finish_ground_truth(PixelView& view) const {
     if (!view.has_hit) return;
-    const Point3 in_camera = camera_from_world_ * view.hit.position;
+    const Point3 in_camera = rays_.is_rolling()
+                                 ? rays_.world_from_camera_at(view.y).inverse() * view.hit.position
+                                 : camera_from_world_ * view.hit.position;
     view.depth_z = in_camera.z;
     view.range = glm::length(from_origin(in_camera));
     view.path = view.hit.distance;

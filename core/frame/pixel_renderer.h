@@ -6,6 +6,7 @@
 #include "core/base/grid2d.h"
 #include "core/base/ray_source.h"
 #include "core/frame/pixel_layers.h"
+#include "core/frame/pixel_samples.h"
 #include "core/frame/pixel_view.h"
 #include "core/frame/point_matcher.h"
 #include "core/frame/ray_in_scatter.h"
@@ -20,17 +21,18 @@ namespace uw {
 /// Turns light transport into pixels: many samples to antialias surfaces, one ray for the water.
 class PixelRenderer {
   public:
-    /// All references must outlive the renderer. `samples` >= 1 per pixel; a single one lies at the
-    /// centre. The first of `slabs` is the water of `backscatter_first`. `sensor` determines the
-    /// quantity that the image holds: by default radiance. `matchers` look for the points of the
-    /// image in others.
+    /// All references must outlive the renderer. The first of `slabs` is the water of
+    /// `backscatter_first`. `sensor` determines the quantity that the image holds: by default
+    /// radiance. `matchers` look for the points of the image in others.
     PixelRenderer(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
-                  int samples, const Slabs& slabs, const SensorModel& sensor = {},
+                  const PixelSamples& samples, const Slabs& slabs, const SensorModel& sensor = {},
                   const InScatterParts& parts = {}, const PointMatchers& matchers = {});
 
     int lamp_count() const { return static_cast<int>(scene_.lamp_count()); }
     int band_count() const { return scene_.medium->band_count(); }
-    int samples() const { return samples_; }
+    int samples() const { return samples_.count; }
+    /// PixelSamples::first: of light paths, too.
+    int first_sample() const { return samples_.first; }
     const RaySource& rays() const { return rays_; }
     const RayInScatter& in_scatter() const { return in_scatter_; }
     const LightTransport& transport() const { return transport_; }
@@ -49,6 +51,9 @@ class PixelRenderer {
                std::span<const double> in_scatter, PixelResult& result) const;
     /// The factor of a pixel's light in the image, PixelResult::pixel_factor; 1 without a ray.
     double pixel_factor(const PixelView& view) const;
+    /// Only ground truth: where the ray of the pixel's centre hits, and where that is in other
+    /// images. Thread safe.
+    void find_truth(int x, int y, PixelResult& result) const;
     /// All of the above for a single pixel.
     void render(int x, int y, PixelResult& result) const;
 
@@ -60,6 +65,7 @@ class PixelRenderer {
     void begin_view(int x, int y, PixelView& view) const;
     // Takes the ground truth from the ray's hit, if it has one.
     void finish_ground_truth(PixelView& view) const;
+    void store_truth(const PixelView& view, PixelResult& result) const;
     // Makes the pixel's centre its only sample.
     static void add_center(PixelView& view);
     // Traces the samples, unless there is only one, which is the pixel's centre.
@@ -68,7 +74,7 @@ class PixelRenderer {
     const RaySource& rays_;
     LitScene scene_;
     const LightTransport& transport_;
-    int samples_;
+    PixelSamples samples_;
     SensorModel sensor_;
     RayInScatter in_scatter_;
     PointMatchers matchers_;

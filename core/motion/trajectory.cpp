@@ -125,4 +125,13 @@ Pose Trajectory::at(double time) const {
             turned(a.rotation, b.rotation, span.share)};
 }
 
+Pose Trajectory::at_or_beyond(double time) const {
+    const double nearest = std::clamp(time, first_time(), last_time());
+    if (time == nearest) return at(time);
+    const Pose end = at(nearest), within = at(2 * nearest - time);
+    if (within == end) return end;  // to the bit: it stands still
+    return {end.position + (end.position - within.position),
+            end.rotation * within.rotation.inverse() * end.rotation};
+}
+
 }  // namespace uw

@@ -46,6 +46,9 @@ class Trajectory {
 
     /// The pose at a time [s]; times outside are taken to the nearest end.
     Pose at(double time) const;
+    /// The same, but outside it goes on as it moves at its nearest end: mirrored there in time and
+    /// in space.
+    Pose at_or_beyond(double time) const;
 
     /// The times of the poses that it goes through [s], ascending.
     const std::vector<double>& times() const { return times_; }

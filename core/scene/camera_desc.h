@@ -89,6 +89,8 @@ struct CameraDesc {
     Affine world_from_camera;  ///< rigid; x right, y down, z forward
     /// How it moves; then world_from_camera is that of the scene's moment (render/scene_motion.h).
     std::optional<TrajectoryDesc> trajectory;
+    /// A rolling shutter: from the exposure of one row to that of the next [s]; 0: all at once.
+    double line_time = 0;
     /// The source of resolution, intrinsics, distortion and port, if they are not in the scene
     /// (camera/calibration/calibration.h).
     std::optional<CalibrationDesc> calibration;

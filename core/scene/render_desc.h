@@ -50,7 +50,7 @@ struct RenderDesc {
     /// Rays per pixel, 1..k_most_samples or, of light paths, k_most_paths; if omitted, as many as
     /// the integrator needs (samples_of).
     std::optional<int> samples;
-    double shutter = 0;  ///< exposure time [s], 0..60; 0: no motion blur
+    double shutter = 0;  ///< exposure time [s], 0..60, around the frame's; 0: no motion blur
     double fps = 25;     ///< frames per second: frame n is at n/fps, > 0
     /// What the frames' times are: those of `fps`, or frame n is at the time of pose n of the
     /// camera's or the rig's trajectory.

@@ -136,6 +136,17 @@ LensDesc read_lens(const ConfigValue& value) {
     return lens;
 }
 
+double read_line_time(const ConfigValue& value) {
+    constexpr double k_longest = 0.01;
+    const double seconds = value.non_negative("give seconds from row to row, such as 15e-6");
+    if (seconds > k_longest)
+        value.fail(
+            fmt::format("{} looks like microseconds, or like the readout of all rows; give "
+                        "seconds from row to row, such as 15e-6",
+                        seconds));
+    return seconds;
+}
+
 /// A file name, or {file, camera}.
 CalibrationDesc read_calibration_name(const ConfigValue& value, const SceneContext& context) {
     CalibrationDesc calibration;
@@ -157,7 +168,7 @@ CalibrationDesc read_calibration_name(const ConfigValue& value, const SceneConte
 CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
     ConfigMap map(value,
                   {"resolution", "intrinsics", "distortion", "port", "pose", "trajectory", "lens",
-                   "sensor", "calibration"},
+                   "sensor", "line_time", "calibration"},
                   "write {resolution: [1920, 1080], intrinsics: {fov_x: 60}}");
     CameraDesc camera;
     if (const auto calibration = map.find("calibration")) {
@@ -180,6 +191,7 @@ CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
     if (const auto entry = map.find("port")) camera.port = read_port(*entry, context);
     if (const auto entry = map.find("lens")) camera.lens = read_lens(*entry);
     if (const auto entry = map.find("sensor")) camera.sensor = read_sensor(*entry, context);
+    if (const auto entry = map.find("line_time")) camera.line_time = read_line_time(*entry);
     const auto pose = map.find("pose");
     const auto trajectory = map.find("trajectory");
     camera.has_pose = pose || trajectory;

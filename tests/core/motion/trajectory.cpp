@@ -59,6 +59,28 @@ TEST(Trajectories, GoThroughTheirPoses) {
 // A cubic spline is off by at most 5/384 h^4 times the fourth derivative (Hall and Meyer 1976),
 // here R (2 pi/8)^4. That the ends are straight, as the circle's are not, has died away by 0.27 a
 // knot, to less than 1e-6 of it.
+TEST(Trajectories, GoOnBeyondTheirEndsAsTheyMoveThere) {
+    // Steadily round a circle: the turn goes on, and the position on the circle's other side of the
+    // tangent, mirrored.
+    const Trajectory trajectory(circle(4, 0.25), Interpolation::smooth);
+    for (const double beyond : {0.05, 0.2}) {
+        EXPECT_LT(
+            angle_between(trajectory.at_or_beyond(-beyond).rotation, on_circle(-beyond).rotation),
+            1e-9);
+        EXPECT_LT(angle_between(trajectory.at_or_beyond(4 + beyond).rotation,
+                                on_circle(4 + beyond).rotation),
+                  1e-9);
+        const Point3 first = on_circle(0).position;
+        const Vector3 before = trajectory.at_or_beyond(-beyond).position - first;
+        const Vector3 after = trajectory.at(beyond).position - first;
+        EXPECT_LT(glm::length(before + after), 1e-12);
+    }
+    EXPECT_EQ(trajectory.at_or_beyond(1.3), trajectory.at(1.3));
+    // What has one pose stands still.
+    const Trajectory one(std::vector<TimedPose>{{1, on_circle(1)}}, Interpolation::smooth);
+    EXPECT_EQ(one.at_or_beyond(7), one.at(1));
+}
+
 TEST(Trajectories, FollowACircleToFourthOrder) {
     const double bound = 5.0 / 384 * 2 * std::pow(2 * k_pi / 8, 4);
     EXPECT_LT(circle_error(0.5), bound * std::pow(0.5, 4));

@@ -118,6 +118,11 @@ TEST_F(SceneErrors, cameraParts) {
              "scene.yaml:5:19: camera.port.fresnel: unknown value '1'; use one of: true, false"},
             {"  port: {radiance_in: glass}\n",
              "camera.port.radiance_in: unknown value 'glass'; use one of: water, air"},
+            {"  line_time: 15\n",
+             "camera.line_time: 15 looks like microseconds, or like the readout of all rows; give "
+             "seconds from row to row, such as 15e-6"},
+            {"  line_time: -1e-6\n", "camera.line_time: must not be negative"},
+            {"  linetime: 1e-6\n", "camera.linetime: unknown key; did you mean 'line_time'?"},
             {"  lens: {f_number: 2.8, focal_length: 8.5}\n",
              "camera.lens.focal_length: 8.5 looks like millimetres; give metres (0.0085)"},
             {"  lens: {f_number: 0, focal_length: 0.01}\n",

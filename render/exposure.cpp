@@ -1,0 +1,251 @@
+#include "render/exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/integrators/integrator_table.h"
+#include "render/object_motion.h"
+#include "render/resolved_scene.h"
+#include "render/scene_motion.h"
+
+namespace uw {
+
+namespace {
+
+// Poses that a camera's motion is interpolated from, smoothly and then linearly. Where it turns by
+// a right angle, the second is off by 1e-5 rad.
+constexpr int k_poses = 33, k_steps = 257;
+// Moments between which things are taken to move straight on, to tell how far.
+constexpr int k_moments = 9;
+// Image positions whose points are followed, in a row; in a column as many.
+constexpr int k_positions = 32;
+// How far things may move in a part of the exposure [pixels], and the most parts.
+constexpr double k_surface_step = 0.5, k_light_step = 2, k_view_step = 4;
+constexpr int k_most_parts = 64;
+// Samples for a blur that is the mean over them, as for an aperture's.
+constexpr int k_samples = 64;
+
+std::vector<SceneDesc> scenes_over(const SceneDesc& scene, const TimeSpan& span, int count) {
+    std::vector<SceneDesc> scenes;
+    for (int i = 0; i < count; ++i)
+        scenes.push_back(
+            scene_at(scene, *scene.time + span.begin + span.length() * i / (count - 1)));
+    return scenes;
+}
+
+bool can_move(const SceneDesc& scene) {
+    return scene.whole && scene.time && has_motion(*scene.whole);
+}
+
+bool same_lamps(const SceneDesc& a, const SceneDesc& b) {
+    return std::ranges::equal(a.lamps, b.lamps, [](const LampDesc& x, const LampDesc& y) {
+        return x.position == y.position && x.direction == y.direction &&
+               x.world_from_mount == y.world_from_mount;
+    });
+}
+
+bool same_poses(const SceneDesc& a, const SceneDesc& b) {
+    return a.camera.world_from_camera == b.camera.world_from_camera && a.geometry == b.geometry &&
+           same_lamps(a, b);
+}
+
+/// How far a point moves in the image [pixels], far outside of it not counted.
+class Track {
+  public:
+    void go_on(const Camera& camera, const Point3& point) {
+        std::optional<ImagePoint> image = camera.project(point);
+        const auto is_near = [](double at, int size) { return at > -size && at < 2.0 * size; };
+        if (image && !(is_near(image->x, camera.width()) && is_near(image->y, camera.height())))
+            image.reset();
+        if (image && last_) length_ += std::hypot(image->x - last_->x, image->y - last_->y);
+        last_ = image;
+    }
+    double length() const { return length_; }
+
+  private:
+    std::optional<ImagePoint> last_;
+    double length_ = 0;
+};
+
+/// A point that the camera sees, or may see.
+struct SeenPoint {
+    Point3 position;
+    std::uint32_t object = 0;  // whose surface it is on; 0: it is in the water
+};
+
+// What the image shows: surfaces, or water at an optical depth of one.
+std::vector<SeenPoint> seen_points(const AssembledScene& scene) {
+    const Camera& camera = *scene.camera;
+    const Medium& medium = scene.water.medium;
+    const double attenuation = medium.uniform.attenuation().greatest(medium.wavelengths_nm.size());
+    std::vector<SeenPoint> points;
+    for (int j = 0; j < k_positions; ++j)
+        for (int i = 0; i < k_positions; ++i) {
+            const auto ray = camera.refracted_ray((i + 0.5) / k_positions * camera.width(),
+                                                  (j + 0.5) / k_positions * camera.height());
+            SurfaceHit hit;
+            if (ray && scene.surfaces->closest_hit(*ray, k_far, hit))
+                points.push_back({hit.position, hit.object_id});
+            else if (ray && attenuation > 0)
+                points.push_back({ray->origin + ray->direction / attenuation, 0});
+        }
+    return points;
+}
+
+// An object smaller than the distance of these points is seen by its origin.
+std::vector<SeenPoint> origins(const SceneDesc& scene, const SurfaceNames& names) {
+    std::vector<SeenPoint> points;
+    for (std::size_t i = 0; i < names.objects.size(); ++i) {
+        const GeometryDesc& entry = scene.geometry[names.objects[i].entry];
+        if (entry.type == GeometryDesc::Type::plane) continue;
+        Point3 origin = entry.world_from_object * Point3{};
+        if (entry.type == GeometryDesc::Type::sphere)
+            origin = entry.world_from_object * entry.center;
+        if (entry.type == GeometryDesc::Type::box)
+            origin = entry.world_from_object * (entry.min + 0.5 * (entry.max - entry.min));
+        points.push_back({origin, static_cast<std::uint32_t>(i + 1)});
+    }
+    return points;
+}
+
+}  // namespace
+
+std::shared_ptr<const CameraMotion> camera_motion(const SceneDesc& scene, const TimeSpan& span) {
+    if (!can_move(scene) || !(span.length() > 0)) return nullptr;
+    std::vector<TimedPose> poses;
+    bool moves = false;
+    for (const SceneDesc& then : scenes_over(scene, span, k_poses)) {
+        moves = moves || then.camera.world_from_camera != scene.camera.world_from_camera;
+        poses.push_back({*then.time - *scene.time, pose_of(then.camera.world_from_camera)});
+    }
+    if (!moves) return nullptr;
+    const Trajectory trajectory(poses, Interpolation::smooth);
+    std::vector<Affine> table;
+    for (int i = 0; i < k_steps; ++i)
+        table.push_back(trajectory.at(span.begin + span.length() * i / (k_steps - 1)).affine());
+    return std::make_shared<CameraMotion>(std::move(table), span);
+}
+
+Camera camera_of_truth(const SceneDesc& scene) {
+    const RowExposure rows{.line_time = scene.camera.line_time, .height = scene.camera.height};
+    if (rows.line_time == 0) return Camera(scene.camera);
+    // Points outside the image are found by rows that go on by half of its height.
+    const TimeSpan all = rows.all();
+    return {scene.camera, camera_motion(scene, {2 * all.begin, 2 * all.end}), rows};
+}
+
+Exposure::Exposure(const AssembledScene& scene) : scene_(scene) {
+    const SceneDesc& desc = scene.desc;
+    if (!can_move(desc)) return;
+    const bool is_path = integrator_kind(desc.render.integrator).traces_paths;
+    const bool has_shutter = desc.render.shutter > 0;
+    const int samples =
+        has_shutter && !is_path ? desc.render.samples.value_or(k_samples) : samples_of(desc.render);
+    rows_ = {.shutter = samples > 1 ? desc.render.shutter : 0,
+             .line_time = desc.camera.line_time,
+             .height = desc.camera.height};
+    if (!(rows_.all().length() > 0)) return;
+    const std::vector<SceneDesc> moments = scenes_over(desc, rows_.all(), k_moments);
+    if (std::ranges::all_of(moments, [&](const SceneDesc& then) { return same_poses(desc, then); }))
+        return;
+    camera_ = camera_motion(desc, rows_.all());
+    measure(moments);
+    divide(samples);
+}
+
+void Exposure::measure(const std::vector<SceneDesc>& moments) {
+    const SceneDesc& now = scene_.desc;
+    const SurfaceNames& names = scene_.surfaces->names();
+    std::vector<SeenPoint> points = seen_points(scene_);
+    std::vector<ObjectMotions> motions;
+    std::vector<Camera> cameras;
+    std::vector<std::string> no_warnings;  // files of an exposure are one
+    for (const SceneDesc& then : moments) {
+        motions.push_back(object_motions(now, then, names, no_warnings));
+        cameras.emplace_back(then.camera);
+        moves_surfaces_ = moves_surfaces_ || then.geometry != now.geometry;
+    }
+    if (moves_surfaces_)
+        for (const SeenPoint& origin : origins(now, names)) points.push_back(origin);
+    const Camera& still = *scene_.camera;
+    for (const SeenPoint& point : points) {
+        Track view, surface;
+        std::vector<Track> light(now.lamps.size());
+        for (std::size_t m = 0; m < moments.size(); ++m) {
+            view.go_on(cameras[m], point.position);
+            if (point.object > 0 && !motions[m].empty())
+                if (const auto& motion = motions[m][point.object - 1])
+                    surface.go_on(still, *motion * point.position);
+            // The light of a lamp that moves is taken to move with it.
+            for (std::size_t j = 0; j < light.size(); ++j) {
+                const Affine before = now.lamps[j].world_from_frame(now.camera.world_from_camera);
+                const Affine after =
+                    moments[m].lamps[j].world_from_frame(moments[m].camera.world_from_camera);
+                if (!now.lamps[j].sun)
+                    light[j].go_on(still, after * before.inverse() * point.position);
+            }
+        }
+        view_pixels_ = std::max(view_pixels_, view.length());
+        surface_pixels_ = std::max(surface_pixels_, surface.length());
+        for (const Track& track : light) light_pixels_ = std::max(light_pixels_, track.length());
+    }
+}
+
+double Exposure::motion_pixels() const {
+    return std::max({view_pixels_, surface_pixels_, light_pixels_});
+}
+
+void Exposure::divide(int samples) {
+    const double rows_in_all = rows_.all().length();
+    const double share = rows_.shutter / rows_in_all;  // of a row's exposure in that of all
+    double parts = std::max(surface_pixels_ / k_surface_step, light_pixels_ / k_light_step);
+    if (view_pixels_ * share > k_view_step) parts = std::max(parts, view_pixels_ / k_view_step);
+    const bool is_path = integrator_kind(scene_.desc.render.integrator).traces_paths;
+    // Light paths tell their error by two of them.
+    const double most_in_a_row = is_path ? samples / 2 : samples;
+    parts = std::min(parts, static_cast<double>(k_most_parts));
+    if (share > 0) parts = std::min(parts, most_in_a_row / share);
+    parts_ = std::max(1, static_cast<int>(std::ceil(parts)));
+    samples_of_part_ = samples;
+    if (rows_.shutter > 0)
+        samples_of_part_ =
+            static_cast<int>(std::ceil(samples / std::max(1.0, parts_ * share) - 1e-9));
+}
+
+int Exposure::samples() const {
+    if (parts_ == 0) return samples_of_part_;
+    const double parts = std::max(1.0, parts_ * rows_.shutter / rows_.all().length());
+    return static_cast<int>(std::lround(parts * samples_of_part_));
+}
+
+double Exposure::bound(int part) const {
+    const TimeSpan all = rows_.all();
+    return part == parts_ ? all.end : all.begin + part * all.length() / parts_;
+}
+
+RowExposure Exposure::rows_of(int part) const {
+    RowExposure rows = rows_;
+    rows.part = {bound(part), bound(part + 1)};
+    return rows;
+}
+
+bool Exposure::has_middle(int part, int row) const {
+    const double middle = rows_.middle(row + 0.5);
+    return middle >= bound(part) && middle < bound(part + 1);
+}
+
+AssembledScene Exposure::part(int part) const {
+    const RowExposure rows = rows_of(part);
+    SceneDesc desc = scene_at(scene_.desc, *scene_.desc.time + rows.part.middle());
+    desc.render.samples = samples_of_part_;
+    auto camera = camera_ ? std::make_unique<Camera>(desc.camera, camera_, rows)
+                          : std::make_unique<Camera>(desc.camera);
+    AssembledScene scene = with_moved(scene_, std::move(desc), std::move(camera));
+    if (rows_.shutter == 0) return scene;
+    scene.total_samples = parts_ * samples_of_part_;
+    scene.first_sample = part * samples_of_part_;
+    return scene;
+}
+
+}  // namespace uw
