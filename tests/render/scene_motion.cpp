@@ -205,6 +205,43 @@ TEST_F(Motion, NodesOfGltfFilesMoveWithTheFrames) {
     EXPECT_FALSE(scene_of_image(sequence, {3}).geometry[0].time);
 }
 
+/// While a frame is exposed: at the time of another frame everything is where that one has it.
+TEST_F(Motion, GoesOnWhileAFrameIsExposed) {
+    folder_.write("vehicle.gltf", vehicle_gltf());
+    const auto check = [](const SceneDesc& scene) {
+        const ResolvedScene shown(scene_of_image(scene, {2}));
+        for (const int frame : {0, 5, 12}) {
+            const ResolvedScene other(scene_of_image(scene, {frame}));
+            const SceneDesc then = scene_at(shown.desc(), *other.desc().time);
+            EXPECT_EQ(then.camera.world_from_camera, other.desc().camera.world_from_camera);
+            EXPECT_NE(then.camera.world_from_camera, shown.desc().camera.world_from_camera);
+            EXPECT_EQ(then.geometry, other.desc().geometry);
+            ASSERT_EQ(then.lamps.size(), other.desc().lamps.size());
+            for (std::size_t j = 0; j < then.lamps.size(); ++j) {
+                EXPECT_EQ(then.lamps[j].position, other.desc().lamps[j].position);
+                EXPECT_EQ(then.lamps[j].direction, other.desc().lamps[j].direction);
+                EXPECT_EQ(then.lamps[j].world_from_mount, other.desc().lamps[j].world_from_mount);
+            }
+        }
+    };
+    check(
+        load("camera: {resolution: [64, 36]}\n"
+             "geometry: [{file: vehicle.gltf, camera: true, lamps: all}]\nrender: {fps: 24}\n"));
+    const std::string lamp = "direction: [0, 0, 1], profile: {type: isotropic}, power: [1, 1, 1]}";
+    check(
+        load("cameras: [{name: left, resolution: [8, 6], intrinsics: {fov_x: 60}, pose: {position: "
+             "[0.1, 0, 0], rotate: [0, 0, 0]}}]\n"
+             "rig: {trajectory: " +
+             std::string(k_ahead) +
+             "}\n"
+             "geometry: [{type: sphere, center: [0, 0, 3], radius: 1, trajectory: " +
+             k_ahead +
+             "}]\n"
+             "lamps: [{name: a, frame: rig, position: [1, 0, 0], " +
+             lamp + ", {name: b, position: [0, 1, 0], " + lamp +
+             ", {name: c, trajectory: " + k_ahead + ", " + lamp + "]\n"));
+}
+
 // What stands still is kept from frame to frame.
 TEST_F(Motion, OnlyWhatMovesIsMadeAnew) {
     const std::string rest =
