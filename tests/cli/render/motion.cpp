@@ -85,6 +85,32 @@ TEST_F(MovingScenes, FramesAreTheScenesThatStandStillThere) {
                       whole.channels.at("G")[y * 33 + x]);
 }
 
+// What a run keeps from the parts of one frame's exposure changes nothing of the next.
+TEST_F(MovingScenes, BlurredFramesAreTheSameAlone) {
+    write("dive.yaml", scene_with("line_time: 0.001, " + std::string(k_camera_path), k_box_path,
+                                  "fps: 2, shutter: 0.2, samples: 8"));
+    std::string scene = read("dive.yaml");
+    const std::string few = "samples: 2, ";
+    write("dive.yaml", scene.erase(scene.find(few), few.size()));
+    expect_runs({"render", "dive.yaml", "--frames", "0-2", "-o", "blur_#.exr", "--layers", "all",
+                 "--stats", "stats.json"});
+    EXPECT_NE(read("stats.json").find("\"exposure_parts\""), std::string::npos);
+    EXPECT_NE(read("stats.json").find("\"motion_pixels\""), std::string::npos);
+    for (int frame = 0; frame < 3; ++frame) {
+        const std::string number = std::to_string(frame);
+        expect_runs(
+            {"render", "dive.yaml", "--frames", number, "-o", "one.exr", "--layers", "all"});
+        const ImageFile one = image("one.exr");
+        EXPECT_EQ(image("blur_" + number + ".exr").channels, one.channels) << frame;
+        EXPECT_EQ(one.metadata.count("uwvdb/shutter_s"), 1U);
+        EXPECT_EQ(one.metadata.count("uwvdb/line_time_s"), 1U);
+    }
+    const test::ProgramResult again = expect_runs({"render", "dive.yaml", "--frames", "0-2", "-o",
+                                                   "blur_#.exr", "--layers", "all", "--resume"});
+    EXPECT_NE(again.err.find("resume: frames 0-2 are there already"), std::string::npos)
+        << again.err;
+}
+
 TEST_F(MovingScenes, AllFramesAreThoseWithAPose) {
     expect_runs({"render", "dive.yaml", "--frames", "all", "-o", "out_#.exr", "--size", "8x5"});
     for (int frame = 0; frame <= 4; ++frame)  // 0 to 2 s at 2 frames per second
