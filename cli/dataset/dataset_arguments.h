@@ -28,6 +28,9 @@ struct DatasetArguments {
     std::optional<double> depth_far;     // --depth-far
     std::string licence;                 // --licence
     std::optional<ShardArgument> shard;  // --shard
+    std::optional<int> slurm_tasks;      // --slurm: of the array job; none: render here
+    std::string slurm_options;           // --slurm-options
+    bool slurm_dry_run = false;          // --slurm-dry-run
     std::filesystem::path merge;         // --merge: the folder to complete; empty: none
 };
 

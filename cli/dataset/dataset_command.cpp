@@ -2,15 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include "cli/console.h"
 #include "cli/dataset/dataset_options.h"
 #include "cli/dataset/missing_views.h"
 #include "cli/dataset/set_definition.h"
+#include "cli/dataset/slurm_jobs.h"
 #include "cli/dataset/view_renderer.h"
 #include "cli/progress.h"
 #include "cli/render/frame_check.h"
+#include "cli/render/stats.h"
 #include "cli/stop_signal.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -23,6 +27,7 @@
 #include "dataset/set/point_seeds.h"
 #include "dataset/set/view_writer.h"
 #include "dataset/set_files.h"
+#include "dataset/view_record.h"
 
 namespace uw {
 
@@ -54,6 +59,7 @@ void merge(const DatasetArguments& a) {
     refuse(!a.image.output.empty(), "-o");
     refuse(!a.formats.empty(), "--format");
     refuse(a.shard.has_value(), "--shard");
+    refuse(a.slurm_tasks.has_value(), "--slurm");
     const auto set = read_dataset_file(a.merge);
     if (!set)
         throw IoError(fmt::format("{}: no data set is there; give the folder of its shards",
@@ -86,16 +92,27 @@ class DatasetRun {
     explicit DatasetRun(const DatasetArguments& arguments) : a_(arguments) {
         if (a_.image.scene.empty())
             throw UsageError("SCENE: is missing; give a scene file, or --merge FOLDER");
+        if (a_.slurm_tasks && a_.shard)
+            throw UsageError("--shard: the tasks of --slurm render all of them; leave it out");
         if (a_.image.output.empty()) a_.image.output = a_.image.scene.stem().string() + "-dataset";
     }
 
     void run() {
-        scene_ = scene_of_draw(a_, {});
+        std::vector<std::vector<std::string>> draws =
+            draws_of(a_, !read_dataset_file(a_.image.output));
+        scene_ = scene_of_draw(a_, draws.front());
         DatasetDefinition wanted = definition_of(a_, scene_);
-        scene_ = scene_of_draw(a_, wanted.draws.front());
+        wanted.draws = std::move(draws);
         check(wanted, scene_);
         begin(std::move(wanted));
-        const ShardArgument shard = a_.shard.value_or(ShardArgument{});
+        if (a_.slurm_tasks)
+            submit();
+        else
+            render_shard(a_.shard.value_or(ShardArgument{}));
+    }
+
+  private:
+    void render_shard(const ShardArgument& shard) {
         const ViewRange range = shard_of(set_.definition, shard.number, shard.count);
         const std::vector<std::size_t> missing = missing_views(a_, set_.definition, range);
         if (!a_.image.quiet && missing.size() < range.end - range.begin)
@@ -103,16 +120,51 @@ class DatasetRun {
                                       range.end - range.begin - missing.size(),
                                       range.end - range.begin));
         render(missing);
-        if (shard.count == 1)
-            complete(a_.image.output, set_, false, a_.image.quiet);
-        else if (!a_.image.quiet)
-            print_message(fmt::format(
-                "shard {} of {}: {} views are done; when all shards are, uwvdb dataset --merge "
-                "completes the set\n",
-                shard.number, shard.count, range.end - range.begin));
+        if (shard.count == 1) complete(a_.image.output, set_, false, a_.image.quiet);
     }
 
-  private:
+    /// Renders the first moments here to learn what the others take, and leaves those to a cluster.
+    void submit() {
+        const DatasetDefinition& d = set_.definition;
+        const std::size_t cameras = d.cameras.size();
+        std::vector<std::size_t> views;
+        for (std::size_t view = 0; view < std::min(2 * cameras, d.view_count()); ++view)
+            views.push_back(view);
+        SlurmRequest request;
+        MeasuredWork& measured = request.measured;
+        render(views);
+        const auto seconds = [](auto from, auto to) {
+            return std::chrono::duration<double>(to - from).count();
+        };
+        measured.first_seconds = seconds(start_, ends_[cameras - 1]);
+        measured.next_seconds = views.size() > cameras ? seconds(ends_[cameras - 1], ends_.back())
+                                                       : measured.first_seconds;
+        measured.memory_bytes = RunStats::peak_memory_bytes();
+        measured.threads = permitted_threads();
+        const auto record = read_record(a_.image.output, d, sum_of(d), d.view(0));
+        for (const SetFile& file : record.value().files)
+            measured.moment_bytes += cameras * file.bytes;
+        request.folder = fs::absolute(a_.image.output).lexically_normal();
+        request.name = request.folder.filename().string();
+        request.working = fs::current_path();
+        const std::string program = shell_word(fs::read_symlink("/proc/self/exe").string());
+        const std::string folder = shell_word(request.folder.string());
+        request.command = program + " dataset " +
+                          shell_word(fs::absolute(a_.image.scene).string()) + " -o " + folder +
+                          set_options(a_, d);
+        request.merge_command = program + " dataset --merge " + folder;
+        request.options = a_.slurm_options;
+        request.tasks = *a_.slurm_tasks;
+        request.moments = d.view_count() / cameras;
+        write_jobs(request);
+        if (!a_.image.quiet)
+            print_message(fmt::format("{} tasks of {} minutes, {} threads and {} MB: {}\n",
+                                      request.tasks, task_minutes(request), measured.threads,
+                                      task_megabytes(request),
+                                      jobs_folder(request.folder).string()));
+        if (!a_.slurm_dry_run) print_message(submit_jobs(request) + "\n");
+    }
+
     /// Continues the set that is in the folder, or begins it.
     void begin(DatasetDefinition wanted) {
         const fs::path& folder = a_.image.output;
@@ -143,6 +195,7 @@ class DatasetRun {
                 const View view = set_.definition.view(index);
                 load_draw(view.draw);
                 renderer.render(set_, view, scene_);
+                ends_.push_back(std::chrono::steady_clock::now());
             }
             renderer.finish();
         } catch (const Interrupted&) {
@@ -164,6 +217,8 @@ class DatasetRun {
     SceneDesc scene_;  // of the draw
     std::size_t draw_ = 0;
     DatasetFile set_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::vector<std::chrono::steady_clock::time_point> ends_;  // of the views rendered
 };
 
 }  // namespace

@@ -21,6 +21,7 @@ constexpr const char* k_dataset_examples = R"(Examples:
   uwvdb dataset dive.yaml -o pairs --format clean --quality draft
   uwvdb dataset dive.yaml -o dive --format png,flow --shard 3/8
   uwvdb dataset --merge dive
+  uwvdb dataset dive.yaml -o /shared/dive --slurm 100 --slurm-options '--partition=long'
 
 Renders all frames in which everything that moves has a pose (or --frames), by all cameras of a rig,
 and writes them as --format says, with a data card (README.md), a manifest, checksums, a contact sheet
@@ -139,6 +140,9 @@ Options dataset_options(DatasetArguments& a) {
         "--cameras", "NAMES",
         [&a](const std::string& text) { a.cameras = words_in("--cameras", text); },
         "only these cameras of a rig, separated by commas");
+    options.integer("--variations", "N", a.image.variation_count, 1, 100'000,
+                    "all of it in N scenes, whose values are drawn as the scene's section "
+                    "variations says");
     options.set(a.image.overrides);
     options.size(a.image.size, "render at this size, the intrinsics scaled with it");
     Option& quality = options.text("--quality", "NAME", a.image.quality,
@@ -151,6 +155,17 @@ Options dataset_options(DatasetArguments& a) {
     options.parsed(
         "--shard", "I/N", [&a](const std::string& text) { a.shard = shard_in(text); },
         "render only part I of N of the frames; --merge completes the set");
+    options.integer("--slurm", "TASKS", a.slurm_tasks, 1, 100'000,
+                    "render on a cluster: write and submit a job array of this many tasks, and a "
+                    "job that merges and checks");
+    options
+        .text("--slurm-options", "OPTIONS", a.slurm_options,
+              "further options of sbatch for all jobs, such as '--partition=long --account=reef'")
+        .needs = "--slurm";
+    options
+        .flag("--slurm-dry-run", a.slurm_dry_run,
+              "measure and write the jobs, but do not submit them")
+        .needs = "--slurm";
     options.path("--merge", "FOLDER", a.merge,
                  "check the set in a folder whose shards are done, and complete it");
     options.threads(a.image.threads);

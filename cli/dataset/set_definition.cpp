@@ -8,6 +8,7 @@
 #include "cli/camera_choice.h"
 #include "cli/render/apply_arguments.h"
 #include "cli/render/frame_sequence.h"
+#include "cli/render/run_scenes.h"
 #include "cli/version.h"
 #include "core/base/error.h"
 #include "dataset/formats/format_table.h"
@@ -49,7 +50,8 @@ std::vector<std::string> formats_in(const DatasetArguments& a) {
     return names;
 }
 
-/// `text` as a shell reads it: in quotes if it has anything but plain characters.
+}  // namespace
+
 std::string shell_word(const std::string& text) {
     constexpr const char* k_plain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+%@";
@@ -59,10 +61,8 @@ std::string shell_word(const std::string& text) {
     return word + "'";
 }
 
-/// What makes the set again, in one spelling, without what does not change it: folder, shard,
-/// threads.
-std::string command_of(const DatasetArguments& a, const DatasetDefinition& d) {
-    std::string text = "uwvdb dataset " + shell_word(d.scene);
+std::string set_options(const DatasetArguments& a, const DatasetDefinition& d) {
+    std::string text;
     const auto add = [&](const char* option, const std::string& value) {
         if (!value.empty()) text += fmt::format(" {} {}", option, shell_word(value));
     };
@@ -70,6 +70,7 @@ std::string command_of(const DatasetArguments& a, const DatasetDefinition& d) {
     add("--frames", a.frames);
     if (!a.cameras.empty()) add("--cameras", fmt::format("{}", fmt::join(d.cameras, ",")));
     for (const std::string& override : a.image.overrides) add("--set", override);
+    if (a.image.variation_count) add("--variations", fmt::format("{}", *a.image.variation_count));
     add("--size", d.size);
     add("--quality", d.quality);
     add("--samples", d.samples);
@@ -82,7 +83,18 @@ std::string command_of(const DatasetArguments& a, const DatasetDefinition& d) {
     return text;
 }
 
-}  // namespace
+std::vector<std::vector<std::string>> draws_of(const DatasetArguments& a, bool check) {
+    if (a.image.is_scene_itself()) return {{}};
+    RunScenes scenes(a.image);
+    std::vector<std::vector<std::string>> draws;
+    for (const std::optional<int> variation : scenes.all()) {
+        if (check) scenes.of(variation);
+        std::vector<std::string>& values = draws.emplace_back();
+        for (const DrawnValue& value : scenes.variations().values(*variation))
+            values.push_back(value.override_text());
+    }
+    return draws;
+}
 
 DatasetDefinition definition_of(const DatasetArguments& a, const SceneDesc& scene) {
     DatasetDefinition d;
@@ -103,7 +115,7 @@ DatasetDefinition definition_of(const DatasetArguments& a, const SceneDesc& scen
     d.licence = a.licence;
     if (!d.layers.empty() && !d.has_format("exr") && !d.has_format("npy"))
         throw UsageError("--layers: are those of exr and npy; add one of them to --format");
-    d.command = command_of(a, d);
+    d.command = "uwvdb dataset " + shell_word(d.scene) + set_options(a, d);
     return d;
 }
 

@@ -93,13 +93,6 @@ std::span<const NumberColumn> number_columns() {
     return k_columns;
 }
 
-std::string csv_text(std::string_view text) {
-    if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
-
 std::string number_cell(const std::optional<double>& value) {
     return value ? fmt::format("{:.9g}", *value) : std::string();
 }

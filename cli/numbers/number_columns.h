@@ -21,8 +21,6 @@ struct NumberColumn {
 /// All of them, in the order of tables.
 std::span<const NumberColumn> number_columns();
 
-/// Text as a cell of a CSV: in quotes where it needs them.
-std::string csv_text(std::string_view text);
 /// A number as a cell of a CSV: empty for a number that there is not, `inf` for an infinite one.
 std::string number_cell(const std::optional<double>& value);
 

@@ -12,6 +12,7 @@
 #include "cli/version.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/tables/csv_cells.h"
 
 namespace uw {
 

@@ -6,13 +6,13 @@
 #include <cstdint>
 #include <utility>
 
-#include "cli/numbers/number_columns.h"
 #include "cli/text_files.h"
 #include "cli/version.h"
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
 #include "core/json/json.h"
 #include "core/scene/yaml/yaml_document.h"
+#include "core/tables/csv_cells.h"
 
 namespace uw {
 

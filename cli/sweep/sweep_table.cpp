@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "cli/numbers/number_columns.h"
+#include "core/tables/csv_cells.h"
 
 namespace uw {
 

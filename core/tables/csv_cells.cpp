@@ -42,4 +42,11 @@ std::string quoted_cell(std::string_view text) {
     return shown + (text.size() > k_longest ? "...'" : "'");
 }
 
+std::string csv_text(std::string_view text) {
+    if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
 }  // namespace uw

@@ -19,4 +19,7 @@ std::vector<std::string_view> csv_cells(std::string_view line);
 /// What a message may quote of a user's table: short and printable, so that it stays one line.
 std::string quoted_cell(std::string_view text);
 
+/// A text as a cell of a line: in quotes where it needs them.
+std::string csv_text(std::string_view text);
+
 }  // namespace uw

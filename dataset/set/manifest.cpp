@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 
 #include "core/motion/pose.h"
+#include "core/tables/csv_cells.h"
 
 namespace uw {
 
 Manifest::Manifest(const DatasetDefinition& definition)
     : definition_(definition),
-      csv_("view,draw,frame,time_s,camera,tx,ty,tz,qx,qy,qz,qw,record,image\n") {}
+      csv_("view,draw,frame,time_s,camera,tx,ty,tz,qx,qy,qz,qw,record,image") {
+    for (const std::string& drawn : definition.draws.front())
+        csv_ += "," + csv_text(drawn.substr(0, drawn.find('=')));
+    csv_ += "\n";
+}
 
 void Manifest::add(const ViewRecord& record) {
     const View& view = record.view;
@@ -16,10 +21,13 @@ void Manifest::add(const ViewRecord& record) {
     const std::optional<int> frame = definition_.frames[view.frame];
     const std::string name = record_file(definition_, view);
     const SetFile* const image = record.file("image");
-    csv_ += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", definition_.index(view),
+    csv_ += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", definition_.index(view),
                         view.draw, frame ? std::to_string(*frame) : "", record.time,
                         definition_.cameras[view.camera], p.x, p.y, p.z, q.x, q.y, q.z, q.w, name,
                         image ? image->path : "");
+    for (const std::string& drawn : definition_.draws[view.draw])
+        csv_ += "," + csv_text(std::string_view(drawn).substr(drawn.find('=') + 1));
+    csv_ += "\n";
     Json files = Json::object();
     for (const SetFile& file : record.files) files[file.role] = file.path;
     const Json json{{"view", definition_.index(view)},
