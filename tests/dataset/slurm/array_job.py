@@ -118,7 +118,7 @@ def run(uwvdb, cluster, folder):
 
 
 def main():
-    uwvdb = sys.argv[1]
+    uwvdb = str(pathlib.Path(sys.argv[1]).resolve())
     with tempfile.TemporaryDirectory(prefix="uwvdb-slurm-") as name:
         folder = pathlib.Path(name)
         (folder / "cluster").mkdir()
