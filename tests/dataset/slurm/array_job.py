@@ -38,7 +38,7 @@ geometry:
   - {type: box, min: [0.2, -0.3, 1.5], max: [0.6, 0.2, 1.9], reflectance: [0.7, 0.4, 0.2]}
 lamps:
   - {name: left, position: [-0.5, -0.2, 0], direction: [0.1, 0, 1], intensity: 50}
-render: {integrator: path, samples: 12, fps: 25}
+render: {integrator: path, samples: 24, fps: 25}
 variations:
   seed: 2
   keys:
@@ -57,16 +57,42 @@ def expect(holds, what):
         raise SystemExit(f"FAILED: {what}")
 
 
-def process_of(task):
-    """The process that renders this shard; none if it does not run."""
+def running():
+    """{task: process} of the shards that are rendered now."""
+    processes = {}
     for command in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
         try:
-            words = command.read_bytes().split(b"\0")
+            words = command.read_bytes().decode(errors="replace").split("\0")
         except OSError:
             continue
-        if f"{task}/{TASKS}".encode() in words and b"dataset" in words:
-            return int(command.parent.name)
-    return None
+        if "dataset" in words and "--shard" in words:
+            task, count = words[words.index("--shard") + 1].split("/")
+            if count == str(TASKS):
+                processes[task] = int(command.parent.name)
+    return processes
+
+
+def catch(cluster, act, but=()):
+    """The first task that is seen at work and acted upon, which may be too late for one."""
+    caught = []
+
+    def try_it():
+        for task, process in running().items():
+            if task not in but and act(task, process):
+                caught.append(task)
+                return True
+        return False
+
+    cluster.wait_for("a task at work", try_it, pause=0.02)
+    return caught[0]
+
+
+def kill(_, process):
+    try:
+        os.kill(process, signal.SIGKILL)
+    except ProcessLookupError:
+        return False
+    return True
 
 
 def restarts(cluster, job):
@@ -91,14 +117,13 @@ def run(uwvdb, cluster, folder):
     array = re.search(r"submitted job (\d+) of 8 tasks", submitted.stderr).group(1)
 
     # One is killed as the system kills what takes too much memory, and comes back by itself.
-    cluster.wait_for("task 1", lambda: process_of(1) is not None)
-    killed = process_of(1)
-    os.kill(killed, signal.SIGKILL)
+    killed = catch(cluster, kill)
     # One is put back into the queue.
-    cluster.wait_for("task 2", lambda: process_of(2) is not None)
-    cluster.run("scontrol", "requeue", f"{array}_2")
-    cluster.wait_for("the restart of task 1", lambda: restarts(cluster, f"{array}_1") == 1)
-    cluster.wait_for("the restart of task 2", lambda: restarts(cluster, f"{array}_2") == 1)
+    requeued = catch(cluster, lambda task, _: cluster.succeeds("scontrol", "requeue",
+                                                               f"{array}_{task}"), [killed])
+    for task in [killed, requeued]:
+        cluster.wait_for(f"the restart of task {task}",
+                         lambda: restarts(cluster, f"{array}_{task}") == 1)
     # The node takes no more work for a while.
     cluster.run("scontrol", "update", f"NodeName={cluster.host}", "State=DRAIN", "Reason=test")
     cluster.wait_for("the node to be drained", lambda: "drained" in cluster.ask(

@@ -113,15 +113,19 @@ PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
                                 env=self.environment)
         return result.stdout.strip() if result.returncode == 0 else ""
 
+    def succeeds(self, program, *arguments):
+        return subprocess.run([found(program), *arguments], env=self.environment,
+                              stderr=subprocess.DEVNULL).returncode == 0
+
     def run(self, *command, **options):
         return subprocess.run(command, env=self.environment, check=True, **options)
 
-    def wait_for(self, what, holds, seconds=300):
+    def wait_for(self, what, holds, seconds=300, pause=0.2):
         end = time.monotonic() + seconds
         while not holds():
             if time.monotonic() > end:
                 raise SystemExit(f"{what}: not there after {seconds} s\n{self.logs()}")
-            time.sleep(0.2)
+            time.sleep(pause)
 
     def logs(self):
         return "\n".join(f"--- {log.name}\n{log.read_text(errors='replace')[-3000:]}"
