@@ -42,12 +42,12 @@ void find_truth(const AssembledScene& scene, const Camera& camera, const LightTr
 /// Tells what the parts have reached as if they were one image.
 class ReachedByParts {
   public:
-    ReachedByParts(const AccuracyCallbacks& reached, int parts)
-        : reached_(reached), parts_(parts) {}
+    ReachedByParts(const ImageCallbacks& reached, int parts) : reached_(reached), parts_(parts) {}
 
-    AccuracyCallbacks of_part() {
+    ImageCallbacks of_part() {
         return {[this](const PathAccuracy& part) { paths_ = part; },
-                [this](double error) { multiple_ = std::max(multiple_, error); }};
+                [this](double error) { multiple_ = std::max(multiple_, error); },
+                [this](std::size_t count) { snow_ = std::max(snow_, count); }};
     }
     /// The errors of the parts' light paths are independent.
     void finish_part() {
@@ -61,14 +61,16 @@ class ReachedByParts {
             reached_.paths(all);
         }
         if (multiple_ > 0 && reached_.multiple) reached_.multiple(multiple_);
+        if (snow_ > 0 && reached_.particles) reached_.particles(snow_);
     }
 
   private:
-    const AccuracyCallbacks& reached_;
+    const ImageCallbacks& reached_;
     int parts_;
     PathAccuracy paths_;
     int samples_ = 0;
     double squares_ = 0, multiple_ = 0;
+    std::size_t snow_ = 0;  // particles of the part with the most
 };
 
 }  // namespace
@@ -76,9 +78,13 @@ class ReachedByParts {
 void render_exposure(const Exposure& exposure, const AssembledScene& scene,
                      const LightTransport& transport, const LightOfPart& light_of_part,
                      const LayerPlan& plan, const BandColour& colour, Film& film,
-                     const RenderProgress& progress, const AccuracyCallbacks& reached,
+                     const RenderProgress& progress, const ImageCallbacks& reached,
                      const PointMatchers& matchers) {
     const SceneDesc& desc = scene.desc;
+    if (desc.water.snow && desc.water.snow->in_ground_truth)
+        throw InputError(
+            "water.snow.ground_truth: held is for images in which nothing but the snow moves while "
+            "the shutter is open; give --set water.snow.ground_truth=ignored");
     const bool scatters_forward = desc.water.forward_scatter.K > 0;
     const LightTerms terms{scatters_forward,
                            scattering_of(desc.render) == RenderDesc::Scattering::multiple};

@@ -20,7 +20,7 @@ using LightOfPart = std::function<DeepShadows(const AssembledScene& part)>;
 void render_exposure(const Exposure& exposure, const AssembledScene& scene,
                      const LightTransport& transport, const LightOfPart& light_of_part,
                      const LayerPlan& plan, const BandColour& colour, Film& film,
-                     const RenderProgress& progress, const AccuracyCallbacks& reached,
+                     const RenderProgress& progress, const ImageCallbacks& reached,
                      const PointMatchers& matchers);
 
 }  // namespace uw

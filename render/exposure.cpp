@@ -239,6 +239,8 @@ AssembledScene Exposure::part(int part) const {
     const RowExposure rows = rows_of(part);
     SceneDesc desc = scene_at(scene_.desc, *scene_.desc.time + rows.part.middle());
     desc.render.samples = samples_of_part_;
+    // What snow streaks over; volumes are blurred already.
+    if (rows_.shutter > 0) desc.render.shutter = rows.part.length();
     auto camera = camera_ ? std::make_unique<Camera>(desc.camera, camera_, rows)
                           : std::make_unique<Camera>(desc.camera);
     AssembledScene scene = with_moved(scene_, std::move(desc), std::move(camera));

@@ -187,8 +187,9 @@ void Renderer::render_film(const RenderOptions& options) {
     const RenderProgress progress = [this](const std::string& stage, double fraction) {
         return !progress_ || progress_(stage, fraction);
     };
-    const AccuracyCallbacks reached{[this](const PathAccuracy& so_far) { report_.paths = so_far; },
-                                    [this](double error) { report_.multiple_error = error; }};
+    const ImageCallbacks reached{[this](const PathAccuracy& so_far) { report_.paths = so_far; },
+                                 [this](double error) { report_.multiple_error = error; },
+                                 [this](std::size_t count) { report_.snow_particles = count; }};
     const Exposure exposure(scene_);
     report_.exposure_parts = static_cast<std::uint64_t>(exposure.part_count());
     report_.exposure_samples = static_cast<std::uint64_t>(exposure.samples());

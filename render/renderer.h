@@ -47,6 +47,7 @@ struct RenderReport {
     /// pixel of all of them, and how far it moves in the image, at most [pixels]. 0: nothing does.
     std::uint64_t exposure_parts = 0, exposure_samples = 0;
     double motion_pixels = 0;
+    std::uint64_t snow_particles = 0;  // drawn
 };
 
 /// Renders images of scenes: the only path from a scene description to pixels.
@@ -59,11 +60,11 @@ struct RenderReport {
 /// unchanged; every image is the same to the bit as from a new renderer. It neither prints nor ends
 /// the program. Faults in files are an InputError or IoError, in options a UsageError.
 ///
-/// Stages, in this order: "volumes", "geometry", "splat", "multiple scattering" if the integrator
-/// volume renders it, "render" and, with forward scatter, "forward scatter". `progress` receives
-/// each with 0 before it begins, on the calling thread. If it returns false, or throws, the work
-/// ends with Interrupted, or with what was thrown; the renderer stays usable, and the same image
-/// can be requested again.
+/// Stages, in this order: "volumes", "geometry", "splat", "snow" if there is some, "multiple
+/// scattering" if the integrator volume renders it, "render" and, with forward scatter, "forward
+/// scatter". `progress` receives each with 0 before it begins, on the calling thread. If it returns
+/// false, or throws, the work ends with Interrupted, or with what was thrown; the renderer stays
+/// usable, and the same image can be requested again.
 class Renderer {
   public:
     explicit Renderer(RenderProgress progress = {}) : progress_(std::move(progress)) {}

@@ -9,6 +9,8 @@
 #include "core/lamps/lamp_extent.h"
 #include "core/lamps/lamp_factory.h"
 #include "core/paths/path_tracer.h"
+#include "core/snow/beyond_snow.h"
+#include "core/snow/snow_medium.h"
 #include "core/surfaces/geometry_scene.h"
 #include "media/volumes/grid_field.h"
 
@@ -64,6 +66,13 @@ void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
 bool same_water(const SceneDesc& a, const SceneDesc& b) {
     return a.water == b.water &&
            std::ranges::equal(a.volumes, b.volumes, {}, &VolumeDesc::grids, &VolumeDesc::grids);
+}
+
+WaterModel build_water(const SceneDesc& desc) {
+    WaterModel water = build_water_model(desc.water, desc.volumes);
+    const std::optional<SnowDesc>& snow = desc.water.snow;
+    if (snow && snow->mean == SnowDesc::Mean::added) add_snow(*snow, water.medium);
+    return water;
 }
 
 void take_over_volumes(const std::vector<VolumeDesc>& volumes, AssembledScene& scene,
@@ -125,12 +134,14 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
     check_integrator(desc);
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
-    scene.water = before.camera && same_water(before.desc, desc)
-                      ? before.water
-                      : build_water_model(desc.water, desc.volumes);
+    scene.water = before.camera && same_water(before.desc, desc) ? before.water : build_water(desc);
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
     check_forward_scatter_of(desc, medium);
+    if (desc.water.snow) {
+        scene.snow = make_snow_model(*desc.water.snow, *scene.camera, medium);
+        if (scene.snow->warning) scene.warnings.push_back(*scene.snow->warning);
+    }
     take_over_volumes(desc.volumes, scene, before);
     take_over_surfaces(desc, scene, before);
     begin_stage("volumes");
@@ -151,6 +162,7 @@ AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
     AssembledScene moved;
     moved.camera = std::move(camera);
     moved.water = scene.water;
+    moved.snow = scene.snow;
     moved.field = scene.field;
     moved.surfaces = scene.surfaces;
     if (desc.geometry != scene.desc.geometry)
@@ -165,12 +177,21 @@ AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
 
 LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows) {
     const RenderDesc& render = scene.desc.render;
-    LightTransport transport = integrator_kind(render.integrator)
-                                   .make({scene.lit(),
-                                          scene.desc.camera.world_from_camera,
-                                          scene.slabs,
-                                          render.quality,
-                                          {deep_shadows.begin(), deep_shadows.end()}});
+    const auto make = [&](const Medium& medium) {
+        LitScene lit = scene.lit();
+        lit.medium = &medium;
+        return integrator_kind(render.integrator)
+            .make({lit,
+                   scene.desc.camera.world_from_camera,
+                   scene.slabs,
+                   render.quality,
+                   {deep_shadows.begin(), deep_shadows.end()}});
+    };
+    LightTransport transport = make(scene.water.medium);
+    if (scene.snow)
+        transport.integrator =
+            std::make_unique<BeyondSnow>(make(scene.snow->water).integrator,
+                                         make(scene.snow->alone).integrator, scene.snow->parts());
     if (integrator_kind(render.integrator).traces_paths)
         transport.paths = std::make_shared<PathTracer>(scene.lit());
     else if (scattering_of(render) == RenderDesc::Scattering::multiple)

@@ -13,6 +13,7 @@
 #include "core/scene/scene_desc.h"
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
+#include "render/snow/snow_model.h"
 
 namespace uw {
 
@@ -23,7 +24,8 @@ using DeepShadows = std::vector<std::shared_ptr<const DeepShadow>>;
 struct AssembledScene {
     SceneDesc desc;  // what it was made from, resolved
     std::unique_ptr<Camera> camera;
-    WaterModel water;
+    WaterModel water;                       // its coefficients hold the snow's mean
+    std::shared_ptr<const SnowModel> snow;  // null: there is none
     std::shared_ptr<const ConcentrationField> field;
     std::shared_ptr<const Surfaces> surfaces;
     std::vector<Lamp> lamps;     // as the description has them, each at its centre
@@ -61,7 +63,7 @@ AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
 
 /// The light transport of the integrator that the scene requests, from light splatted before;
 /// `deep_shadows` may be empty unless IntegratorKind::needs_deep_shadows. In-scatter is weighted by
-/// distance if the output is the paper's.
+/// distance if the output is the paper's, and without that of the snow that is drawn.
 LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows);
 
 }  // namespace uw

@@ -118,6 +118,8 @@ bool has_motion(const SceneDesc& scene) {
     bool moves = std::ranges::any_of(scene.geometry, [](const GeometryDesc& geometry) {
         return geometry.animation.has_value();
     });
+    const std::optional<SnowDesc>& snow = scene.water.snow;
+    moves = moves || (snow && snow->drift != Vector3(0));
     for_each_trajectory(scene, [&](const TrajectoryDesc& /*desc*/) { moves = true; });
     return moves;
 }

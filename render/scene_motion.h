@@ -11,8 +11,8 @@ struct FrameRange {
     int first = 0, last = 0;
 };
 
-/// Whether anything in the scene has a trajectory or is animated, so that frames differ by their
-/// times.
+/// Whether anything in the scene has a trajectory, is animated or drifts, so that frames differ by
+/// their times.
 bool has_motion(const SceneDesc& scene);
 
 /// The frames for which everything that moves has a pose: those within all trajectories; without

@@ -11,6 +11,8 @@
 #include "core/frame/render_film.h"
 #include "core/integrators/integrator_table.h"
 #include "core/integrators/sensor.h"
+#include "core/snow/snow_layer.h"
+#include "render/snow/snow_placing.h"
 
 namespace uw {
 
@@ -114,6 +116,7 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     // Planes of constant camera z do not cover a view wider than a hemisphere.
     setup.shells = scene.desc.camera.distortion.model == DistortionDesc::Model::fisheye;
     setup.sensor = SensorModel(scene.desc);
+    setup.has_snow = scene.snow != nullptr;
     setup.first = {scene.slabs.boundary(0), scene.slabs.boundary(1)};
     const ConcentrationField* field = scene.field.get();
     const std::vector<Lamp>* emitters = &scene.emitters;
@@ -184,6 +187,7 @@ LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const Pat
     const std::optional<SensorDesc>& sensor = scene.camera.sensor;
     return {request, scene.water.bands_nm, names,
             LayerSupply{.multiple = scattering_of(scene.render) == RenderDesc::Scattering::multiple,
+                        .snow = scene.water.snow.has_value(),
                         .error = traces_paths && several,
                         .flow = scene.choice.frame.has_value(),
                         .disparity = scene.cameras.size() > 1,
@@ -202,10 +206,36 @@ PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& 
             parts,         matchers};
 }
 
+SnowLayer snow_layer(const AssembledScene& scene, const DeepShadows& deep_shadows,
+                     const LightTransport& transport, const PixelWindow& window,
+                     const std::function<bool(double)>& progress, const ImageCallbacks& reached) {
+    const SnowModel& model = *scene.snow;
+    const auto depth = [snow = scene.snow](double distance) { return snow->drawn_depth(distance); };
+    WaterVeil veil(*scene.camera, *transport.integrator, depth);
+    const LitScene lit = scene.lit();
+    const SnowLighting lighting(lit, deep_shadows);
+    const std::vector<ExposureView> views = exposure_views(scene.desc);
+    const SensorModel sensor(scene.desc);
+    const SnowPlacing placing{.model = model,
+                              .desc = *scene.desc.water.snow,
+                              .time = scene.desc.time.value_or(0),
+                              .views = views,
+                              .surfaces = *scene.surfaces,
+                              .lighting = lighting,
+                              .veil = veil,
+                              .sensor = sensor};
+    const SnowSplats splats = placing.splats(window, [&](double fraction) {
+        if (!progress(fraction)) throw Interrupted();
+    });
+    if (reached.particles) reached.particles(splats.splats.size());
+    return {SnowImage(window, scene.water.medium.wavelengths_nm.size(), splats), std::move(veil),
+            depth};
+}
+
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const RenderProgress& progress, const PathGoal& goal,
-                  const AccuracyCallbacks& reached, const PointMatchers& matchers) {
+                  const ImageCallbacks& reached, const PointMatchers& matchers) {
     const PixelRenderer renderer =
         pixel_renderer(scene, transport, in_scatter_parts(plan), matchers);
     const double tolerance = in_scatter_tolerance(scene.desc.render);
@@ -215,13 +245,22 @@ void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
     const auto begin = [&progress](const std::string& stage) {
         if (!progress(stage, 0)) throw Interrupted();
     };
+    PixelAdditions additions;
+    std::optional<SnowLayer> snow;
+    if (scene.snow) {
+        begin("snow");
+        snow = snow_layer(scene, deep_shadows, transport, film.window(), told("snow"), reached);
+        additions.snow = &*snow;
+        additions.snow_in_ground_truth = scene.desc.water.snow->in_ground_truth;
+    }
     if (transport.paths && !integrator_kind(scene.desc.render.integrator).traces_paths) {
         begin("multiple scattering");
         MultipleLight multiple(renderer, multiple_light_options(scene.desc, plan));
         multiple.prepare(film.window(), told("multiple scattering"));
         if (reached.multiple) reached.multiple(multiple.error());
+        additions.multiple = &multiple;
         begin("render");
-        render_film(renderer, tolerance, plan, colour, film, told("render"), {}, &multiple);
+        render_film(renderer, tolerance, plan, colour, film, told("render"), {}, additions);
         return;
     }
     begin("render");
@@ -230,13 +269,14 @@ void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
         return;
     }
     if (scene.desc.water.forward_scatter.K == 0) {
-        render_film(renderer, tolerance, plan, colour, film, told("render"));
+        render_film(renderer, tolerance, plan, colour, film, told("render"), {}, additions);
         return;
     }
     const ForwardScatterSetup setup = forward_scatter_setup(scene, deep_shadows);
     ForwardPass forward(renderer, scene.lit(), setup, plan);
-    render_film(renderer, tolerance, plan, colour, film, told("render"),
-                [&](int x, int y, const RenderedPixel& pixel) { forward.keep(x, y, pixel); });
+    render_film(
+        renderer, tolerance, plan, colour, film, told("render"),
+        [&](int x, int y, const RenderedPixel& pixel) { forward.keep(x, y, pixel); }, additions);
     forward.run(told("forward scatter"));
     forward.write(plan, colour, film);
 }

@@ -44,13 +44,15 @@ double in_scatter_tolerance(const RenderDesc& render);
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts = {}, const PointMatchers& matchers = {});
 
-/// Whom to tell how accurate an image is; either may be empty.
-struct AccuracyCallbacks {
-    AccuracyCallback paths{};                      // of an image of light paths, so far
-    std::function<void(double error)> multiple{};  // MultipleLight::error, before "render"
+/// Whom to tell about an image while it is made; each may be empty.
+struct ImageCallbacks {
+    AccuracyCallback paths{};                            // of an image of light paths, so far
+    std::function<void(double error)> multiple{};        // MultipleLight::error, before "render"
+    std::function<void(std::size_t count)> particles{};  // of snow, before "render"
 };
 
-/// Renders `scene` into `film` by `transport`: the stage "render", and, with forward scatter on,
+/// Renders `scene` into `film` by `transport`: the stage "snow", if there is snow, the stage
+/// "render", and, with forward scatter on,
 /// the stage "forward scatter", for which the film's window must be the whole image.
 /// A transport that has paths is rendered by them until `goal` is reached, if the integrator traces
 /// paths; else they estimate what it leaves out, in a stage "multiple scattering" before "render".
@@ -59,7 +61,7 @@ struct AccuracyCallbacks {
 void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const LightTransport& transport, const LayerPlan& plan, const BandColour& colour,
                   Film& film, const RenderProgress& progress, const PathGoal& goal = {},
-                  const AccuracyCallbacks& reached = {}, const PointMatchers& matchers = {});
+                  const ImageCallbacks& reached = {}, const PointMatchers& matchers = {});
 
 /// How the light of `scene` is scattered forward. If the integrator sums slabs the water is split
 /// into them, else into slabs that grow with the distance. `deep_shadows` and `scene` outlive the

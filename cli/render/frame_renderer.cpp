@@ -135,6 +135,7 @@ void FrameRenderer::count_work(RunStats& stats) const {
     stats.count("active_voxels", report.active_voxels);
     stats.count("grid_bytes", report.grid_bytes);
     stats.count("triangles", report.triangles);
+    stats.count("snow_particles", report.snow_particles);
     stats.count("lamps", report.lamps);
     stats.count("bands", report.bands);
     if (report.exposure_parts > 0) stats.count("exposure_parts", report.exposure_parts);

@@ -34,6 +34,7 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     std::vector<std::pair<std::string, SceneDesc>> all_light = suite.all_light();
     if (!a.scene.empty()) {
         scenes = {{a.scene.filename().string(), load_scene(a.scene, a.overrides)}};
+        scenes[0].second.water.snow.reset();  // particles do not depend on the method
         all_light.clear();
         if (scattering_of(scenes[0].second.render) == RenderDesc::Scattering::multiple)
             all_light = scenes;

@@ -62,14 +62,15 @@ ForwardPass::ForwardPass(const PixelRenderer& renderer, const LitScene& scene,
     const bool first = plan.has(Layer::backscatter_first);
     const std::size_t constituents = scene.medium->constituents.size();
     const std::size_t per_group = (first ? 4 : 3) * bands_;
-    check_memory(setup.plane,
-                 12 + groups_.size() * per_group + (several_ ? 3 : 2) * bands_ + 2 * constituents);
+    check_memory(setup.plane, 12 + groups_.size() * per_group + (several_ ? 3 : 2) * bands_ +
+                                  (setup.has_snow ? bands_ : 0) + 2 * constituents);
     for (Group& group : groups_) {
         group.direct = planes(bands_);
         group.forward = planes(bands_);
     }
     if (several_) direct_ = planes(bands_);
     backscatter_ = planes(bands_);
+    if (setup.has_snow) snow_ = planes(bands_);
     added_ = planes(groups_.size() * bands_);
     if (first) first_ = planes(groups_.size() * bands_);
     response_ = planes(bands_);
@@ -84,6 +85,8 @@ void ForwardPass::keep(int x, int y, const RenderedPixel& pixel) {
     if (pixel.view.ray) water_.set(i, pixel.view, in_scatter_.depth(*pixel.view.ray));
     for (std::size_t b = 0; b < bands_; ++b)
         backscatter_[b][i] = static_cast<float>(pixel.result.backscatter[b] * factor_before(i));
+    for (std::size_t b = 0; b < snow_.size(); ++b)
+        snow_[b][i] = static_cast<float>(pixel.result.snow[b] * factor_before(i));
     if (!pixel.view.samples.empty()) keep_surfaces(i, pixel);
 }
 
@@ -252,6 +255,8 @@ void ForwardPass::write(const LayerPlan& plan, const BandColour& colour, Film& f
                 sum([&](std::size_t g, std::size_t b) { return added_[g * bands_ + b][i]; });
             for (std::size_t b = 0; b < bands_; ++b)
                 pixel.backscatter[b] += static_cast<double>(backscatter_[b][i]);
+            for (std::size_t b = 0; b < snow_.size(); ++b)
+                pixel.snow[b] = static_cast<double>(snow_[b][i]);
             if (!first_.empty())
                 pixel.backscatter_first =
                     sum([&](std::size_t g, std::size_t b) { return first_[g * bands_ + b][i]; });

@@ -27,6 +27,7 @@ struct ForwardScatterSetup {
     double spacing = 1;
     LampPaths::PointColumn lamp_column;
     SensorModel sensor;  // the renderer's
+    bool has_snow = false;
 };
 
 /// Forward scatter of a rendered image in the paper's four places (physics section 6), a second
@@ -93,6 +94,7 @@ class ForwardPass {
     bool several_;                         // whether there is more than one group
     std::vector<ImagePlane> direct_;       // per band, if there are several groups
     std::vector<ImagePlane> backscatter_;  // per band, without what is added
+    std::vector<ImagePlane> snow_;         // per band, if there is snow; not blurred
     std::vector<ImagePlane> added_;        // per group and band, to the backscatter
     std::vector<ImagePlane> first_;        // of it, in backscatter_first; empty if not requested
     std::vector<ImagePlane> response_;     // per band: direct light per irradiance [1/sr]

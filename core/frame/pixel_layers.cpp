@@ -69,7 +69,7 @@ void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     flow_occluded = disparity_occluded = k_none;
     for (Spectrum* const values :
          {&direct, &forward, &backscatter, &backscatter_first, &multiple_volume, &multiple_surface,
-          &error, &irradiance, &exitance, &clean, &transmittance})
+          &snow, &error, &irradiance, &exitance, &clean, &transmittance})
         std::ranges::fill(values->first(bands), 0.0);
     lamps.assign(lamp_count, Spectrum{});
     orders.clear();
@@ -91,7 +91,8 @@ void total(const PixelResult& pixel, std::span<float> channels) {
     for (std::size_t b = 0; b < channels.size(); ++b)
         channels[b] = static_cast<float>(factor * pixel.direct[b]) +
                       static_cast<float>(factor * pixel.forward[b]) +
-                      static_cast<float>(factor * pixel.backscatter[b]) + channels[b];
+                      static_cast<float>(factor * pixel.backscatter[b]) + channels[b] +
+                      static_cast<float>(factor * pixel.snow[b]);
 }
 
 void albedo(const PixelResult& pixel, std::span<float> channels) {

@@ -27,6 +27,8 @@ struct PixelResult {
     /// All other light, 0 unless multiple scattering is rendered: what the water scattered last,
     /// and what surfaces reflected last.
     Spectrum multiple_volume, multiple_surface;
+    /// What marine snow adds, less what it hides of the others; 0 without snow.
+    Spectrum snow;
     Spectrum error;          // the standard error of the total, with the pixel's factor
     Spectrum irradiance;     // on the surface, 0 where there is none
     Spectrum exitance;       // of the surface: the part of the irradiance it reflects
@@ -80,8 +82,8 @@ void number(const PixelResult& pixel, std::span<float> channels) {
 }
 /// The sum of `multiple_volume` and `multiple_surface`, each rounded to float before the addition.
 void multiple(const PixelResult& pixel, std::span<float> channels);
-/// The sum of direct, forward, backscatter and `multiple`, in this order, each rounded to float
-/// before the addition, so that in the image they add up to the total to the bit.
+/// The sum of direct, forward, backscatter, `multiple` and snow, in this order, each rounded to
+/// float before the addition, so that in the image they add up to the total to the bit.
 void total(const PixelResult& pixel, std::span<float> channels);
 /// Several numbers.
 template <std::array<double, 2> PixelResult::*values>
@@ -149,6 +151,10 @@ inline constexpr std::array<PixelLayer, k_layer_count> k_pixel_layers{{
      .of_exposure = true},
     {.layer = Layer::multiple_surface,
      .fill = layer_channels::radiance<&PixelResult::multiple_surface>,
+     .of_paths = true,
+     .of_exposure = true},
+    {.layer = Layer::snow,
+     .fill = layer_channels::radiance<&PixelResult::snow>,
      .of_paths = true,
      .of_exposure = true},
     {.layer = Layer::error,

@@ -24,8 +24,8 @@ PixelWindow tile_within(int x0, int y0, const PixelWindow& bounds) {
 class TileRendererPool {
   public:
     TileRendererPool(const PixelRenderer& renderer, double in_scatter_tolerance,
-                     const MultipleLight* multiple)
-        : renderer_(renderer), in_scatter_tolerance_(in_scatter_tolerance), multiple_(multiple) {}
+                     const PixelAdditions& additions)
+        : renderer_(renderer), in_scatter_tolerance_(in_scatter_tolerance), additions_(additions) {}
 
     std::unique_ptr<TileRenderer> take() {
         {
@@ -36,7 +36,7 @@ class TileRendererPool {
                 return taken;
             }
         }
-        return std::make_unique<TileRenderer>(renderer_, in_scatter_tolerance_, multiple_);
+        return std::make_unique<TileRenderer>(renderer_, in_scatter_tolerance_, additions_);
     }
     void give_back(std::unique_ptr<TileRenderer> renderer) {
         const std::lock_guard lock(mutex_);
@@ -46,7 +46,7 @@ class TileRendererPool {
   private:
     const PixelRenderer& renderer_;
     double in_scatter_tolerance_;
-    const MultipleLight* multiple_;
+    PixelAdditions additions_;
     std::mutex mutex_;
     std::vector<std::unique_ptr<TileRenderer>> free_;
 };
@@ -55,7 +55,7 @@ class TileRendererPool {
 
 void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, const LayerPlan& plan,
                  const BandColour& colour, Film& film, const ProgressCallback& progress,
-                 const PixelCallback& pixel_done, const MultipleLight* multiple) {
+                 const PixelCallback& pixel_done, const PixelAdditions& additions) {
     const PixelWindow& window = film.window();
     const PixelWindow image{0, 0, film.width(), film.height()};
     const int left = window.x0 / k_tile, top = window.y0 / k_tile;
@@ -65,7 +65,7 @@ void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, con
     // Counted in rows of pixels within tiles: a tile may take the reference integrator a minute.
     const auto all = static_cast<double>(columns) * window.height();
     std::atomic<std::size_t> done = 0;
-    TileRendererPool pool(renderer, in_scatter_tolerance, multiple);
+    TileRendererPool pool(renderer, in_scatter_tolerance, additions);
     parallel_for(tiles, [&](std::size_t tile) {
         const int x0 = (left + static_cast<int>(tile) % columns) * k_tile;
         const int y0 = (top + static_cast<int>(tile) / columns) * k_tile;

@@ -19,10 +19,9 @@ using PixelCallback = std::function<void(int x, int y, const RenderedPixel& pixe
 
 /// Renders every pixel of the film's window on all permitted threads. The result depends neither on
 /// their number nor on the window. `in_scatter_tolerance`: that of InScatterLattice; 0 integrates
-/// every pixel's own ray. `multiple`: added to every pixel unless null. Throws Interrupted if
-/// `progress` returned false.
+/// every pixel's own ray. Throws Interrupted if `progress` returned false.
 void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, const LayerPlan& plan,
                  const BandColour& colour, Film& film, const ProgressCallback& progress,
-                 const PixelCallback& done = {}, const MultipleLight* multiple = nullptr);
+                 const PixelCallback& done = {}, const PixelAdditions& additions = {});
 
 }  // namespace uw

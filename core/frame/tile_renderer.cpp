@@ -2,9 +2,30 @@
 
 namespace uw {
 
+namespace {
+
+/// Makes the ground truth of a pixel that of a particle of snow at this distance along its ray: a
+/// disk that faces the camera, with the number after those of all objects for its id.
+void hold(double distance, const PixelView& view, const PixelRenderer& renderer,
+          PixelResult& result) {
+    result.has_hit = true;
+    result.hit = {};
+    result.hit.distance = distance;
+    result.hit.position = view.ray->at(distance);
+    result.hit.normal = result.hit.geometric_normal = -view.ray->direction;
+    result.hit.object_id =
+        static_cast<std::uint32_t>(renderer.scene().surfaces->names().objects.size()) + 1;
+    const Point3 in_camera = renderer.rays().world_from_camera().inverse() * result.hit.position;
+    result.depth_z = in_camera.z;
+    result.range = glm::length(from_origin(in_camera));
+    result.path = distance;
+}
+
+}  // namespace
+
 TileRenderer::TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
-                           const MultipleLight* multiple)
-    : renderer_(renderer), multiple_(multiple) {
+                           const PixelAdditions& additions)
+    : renderer_(renderer), additions_(additions) {
     if (in_scatter_tolerance > 0)
         lattice_.emplace(renderer.rays(), renderer.in_scatter(), in_scatter_tolerance);
     else
@@ -31,8 +52,17 @@ RenderedPixel TileRenderer::render(int x, int y) {
     if (!lattice_) renderer_.in_scatter().integrate(view, in_scatter_);
     renderer_.shade(view, light_, first_sample, lattice_ ? lattice_->values(pixel) : in_scatter_,
                     result_);
-    if (multiple_) multiple_->add(view, light_, first_sample, result_);
+    if (additions_.multiple) additions_.multiple->add(view, light_, first_sample, result_);
+    if (additions_.snow && view.ray) add_snow(x, y, view);
     return {view, light_, first_sample, result_};
+}
+
+void TileRenderer::add_snow(int x, int y, const PixelView& view) {
+    const double end = view.has_hit ? view.path : view.distances.back();
+    result_.snow = additions_.snow->radiance(x, y, end, result_.direct + result_.multiple_surface,
+                                             result_.backscatter + result_.multiple_volume);
+    const double held = additions_.snow->held(x, y);
+    if (additions_.snow_in_ground_truth && held > 0) hold(held, view, renderer_, result_);
 }
 
 }  // namespace uw

@@ -7,8 +7,16 @@
 #include "core/frame/in_scatter_lattice.h"
 #include "core/frame/multiple_light.h"
 #include "core/frame/pixel_renderer.h"
+#include "core/snow/snow_layer.h"
 
 namespace uw {
+
+/// What is added to the light of pixels, each unless null; all outlive what they are given to.
+struct PixelAdditions {
+    const MultipleLight* multiple = nullptr;
+    const SnowLayer* snow = nullptr;
+    bool snow_in_ground_truth = false;  // SnowDesc::in_ground_truth
+};
 
 /// A pixel and what it was made of.
 struct RenderedPixel {
@@ -23,9 +31,8 @@ struct RenderedPixel {
 class TileRenderer {
   public:
     /// `in_scatter_tolerance`: that of InScatterLattice; 0 integrates every pixel's own ray.
-    /// `multiple`: added to every pixel, unless null; outlives the renderer.
     TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
-                 const MultipleLight* multiple = nullptr);
+                 const PixelAdditions& additions = {});
 
     /// Traces the whole tile, even if only part of it is rendered: its lattice depends on all of
     /// it, and its surfaces are lit in one batch.
@@ -35,8 +42,10 @@ class TileRenderer {
     RenderedPixel render(int x, int y);
 
   private:
+    void add_snow(int x, int y, const PixelView& view);
+
     const PixelRenderer& renderer_;
-    const MultipleLight* multiple_;
+    PixelAdditions additions_;
     std::optional<InScatterLattice> lattice_;  // empty: every pixel by itself
     PixelWindow tile_;
     Grid2D<PixelView> views_;                 // of the tile

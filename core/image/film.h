@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -17,6 +18,11 @@ struct PixelWindow {
     int height() const { return y1 - y0; }
     friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
 };
+
+/// The pixels of both; of negative width or height if there are none.
+inline PixelWindow intersection(const PixelWindow& a, const PixelWindow& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
 
 /// Channel indices, in every film, of the colour and coverage that previews show.
 enum FilmChannel : std::size_t { k_red = 0, k_green = 1, k_blue = 2, k_alpha = 3 };

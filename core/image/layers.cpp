@@ -65,6 +65,9 @@ std::string_view mend_of_missing(Layer layer, const LayerSupply& supply) {
             if (supply.multiple) return {};
             return "the scene is rendered with single scattering; write --set "
                    "render.scattering=multiple, or --integrator path";
+        case Layer::snow:
+            if (supply.snow) return {};
+            return "there is no snow in the scene; add water.snow";
         case Layer::error:
             if (supply.error) return {};
             return "only --integrator path has a standard error, from two samples on; write that";

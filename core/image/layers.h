@@ -21,6 +21,7 @@ enum class Layer {
     multiple,
     multiple_volume,
     multiple_surface,
+    snow,
     error,
     irradiance,
     exitance,
@@ -64,6 +65,7 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::multiple, "multiple", "", true},
     {Layer::multiple_volume, "multiple.volume", "", true},
     {Layer::multiple_surface, "multiple.surface", "", true},
+    {Layer::snow, "snow", "", true},
     {Layer::error, "error", "", true},
     {Layer::irradiance, "irradiance", "", true},
     {Layer::exitance, "exitance", "", true},
@@ -108,6 +110,7 @@ bool is_image_channel(std::string_view channel_name);
 /// What an image can hold besides what every image can.
 struct LayerSupply {
     bool multiple = false;   // light scattered or reflected more than once
+    bool snow = false;       // marine snow
     bool error = false;      // the standard error
     bool flow = false;       // where points are in other frames
     bool disparity = false;  // where points are in another camera

@@ -80,6 +80,11 @@ int samples_of(const RenderDesc& render) {
 }
 
 void check_integrator(const SceneDesc& scene) {
+    if (scene.water.snow && integrator_kind(scene.render.integrator).traces_paths)
+        throw InputError(fmt::format(
+            "{}: the integrator path has no particles, only their mean; use integrator volume, "
+            "with render.scattering: multiple for all light, or take the snow out",
+            scene.water.snow->where));
     check_scattering(scene);
     integrator_kind(scene.render.integrator).check(scene);
 }

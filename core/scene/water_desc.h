@@ -7,6 +7,7 @@
 #include "core/scene/forward_scatter_desc.h"
 #include "core/scene/per_band.h"
 #include "core/scene/phase_desc.h"
+#include "core/scene/snow_desc.h"
 #include "core/scene/source_location.h"
 #include "core/scene/water_surface_desc.h"
 
@@ -35,6 +36,7 @@ struct WaterDesc {
     std::optional<ScatteringDesc> scattering;  ///< instead of that of molecules and particles
     ForwardScatterDesc forward_scatter;
     std::optional<WaterSurfaceDesc> surface;  ///< above which there is no sunlight
+    std::optional<SnowDesc> snow;
     SourceLocation where;
 
     friend bool operator==(const WaterDesc&, const WaterDesc&) = default;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/base/spectrum.h"
 #include "core/scene/yaml/config_map.h"
@@ -129,12 +130,93 @@ WaterSurfaceDesc read_surface(const ConfigValue& value) {
             .direction("give the direction out of the water, not all 0")};
 }
 
+constexpr double k_least_diameter = 1e-6, k_greatest_diameter = 0.1;
+constexpr int k_most_particles = 20'000'000;
+
+/// A diameter in metres: a number, or one with its unit.
+double read_diameter(const ConfigValue& value) {
+    constexpr auto k_mend = "give a length with its unit, such as 0.2 mm";
+    constexpr std::array<std::pair<std::string_view, double>, 6> k_units{
+        {{"um", 1e-6}, {"µm", 1e-6}, {"μm", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}}};
+    double metres = 0;
+    bool is_length = false;
+    if (value.node().kind == ConfigNode::Kind::scalar) {
+        const std::string_view text = value.node().scalar;
+        if (parse_number(text, metres) == NumberText::number) is_length = true;
+        for (const auto& [unit, factor] : k_units) {
+            if (is_length || !text.ends_with(unit)) continue;
+            std::string_view number = text.substr(0, text.size() - unit.size());
+            while (number.ends_with(' ')) number.remove_suffix(1);
+            is_length = parse_number(number, metres) == NumberText::number;
+            metres *= factor;
+        }
+    }
+    if (!is_length)
+        value.fail(
+            fmt::format("expected a diameter, found {}; {}", value.node().description(), k_mend));
+    // Rounding of the units.
+    constexpr double k_slack = 1e-9;
+    if (!(metres >= k_least_diameter * (1 - k_slack)) ||
+        !(metres <= k_greatest_diameter * (1 + k_slack)))
+        value.fail(fmt::format("must be from 1 um to 10 cm, found {:g} m; {}", metres, k_mend));
+    return metres;
+}
+
+void read_diameters(const ConfigValue& value, SnowDesc& snow) {
+    const auto ends =
+        value.list_of(2, "give the least and the greatest diameter, such as [0.2 mm, 5 mm]");
+    snow.least = read_diameter(ends[0]);
+    snow.greatest = read_diameter(ends[1]);
+    if (!(snow.least < snow.greatest))
+        value.fail("the first must be less than the second; write the least diameter first");
+}
+
+SnowDesc read_snow(const ConfigValue& value, const SceneContext& context) {
+    constexpr auto k_example = "write {number: 2000, diameter: [0.2 mm, 5 mm]}";
+    ConfigMap map(value,
+                  {"number", "diameter", "exponent", "reflectance", "drift", "seed", "mean",
+                   "ground_truth", "most"},
+                  k_example);
+    SnowDesc snow;
+    snow.where = value.location();
+    snow.number = map.require("number", k_example).positive("give the particles per m^3");
+    read_diameters(map.require("diameter", k_example), snow);
+    if (const auto entry = map.find("exponent"))
+        snow.exponent = entry->within(0, 10, "give Junge's exponent, of numbers per diameter: 4");
+    snow.reflectance.assign(context.band_count, 0.4);
+    if (const auto entry = map.find("reflectance")) {
+        constexpr auto k_mend = "give the particles' reflectance, 0 to 1";
+        snow.reflectance.clear();
+        for (const ConfigValue& band : entry->per_band(context.band_count, k_mend))
+            snow.reflectance.push_back(band.within(0, 1, k_mend));
+    }
+    if (const auto entry = map.find("drift"))
+        snow.drift = entry->vector("give a velocity in m/s, such as [0.02, -0.001, 0]");
+    if (const auto entry = map.find("seed"))
+        snow.seed =
+            static_cast<std::uint64_t>(entry->integer(0, 2147483647, "give a whole number"));
+    if (const auto entry = map.find("mean")) {
+        constexpr std::array<std::pair<std::string_view, SnowDesc::Mean>, 2> k_means{
+            {{"included", SnowDesc::Mean::included}, {"added", SnowDesc::Mean::added}}};
+        snow.mean = entry->choice(k_means);
+    }
+    if (const auto entry = map.find("ground_truth")) {
+        constexpr std::array<std::pair<std::string_view, bool>, 2> k_choices{
+            {{"ignored", false}, {"held", true}}};
+        snow.in_ground_truth = entry->choice(k_choices);
+    }
+    if (const auto entry = map.find("most"))
+        snow.most = entry->integer(1, k_most_particles,
+                                   "give how many particles to draw in an image, 1 to 20000000");
+    return snow;
+}
+
 }  // namespace
 
 WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
     ConfigMap map(value,
                   {"bands", "preset", "salinity", "temperature", "absorption", "cdom",
-                   "chlorophyll", "particles", "scattering", "forward_scatter", "surface"},
+                   "chlorophyll", "particles", "scattering", "forward_scatter", "surface", "snow"},
                   "write {bands: [620, 540, 450]}");
     WaterDesc water;
     water.where = value.location();
@@ -160,6 +242,7 @@ WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
         water.forward_scatter = read_forward_scatter(*entry);
     if (const auto entry = map.find("surface")) water.surface = read_surface(*entry);
     context.water_surface = water.surface;
+    if (const auto entry = map.find("snow")) water.snow = read_snow(*entry, context);
     return water;
 }
 
