@@ -170,6 +170,13 @@ void write_model(const CompleteSequence& sequence, SetFiles& files) {
                         cameras_text(sequence, true));
 }
 
+void check_one_pose(const DatasetDefinition&, const SceneDesc& scene) {
+    if (scene.camera.line_time > 0)
+        throw UsageError(
+            "--format colmap: its images have one pose each, but every row of a rolling shutter "
+            "has its own; leave the format out, or give --set camera.line_time=0");
+}
+
 }  // namespace
 
 DatasetFormat colmap_format() {
@@ -187,6 +194,7 @@ DatasetFormat colmap_format() {
                 "refractive fork.",
             .needs_points = true,
             .needs_images = true,
+            .check = check_one_pose,
             .write_view =
                 [](const ViewImages& images, SetFiles& files) {
                     files.add_bytes("observations",

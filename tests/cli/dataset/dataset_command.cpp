@@ -179,6 +179,9 @@ TEST_F(DatasetCommand, RefusesWhatMakesNoSense) {
     expect_failure({"dataset", "scene.yaml", "--format", "disparity"}, 2, "a rig of two cameras");
     expect_failure({"dataset", "moving.yaml", "--layers", "normal"}, 2, "are those of exr and npy");
     expect_failure({"dataset", "moving.yaml", "--cameras", "left"}, 2, "which has no name");
+    expect_failure(
+        {"dataset", "moving.yaml", "--set", "camera.line_time=1e-5", "--format", "colmap"}, 2,
+        "images have one pose each");
 }
 
 TEST_F(DatasetCommand, AFullDiskIsOneMessage) {

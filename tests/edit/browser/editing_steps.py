@@ -188,6 +188,7 @@ class EditingSteps(unittest.TestCase):
             "document.querySelector('[aria-label=\"Exposure in stops\"]').value"))
 
     def test_solo_and_off(self):
+        self.view.wait_final()
         together = self.view.canvas()
         self.page.click('.toggle.solo[aria-label="Only lamp spot"]')
         self.page.pump(0.2)
