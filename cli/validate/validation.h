@@ -45,7 +45,7 @@ struct Check {
     double dark = 0;           // darker pixels count as this fraction of the mean
     double largest = 0;        // relative, over these pixels
     double rms = 0;            // over all pixels, of the image's mean
-    double own = 0;            // what `right` may itself be off by
+    double own = 0;            // what `right` may itself be off by; 0 if it has converged
     double tolerance = 0;      // of `largest`, with `own`
     double rms_tolerance = 0;  // of `rms`
     bool passed() const { return largest <= tolerance && rms <= rms_tolerance; }

@@ -191,9 +191,6 @@ double own_error(const SceneValidation& scene) {
     return own;
 }
 
-// Sums that change by more are worth a word.
-constexpr double k_rough_sums = 1e-3;
-
 }  // namespace
 
 std::string validation_table(const SceneValidation& scene, bool colour) {
@@ -215,7 +212,7 @@ std::string validation_table(const SceneValidation& scene, bool colour) {
                                               step.error, step.order);
     text += "\n";
     const double own = own_error(scene);
-    if (own > k_rough_sums)
+    if (own > 0)
         text += fmt::format(
             "  the sums over planes still change by {:.2g} %, which is allowed beside the "
             "tolerance: narrow light or shadow edges cross the rays\n",
