@@ -1,9 +1,41 @@
 #include "core/base/parallel.h"
 
+#include <sys/resource.h>
+
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_scheduler_observer.h>
 
 namespace uw {
+
+namespace {
+
+// A tenth of the weight of what runs at the usual niceness.
+constexpr int k_background_niceness = 10;
+
+// On Linux niceness belongs to a thread, and 0 is the calling one. Who is nicer already stays so;
+// nothing can fail that matters.
+void yield_to_others() {
+    if (getpriority(PRIO_PROCESS, 0) < k_background_niceness)
+        setpriority(PRIO_PROCESS, 0, k_background_niceness);
+}
+
+// Meets each thread of the pool as it begins to work.
+class PoolObserver final : public tbb::task_scheduler_observer {
+  public:
+    PoolObserver() { observe(true); }
+    ~PoolObserver() override { observe(false); }
+    PoolObserver(const PoolObserver&) = delete;
+    PoolObserver& operator=(const PoolObserver&) = delete;
+    PoolObserver(PoolObserver&&) = delete;
+    PoolObserver& operator=(PoolObserver&&) = delete;
+
+    void on_scheduler_entry(bool is_worker) override {
+        if (is_worker) yield_to_others();
+    }
+};
+
+}  // namespace
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); });
@@ -22,6 +54,11 @@ ThreadLimit::ThreadLimit(int threads) {
 
 ThreadLimit::~ThreadLimit() {
     delete static_cast<tbb::global_control*>(control_);
+}
+
+void work_in_background() {
+    static const PoolObserver observer;
+    yield_to_others();
 }
 
 }  // namespace uw

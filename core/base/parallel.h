@@ -27,4 +27,9 @@ class ThreadLimit {
     void* control_ = nullptr;
 };
 
+/// Leaves the processor to whatever else wants it: the calling thread from now on, and each thread
+/// of parallel_for's pool from when it next begins to work, until the program ends. For what goes
+/// on behind an answer that a user waits for.
+void work_in_background();
+
 }  // namespace uw

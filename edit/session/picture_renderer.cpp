@@ -7,6 +7,7 @@
 
 #include "camera/image_size.h"
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/integrators/integrator_table.h"
 #include "edit/session/picture_mix.h"
 
@@ -108,6 +109,7 @@ std::shared_ptr<const Picture> PictureRenderer::picture() const {
 }
 
 void PictureRenderer::run() {
+    work_in_background();  // the browser that shows the pictures comes first
     std::unique_lock lock(mutex_);
     for (;;) {
         changed_.wait(lock, [&] { return is_stopping_ || next_; });

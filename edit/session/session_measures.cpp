@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/base/scratch_folder.h"
 #include "core/base/text_file.h"
 #include "core/image/image_writer.h"
@@ -268,6 +269,7 @@ void SessionMeasures::cancel_suggest() {
 
 void SessionMeasures::search(std::int64_t id, const ResolvedScene& scene,
                              const SuggestRequest& request) {
+    work_in_background();
     Json event = {{"id", id}, {"samples", request.samples}};
     try {
         TargetProbe probe;

@@ -2,6 +2,7 @@
 #include "core/base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <atomic>
@@ -46,6 +47,29 @@ TEST(Parallel, LoopsMayStandInLoops) {
     std::atomic<int> sum = 0;
     parallel_for(20, [&](std::size_t i) { parallel_for(i, [&](std::size_t) { ++sum; }); });
     EXPECT_EQ(sum, 19 * 20 / 2);
+}
+
+int niceness_of_this_thread() {
+    return getpriority(PRIO_PROCESS, 0);
+}
+
+// A niceness cannot be taken back: this test stays the last.
+TEST(Parallel, WorkInTheBackgroundYieldsToTheRest) {
+    const int usual = niceness_of_this_thread();
+    int background = usual;
+    std::mutex mutex;
+    std::set<int> of_pool;
+    std::thread([&] {
+        work_in_background();
+        background = niceness_of_this_thread();
+        parallel_for(2000, [&](std::size_t) {
+            const std::lock_guard lock(mutex);
+            of_pool.insert(niceness_of_this_thread());
+        });
+    }).join();
+    EXPECT_GE(background, 10);
+    EXPECT_EQ(of_pool, std::set{background});
+    EXPECT_EQ(niceness_of_this_thread(), usual);
 }
 
 }  // namespace
