@@ -25,7 +25,10 @@ export class Mixer {
         this.#gl = canvas.getContext("webgl2", {
             alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true,
         });
-        if (!this.#gl) throw new Error("this browser has no WebGL 2, which mixes the lamps' light");
+        if (!this.#gl) {
+            throw new Error("this browser has no WebGL 2, which mixes the lamps' light: allow it " +
+                "hardware acceleration in its settings, or open this address in another");
+        }
         this.#build();
     }
 
