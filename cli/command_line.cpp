@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "cli/console.h"
-#include "cli/version.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/version.h"
 
 namespace uw {
 

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "cli/version.h"
+#include "core/base/version.h"
 #include "core/json/json.h"
 
 namespace uw {

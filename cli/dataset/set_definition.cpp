@@ -6,11 +6,10 @@
 #include <algorithm>
 
 #include "cli/camera_choice.h"
-#include "cli/render/apply_arguments.h"
 #include "cli/render/frame_sequence.h"
 #include "cli/render/run_scenes.h"
-#include "cli/version.h"
 #include "core/base/error.h"
+#include "core/base/version.h"
 #include "dataset/formats/format_table.h"
 #include "render/scene_loading.h"
 #include "render/scene_motion.h"
@@ -123,7 +122,7 @@ SceneDesc scene_of_draw(const DatasetArguments& a, const std::vector<std::string
     std::vector<std::string> all = a.image.overrides;
     all.insert(all.end(), overrides.begin(), overrides.end());
     SceneDesc scene = load_scene(a.image.scene, all);
-    apply_arguments(a.image, scene);
+    apply_request(a.image.image(), scene);
     return scene;
 }
 

@@ -20,6 +20,7 @@
 #include "dataset/set/view_writer.h"
 #include "dataset/set_files.h"
 #include "dataset/surface_points.h"
+#include "render/image_header.h"
 
 namespace uw {
 

@@ -1,7 +1,7 @@
 #include "cli/info/survey_json.h"
 
-#include "cli/version.h"
-#include "cli/word_of.h"
+#include "core/base/text.h"
+#include "core/base/version.h"
 #include "core/integrators/integrator_table.h"
 #include "core/json/json.h"
 

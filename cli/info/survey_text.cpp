@@ -7,7 +7,7 @@
 
 #include "cli/frame_list.h"
 #include "cli/grid_summary.h"
-#include "cli/word_of.h"
+#include "core/base/text.h"
 #include "core/integrators/integrator_table.h"
 
 namespace uw {

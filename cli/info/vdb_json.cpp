@@ -1,7 +1,7 @@
 #include "cli/info/vdb_json.h"
 
 #include "cli/info/vdb_text.h"
-#include "cli/version.h"
+#include "core/base/version.h"
 #include "core/json/json.h"
 
 namespace uw {

@@ -13,6 +13,7 @@
 #include "core/base/available_memory.h"
 #include "core/image/preview.h"
 #include "core/integrators/integrator_table.h"
+#include "render/image_header.h"
 
 namespace uw {
 

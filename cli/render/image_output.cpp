@@ -3,36 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
 #include <vector>
 
-#include "cli/version.h"
-#include "cli/word_of.h"
 #include "core/image/preview.h"
-#include "core/integrators/integrator_table.h"
-#include "core/integrators/sensor.h"
 #include "render/id_table.h"
 
 namespace uw {
 
 namespace {
-
-std::string band_list(std::span<const double> values) {
-    std::string text;
-    for (const double value : values)
-        text += fmt::format("{}{:g}", text.empty() ? "" : ", ", value);
-    return text;
-}
-
-// The first three rows of the 4 x 4 matrix, the last being 0 0 0 1.
-std::string matrix_rows(const Affine& pose) {
-    std::string text;
-    for (int row = 0; row < 3; ++row)
-        text += fmt::format("{}{:.17g} {:.17g} {:.17g} {:.17g}", text.empty() ? "" : "; ",
-                            pose.linear()[0][row], pose.linear()[1][row], pose.linear()[2][row],
-                            pose.offset()[row]);
-    return text;
-}
 
 // A warning of one line if the image is black, or empty in part.
 void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
@@ -75,100 +53,7 @@ void write_preview(const std::filesystem::path& file, const Film& film, const Im
         write_png(file, make_preview(film, exposure), metadata);
 }
 
-void describe(const SensorDesc& sensor, ImageMetadata& m) {
-    m["uwvdb/sensor_exposure_s"] = *sensor.exposure;
-    m["uwvdb/sensor_mosaic"] = word_of(sensor.mosaic, k_sensor_mosaics);
-    m["uwvdb/sensor_gain_dn_per_e"] = sensor.system_gain();
-    m["uwvdb/sensor_black_level_dn"] = sensor.black_level;
-    m["uwvdb/sensor_bit_depth"] = static_cast<double>(sensor.bit_depth);
-    m["uwvdb/sensor_seed"] = static_cast<double>(sensor.seed);
-}
-
 }  // namespace
-
-ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
-                          const PathRequest& paths) {
-    const std::string quantity = SensorModel(scene).description();
-    ImageMetadata m{{"software", "uwvdb " + program_version()},
-                    {"uwvdb/scene", scene.file.filename().string()},
-                    {"uwvdb/scene_hash", scene.hash},
-                    {"uwvdb/integrator", word_of(scene.render.integrator, k_integrator_names)},
-                    {"uwvdb/quality", word_of(scene.render.quality, k_quality_names)},
-                    {"uwvdb/samples", static_cast<double>(samples_of(scene.render))},
-                    {"uwvdb/seed", std::string("none: deterministic")},
-                    {"uwvdb/rgb_quantity", quantity},
-                    {"uwvdb/units", quantity + ", irradiance and exitance W m^-2, metres"},
-                    {"uwvdb/bands_nm", band_list(scene.water.bands_nm)}};
-    if (const auto scattering = scattering_of(scene.render);
-        scattering == RenderDesc::Scattering::multiple)
-        m["uwvdb/scattering"] = word_of(scattering, k_scattering_names);
-    if (integrator_kind(scene.render.integrator).traces_paths)
-        m["uwvdb/seed"] = std::string("0: the same paths every time");
-    if (paths.error) {
-        m.erase("uwvdb/samples");  // follows from the error
-        m["uwvdb/error_requested"] = *paths.error;
-    }
-    if (frame) m["uwvdb/frame"] = fmt::format("{}", *frame);
-    if (scene.time) m["uwvdb/time_s"] = *scene.time;
-    if (scene.render.shutter > 0) m["uwvdb/shutter_s"] = scene.render.shutter;
-    if (scene.camera.line_time > 0) m["uwvdb/line_time_s"] = scene.camera.line_time;
-    if (!scene.camera_name.empty()) m["uwvdb/camera"] = scene.camera_name;
-    const IntrinsicsDesc& k = scene.camera.intrinsics;
-    m["uwvdb/intrinsics_fx_fy_cx_cy_px"] =
-        fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", k.fx, k.fy, k.cx, k.cy);
-    m["uwvdb/world_from_camera"] = matrix_rows(scene.camera.world_from_camera);
-    if (scene.render.colour.response == ColourDesc::Response::camera)
-        m["uwvdb/rgb_response"] = scene.render.colour.file.filename().string();
-    if (const ForwardScatterDesc& forward = scene.water.forward_scatter; forward.K > 0) {
-        m["uwvdb/forward_scatter_K"] = forward.K;
-        m["uwvdb/forward_scatter_G_per_m"] = forward.G;
-        m["uwvdb/forward_scatter_B_rad_per_m"] = forward.B;
-        m["uwvdb/forward_scatter_shape"] = std::string(
-            forward.shape == ForwardScatterDesc::Shape::gaussian ? "gaussian" : "exponential");
-    }
-    const auto note_port = [&m](const auto& port) {
-        m["uwvdb/port_fresnel"] = std::string(port.fresnel ? "on" : "off");
-        m["uwvdb/port_radiance_in"] = std::string(port.radiance_in_air ? "air" : "water");
-    };
-    if (scene.camera.port) std::visit(note_port, *scene.camera.port);
-    if (const auto& lens = scene.camera.lens) {
-        m["uwvdb/lens_f_number"] = lens->f_number;
-        m["uwvdb/lens_focal_length_m"] = lens->focal_length;
-        m["uwvdb/lens_transmission"] = lens->transmission;
-    }
-    if (scene.camera.sensor) describe(*scene.camera.sensor, m);
-    return m;
-}
-
-ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
-                          const PathRequest& paths, const RenderReport& report) {
-    ImageMetadata m = metadata_of(scene.desc, frame, paths);
-    if (report.paths.samples > 0) m["uwvdb/samples"] = static_cast<double>(report.paths.samples);
-    if (report.paths.error) m["uwvdb/error"] = *report.paths.error;
-    if (report.multiple_error) m["uwvdb/multiple_error"] = *report.multiple_error;
-    if (report.exposure_parts > 0) {
-        m["uwvdb/exposure_parts"] = static_cast<double>(report.exposure_parts);
-        m["uwvdb/exposure_samples"] = static_cast<double>(report.exposure_samples);
-    }
-    const Medium& medium = scene.water.medium;
-    std::vector<double> a, b, c;
-    for (int band = 0; band < medium.band_count(); ++band) {
-        a.push_back(medium.uniform.absorption[static_cast<std::size_t>(band)]);
-        c.push_back(medium.uniform.attenuation(band));
-        b.push_back(c.back() - a.back());
-    }
-    std::string phases;
-    for (const auto& phase : medium.phase_functions)
-        phases += (phases.empty() ? "" : "; ") + phase->description();
-    m["uwvdb/water_absorption_per_m"] = band_list(a);
-    m["uwvdb/water_scattering_per_m"] = band_list(b);
-    m["uwvdb/water_attenuation_per_m"] = band_list(c);
-    m["uwvdb/phase_functions"] = phases;
-    m["uwvdb/slab_near_m"] = scene.slabs.near;
-    m["uwvdb/slab_thickness_m"] = scene.slabs.thickness();
-    m["uwvdb/slabs"] = static_cast<double>(scene.slabs.count);
-    return m;
-}
 
 void write_images(const OutputFiles& files, const Film& film,
                   const std::optional<SensorImage>& sensor, const SurfaceNames& names,

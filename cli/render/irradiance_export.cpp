@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <atomic>
 
-#include "cli/version.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/version.h"
 #include "core/optics/optical_depth.h"
 #include "media/vdb/vdb_writer.h"
 

@@ -8,6 +8,7 @@
 
 #include "cli/numbers/picture_parts.h"
 #include "core/image/exr_options.h"
+#include "render/image_request.h"
 #include "render/scene_rendering.h"
 
 namespace uw {
@@ -58,6 +59,7 @@ struct RenderArguments {
     /// Whether the scene itself is rendered, rather than its variations.
     bool is_scene_itself() const { return !variation_count && variations.empty(); }
     bool prints_numbers() const { return numbers == "-"; }
+    ImageRequest image() const { return {quality, integrator, samples, error, size}; }
     PathRequest paths() const { return {.error = error, .orders = orders.value_or(0)}; }
 };
 

@@ -6,9 +6,9 @@
 
 #include "cli/console.h"
 #include "cli/frame_list.h"
-#include "cli/render/image_output.h"
 #include "core/image/image_reader.h"
 #include "core/image/image_writer.h"
+#include "render/image_header.h"
 
 namespace uw {
 

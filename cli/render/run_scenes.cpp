@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "cli/render/apply_arguments.h"
 #include "core/base/error.h"
 #include "render/scene_loading.h"
 
@@ -44,7 +43,7 @@ const SceneDesc& RunScenes::of(std::optional<int> variation) {
     if (scene_ && variation == current_) return *scene_;
     SceneDesc scene = variation ? variations_->scene(*variation)
                                 : load_scene(arguments_.scene, arguments_.overrides);
-    apply_arguments(arguments_, scene);
+    apply_request(arguments_.image(), scene);
     scene_ = std::move(scene);
     current_ = variation;
     return *scene_;

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "cli/text_files.h"
-#include "cli/version.h"
 #include "core/base/frame_pattern.h"
 #include "core/base/text.h"
+#include "core/base/version.h"
 #include "core/json/json.h"
 #include "core/scene/yaml/yaml_document.h"
 #include "core/tables/csv_cells.h"

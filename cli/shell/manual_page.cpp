@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "cli/version.h"
+#include "core/base/version.h"
 
 namespace uw {
 

@@ -10,9 +10,9 @@
 #include "cli/validate/image_differences.h"
 #include "cli/validate/light_report.h"
 #include "cli/validate/report_page.h"
-#include "cli/version.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/version.h"
 #include "core/colour/colour.h"
 
 namespace uw {

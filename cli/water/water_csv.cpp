@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cli/version.h"
+#include "core/base/version.h"
 
 namespace uw {
 

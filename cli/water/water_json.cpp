@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cli/version.h"
+#include "core/base/version.h"
 #include "core/json/json.h"
 
 namespace uw {

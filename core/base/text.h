@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -31,6 +32,13 @@ constexpr std::array<std::string_view, N> words_of(
     std::array<std::string_view, N> words;
     for (std::size_t i = 0; i < N; ++i) words[i] = table[i].first;
     return words;
+}
+
+/// The word for `value` in a table of those that scenes and options accept, which has it.
+template <class T, std::size_t N>
+std::string word_of(T value, const std::array<std::pair<std::string_view, T>, N>& table) {
+    return std::string(
+        std::ranges::find(table, value, &std::pair<std::string_view, T>::second)->first);
 }
 
 /// Outcome of parse_number.

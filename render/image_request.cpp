@@ -1,8 +1,6 @@
-#include "cli/render/apply_arguments.h"
+#include "render/image_request.h"
 
 #include <fmt/format.h>
-
-#include <string>
 
 #include "camera/image_size.h"
 #include "core/base/error.h"
@@ -29,22 +27,21 @@ RenderDesc::Quality quality_named(const std::string& name) {
 
 }  // namespace
 
-void apply_arguments(const RenderArguments& a, SceneDesc& desc) {
-    RenderDesc& render = desc.render;
-    if (!a.quality.empty()) render.quality = quality_named(a.quality);
-    if (!a.integrator.empty()) render.integrator = integrator_named(a.integrator);
+void apply_request(const ImageRequest& request, SceneDesc& scene) {
+    RenderDesc& render = scene.render;
+    if (!request.quality.empty()) render.quality = quality_named(request.quality);
+    if (!request.integrator.empty()) render.integrator = integrator_named(request.integrator);
     const IntegratorKind& kind = integrator_kind(render.integrator);
     if (render.quality == RenderDesc::Quality::draft) render.samples = kind.draft_samples;
-    if (a.samples && a.error)
+    if (request.samples && request.error)
         throw UsageError("--samples and --error: each says how long to go on; give one of them");
-    if (a.samples) render.samples = *a.samples;
+    if (request.samples) render.samples = *request.samples;
     const int most = kind.traces_paths ? k_most_paths : k_most_samples;
     if (samples_of(render) > most)
-        throw UsageError(
-            fmt::format("{}: expected 1 to {}, found {}; only integrator path takes more",
-                        a.samples ? "--samples" : "render.samples", most, samples_of(render)));
-    if (!a.size) return;
-    resize_images(desc, (*a.size)[0], (*a.size)[1]);
+        throw UsageError(fmt::format(
+            "{}: expected 1 to {}, found {}; only integrator path takes more",
+            request.samples ? "--samples" : "render.samples", most, samples_of(render)));
+    if (request.size) resize_images(scene, (*request.size)[0], (*request.size)[1]);
 }
 
 }  // namespace uw
