@@ -4,6 +4,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <tbb/task_scheduler_observer.h>
 
 namespace uw {
@@ -38,12 +39,22 @@ class PoolObserver final : public tbb::task_scheduler_observer {
 }  // namespace
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); });
+    // By the calling thread's floating-point settings. Otherwise they are those that the thread had
+    // when it used the pool first: inside Embree, which flushes denormal numbers to 0 meanwhile.
+    using Context = tbb::task_group_context;
+    Context context(Context::bound, Context::default_traits | Context::fp_settings);
+    tbb::parallel_for(
+        std::size_t{0}, count, [&](std::size_t i) { body(i); }, context);
 }
 
 int permitted_threads() {
     return static_cast<int>(
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+void with_threads(int threads, const std::function<void()>& body) {
+    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    arena.execute(body);
 }
 
 ThreadLimit::ThreadLimit(int threads) {

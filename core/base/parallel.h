@@ -6,11 +6,16 @@
 namespace uw {
 
 /// Runs `body(i)` for i in [0, count) on all permitted threads. Iterations must be independent; the
-/// first exception thrown by a body stops the rest and is rethrown.
+/// first exception thrown by a body stops the rest and is rethrown. All run with the calling
+/// thread's floating-point settings.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// How many threads parallel_for may use now.
 int permitted_threads();
+
+/// Runs `body`, in which parallel_for (and the libraries that share its pool) uses at most so many
+/// threads, this one among them, whatever the rest of the program does; 0 means all cores.
+void with_threads(int threads, const std::function<void()>& body);
 
 /// Limits how many threads parallel_for (and the libraries that share its pool) may use for as
 /// long as the object lives; 0 means all cores.

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -29,6 +31,33 @@ TEST(Parallel, PassesOnWhatABodyThrows) {
                                   if (i == 57) throw std::out_of_range("57");
                               }),
                  std::out_of_range);
+}
+
+// Whatever the settings were when the pool was used first: the same scene has the same bits.
+TEST(Parallel, RunsWithTheCallersFloatingPointSettings) {
+    const unsigned before = _mm_getcsr();
+    const volatile double smallest = std::numeric_limits<double>::min();
+    for (const unsigned mode : {_MM_FLUSH_ZERO_OFF, _MM_FLUSH_ZERO_ON, _MM_FLUSH_ZERO_OFF}) {
+        _MM_SET_FLUSH_ZERO_MODE(mode);
+        std::vector<double> halves(1000, -1);
+        parallel_for(halves.size(), [&](std::size_t i) { halves[i] = 0.5 * smallest; });
+        const double expected = mode == _MM_FLUSH_ZERO_ON ? 0 : 0x1p-1023;
+        _mm_setcsr(before);
+        EXPECT_EQ(std::ranges::count(halves, expected), 1000) << mode;
+    }
+}
+
+TEST(Parallel, WithThreadsLimitsThemForItself) {
+    std::mutex mutex;
+    std::set<std::thread::id> threads;
+    with_threads(1, [&] {
+        parallel_for(1000, [&](std::size_t) {
+            const std::lock_guard lock(mutex);
+            threads.insert(std::this_thread::get_id());
+        });
+    });
+    EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
+    EXPECT_THROW(with_threads(2, [] { throw std::out_of_range("57"); }), std::out_of_range);
 }
 
 TEST(Parallel, ALimitOfOneThreadIsTheCallersAlone) {
