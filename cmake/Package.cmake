@@ -1,4 +1,5 @@
-# `cpack -G DEB` in a build folder makes the .deb of the program, for the system it is built on.
+# `cpack -G DEB` in a build folder makes the .deb of the program and, where it is built, that of the
+# Python package, for the system it is built on.
 find_package(Git QUIET)
 function(uwvdb_of_last_commit result format otherwise)
     set(value "")
@@ -25,6 +26,9 @@ foreach(file changelog.Debian copyright)
     configure_file(cmake/debian/${file}.in ${PROJECT_BINARY_DIR}/debian/${file} @ONLY)
     install(FILES ${PROJECT_BINARY_DIR}/debian/${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}
             COMPONENT debian EXCLUDE_FROM_ALL)
+    install(FILES ${PROJECT_BINARY_DIR}/debian/${file}
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-uwvdb
+            COMPONENT debian_python EXCLUDE_FROM_ALL)
 endforeach()
 
 set(CPACK_PACKAGE_NAME uwvdb)
@@ -33,7 +37,24 @@ set(CPACK_PACKAGE_CONTACT "${uwvdb_maintainer}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "renderer of physically exact underwater images")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL program debian)
-set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_COMPONENT_PROGRAM_GROUP program)
+set(CPACK_COMPONENT_DEBIAN_GROUP program)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME uwvdb)
+if(UWVDB_BUILD_PYTHON)
+    list(APPEND CPACK_COMPONENTS_ALL python debian_python)
+    set(CPACK_COMPONENT_PYTHON_GROUP python)
+    set(CPACK_COMPONENT_DEBIAN_PYTHON_GROUP python)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-uwvdb)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+    math(EXPR uwvdb_next_python "${Python_VERSION_MINOR} + 1")
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+        "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${uwvdb_next_python}), python3-numpy")
+    set(CPACK_DEBIAN_PYTHON_DESCRIPTION
+        "Renders underwater scenes from Python: images, depth and other ground truth
+as NumPy arrays, volumes and surfaces from arrays, the rays of cameras behind
+ports. The module is called uwvdb.")
+endif()
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_STRIP_FILES ON)

@@ -47,3 +47,12 @@ target_compile_definitions(uwvdb_nanovdb INTERFACE NANOVDB_USE_TBB)
 # pkg-config file alone names.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+
+# The system's interpreter, of which the packages pybind11 and NumPy are, whatever else is in PATH.
+if(UWVDB_BUILD_PYTHON)
+    if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)
+        set(Python_EXECUTABLE /usr/bin/python3)
+    endif()
+    find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module)
+    find_package(pybind11 2.10 REQUIRED)
+endif()

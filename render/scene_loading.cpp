@@ -59,8 +59,9 @@ SceneDesc complete(SceneDesc scene) {
 
 }  // namespace
 
-SceneDesc load_scene_tree(const ConfigNode& tree, const std::filesystem::path& file) {
-    return complete(scene_of_tree(tree, file));
+SceneDesc load_scene_tree(const ConfigNode& tree, const std::filesystem::path& file,
+                          const SceneArrays* arrays) {
+    return complete(scene_of_tree(tree, file, arrays));
 }
 
 SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/scene/scene_arrays.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/yaml/config_node.h"
 
@@ -19,7 +20,8 @@ SceneDesc load_scene(const std::filesystem::path& file, const std::vector<std::s
 /// The same for a scene whose text is at hand (read_scene_text).
 SceneDesc load_scene_text(std::string_view text, const std::filesystem::path& file);
 
-/// The same for a scene's tree (read_scene_tree) whose variations have been read.
-SceneDesc load_scene_tree(const ConfigNode& tree, const std::filesystem::path& file);
+/// The same for a scene's tree (scene_of_tree) whose variations have been read.
+SceneDesc load_scene_tree(const ConfigNode& tree, const std::filesystem::path& file,
+                          const SceneArrays* arrays = nullptr);
 
 }  // namespace uw

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "core/scene/trajectory_desc.h"
 
 namespace uw {
+
+struct TriangleMesh;  // core/meshes/mesh.h
 
 /// The unit of a glTF file's light intensities (Blender's exporter offers these three).
 enum class LightUnits {
@@ -46,6 +49,8 @@ struct GeometryDesc {
     enum class Type { file, plane, box, sphere };
     Type type = Type::file;
     std::filesystem::path file;
+    std::shared_ptr<const TriangleMesh> mesh;  ///< of type file: in memory, instead of one
+    std::string mesh_name;
     bool is_sequence = false;  ///< `file` has a pattern for the frame number
     /// When the nodes of a glTF file move, unless it is one of a sequence (load_scene).
     std::optional<TimeRange> animation;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "core/scene/source_location.h"
 
 namespace uw {
+
+struct LoadedGrid;  // media/vdb/loaded_grid.h
 
 /// The meaning of one unit of a grid's value: particles in ppm by volume, or its own optical
 /// properties.
@@ -49,10 +52,11 @@ enum class Centering { automatic, cell, node };
 /// Which of a file's axes points up; automatic as for Centering.
 enum class UpAxis { automatic, y, z };
 
-/// A VDB or NanoVDB file whose grids add to the water.
+/// A VDB or NanoVDB file whose grids add to the water, or a grid that is in memory already.
 struct VolumeDesc {
     std::filesystem::path file;
     bool is_sequence = false;  ///< `file` has a pattern for the frame number (frame_pattern.h)
+    std::shared_ptr<const LoadedGrid> array;  ///< instead of a file; then `grids` has one
     std::vector<GridMappingDesc> grids;
     Centering centering = Centering::automatic;
     UpAxis up = UpAxis::automatic;

@@ -133,9 +133,7 @@ class Builder {
         }
         switch (desc.type) {
             case GeometryDesc::Type::file:
-                add_file(desc, read_mesh(desc.file, warnings,
-                                         {desc.import.camera || desc.import.any_lamps(),
-                                          desc.is_pbr, desc.is_material_given, desc.time}));
+                add_file(desc, mesh_file(desc, warnings));
                 break;
             case GeometryDesc::Type::box:
                 add_mesh(desc, box_mesh(desc), name_object(desc, "box"), reflectance(desc));
@@ -155,6 +153,13 @@ class Builder {
   private:
     Spectrum reflectance(const GeometryDesc& desc) const {
         return reflectance_or_default(desc, objects_.bands.count());
+    }
+
+    static MeshFile mesh_file(const GeometryDesc& desc, std::vector<std::string>& warnings) {
+        if (desc.mesh) return {*desc.mesh, {}, {desc.mesh_name}, {}};
+        return read_mesh(desc.file, warnings,
+                         {desc.import.camera || desc.import.any_lamps(), desc.is_pbr,
+                          desc.is_material_given, desc.time});
     }
 
     /// Returns the object's id.

@@ -36,6 +36,8 @@ class NanoGrid {
     /// Bounding box in lattice space outside which the interpolated value is zero.
     const Bounds& support() const { return support_; }
     std::size_t bytes() const { return bytes_; }
+    /// The grid itself, of so many bytes; with the support, what another NanoGrid is made of.
+    const void* data() const { return grid_; }
 
     double sample(const Point3& p) const;
     /// Adds the value at p(t[n]) to values[n]. `t` must be ascending.

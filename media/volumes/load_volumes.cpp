@@ -85,11 +85,29 @@ void check_limits(const VolumeReport& report, const VolumeDesc& desc,
             k_largest_concentration, k_largest_value));
 }
 
+// Adds the next grid of a volume. Its file_from_index is that of where it lies in its file.
+void add_grid(LoadedGrid loaded, const VolumeDesc& desc, const Placement& placement,
+              const std::vector<GridLoad>& loads, LoadedVolume& volume) {
+    const GridMappingDesc& mapping = desc.grids[volume.grids.size()];
+    const Affine place = world_from_index(loaded, placement, desc.world_from_upright);
+    const double determinant = place.determinant();
+    if (!std::isfinite(determinant) || determinant == 0)
+        throw InputError(desc.where + ": its transform collapses the volume");
+    volume.grids.emplace_back(std::move(loaded.bricks), place, placement.centering, loads);
+    volume.reports.push_back(report_on(desc, loaded, volume.grids.back(), placement));
+    check_limits(volume.reports.back(), desc, mapping);
+}
+
 }  // namespace
 
 LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
                          std::size_t slab_bytes) {
     LoadedVolume volume;
+    if (desc.array) {
+        volume.warnings = desc.array->warnings;
+        add_grid(*desc.array, desc, {Centering::node, UpAxis::y}, loads.at(0), volume);
+        return volume;
+    }
     const VdbHeader header = read_vdb_header(desc.file, desc.where);
     const Placement placement = decide_placement(header, desc);
     const std::optional<AdaptiveDomain> domain = find_adaptive_domain(header);
@@ -105,14 +123,7 @@ LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<G
         volume.warnings.insert(volume.warnings.end(), loaded.warnings.begin(),
                                loaded.warnings.end());
         loaded.file_from_index = with_voxel_size(loaded.file_from_index, desc, domain);
-        const Affine place = world_from_index(loaded, placement, desc.world_from_upright);
-        const double determinant = place.determinant();
-        if (!std::isfinite(determinant) || determinant == 0)
-            throw InputError(desc.where + ": its transform collapses the volume");
-        volume.grids.emplace_back(std::move(loaded.bricks), place, placement.centering,
-                                  loads.at(g));
-        volume.reports.push_back(report_on(desc, loaded, volume.grids.back(), placement));
-        check_limits(volume.reports.back(), desc, mapping);
+        add_grid(std::move(loaded), desc, placement, loads.at(g), volume);
     }
     return volume;
 }

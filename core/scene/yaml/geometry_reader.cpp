@@ -123,10 +123,11 @@ void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
 }
 
 GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value,
-                  {"file", "transform", "reflectance", "type", "point", "normal", "min", "max",
-                   "center", "radius", "camera", "lamps", "light_units", "material", "trajectory"},
-                  "write {file: seabed.glb} or {type: sphere, center: [0, 0, 2], radius: 0.2}");
+    ConfigMap map(
+        value,
+        {"file", "mesh", "transform", "reflectance", "type", "point", "normal", "min", "max",
+         "center", "radius", "camera", "lamps", "light_units", "material", "trajectory"},
+        "write {file: seabed.glb} or {type: sphere, center: [0, 0, 2], radius: 0.2}");
     GeometryDesc object;
     object.where = value.location();
     if (const auto entry = map.find("reflectance")) {
@@ -136,6 +137,14 @@ GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) 
         object.trajectory = read_trajectory(*entry, context, false);
     if (const auto type = map.find("type")) {
         read_shape(map, *type, object);
+        return object;
+    }
+    if (const auto mesh = map.find("mesh")) {
+        object.mesh = read_in_memory(*mesh, context.arrays ? &context.arrays->meshes : nullptr);
+        object.mesh_name = mesh->node().scalar;
+        if (const auto entry = map.find("transform"))
+            object.world_from_object = read_transform(*entry);
+        map.finish("a mesh in memory");
         return object;
     }
     object.file = read_existing_file_or_sequence(

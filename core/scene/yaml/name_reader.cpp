@@ -61,6 +61,13 @@ fs::path read_existing_file_or_sequence(const ConfigValue& value, const SceneCon
     return read_file(value, context, &is_sequence);
 }
 
+void fail_not_in_memory(const ConfigValue& value, const std::string& name) {
+    value.fail(
+        fmt::format("nothing in memory is called '{}'; only scenes in Python have it, by "
+                    "scene.volumes.add and scene.geometry.add: name a file instead",
+                    printable(name)));
+}
+
 std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend) {
     constexpr std::string_view k_allowed =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";

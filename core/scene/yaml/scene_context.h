@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/affine.h"
+#include "core/scene/scene_arrays.h"
 #include "core/scene/trajectory_desc.h"
 #include "core/scene/water_surface_desc.h"
 #include "core/scene/yaml/config_value.h"
@@ -26,6 +27,7 @@ struct SceneContext {
     };
     std::optional<RigFrames> rig{};
     std::optional<TrajectoryDesc> rig_trajectory{};  // likewise
+    const SceneArrays* arrays = nullptr;             // null: the scene has files alone
 
     /// Adds the warning "<location>: <what>".
     void warn(const ConfigValue& value, const std::string& what) const {

@@ -133,6 +133,49 @@ class Walk {
     std::string nearest_key_;  // of those beside the last key, if that was missing
 };
 
+/// One of the nodes in another: at an index of its items, or of its entries.
+struct Child {
+    std::size_t index = 0;
+    bool is_item = false;
+};
+
+template <class Node>  // const or not
+Node& child_of(Node& node, const Child& child) {
+    return child.is_item ? node.items[child.index] : node.entries[child.index].value;
+}
+
+/// What the step `i` of a path leads to from `node`, whose own path is `path`; `i` becomes that of
+/// the last of joined steps.
+std::optional<Child> child_at(const ConfigNode& node, const std::vector<KeyStep>& steps,
+                              std::size_t& i, std::string_view path) {
+    if (steps[i].index) {
+        if (*steps[i].index >= node.items.size()) return std::nullopt;
+        return Child{*steps[i].index, true};
+    }
+    for (std::size_t item = 0; item < node.items.size(); ++item)
+        if (entry_name(node, item, path) == steps[i].key) return Child{item, true};
+    const std::string key = joined_key(node, steps, i);
+    for (std::size_t entry = 0; entry < node.entries.size(); ++entry)
+        if (node.entries[entry].key == key) return Child{entry, false};
+    return std::nullopt;
+}
+
+/// The way from `root` along a path; none if it does not exist.
+std::optional<std::vector<Child>> way_to(const ConfigNode& root, std::string_view path) {
+    const std::vector<KeyStep> steps = parse_key_path(path);
+    if (steps.empty()) return std::nullopt;
+    std::vector<Child> way;
+    const ConfigNode* node = &root;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const std::string_view before = i == 1 ? std::string_view(steps[0].key) : "";
+        const auto child = child_at(*node, steps, i, before);
+        if (!child) return std::nullopt;
+        way.push_back(*child);
+        node = &child_of(*node, *child);
+    }
+    return way;
+}
+
 }  // namespace
 
 std::vector<KeyStep> parse_key_path(std::string_view path) {
@@ -185,6 +228,27 @@ void set_value(ConfigNode& root, std::string_view path, ConfigNode value,
     Walk walk(root, origin);
     walk.go(steps);
     walk.set(std::move(value));
+}
+
+const ConfigNode* find_value(const ConfigNode& root, std::string_view path) {
+    const auto way = way_to(root, path);
+    if (!way) return nullptr;
+    const ConfigNode* node = &root;
+    for (const Child& child : *way) node = &child_of(*node, child);
+    return node;
+}
+
+bool remove_value(ConfigNode& root, std::string_view path) {
+    const auto way = way_to(root, path);
+    if (!way) return false;
+    ConfigNode* node = &root;
+    for (std::size_t i = 0; i + 1 < way->size(); ++i) node = &child_of(*node, (*way)[i]);
+    const auto at = static_cast<std::ptrdiff_t>(way->back().index);
+    if (way->back().is_item)
+        node->items.erase(node->items.begin() + at);
+    else
+        node->entries.erase(node->entries.begin() + at);
+    return true;
 }
 
 }  // namespace uw

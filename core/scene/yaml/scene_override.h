@@ -43,4 +43,9 @@ void apply_override(ConfigNode& root, const std::string& text);
 void set_value(ConfigNode& root, std::string_view path, ConfigNode value,
                const std::string& origin);
 
+/// The value at such a path, null if there is none; and removing it with its key, or as an entry of
+/// its list, false if there is none.
+const ConfigNode* find_value(const ConfigNode& root, std::string_view path);
+bool remove_value(ConfigNode& root, std::string_view path);
+
 }  // namespace uw

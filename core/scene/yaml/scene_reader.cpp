@@ -169,7 +169,8 @@ SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& fi
     return scene_of_tree(scene_tree(text, file, overrides), file);
 }
 
-SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& file) {
+SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& file,
+                        const SceneArrays* arrays) {
     const ConfigValue scene(root, "");
     check_version(scene);
     ConfigMap map(scene,
@@ -181,6 +182,7 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     SceneDesc desc;
     desc.file = file;
     SceneContext context{file.parent_path(), desc.water.bands_nm.size(), &desc.warnings};
+    context.arrays = arrays;
     desc.water.where = scene.location();
     desc.render.planes.where = scene.location() + ": render.planes";
     desc.render.scattering_where = scene.location() + ": render.scattering";
@@ -208,6 +210,10 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
 WaterDesc read_water_overrides(const std::vector<std::string>& overrides) {
     ConfigNode root = parse_yaml("water: {}", "water");
     for (const std::string& text : overrides) apply_override(root, text);
+    return water_of_tree(root);
+}
+
+WaterDesc water_of_tree(const ConfigNode& root) {
     ConfigMap map(ConfigValue(root, ""), {"water"}, "without a scene only water can be set");
     std::vector<std::string> warnings;
     SceneContext context{{}, 0, &warnings};

@@ -98,10 +98,25 @@ MotionDesc read_motion(const ConfigValue& value, const VolumeDesc& volume,
     return motion;
 }
 
+/// A grid that is in memory.
+VolumeDesc read_array(ConfigMap& map, const ConfigValue& name, const SceneContext& context) {
+    VolumeDesc volume;
+    volume.where = map.value().location();
+    volume.array = read_in_memory(name, context.arrays ? &context.arrays->grids : nullptr);
+    const ConfigValue grids = map.require("grids", k_grids_example);
+    volume.grids = read_grids(grids, context);
+    if (volume.grids.size() != 1) grids.fail("an array is one grid; give one meaning");
+    if (const auto entry = map.find("transform"))
+        volume.world_from_upright = read_transform(*entry);
+    map.finish("an array");
+    return volume;
+}
+
 VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(value,
-                  {"file", "grids", "centering", "up", "voxel_size", "transform", "velocity"},
-                  "write {file: plume.vdb, grids: {density: {small: 2, large: 10}}}");
+    ConfigMap map(
+        value, {"file", "array", "grids", "centering", "up", "voxel_size", "transform", "velocity"},
+        "write {file: plume.vdb, grids: {density: {small: 2, large: 10}}}");
+    if (const auto array = map.find("array")) return read_array(map, *array, context);
     VolumeDesc volume;
     volume.where = value.location();
     volume.file = read_existing_file_or_sequence(map.require("file", "name a VDB file"), context,

@@ -1,0 +1,34 @@
+#include <exception>
+
+#include "core/base/error.h"
+#include "python/bindings.h"
+
+namespace py = pybind11;
+
+namespace uw {
+
+namespace {
+
+void raise(const char* name, const std::exception& fault) {
+    PyErr_SetString(py::module_::import("uwvdb.errors").attr(name).ptr(), fault.what());
+}
+
+}  // namespace
+
+void bind_errors(py::module_& /*module*/) {
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            if (thrown) std::rethrow_exception(thrown);
+        } catch (const InputError& fault) {
+            raise("InputError", fault);
+        } catch (const IoError& fault) {
+            raise("IoError", fault);
+        } catch (const UsageError& fault) {
+            raise("UsageError", fault);
+        } catch (const Interrupted& fault) {
+            raise("Interrupted", fault);
+        }
+    });
+}
+
+}  // namespace uw

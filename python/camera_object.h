@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+
+#include "camera/camera.h"
+#include "core/scene/camera_desc.h"
+
+namespace uw {
+
+/// A camera by itself, and what it was made of.
+struct CameraObject {
+    CameraDesc desc;
+    Camera camera;
+};
+
+/// The camera of calibration alone, at the world's origin.
+inline CameraObject camera_of(const CameraDesc& desc) {
+    return {desc, Camera(desc)};
+}
+
+}  // namespace uw

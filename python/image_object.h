@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image/exr_options.h"
+#include "core/image/film.h"
+#include "core/image/image_metadata.h"
+#include "render/renderer.h"
+
+namespace uw {
+
+/// An image that was rendered, with all that is known about it.
+struct ImageObject {
+    Film film;
+    ImageMetadata metadata;
+    RenderReport report;
+    std::vector<double> bands_nm;
+    std::map<int, std::string> objects, materials;  // names by number
+};
+
+/// Writes it as its name's ending says: the OpenEXR that the program writes, or the preview as PNG
+/// at this exposure, none: its own. Throws UsageError for another ending, and IoError.
+void save(const ImageObject& image, const std::filesystem::path& file,
+          std::optional<double> exposure, const ExrOptions& options);
+
+}  // namespace uw

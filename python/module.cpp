@@ -1,0 +1,16 @@
+#include "core/base/version.h"
+#include "python/bindings.h"
+
+// NOLINTNEXTLINE: the macro's code is pybind11's
+PYBIND11_MODULE(_uwvdb, module) {
+    module.doc() = "The compiled part of uwvdb; use the package.";
+    module.attr("version") = uw::program_version();
+    uw::bind_errors(module);
+    uw::bind_scene(module);
+    uw::bind_image(module);
+    uw::bind_renderer(module);
+    uw::bind_camera(module);
+    uw::bind_water(module);
+    uw::bind_files(module);
+    uw::bind_validate(module);
+}

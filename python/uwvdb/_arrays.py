@@ -1,0 +1,46 @@
+"""Arrays as they come, made into what the renderer takes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import UsageError
+
+
+def shape_text(shape: tuple[int, ...]) -> str:
+    return "(" + ", ".join(map(str, shape)) + ("," if len(shape) == 1 else "") + ")"
+
+
+def numbers(what: str, array: ArrayLike, dtype: type) -> NDArray[np.generic]:
+    """`array` as an array of real numbers. UsageError, which begins with `what`, for others."""
+    found = np.asarray(array)
+    if found.dtype.kind not in "biuf":
+        raise UsageError(f"{what}: expected real numbers, found {found.dtype}; convert the array")
+    return found.astype(dtype, copy=False)
+
+
+def rows(what: str, array: ArrayLike, width: int) -> NDArray[np.float64]:
+    """`array` of shape (..., width) as (N, width)."""
+    found = numbers(what, array, np.float64)
+    if found.ndim == 0 or found.shape[-1] != width:
+        raise UsageError(f"{what}: expected an array of shape (..., {width}), "
+                         f"found {shape_text(found.shape)}")
+    return np.ascontiguousarray(found.reshape(-1, width), dtype=np.float64)
+
+
+def vector(what: str, value: ArrayLike) -> NDArray[np.float64]:
+    """One number for all of three, or three."""
+    found = numbers(what, value, np.float64)
+    if found.shape not in ((), (3,)):
+        raise UsageError(f"{what}: expected a number or three, found {shape_text(found.shape)}")
+    return np.array(np.broadcast_to(found, 3), dtype=np.float64)
+
+
+def matrix(what: str, value: ArrayLike) -> NDArray[np.float64]:
+    """An affine map as a matrix of 4 x 4 numbers."""
+    found = numbers(what, value, np.float64)
+    if found.shape != (4, 4) or not np.array_equal(found[3], [0, 0, 0, 1]):
+        raise UsageError(f"{what}: expected a (4, 4) matrix whose last row is 0, 0, 0, 1, "
+                         f"found {shape_text(found.shape)}")
+    return np.array(found, dtype=np.float64)

@@ -1,0 +1,93 @@
+"""The optical properties of water."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays, _uwvdb
+
+__all__ = ["Water"]
+
+
+class Water:
+    """Homogeneous water: absorption, scattering and phase function by wavelength."""
+
+    _water: _uwvdb.Water
+
+    def __init__(self, preset: str | None = None, *,
+                 bands: Iterable[float] | None = None, **keys: Any) -> None:
+        """Water of a Jerlov type ("jerlov-I" to "jerlov-9C"), or pure, with any key of a scene's
+        `water`: salinity, temperature, particles={"small": 0.03}, absorption, scattering and so on.
+
+        bands  wavelengths [nm]; left out: 620, 540, 450
+
+        Raises InputError.
+        """
+        section = dict(keys)
+        if preset is not None:
+            section["preset"] = preset
+        if bands is not None:
+            section["bands"] = list(bands)
+        self._water = _uwvdb.Water.of_section(section)
+
+    @classmethod
+    def _of(cls, water: _uwvdb.Water) -> Water:
+        made = cls.__new__(cls)
+        made._water = water
+        return made
+
+    @property
+    def bands(self) -> NDArray[np.float64]:
+        """Its wavelengths (bands,) [nm]."""
+        return np.array(self._water.bands)
+
+    @property
+    def absorption(self) -> NDArray[np.float64]:
+        """a (bands,) [1/m]."""
+        return self._water.absorption
+
+    @property
+    def scattering(self) -> NDArray[np.float64]:
+        """b (bands,) [1/m]."""
+        return self._water.scattering
+
+    @property
+    def attenuation(self) -> NDArray[np.float64]:
+        """c = a + b (bands,) [1/m]."""
+        return self.absorption + self.scattering
+
+    def scattering_function(self, angles: ArrayLike) -> NDArray[np.float64]:
+        """The volume scattering function (bands, *angles.shape) [1/(m sr)] at angles of scattering
+        [degrees, 0 forward to 180]."""
+        flat = _arrays.numbers("scattering_function", angles, np.float64)
+        values = self._water.scattering_function(np.ascontiguousarray(flat.ravel()))
+        return values.reshape((len(values), *flat.shape))
+
+    def phase(self, angles: ArrayLike) -> NDArray[np.float64]:
+        """The phase function (bands, *angles.shape) [1/sr], whose integral over the sphere is 1, at
+        angles of scattering [degrees, 0 forward to 180]. NaN in water that does not scatter."""
+        values = self.scattering_function(angles)
+        b = self.scattering.reshape((-1,) + (1,) * (values.ndim - 1))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            phase: NDArray[np.float64] = values / b
+        return phase
+
+    @property
+    def phase_functions(self) -> list[str]:
+        """What it scatters by, in words."""
+        return self._water.phase_functions
+
+    @property
+    def constituents(self) -> list[_uwvdb.Constituent]:
+        """What volumes add to a scene's water: name, unit, and absorption and scattering (bands,)
+        [1/m] per unit."""
+        return self._water.constituents
+
+    @property
+    def warnings(self) -> list[str]:
+        """One line each."""
+        return self._water.warnings

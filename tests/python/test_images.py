@@ -1,0 +1,152 @@
+# ctest labels: unit
+"""Images: the pixels of the command line, as arrays."""
+
+import gc
+import warnings
+
+import numpy as np
+import pytest
+
+import uwvdb
+from conftest import SCENES, run_program
+
+def example_scenes():
+    return sorted(path.relative_to(SCENES).with_suffix("").as_posix()
+                  for path in SCENES.rglob("*.yaml")
+                  if path.stem != "houdini")  # which is for a file of its user's
+
+
+@pytest.mark.parametrize("name", example_scenes())
+def test_files_are_those_of_the_command_line(tmp_path, renderer, name):
+    file = SCENES / f"{name}.yaml"
+    scene = uwvdb.Scene.load(file)
+    choice = ["--camera", scene.cameras[0]] if scene.cameras else []
+    ours, theirs = tmp_path / "ours.exr", tmp_path / "theirs.exr"
+    run_program("render", file, "-o", theirs, "--size", "12x8", "--quality", "draft", "--layers",
+                "all", "--precision", "float", "--threads", "1", "--quiet", *choice)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uwvdb.SceneWarning)
+        image = renderer.render(scene, "all", "draft", size=(12, 8),
+                                camera=scene.cameras[0] if scene.cameras else None)
+    image.save(ours, precision="float")
+    if scene.cameras:
+        theirs = theirs.with_name(f"theirs.{scene.cameras[0]}.exr")
+    # Pixels and header.
+    assert ours.read_bytes() == theirs.read_bytes()
+
+
+def test_frames_and_windows_are_those_of_the_command_line(tmp_path, renderer):
+    file = SCENES / "dive.yaml"
+    run_program("render", file, "-o", tmp_path / "theirs.####.exr", "--size", "16x12", "--quality",
+                "draft", "--frames", "3,4", "--crop", "2,3,9,8", "--quiet",
+                "--layers", "total,flow,depth", "--precision", "float")
+    scene = uwvdb.Scene.load(file)
+    settings = dict(layers=["total", "flow", "depth"], quality="draft", size=(16, 12),
+                    crop=(2, 3, 9, 8))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uwvdb.SceneWarning)
+        images = list(renderer.sequence(scene, range(3, 5), **settings))
+    for frame, image in zip((3, 4), images):
+        assert image.window == (2, 3, 9, 8) and image["flow"].shape == (5, 7, 2)
+        image.save(tmp_path / "ours.exr", precision="float")
+        theirs = tmp_path / f"theirs.{frame:04d}.exr"
+        assert (tmp_path / "ours.exr").read_bytes() == theirs.read_bytes()
+
+
+def test_layers_are_arrays(scene, renderer):
+    image = renderer.render(scene, ["total", "depth", "normal", "lamps", "id"], "final")
+    assert image["depth"].shape == (8, 12) and image["depth"].dtype == np.float32
+    assert image["total"].shape == (8, 12, 3)
+    assert image["normal"].shape == (8, 12, 3)
+    assert list(image) == image.layers and "lamp.left" in image
+    assert np.allclose(image["depth"], 3, atol=1e-5)
+    assert np.array_equal(image["total"], image["rgb"])
+    assert np.allclose(image["normal"], [0, 0, -1])
+    assert image.objects == {1: "plane"} and np.all(image["id"] == 1)
+    both = image["lamp.left"].astype(np.float64) + image["lamp.right"]
+    assert np.allclose(both, image["total"], rtol=1e-6)
+    with pytest.raises(KeyError, match="dept: the image has rgb, alpha, total"):
+        image["dept"]
+
+
+@pytest.mark.parametrize("bands", [1, 2, 5])
+def test_any_number_of_bands(scene, renderer, bands):
+    wavelengths = np.linspace(450.5, 650, bands)
+    scene.update({"water.bands": wavelengths, "lamps.left.intensity": 10,
+                  "lamps.right.intensity": 10})
+    image = renderer.render(scene, ["total", "depth", "transmittance", "direct"])
+    assert image["total"].shape == image["direct"].shape == (8, 12, bands)
+    assert image["depth"].shape == (8, 12)
+    assert image.bands == list(wavelengths)
+
+
+def test_views_share_memory_and_outlive_the_image(scene, renderer):
+    image = renderer.render(scene)
+    depth, total = image["depth"], image["total"]
+    assert np.shares_memory(depth, image.pixels) and np.shares_memory(total, image["rgb"])
+    kept = depth.copy()
+    del image
+    gc.collect()
+    for _ in range(3):  # memory that was freed would be used by these
+        renderer.render(scene, "all")
+    assert np.array_equal(depth, kept)
+    depth[:] = 1  # the image's memory, not the renderer's
+    assert np.array_equal(renderer.render(scene)["depth"], kept)
+
+
+def test_images_are_the_same_for_any_number_of_threads_and_any_history(scene):
+    scene["water.scattering"] = {"b": 0.3, "phase": {"type": "hg", "g": 0.8}}
+    used = uwvdb.Renderer(threads=2)
+    first = used.render(scene, "all").pixels
+    other = scene.copy()
+    other["lamps.left.position"] = [0, -0.3, 0.1]
+    used.render(other)
+    assert np.array_equal(used.render(scene, "all").pixels, first, equal_nan=True)
+    alone = uwvdb.Renderer(threads=1).render(scene, "all").pixels
+    assert np.array_equal(alone, first, equal_nan=True)
+
+
+def test_pictures(tmp_path, scene, renderer):
+    image = renderer.render(scene)
+    picture = image.srgb(exposure=4)
+    assert picture.shape == (8, 12, 3) and picture.dtype == np.uint8
+    linear = np.clip(4 * image["rgb"].astype(np.float64), 0, 1)
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    assert np.abs(picture - 255 * srgb).max() <= 0.5 + 1e-3  # rounded
+    assert np.array_equal(image.srgb(), image.srgb(image.automatic_exposure))
+    image.save(tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").read_bytes()[:4] == b"\x89PNG"
+    image["rgb"][:] = 0
+    assert image.automatic_exposure is None and not image.srgb().any()
+    with pytest.raises(uwvdb.UsageError, match="ends in .exr or .png"):
+        image.save(tmp_path / "picture.tif")
+    with pytest.raises(uwvdb.UsageError, match="precision: unknown 'double'"):
+        image.save(tmp_path / "picture.exr", precision="double")
+    with pytest.raises(uwvdb.IoError, match="picture.png"):
+        image.save(tmp_path / "picture.png/image.exr")
+
+
+def test_warnings_are_python_warnings(capfd, renderer):
+    scene = uwvdb.Scene(camera={"resolution": [4, 4], "intrinsics": {"fov_x": 50}})
+    with pytest.warns(uwvdb.SceneWarning, match="there are no lamps, so the image will be black"):
+        image = renderer.render(scene)
+    assert image.warnings == scene.warnings
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("settings, message", [
+    ({"layers": ["totl"]}, "did you mean 'total'"),
+    ({"quality": "fine"}, "quality: unknown 'fine'; use draft, final or exact"),
+    ({"integrator": "paths"}, "integrator: unknown 'paths'"),
+    ({"samples": 100000}, "samples: expected 1 to 4096"),
+    ({"crop": (0, 0, 100, 8)}, "not a window of the image of 12 x 8"),
+    ({"error": 0.01}, "error: is for integrator path only"),
+    ({"layers": "flow"}, "flow"),
+    ({"camera": "left"}, "the scene has no camera 'left'; it has one camera"),
+    ({"camera": 1}, "there is no camera 1"),
+])
+def test_what_cannot_be_rendered(scene, renderer, settings, message):
+    with pytest.raises(uwvdb.UsageError, match=message) as caught:
+        renderer.render(scene, **settings)
+    assert "--" not in str(caught.value) and "\n" not in str(caught.value)
+    renderer.render(scene)

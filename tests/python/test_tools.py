@@ -1,0 +1,166 @@
+# ctest labels: unit
+"""Cameras, water, files."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+
+import uwvdb
+from conftest import ROOT, SCENES, run_program
+
+PORT = SCENES / "port.yaml"
+GRID = ROOT / "assets/grids/plume128_blosc_half_0030.vdb"
+
+
+def table(text):
+    rows = list(csv.DictReader(io.StringIO(text)))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+def test_rays_are_those_of_the_command_line(tmp_path):
+    camera = uwvdb.Scene.load(PORT).camera
+    pixels = np.random.default_rng(3).uniform(-0.1, 1.1, (200, 2)) * [camera.width, camera.height]
+    np.savetxt(tmp_path / "pixels.csv", pixels, delimiter=",", fmt="%.17g")
+    found = table(run_program("rays", PORT, tmp_path / "pixels.csv", "--quiet"))
+    rays = camera.rays(pixels)
+    for name, array in (("origin", rays.origin), ("direction", rays.direction)):
+        expected = np.stack([found[f"{name}_{axis}"] for axis in "xyz"], axis=-1)
+        assert np.array_equal(array, expected, equal_nan=True)
+    outside = (pixels < 0).any(axis=1) | (pixels > [camera.width, camera.height]).any(axis=1)
+    assert outside.any() and np.isnan(rays.origin[outside]).all()
+    assert not np.isnan(rays.origin[~outside]).any()
+
+
+def test_projections_are_those_of_the_command_line_and_invert_rays(tmp_path):
+    camera = uwvdb.Scene.load(PORT).camera
+    pixels = camera.pixel_centres()[::97, ::89]
+    rays = camera.rays(pixels)
+    points = rays.origin + 1.7 * rays.direction
+    assert points.shape == (*pixels.shape[:-1], 3)
+    assert np.abs(camera.project(points) - pixels).max() < 2e-6  # as Camera::project promises
+    np.savetxt(tmp_path / "points.csv", points.reshape(-1, 3), delimiter=",", fmt="%.17g")
+    found = table(run_program("project", PORT, tmp_path / "points.csv", "--quiet"))
+    expected = np.stack([found["pixel_x"], found["pixel_y"]], axis=-1)
+    assert np.array_equal(camera.project(points).reshape(-1, 2), expected)
+
+
+def test_points_that_are_not_in_the_image():
+    camera = uwvdb.Scene(camera={"resolution": [100, 50], "intrinsics": {"fov_x": 90}}).camera
+    points = [[0, 0, 1], [2, 0, 1], [0, 0, -1], [np.nan, 0, 1]]
+    assert np.array_equal(camera.project(points),
+                          [[50, 25], [np.nan] * 2, [np.nan] * 2, [np.nan] * 2], equal_nan=True)
+    assert np.allclose(camera.project(points, beyond=True)[1], [150, 25])
+    assert camera.matrix[0].tolist() == [pytest.approx(50), 0, 50]
+    assert np.array_equal(camera.world_from_camera[3], [0, 0, 0, 1])
+    for wrong in (np.zeros(2), np.zeros((4, 2)), 5):
+        with pytest.raises(uwvdb.UsageError, match=r"expected an array of shape \(..., 3\)"):
+            camera.project(wrong)
+
+
+def test_cameras_of_rigs():
+    scene = uwvdb.Scene.load(SCENES / "stereo.yaml")
+    left, right = (scene.camera_at(name) for name in scene.cameras)
+    assert np.array_equal(scene.camera.world_from_camera, left.world_from_camera)
+    assert not np.array_equal(right.world_from_camera, left.world_from_camera)
+    with pytest.raises(uwvdb.UsageError, match="the scene has several"):
+        uwvdb.Renderer().render(scene)
+
+
+def test_water():
+    water = uwvdb.Water("jerlov-II", bands=range(400, 701, 10))
+    assert water.bands.tolist() == list(range(400, 701, 10))
+    assert water.absorption.shape == water.scattering.shape == (31,)
+    assert np.all(water.absorption > 0) and water.absorption[-1] > water.absorption[5]
+    printed = json.loads(run_program("water", "jerlov-II", "--bands", "400:700:10", "--json"))
+    assert np.allclose(printed["uniform"]["a"], water.absorption, rtol=1e-5)
+    # A phase function's integral over the sphere is 1: midpoints in the cosine's cube, as it peaks.
+    edges = np.concatenate([[0], np.geomspace(1e-4, 180, 20001)])
+    middle = np.radians(0.5 * (edges[1:] + edges[:-1]))
+    p = water.phase(np.degrees(middle))
+    integral = (2 * np.pi * p * np.sin(middle) * np.radians(np.diff(edges))).sum(axis=1)
+    assert p.shape == (31, 20001) and np.allclose(integral, 1, rtol=2e-3)
+    assert np.allclose(water.attenuation, water.absorption + water.scattering)
+
+
+def test_water_of_coefficients():
+    water = uwvdb.Water(bands=[500], absorption=0.1,
+                        scattering={"b": 0.4, "phase": {"type": "hg", "g": 0.5}})
+    assert water.absorption == [0.1] and water.scattering == [0.4]
+    cosine = np.cos(np.radians(40))
+    henyey_greenstein = (1 - 0.25) / (4 * np.pi * (1.25 - cosine) ** 1.5)
+    assert water.phase(40) == pytest.approx(henyey_greenstein)
+    assert water.phase([[40, 50]]).shape == (1, 1, 2)
+    with pytest.raises(uwvdb.InputError, match="jerlov-7"):
+        uwvdb.Water("jerlov-7")
+
+
+def test_water_of_scenes(scene):
+    scene.volumes.add(np.ones((4, 4, 4)), voxel_size=1, absorption=[1, 2, 3], scattering=4,
+                      name="ink")
+    (ink,) = scene.water.constituents
+    assert ink["name"] == "ink" and ink["absorption"].tolist() == [1, 2, 3]
+
+
+def test_vdb_files():
+    found = uwvdb.inspect(GRID)
+    (density,) = [grid for grid in found["grids"] if grid["name"] == "density"]
+    grid = uwvdb.read_vdb(GRID, "density")
+    stored = grid.values[grid.values != 0]
+    assert density["max"] == pytest.approx(float(grid.values.max()))
+    assert stored.size <= density["active_voxels"] <= grid.values.size
+    assert np.allclose(grid.voxel_size, density["voxel_size"])
+    # The bounds are those of cells around the values.
+    corners = np.array([[-0.5, -0.5, -0.5, 1], [*(np.array(grid.values.shape) - 0.5), 1]])
+    corners = corners @ grid.world_from_index.T
+    assert np.allclose(corners.min(axis=0)[:3], density["bounds"][0])
+    assert np.allclose(corners.max(axis=0)[:3], density["bounds"][1])
+    with pytest.raises(uwvdb.InputError, match="desity"):
+        uwvdb.read_vdb(GRID, "desity")
+    with pytest.raises(uwvdb.IoError, match="nowhere.vdb"):
+        uwvdb.read_vdb("nowhere.vdb")
+    with pytest.raises(uwvdb.InputError):
+        uwvdb.inspect(PORT)
+
+
+OPENCV = """\
+%YAML:1.0
+image_width: 640
+image_height: 480
+camera_matrix: !!opencv-matrix {rows: 3, cols: 3, dt: d, data: [500, 0, 320, 0, 510, 240, 0, 0, 1]}
+distortion_coefficients: !!opencv-matrix {rows: 1, cols: 5, dt: d, data: [-0.1, 0.01, 0, 0, 0]}
+"""
+
+
+def test_calibrations(tmp_path):
+    (tmp_path / "camera.yaml").write_text(OPENCV)
+    found = uwvdb.calibration.load(tmp_path / "camera.yaml")
+    assert found.format == "opencv" and found.names == [] or found.names == [found.name]
+    scene = uwvdb.Scene(camera=found.section)
+    for camera in (found.camera, scene.camera):
+        # OpenCV counts from the first pixel's centre.
+        assert camera.matrix.tolist() == [[500, 0, 320.5], [0, 510, 240.5], [0, 0, 1]]
+        assert camera.distortion[0] == "brown-conrady"
+        assert camera.distortion[1][:2].tolist() == [-0.1, 0.01]
+        # On the x axis: x' = x (1 + k1 x^2 + k2 x^4).
+        x = 0.3 * (1 - 0.1 * 0.09 + 0.01 * 0.0081)
+        assert np.allclose(camera.project([0.6, 0, 2]), [320.5 + 500 * x, 240.5])
+    (tmp_path / "broken.yaml").write_text(OPENCV.replace("camera_matrix", "matrix"))
+    with pytest.raises(uwvdb.InputError, match="broken.yaml"):
+        uwvdb.calibration.load(tmp_path / "broken.yaml")
+
+
+def test_light_matrix_mixes_lamps(scene, renderer):
+    matrix = renderer.light_matrix(scene, quality="exact")
+    assert matrix.lamps == ["left", "right"] and matrix.images.shape == (2, 8, 12, 3)
+    assert np.abs(matrix.rest).max() < 1e-6
+    factors = np.array([[2, 0.5, 1], [0, 3, 0.1]])
+    mixed = matrix.mix(factors)
+    scene.update({"lamps.left.intensity": factors[0] * scene["lamps.left.intensity"],
+                  "lamps.right.intensity": factors[1] * scene["lamps.right.intensity"]})
+    assert np.allclose(mixed, renderer.render(scene, quality="exact")["total"], rtol=1e-6)
+    assert np.allclose(matrix.mix([1, 1]), matrix.images.sum(axis=0), rtol=1e-6)
+    with pytest.raises(uwvdb.UsageError, match=r"expected factors of shape \(2,\) or \(2, 3\)"):
+        matrix.mix([1, 2, 3])
