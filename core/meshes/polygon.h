@@ -2,16 +2,18 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace uw {
 
 /// Splits one polygon into triangles by ear clipping, so that concave ones keep their outline, and
 /// appends three vertex indices per triangle (corner count - 2 of them) to `triangles`. `corners`:
-/// indices into `positions` (x, y, z each), all in range; fewer than three give nothing. Polygons
-/// of more than 1000 corners are split as a fan from the first corner, which is correct for convex
-/// ones only: ear clipping would take quadratic time.
+/// indices into `positions` (x, y, z each), all in range; fewer than three give nothing. Where a
+/// polygon of up to 1000 corners crosses itself, what is left of it becomes a fan. Time is
+/// proportional to the number of corners: throws InputError "<name>: ..." for a polygon that would
+/// take longer, and for a larger one that crosses itself.
 void triangulate_polygon(std::span<const std::uint32_t> corners, std::span<const float> positions,
-                         std::vector<std::uint32_t>& triangles);
+                         const std::string& name, std::vector<std::uint32_t>& triangles);
 
 }  // namespace uw

@@ -27,6 +27,14 @@ class Checked {
         for (const double value : values)
             if (!(std::abs(value) <= limit)) fail(name, value, limit, mend);
     }
+    /// Neither so large nor, unless it is 0, so small that nothing real is meant.
+    void number(std::string_view name, double value) const {
+        constexpr std::string_view k_mend = "check its unit";
+        at_most(k_largest_number, name, {value}, k_mend);
+        if (value != 0 && std::abs(value) < k_least_number)
+            fail(fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_least_number,
+                             k_mend));
+    }
     void place(std::string_view name, const Vector3& v) const {
         at_most(k_largest_coordinate, name, {v.x, v.y, v.z},
                 "lengths are in metres; scale the scene or move it nearer to the origin");
@@ -73,6 +81,17 @@ void check(const PortDesc& port, const Checked& checked) {
         port);
 }
 
+void check(const SensorDesc& sensor, const Checked& checked) {
+    checked.number("sensor's full_well", sensor.full_well.value_or(0));
+    checked.number("sensor's gain", sensor.gain.value_or(0));
+    checked.number("sensor's exposure", sensor.exposure.value_or(0));
+    checked.number("sensor's pixel_pitch", sensor.pixel_pitch.value_or(0));
+    checked.number("sensor's dark_current", sensor.dark_current);
+    checked.number("sensor's read_noise", sensor.read_noise);
+    checked.number("sensor's dsnu", sensor.dsnu);
+    checked.number("sensor's prnu", sensor.prnu);
+}
+
 void check(const CameraDesc& camera) {
     const Checked checked(camera.where);
     checked.place("position", camera.world_from_camera.offset());
@@ -97,6 +116,7 @@ void check(const CameraDesc& camera) {
         !std::ranges::all_of(camera.distortion.p, finite))
         checked.fail("a coefficient of its distortion is not a finite number");
     if (camera.port) check(*camera.port, checked);
+    if (camera.sensor) check(*camera.sensor, checked);
     if (!camera.lens) return;
     checked.length("lens's focal length", camera.lens->focal_length);
     if (!camera.lens->focus_distance) return;
@@ -176,9 +196,11 @@ void check(const VolumeDesc& volume) {
 
 void check_limits(const SceneDesc& scene) {
     check(scene.camera);
-    if (scene.water.surface) {
-        const Checked checked(scene.water.where);
-        checked.place("surface's point", scene.water.surface->point);
+    const Checked water(scene.water.where);
+    if (scene.water.surface) water.place("surface's point", scene.water.surface->point);
+    if (scene.water.snow) {
+        water.number("snow's number", scene.water.snow->number);
+        water.place("snow's drift", scene.water.snow->drift);
     }
     for (const LampDesc& lamp : scene.lamps) check(lamp);
     for (const GeometryDesc& geometry : scene.geometry) check(geometry);

@@ -21,6 +21,9 @@ inline constexpr double k_lowest_sun = 89;
 inline constexpr double k_largest_brightness = 1e12;
 /// The largest concentration [ppm] or coefficient [1/m] per unit of a grid's value.
 inline constexpr double k_largest_per_unit = 1e12;
+/// The smallest and largest number of a sensor or of snow that is not 0: no real one is beyond, and
+/// single precision holds their products.
+inline constexpr double k_least_number = 1e-12, k_largest_number = 1e12;
 
 /// Throws InputError "<where>: <what>; <mend>" for the first quantity of a resolved scene, wherever
 /// it comes from, that is not finite or beyond what rays can be traced with: the limits above. What

@@ -27,7 +27,6 @@ class RegularFiles : public Assimp::DefaultIOSystem {
     bool Exists(const char* name) const override { return allowed(name); }
     Assimp::IOStream* Open(const char* name, const char* mode) override {
         if (!allowed(name)) return nullptr;
-        remember_input(name);
         return DefaultIOSystem::Open(name, mode);
     }
 
@@ -76,7 +75,7 @@ class MeshJoiner {
   public:
     TriangleMesh join(const std::vector<Placement>& placements, const std::string& name) {
         prepare(placements, name);
-        for (const Placement& placement : placements) append(placement);
+        for (const Placement& placement : placements) append(placement, name);
         return std::move(mesh_);
     }
 
@@ -98,10 +97,10 @@ class MeshJoiner {
         mesh_.triangles.reserve(3 * faces);
     }
 
-    void append(const Placement& placement) {
+    void append(const Placement& placement, const std::string& name) {
         const auto first = static_cast<std::uint32_t>(mesh_.vertex_count());
         append_positions(placement);
-        append_faces(*placement.mesh, first);
+        append_faces(*placement.mesh, first, name);
     }
 
     void append_positions(const Placement& placement) {
@@ -112,7 +111,7 @@ class MeshJoiner {
         }
     }
 
-    void append_faces(const aiMesh& mesh, std::uint32_t first) {
+    void append_faces(const aiMesh& mesh, std::uint32_t first, const std::string& name) {
         constexpr std::uint32_t missing = std::numeric_limits<std::uint32_t>::max();
         std::vector<std::uint32_t> corners;
         for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
@@ -126,7 +125,7 @@ class MeshJoiner {
             if (corners.size() == 3) {
                 mesh_.triangles.insert(mesh_.triangles.end(), corners.begin(), corners.end());
             } else {
-                triangulate_polygon(corners, mesh_.positions, mesh_.triangles);
+                triangulate_polygon(corners, mesh_.positions, name, mesh_.triangles);
             }
         }
     }
@@ -138,6 +137,7 @@ class MeshJoiner {
 
 TriangleMesh read_stl(const std::filesystem::path& file) {
     const std::string name = file.string();
+    remember_input(file);
     Assimp::Importer importer;
     importer.SetIOHandler(new RegularFiles);  // the importer owns it
     // No post-processing: joining, validating and sorting copy a mesh of millions of triangles

@@ -12,6 +12,7 @@
 #include "core/meshes/gltf/gltf_reader.h"
 #include "core/meshes/mesh_cleanup.h"
 #include "core/meshes/mesh_tangents.h"
+#include "core/meshes/mesh_values.h"
 
 namespace uw {
 namespace {
@@ -59,16 +60,19 @@ MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& 
     check_file(file);
     MeshFile content = read_any(file, warnings, use);
     DroppedTriangles dropped;
-    drop_bad_triangles(content.mesh, dropped);
-    compute_tangents(content.mesh);
-    for (SharedMesh& shared : content.shared) {
-        drop_bad_triangles(shared.mesh, dropped);
-        compute_tangents(shared.mesh);
-    }
+    ClampedValues clamped;
+    const auto make_sane = [&](TriangleMesh& mesh) {
+        drop_bad_triangles(mesh, dropped);
+        clamp_values(mesh, clamped);
+        compute_tangents(mesh);
+    };
+    make_sane(content.mesh);
+    for (SharedMesh& shared : content.shared) make_sane(shared.mesh);
     std::erase_if(content.shared, [](const SharedMesh& shared) {
         return shared.mesh.triangles.empty() || shared.placements.empty();
     });
     dropped.report(file.string(), warnings);
+    clamped.report(file.string(), warnings);
     if (!content.has_triangles() && !use.camera_or_lamps) {
         throw InputError(file.string() +
                          ": the mesh has no triangles; check what was exported, or take the camera "

@@ -18,11 +18,15 @@ namespace {
 
 // What fits a large machine, not the format's limit.
 constexpr std::size_t k_most_corners = 1'500'000'000;
+// Combinations at one position that are looked through for a corner's own. A tip where more meet
+// has some of them twice, which nobody sees; time stays proportional to the corners.
+constexpr int k_most_compared = 64;
 
 /// Makes vertices of the file's positions, texture coordinates and normals, each combination once.
 class ObjMesh {
   public:
-    ObjMesh(const ObjFile& source, std::vector<MeshMaterial> materials) : source_(source) {
+    ObjMesh(const ObjFile& source, std::vector<MeshMaterial> materials, std::string name)
+        : source_(source), name_(std::move(name)) {
         // Faces without a material come last.
         stand_in_ = static_cast<std::uint32_t>(materials.size());
         has_uvs_ = std::ranges::any_of(materials, [](const MeshMaterial& material) {
@@ -76,15 +80,16 @@ class ObjMesh {
         if (corner.position >= first_of_.size()) return ObjFile::k_none;
         const std::uint32_t uv = has_uvs_ ? corner.uv : 0;
         const std::uint32_t normal = has_normals_ ? corner.normal : 0;
-        std::uint32_t* link = &first_of_[corner.position];
-        while (*link != ObjFile::k_none) {
-            Vertex& known = vertices_[*link];
-            if (known.uv == uv && known.normal == normal) return *link;
-            link = &known.next;
+        std::uint32_t& first = first_of_[corner.position];
+        std::uint32_t known = first;
+        for (int k = 0; k < k_most_compared && known != ObjFile::k_none; ++k) {
+            const Vertex& vertex = vertices_[known];
+            if (vertex.uv == uv && vertex.normal == normal) return known;
+            known = vertex.next;
         }
         const auto number = static_cast<std::uint32_t>(vertices_.size());
-        *link = number;
-        vertices_.push_back({uv, normal});
+        vertices_.push_back({uv, normal, first});
+        first = number;
         append_vertex(corner.position, uv, normal);
         return number;
     }
@@ -104,8 +109,7 @@ class ObjMesh {
         if (!source_.colors.empty()) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const double code = source_.colors[3 * std::size_t{position} + k];
-                const double in_range = code > 0 ? std::min(code, 1.0) : 0.0;
-                mesh_.colors.push_back(static_cast<float>(linear_from_srgb(in_range)));
+                mesh_.colors.push_back(static_cast<float>(linear_from_srgb(code)));
             }
         }
         if (!has_normals_) return;
@@ -118,13 +122,14 @@ class ObjMesh {
 
     void append(const std::vector<std::uint32_t>& corners) {
         if (std::ranges::find(corners, ObjFile::k_none) == corners.end()) {
-            triangulate_polygon(corners, mesh_.positions, mesh_.triangles);
+            triangulate_polygon(corners, mesh_.positions, name_, mesh_.triangles);
         } else {
             mesh_.triangles.insert(mesh_.triangles.end(), 3, ObjFile::k_none);
         }
     }
 
     const ObjFile& source_;
+    std::string name_;
     std::uint32_t stand_in_ = 0;
     bool has_uvs_ = false, has_normals_ = false;
     std::vector<std::uint32_t> first_of_;  // vertex by position
@@ -143,7 +148,8 @@ MeshFile read_obj(const std::filesystem::path& file, bool is_pbr,
                          ": more than 500 million triangles; split or thin out the mesh");
     }
     ObjMesh builder(source,
-                    read_obj_materials(file, source.libraries, source.materials, is_pbr, warnings));
+                    read_obj_materials(file, source.libraries, source.materials, is_pbr, warnings),
+                    file.string());
     MeshFile result;
     result.mesh = builder.build();
     if (builder.faces_without_uvs() > 0) {

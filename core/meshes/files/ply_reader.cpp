@@ -119,8 +119,7 @@ bool has_colors(const PlyElement& element) {
 void append_color(const VertexLayout& layout, const float* color, TriangleMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
         const double code = layout.color_unit * color[k];
-        const double in_range = code > 0 ? std::min(code, 1.0) : 0.0;
-        mesh.colors.push_back(static_cast<float>(linear_from_srgb(in_range)));
+        mesh.colors.push_back(static_cast<float>(linear_from_srgb(code)));
     }
 }
 
@@ -154,11 +153,12 @@ void read_vertices(const PlyElement& element, PlySource& source, const std::stri
     }
 }
 
-void append_polygon(const std::vector<std::uint32_t>& corners, TriangleMesh& mesh) {
+void append_polygon(const std::vector<std::uint32_t>& corners, const std::string& name,
+                    TriangleMesh& mesh) {
     bool all_there = true;
     for (const std::uint32_t corner : corners) all_there &= corner < mesh.vertex_count();
     if (all_there) {
-        triangulate_polygon(corners, mesh.positions, mesh.triangles);
+        triangulate_polygon(corners, mesh.positions, name, mesh.triangles);
     } else if (corners.size() >= 3) {
         mesh.triangles.insert(mesh.triangles.end(), {k_no_vertex, k_no_vertex, k_no_vertex});
     }
@@ -181,7 +181,7 @@ void read_faces(const PlyElement& element, PlySource& source, const std::string&
                 const bool valid = index >= 0 && index < static_cast<double>(mesh.vertex_count());
                 corners.push_back(valid ? static_cast<std::uint32_t>(index) : k_no_vertex);
             }
-            if (wanted) append_polygon(corners, mesh);
+            if (wanted) append_polygon(corners, name, mesh);
         }
     }
 }

@@ -34,8 +34,6 @@ class JoinedMesh {
         return std::move(mesh_);
     }
 
-    std::uint64_t colors_out_of_range() const { return colors_out_of_range_; }
-
   private:
     const Json* attribute(const GltfPlacement& placement, const char* semantic) const {
         const Json& attributes = (*placement.primitive)["attributes"];
@@ -180,13 +178,7 @@ class JoinedMesh {
         }
         const bool has_alpha = colors != nullptr && colors->value("type", "") == "VEC4";
         for (std::size_t at = 0; at < values.size(); at += 4) {
-            bool in_range = true;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const float c = values[at + k];
-                in_range &= c >= 0 && c <= 1.0001F;
-                mesh_.colors.push_back(c > 0 ? std::min(c, 1.0F) : 0.0F);
-            }
-            colors_out_of_range_ += in_range ? 0 : 1;
+            for (std::size_t k = 0; k < 3; ++k) mesh_.colors.push_back(values[at + k]);
             if (has_alphas_) mesh_.alphas.push_back(has_alpha ? values[at + 3] : 1.0F);
         }
     }
@@ -240,16 +232,13 @@ class JoinedMesh {
     bool has_normals_ = false, has_colors_ = false, has_alphas_ = false, has_tangents_ = false,
          has_objects_ = false;
     std::array<bool, 2> has_uvs_{};
-    std::uint64_t colors_out_of_range_ = 0;
 };
 
 }  // namespace
 
 TriangleMesh GltfJoiner::join(const std::vector<GltfPlacement>& placements) {
     JoinedMesh joined(document_, bytes_);
-    TriangleMesh mesh = joined.join(placements, materials_);
-    colors_out_of_range_ += joined.colors_out_of_range();
-    return mesh;
+    return joined.join(placements, materials_);
 }
 
 }  // namespace uw

@@ -31,14 +31,10 @@ class GltfJoiner {
     /// Throws InputError for coordinates that are missing, and as GltfMaterials::read.
     TriangleMesh join(const std::vector<GltfPlacement>& placements);
 
-    /// How many of the vertex colours joined so far were outside 0..1 (and clamped).
-    std::uint64_t colors_out_of_range() const { return colors_out_of_range_; }
-
   private:
     const GltfDocument& document_;
     GltfBytes& bytes_;
     GltfMaterials& materials_;
-    std::uint64_t colors_out_of_range_ = 0;
 };
 
 }  // namespace uw

@@ -149,12 +149,7 @@ MeshFile read_gltf(const std::filesystem::path& file, const GltfUse& use,
         GltfJoiner joiner(document, bytes, materials);
         GltfPoses poses;
         if (use.time) poses = gltf_poses(document, bytes, *use.time);
-        MeshFile result = GltfContents(document, poses).read(joiner);
-        if (joiner.colors_out_of_range() > 0) {
-            warnings.push_back(fmt::format("{}: {} vertex colours are outside 0..1; clamped",
-                                           file.string(), joiner.colors_out_of_range()));
-        }
-        return result;
+        return GltfContents(document, poses).read(joiner);
     } catch (const Json::exception& error) {
         throw InputError(
             fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));

@@ -2,8 +2,12 @@
 #include "core/base/text_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <string>
+#include <thread>
 
 #include "core/base/error.h"
 #include "tests/support/temp_dir.h"
@@ -55,6 +59,24 @@ TEST(TextFile, SaysWhatIsWrong) {
 TEST(TextFile, IsNoDevice) {
     EXPECT_EQ(text_file_failure("/dev/zero"),
               "IoError scene.yaml: lamps[0].file: is a device; name the IES file");
+}
+
+TEST(TextFile, IsWhatAPipeBrings) {
+    const test::TempDir folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    // Nobody writes, and nobody waits.
+    EXPECT_EQ(read_text_file(folder / "pipe", "pipe", k_limit, "text"), "");
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const std::string text(k_limit, 'x');  // more than a pipe holds
+    std::thread writer([&] {
+        for (std::size_t at = 0; at < text.size(); at += 4096)
+            if (::write(ends[1], &text[at], 4096) != 4096) break;
+        ::close(ends[1]);
+    });
+    EXPECT_EQ(read_text_file("/dev/fd/" + std::to_string(ends[0]), "pipe", k_limit, "text"), text);
+    writer.join();
+    ::close(ends[0]);
 }
 
 }  // namespace

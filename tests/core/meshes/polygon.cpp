@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
+#include "core/base/error.h"
 #include "core/base/vec.h"
+#include "tests/support/message_of.h"
 
 namespace uw {
 namespace {
@@ -34,7 +37,7 @@ PolygonOutline polygon_of(const std::vector<glm::dvec2>& points, const Vector3& 
 
 std::vector<std::uint32_t> cut_into_triangles(const PolygonOutline& polygon) {
     std::vector<std::uint32_t> triangles;
-    triangulate_polygon(polygon.corners, polygon.positions, triangles);
+    triangulate_polygon(polygon.corners, polygon.positions, "a.obj", triangles);
     return triangles;
 }
 
@@ -151,7 +154,8 @@ TEST(Polygon, WithoutAreaOrCrossingItselfHasItsNumberOfTriangles) {
     EXPECT_EQ(cut_into_triangles(polygon_of({{1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}})).size(), 9U);
 }
 
-TEST(Polygon, ManyCornersAreAFan) {
+// A convex one of any size is a fan.
+TEST(Polygon, ManyCornersKeepTheirOutline) {
     std::vector<glm::dvec2> circle;
     for (int i = 0; i < 1001; ++i) {
         const double angle = 2 * std::numbers::pi * i / 1001;
@@ -160,6 +164,36 @@ TEST(Polygon, ManyCornersAreAFan) {
     expect_filled(polygon_of(circle));
     const std::vector<std::uint32_t> triangles = cut_into_triangles(polygon_of(circle));
     for (std::size_t t = 0; t < triangles.size(); t += 3) EXPECT_EQ(triangles[t], 0U);
+    expect_filled(polygon_of(star_corners(20000)));
+}
+
+/// Once around for each step, so that almost all edges cross.
+std::vector<glm::dvec2> wound_corners(int count, int step) {
+    std::vector<glm::dvec2> corners;
+    for (int i = 0; i < count; ++i) {
+        const double angle = 2 * std::numbers::pi * i * step / count;
+        corners.emplace_back((1 + 0.3 * (i % 3)) * std::cos(angle), std::sin(angle));
+    }
+    return corners;
+}
+
+// What a file of some kilobytes can ask for does not take minutes: larger ones that cannot be cut
+// in time proportional to their corners are refused.
+TEST(Polygon, LargeOnesThatCrossThemselvesAreRefused) {
+    EXPECT_EQ(cut_into_triangles(polygon_of(wound_corners(999, 7))).size(), 3U * 997);
+    const auto refusal = [](const std::vector<glm::dvec2>& corners) {
+        return test::message_of<InputError>([&] { cut_into_triangles(polygon_of(corners)); });
+    };
+    EXPECT_EQ(refusal(wound_corners(100000, 31337)).substr(0, 35),
+              "a.obj: a polygon of 100000 corners ");
+}
+
+// Corners that are no numbers have triangles, too, which are dropped as those of any face.
+TEST(Polygon, CornersThatAreNoNumbers) {
+    PolygonOutline star = polygon_of(star_corners(5));
+    star.positions[4] = std::numeric_limits<float>::quiet_NaN();
+    star.positions[9] = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(cut_into_triangles(star).size(), 3U * 8);
 }
 
 }  // namespace

@@ -157,6 +157,15 @@ INSTANTIATE_TEST_SUITE_P(
                      s.water.surface = WaterSurfaceDesc{{0, 1e9, 0}, {0, 1, 0}};
                  },
                  "s.yaml:3: water: its surface's point of 1e+09"},
+        BadScene{"snow_without_particles",
+                 [](SceneDesc& s) {
+                     s.water.where = "s.yaml:3: water";
+                     s.water.snow.emplace().number = 5e-324;
+                 },
+                 "s.yaml:3: water: its snow's number of 4.94066e-324 is below 1e-12"},
+        BadScene{"sensor_without_a_well",
+                 [](SceneDesc& s) { s.camera.sensor.emplace().full_well = 5e-324; },
+                 "s.yaml:2: camera: its sensor's full_well of 4.94066e-324 is below 1e-12"},
         BadScene{"intensity",
                  [](SceneDesc& s) {
                      s.lamps[0].intensity = PerBand{1, 1e30, 1};
