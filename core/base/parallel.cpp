@@ -21,7 +21,7 @@ void yield_to_others() {
         setpriority(PRIO_PROCESS, 0, k_background_niceness);
 }
 
-// Meets each thread of the pool as it begins to work.
+// Meets each thread of the pool as it begins to work for the thread that made this.
 class PoolObserver final : public tbb::task_scheduler_observer {
   public:
     PoolObserver() { observe(true); }
@@ -68,7 +68,7 @@ ThreadLimit::~ThreadLimit() {
 }
 
 void work_in_background() {
-    static const PoolObserver observer;
+    thread_local const PoolObserver observer;  // it sees who joins in this thread's loops
     yield_to_others();
 }
 

@@ -33,8 +33,8 @@ class ThreadLimit {
 };
 
 /// Leaves the processor to whatever else wants it: the calling thread from now on, and each thread
-/// of parallel_for's pool from when it next begins to work, until the program ends. For what goes
-/// on behind an answer that a user waits for.
+/// of parallel_for's pool from when it first works for this one, until they end. For what goes on
+/// behind an answer that a user waits for.
 void work_in_background();
 
 }  // namespace uw
