@@ -54,7 +54,8 @@ std::shared_ptr<const Surfaces> surfaces_of(const SceneDesc& next, const Assembl
     if (next.geometry == scene.desc.geometry) return scene.surfaces;
     if (!ahead.are_of(next)) {
         ahead = {next.geometry, next.water.bands_nm, nullptr, {}};
-        ahead.surfaces = build_surfaces(next.geometry, next.water.bands_nm, ahead.warnings);
+        ahead.surfaces =
+            build_surfaces(next.geometry, next.water.bands_nm, ahead.warnings, *scene.meshes);
     }
     return ahead.surfaces;
 }

@@ -26,8 +26,8 @@ PixelWindow rows_of_part(const Exposure& exposure, int part, bool needs_all,
 void find_truth(const AssembledScene& scene, const Camera& camera, const LightTransport& transport,
                 const PointMatchers& matchers, const LayerPlan& plan, Film& film,
                 const std::function<bool(int row)>& is_wanted) {
-    const PixelRenderer pixels(camera, scene.lit(), transport, {}, scene.slabs,
-                               SensorModel(scene.desc), {}, matchers);
+    const PixelRenderer pixels(camera, scene.lit(), transport, {}, {}, SensorModel(scene.desc), {},
+                               matchers);
     const PixelWindow& window = film.window();
     parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
         thread_local PixelResult result;

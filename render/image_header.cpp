@@ -121,9 +121,11 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
     m["uwvdb/water_scattering_per_m"] = band_list(b);
     m["uwvdb/water_attenuation_per_m"] = band_list(c);
     m["uwvdb/phase_functions"] = phases;
-    m["uwvdb/slab_near_m"] = scene.slabs.near;
-    m["uwvdb/slab_thickness_m"] = scene.slabs.thickness();
-    m["uwvdb/slabs"] = static_cast<double>(scene.slabs.count);
+    if (scene.slabs) {
+        m["uwvdb/slab_near_m"] = scene.slabs->near;
+        m["uwvdb/slab_thickness_m"] = scene.slabs->thickness();
+        m["uwvdb/slabs"] = static_cast<double>(scene.slabs->count);
+    }
     return m;
 }
 

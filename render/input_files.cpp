@@ -1,23 +1,14 @@
 #include "render/input_files.h"
 
-#include <algorithm>
-#include <cctype>
 #include <variant>
 
-#include "core/meshes/files/obj_materials.h"
-#include "core/meshes/gltf/gltf_files.h"
+#include "core/meshes/files/mesh_reader.h"
 
 namespace uw {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_ending(const fs::path& file) {
-    std::string ending = file.extension().string();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return ending;
-}
 
 /// Walks through a scene description and collects the files that it names.
 class InputCollection {
@@ -75,21 +66,14 @@ class InputCollection {
         for (const GridMappingDesc& grid : volume.grids)
             if (grid.optics && grid.optics->phase) add(*grid.optics->phase);
     }
-    // STL and PLY refer to no other files.
     void add(const GeometryDesc& geometry) {
         add(geometry.trajectory);
         if (geometry.type != GeometryDesc::Type::file) return;
         add(geometry.file, "a mesh of the scene");
-        const std::string ending = lower_ending(geometry.file);
-        const bool is_gltf = ending == ".gltf" || ending == ".glb";
-        if (!is_gltf && ending != ".obj") return;
         const auto [found, is_new] = known_.try_emplace(geometry.file);
-        if (is_new)
-            found->second =
-                is_gltf ? files_named_by_gltf(geometry.file) : files_named_by_obj(geometry.file);
+        if (is_new) found->second = files_named_by_mesh(geometry.file);
         for (const fs::path& file : found->second)
-            add(file, is_gltf ? "a texture or buffer of a mesh"
-                              : "a texture or material library of a mesh");
+            add(file, "a texture, buffer or material library of a mesh");
     }
 
     MeshSideFiles& known_;

@@ -50,8 +50,8 @@ void Renderer::set_scene(ResolvedScene scene) {
     colour_.reset();
 }
 
-const AssembledScene& Renderer::assemble() {
-    if (is_assembled_) return scene_;
+void Renderer::build() {
+    if (is_assembled_) return;
     AssembledScene before;
     std::swap(before, before_);
     if (ahead_.are_of(scene_.desc) && before.desc.water.bands_nm == ahead_.bands_nm) {
@@ -65,17 +65,22 @@ const AssembledScene& Renderer::assemble() {
     assembled.desc = std::move(scene_.desc);
     scene_ = std::move(assembled);
     is_assembled_ = true;
+}
+
+const AssembledScene& Renderer::assemble() {
+    build();
+    if (!scene_.slabs) scene_.slabs = place_slabs(scene_);
     return scene_;
 }
 
 const DeepShadows& Renderer::splat() {
-    assemble();
+    build();
     if (light_.empty()) splat(deep_shadow_options(scene_.desc.render.quality, scene_.water.medium));
     return light_;
 }
 
 const DeepShadows& Renderer::splat(const DeepShadowOptions& options) {
-    assemble();
+    build();
     light_.clear();
     begin("splat");
     light_ = splatter_.splat(scene_, options, [this](double share) { tell("splat", share); });
@@ -128,7 +133,10 @@ void Renderer::prepare(const RenderOptions& options) {
     fit_film(options);
     report_.pixels = static_cast<std::uint64_t>(film_->window().width()) *
                      static_cast<std::uint64_t>(film_->window().height());
-    assemble();
+    if (needs_slabs(scene_.desc, *plan_))
+        assemble();
+    else
+        build();
     if (!colour_->warning().empty()) report_.warnings.push_back(colour_->warning());
     report_.warnings.insert(report_.warnings.end(), scene_.warnings.begin(), scene_.warnings.end());
     if (const auto warning = far_lamp_warning(scene_)) report_.warnings.push_back(*warning);

@@ -95,7 +95,7 @@ class Renderer {
     /// References to them are valid until the scene is set or edited again.
     /// @{
 
-    /// Loads and builds the scene unless that has been done.
+    /// Loads and builds the scene and places its slabs, as far as that has not been done.
     const AssembledScene& assemble();
     /// Likewise the light of its lamps, at the resolution that its quality requires. For an
     /// integrator that needs no light, forward scatter takes the columns from it if it is there.
@@ -121,6 +121,7 @@ class Renderer {
   private:
     void begin(const std::string& stage) const { tell(stage, 0); }
     void tell(const std::string& stage, double fraction) const;
+    void build();
     bool needs_light() const;
     void fit_film(const RenderOptions& options);
     void count_work();

@@ -114,6 +114,7 @@ void take_over_surfaces(const SceneDesc& desc, AssembledScene& scene, AssembledS
         scene.geometry_warnings = std::move(before.geometry_warnings);
     }
     before.surfaces.reset();
+    scene.meshes = before.meshes ? std::move(before.meshes) : std::make_shared<MeshStore>();
 }
 
 void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
@@ -148,13 +149,16 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
     load_volumes(desc.volumes, scene);
     begin_stage("geometry");
     if (!scene.surfaces)
-        scene.surfaces =
-            build_surfaces(desc.geometry, medium.wavelengths_nm, scene.geometry_warnings);
+        scene.surfaces = build_surfaces(desc.geometry, medium.wavelengths_nm,
+                                        scene.geometry_warnings, *scene.meshes);
     append(scene.warnings, scene.geometry_warnings);
     place_lamps(desc, scene);
     warn_of_lamps_at_the_camera(desc, scene);
-    scene.slabs = place_slabs(desc.render.planes, *scene.camera, scene.lit());
     return scene;
+}
+
+Slabs place_slabs(const AssembledScene& scene) {
+    return place_slabs(scene.desc.render.planes, *scene.camera, scene.lit());
 }
 
 AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
@@ -167,11 +171,11 @@ AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
     moved.surfaces = scene.surfaces;
     if (desc.geometry != scene.desc.geometry)
         moved.surfaces = build_surfaces(desc.geometry, scene.water.medium.wavelengths_nm,
-                                        moved.geometry_warnings);
+                                        moved.geometry_warnings, *scene.meshes);
     place_lamps(desc, moved);
-    moved.slabs = place_slabs(desc.render.planes, *moved.camera, moved.lit());
     moved.warnings.clear();
     moved.desc = std::move(desc);
+    if (scene.slabs) moved.slabs = place_slabs(moved);
     return moved;
 }
 
@@ -183,7 +187,7 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
         return integrator_kind(render.integrator)
             .make({lit,
                    scene.desc.camera.world_from_camera,
-                   scene.slabs,
+                   scene.slabs.value_or(Slabs{}),
                    render.quality,
                    {deep_shadows.begin(), deep_shadows.end()}});
     };

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "core/integrators/lit_scene.h"
 #include "core/integrators/slabs.h"
 #include "core/scene/scene_desc.h"
+#include "core/surfaces/mesh_store.h"
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
 #include "render/snow/snow_model.h"
@@ -30,7 +32,7 @@ struct AssembledScene {
     std::shared_ptr<const Surfaces> surfaces;
     std::vector<Lamp> lamps;     // as the description has them, each at its centre
     std::vector<Lamp> emitters;  // the points that they consist of (LitScene::emitters)
-    Slabs slabs;
+    std::optional<Slabs> slabs;  // none: they have not been placed (place_slabs)
     /// Of a part of an exposure (render/exposure.h); 0: all of it.
     int first_sample = 0, total_samples = 0;
     std::vector<VolumeReport> volume_reports;
@@ -39,6 +41,7 @@ struct AssembledScene {
     // For the next scene to reuse.
     std::vector<LoadedVolume> volumes;  // what `field` is made of
     std::vector<std::string> geometry_warnings;
+    std::shared_ptr<MeshStore> meshes;  // of `surfaces`
 
     LitScene lit() const { return {&water.medium, field.get(), surfaces.get(), &emitters}; }
 };
@@ -46,7 +49,7 @@ struct AssembledScene {
 /// Called with the name of each stage as it begins.
 using StageCallback = std::function<void(const std::string& stage)>;
 
-/// Loads and builds what `desc`, that of a resolved scene, names, and places the slabs. `desc` of
+/// Loads and builds what `desc`, that of a resolved scene, names; slabs are not placed. `desc` of
 /// the result is left empty for the caller to move the description into: it is never copied.
 /// `before`, a scene assembled earlier or none, is consumed: water, volumes and surfaces with the
 /// same description are reused as they are, even if their files have changed since; the rest is
@@ -54,6 +57,10 @@ using StageCallback = std::function<void(const std::string& stage)>;
 /// InputError and IoError of one line each.
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
                               AssembledScene before = {});
+
+/// Places the slabs of an assembled scene: costs a ray through each pixel of a coarse image. Throws
+/// as place_slabs.
+Slabs place_slabs(const AssembledScene& scene);
 
 /// The scene, assembled, with what moves at another moment: `desc` is what scene_at makes of its
 /// description. It shares the rest with `scene`; it has nothing for a next scene to reuse, and no

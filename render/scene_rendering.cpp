@@ -54,7 +54,7 @@ std::vector<double> growing_slabs(double near, double far, double attenuation) {
 }
 
 std::vector<double> slab_faces(const AssembledScene& scene) {
-    const Slabs& slabs = scene.slabs;
+    const Slabs& slabs = scene.slabs.value();
     std::vector<double> faces;
     if (integrator_kind(scene.desc.render.integrator).sums_slabs) {
         for (int i = 0; i <= slabs.count; ++i) faces.push_back(slabs.boundary(i));
@@ -117,7 +117,8 @@ ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
     setup.shells = scene.desc.camera.distortion.model == DistortionDesc::Model::fisheye;
     setup.sensor = SensorModel(scene.desc);
     setup.has_snow = scene.snow != nullptr;
-    setup.first = {scene.slabs.boundary(0), scene.slabs.boundary(1)};
+    const Slabs& slabs = scene.slabs.value();
+    setup.first = {slabs.boundary(0), slabs.boundary(1)};
     const ConcentrationField* field = scene.field.get();
     const std::vector<Lamp>* emitters = &scene.emitters;
     setup.lamp_column = [&deep_shadows, field, emitters](std::size_t emitter, const Point3& x,
@@ -195,15 +196,26 @@ LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const Pat
                         .sensor_values = sensor ? value_count(sensor->mosaic) : 0}};
 }
 
+bool needs_slabs(const SceneDesc& scene, const LayerPlan& plan) {
+    const PlanesDesc& planes = scene.render.planes;
+    return integrator_kind(scene.render.integrator).sums_slabs ||
+           in_scatter_parts(plan).first_slab || scene.water.forward_scatter.K > 0 || planes.near ||
+           planes.far;
+}
+
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts, const PointMatchers& matchers) {
     int samples = samples_of(scene.desc.render);
     if (integrator_kind(scene.desc.render.integrator).traces_paths)
         samples = std::min(samples, k_most_samples_beside_paths);
-    return {*scene.camera, scene.lit(),
-            transport,     {samples, scene.total_samples, scene.first_sample},
-            scene.slabs,   SensorModel(scene.desc),
-            parts,         matchers};
+    return {*scene.camera,
+            scene.lit(),
+            transport,
+            {samples, scene.total_samples, scene.first_sample},
+            scene.slabs.value_or(Slabs{}),
+            SensorModel(scene.desc),
+            parts,
+            matchers};
 }
 
 SnowLayer snow_layer(const AssembledScene& scene, const DeepShadows& deep_shadows,

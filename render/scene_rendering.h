@@ -33,6 +33,10 @@ struct PathRequest {
 LayerPlan layer_plan(const SceneDesc& scene, std::string_view request,
                      const PathRequest& paths = {});
 
+/// Whether an image of these layers has to do with slabs: some layer, its integrator or its forward
+/// scatter, or the scene says where they are, which may be where no water is.
+bool needs_slabs(const SceneDesc& scene, const LayerPlan& plan);
+
 /// The resolution at which lamps are splatted into water of `medium` for an image of this quality.
 DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium& medium);
 
@@ -40,7 +44,8 @@ DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium&
 /// meant for comparison: every pixel has its own ray.
 double in_scatter_tolerance(const RenderDesc& render);
 
-/// Renders the pixels of `scene` by `transport`, one at a time. Both outlive the result.
+/// Renders the pixels of `scene` by `transport`, one at a time. Both outlive the result. The scene
+/// has slabs if `parts` has the first.
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts = {}, const PointMatchers& matchers = {});
 
@@ -64,8 +69,8 @@ void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const ImageCallbacks& reached = {}, const PointMatchers& matchers = {});
 
 /// How the light of `scene` is scattered forward. If the integrator sums slabs the water is split
-/// into them, else into slabs that grow with the distance. `deep_shadows` and `scene` outlive the
-/// result.
+/// into them, else into slabs that grow with the distance. `scene` has its slabs placed; it and
+/// `deep_shadows` outlive the result.
 ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
                                           const DeepShadows& deep_shadows);
 

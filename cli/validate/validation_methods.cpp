@@ -87,6 +87,7 @@ void append_hard_beam_edges(const Ray& ray, const Lamp& lamp, std::vector<double
 }
 
 TrialScene splatted(Renderer renderer) {
+    renderer.assemble();
     renderer.splat();
     return {std::move(renderer)};
 }
@@ -178,7 +179,7 @@ MethodImage render_method(const TrialScene& trial, const LightTransport& transpo
     image.direct.resize(pixels);
     image.backscatter.resize(pixels);
     const PixelRenderer renderer(*trial.scene().camera, trial.scene().lit(), transport, {},
-                                 trial.scene().slabs);
+                                 trial.scene().slabs.value());
     parallel_for(static_cast<std::size_t>(trial.height()), [&](std::size_t row) {
         if (!proceed()) throw Interrupted();
         PixelResult result;

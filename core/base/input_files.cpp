@@ -1,11 +1,11 @@
 #include "core/base/input_files.h"
 
-#include <sys/stat.h>
-
 #include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
+
+#include "core/base/file_stamp.h"
 
 namespace uw {
 
@@ -15,20 +15,13 @@ namespace fs = std::filesystem;
 
 using Identity = std::pair<dev_t, ino_t>;
 
-struct FileState {
-    Identity identity;
-    timespec modified;
-};
-
-std::optional<FileState> state_of(const fs::path& file) {
-    struct stat status {};
-    if (::stat(file.c_str(), &status) != 0) return std::nullopt;
-    return FileState{{status.st_dev, status.st_ino}, status.st_mtim};
+Identity identity_of(const FileStamp& stamp) {
+    return {stamp.device, stamp.number};
 }
 
 struct Input {
     fs::path file;  // absolute
-    timespec modified;
+    FileStamp stamp;
 };
 
 /// Of the whole program: what one part of it reads no other part may replace.
@@ -42,41 +35,41 @@ Registry& registry() {
     return all;
 }
 
-bool is_same(const timespec& a, const timespec& b) {
-    return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
+bool is_as_old(const FileStamp& a, const FileStamp& b) {
+    return a.modified_s == b.modified_s && a.modified_ns == b.modified_ns;
 }
 
 }  // namespace
 
 void remember_input(const fs::path& file) {
-    const std::optional<FileState> state = state_of(file);
-    if (!state) return;
+    const std::optional<FileStamp> stamp = stamp_of(file);
+    if (!stamp) return;
     std::error_code error;
     fs::path absolute = fs::absolute(file, error);
     if (error) absolute = file;
     Registry& all = registry();
     const std::lock_guard lock(all.mutex);
-    const auto [begin, end] = all.inputs.equal_range(state->identity);
+    const auto [begin, end] = all.inputs.equal_range(identity_of(*stamp));
     for (auto input = begin; input != end; ++input) {
         if (input->second.file != absolute) continue;
-        input->second.modified = state->modified;
+        input->second.stamp = *stamp;
         return;
     }
-    all.inputs.emplace(state->identity, Input{std::move(absolute), state->modified});
+    all.inputs.emplace(identity_of(*stamp), Input{std::move(absolute), *stamp});
 }
 
 // A file that was deleted may have left its number to another one: that is not an input unless it
 // is as old as the input was, or has its name.
 bool is_input(const fs::path& file) {
-    const std::optional<FileState> state = state_of(file);
-    if (!state) return false;
+    const std::optional<FileStamp> stamp = stamp_of(file);
+    if (!stamp) return false;
     Registry& all = registry();
     const std::lock_guard lock(all.mutex);
-    const auto [begin, end] = all.inputs.equal_range(state->identity);
+    const auto [begin, end] = all.inputs.equal_range(identity_of(*stamp));
     for (auto input = begin; input != end; ++input) {
-        if (is_same(input->second.modified, state->modified)) return true;
-        const std::optional<FileState> now = state_of(input->second.file);
-        if (now && now->identity == state->identity) return true;
+        if (is_as_old(input->second.stamp, *stamp)) return true;
+        const std::optional<FileStamp> now = stamp_of(input->second.file);
+        if (now && identity_of(*now) == identity_of(*stamp)) return true;
     }
     return false;
 }

@@ -7,10 +7,9 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/meshes/files/mesh_reader.h"
-#include "core/meshes/mesh_cleanup.h"
 #include "core/scene/scene_limits.h"
 #include "core/surfaces/embree_surfaces.h"
+#include "core/surfaces/mesh_objects.h"
 #include "core/surfaces/scene_objects.h"
 
 namespace uw {
@@ -38,53 +37,6 @@ Spectrum reflectance_or_default(const GeometryDesc& desc, int band_count) {
     return spectrum;
 }
 
-bool is_identity(const Affine& map) {
-    return map.linear() == Matrix3(1.0) && map.offset() == Vector3(0.0);
-}
-
-/// Transforms a mesh to world space, in place: it may have tens of millions of vertices.
-void transform(TriangleMesh& mesh, const Affine& world_from_object) {
-    for (std::size_t at = 0; at + 2 < mesh.positions.size(); at += 3) {
-        float* p = &mesh.positions[at];
-        const Point3 world = world_from_object * Point3{p[0], p[1], p[2]};
-        for (int axis = 0; axis < 3; ++axis) p[axis] = static_cast<float>(world[axis]);
-    }
-    const Matrix3 normal_map = glm::transpose(world_from_object.inverse().linear());
-    for (std::size_t at = 0; at + 2 < mesh.normals.size(); at += 3) {
-        float* n = &mesh.normals[at];
-        const Vector3 world = normal_map * Vector3(n[0], n[1], n[2]);
-        const double length = glm::length(world);
-        if (!(length > 0)) continue;  // zero means "flat"
-        for (int axis = 0; axis < 3; ++axis) n[axis] = static_cast<float>(world[axis] / length);
-    }
-    if (mesh.tangents.empty()) return;
-    // A mirroring transform reverses the corner order and cross products.
-    const bool is_mirror = world_from_object.determinant() < 0;
-    const float side = is_mirror ? -1.0F : 1.0F;
-    for (std::size_t at = 0; is_mirror && at + 2 < mesh.triangles.size(); at += 3) {
-        std::swap(mesh.triangles[at + 1], mesh.triangles[at + 2]);
-    }
-    for (std::size_t at = 0; at + 3 < mesh.tangents.size(); at += 4) {
-        float* t = &mesh.tangents[at];
-        const Vector3 world = world_from_object.apply_to_vector({t[0], t[1], t[2]});
-        const double length = glm::length(world);
-        for (int axis = 0; axis < 3; ++axis) {
-            t[axis] = length > 0 ? static_cast<float>(world[axis] / length) : 0.0F;
-        }
-        t[3] *= side;
-    }
-}
-
-/// Bounds of the referenced vertices; a file may have invalid vertices that no triangle uses.
-Bounds bounds_of(const TriangleMesh& mesh) {
-    Bounds bounds;
-    for (const std::uint32_t vertex : mesh.triangles) {
-        const float* p = &mesh.positions[3 * std::size_t{vertex}];
-        bounds.extend(Point3{p[0], p[1], p[2]});
-    }
-    return bounds;
-}
-
 /// A box around the transformed box; empty for an empty one.
 Bounds transformed(const Bounds& bounds, const Affine& map) {
     Bounds result;
@@ -97,11 +49,6 @@ Bounds transformed(const Bounds& bounds, const Affine& map) {
         result.extend(map * p);
     }
     return result;
-}
-
-/// Whether a material has more than the colour that a given reflectance replaces.
-bool has_more_than_color(const MeshMaterial& material) {
-    return material.alpha_cutoff > 0 || material.normal_map || material.emission != Rgb{0, 0, 0};
 }
 
 TriangleMesh box_mesh(const GeometryDesc& desc) {
@@ -119,8 +66,8 @@ TriangleMesh box_mesh(const GeometryDesc& desc) {
 
 class Builder {
   public:
-    explicit Builder(const std::vector<double>& wavelengths_nm)
-        : objects_{{}, {}, {}, {}, {}, {}, ReflectanceBands(wavelengths_nm), {}} {}
+    Builder(const std::vector<double>& wavelengths_nm, MeshStore& meshes)
+        : objects_{{}, {}, {}, {}, {}, {}, ReflectanceBands(wavelengths_nm), {}}, meshes_(meshes) {}
 
     /// The next entry of `geometry`.
     void add(const GeometryDesc& desc, std::vector<std::string>& warnings) {
@@ -133,10 +80,10 @@ class Builder {
         }
         switch (desc.type) {
             case GeometryDesc::Type::file:
-                add_file(desc, mesh_file(desc, warnings));
+                add_file(desc, warnings);
                 break;
             case GeometryDesc::Type::box:
-                add_mesh(desc, box_mesh(desc), name_object(desc, "box"), reflectance(desc));
+                add_box(desc, name_object(desc, "box"));
                 break;
             case GeometryDesc::Type::sphere:
                 add_sphere(desc, name_object(desc, "sphere"));
@@ -155,13 +102,6 @@ class Builder {
         return reflectance_or_default(desc, objects_.bands.count());
     }
 
-    static MeshFile mesh_file(const GeometryDesc& desc, std::vector<std::string>& warnings) {
-        if (desc.mesh) return {*desc.mesh, {}, {desc.mesh_name}, {}};
-        return read_mesh(desc.file, warnings,
-                         {desc.import.camera || desc.import.any_lamps(), desc.is_pbr,
-                          desc.is_material_given, desc.time});
-    }
-
     /// Returns the object's id.
     std::uint32_t name_object(const GeometryDesc& desc, std::string name) {
         auto& objects = objects_.names.objects;
@@ -175,28 +115,28 @@ class Builder {
         return static_cast<std::uint32_t>(objects.size());
     }
 
-    void add_file(const GeometryDesc& desc, MeshFile file) {
-        const auto objects_end = static_cast<std::uint32_t>(objects_.names.objects.size());
-        const auto materials_end = static_cast<std::uint32_t>(objects_.names.materials.size());
-        for (std::string& name : file.objects) name_object(desc, std::move(name));
-        for (std::string& name : file.materials)
-            objects_.names.materials.push_back({std::move(name), entry_});
-        const auto reflectance = given_reflectance(desc, objects_.bands.count());
-        if (!file.mesh.triangles.empty()) {
-            add_mesh(desc, std::move(file.mesh), objects_end + 1, reflectance).materials_end =
-                materials_end;
+    void add_file(const GeometryDesc& desc, std::vector<std::string>& warnings) {
+        const auto counted = [](const auto& names) {
+            return static_cast<std::uint32_t>(names.size());
+        };
+        const IdsBefore before{counted(objects_.names.objects), counted(objects_.names.materials)};
+        const auto file =
+            meshes_.load(desc, before, given_reflectance(desc, objects_.bands.count()), warnings);
+        for (const std::string& name : file->objects) name_object(desc, name);
+        for (const std::string& name : file->materials)
+            objects_.names.materials.push_back({name, entry_});
+        if (file->mesh) {
+            extend_bounds(desc, file->bounds);
+            objects_.meshes.push_back(file->mesh);
         }
-        for (SharedMesh& shared : file.shared) {
-            const Bounds bounds = bounds_of(shared.mesh);
-            auto object = make_mesh_object(desc, std::move(shared.mesh), reflectance);
-            object->materials_end = materials_end;
+        for (const FileSurfaces::Shared& shared : file->shared) {
             for (const SharedMesh::Placement& placement : shared.placements) {
                 const Affine map = desc.world_from_object * placement.file_from_mesh;
-                extend_bounds(desc, transformed(bounds, map));
-                objects_.instances.push_back(
-                    {object.get(), MeshTransform(map), objects_end + 1 + placement.object});
+                extend_bounds(desc, transformed(shared.bounds, map));
+                objects_.instances.push_back({shared.object.get(), MeshTransform(map),
+                                              before.objects + 1 + placement.object});
             }
-            objects_.shared_meshes.push_back(std::move(object));
+            objects_.shared_meshes.push_back(shared.object);
         }
     }
 
@@ -211,32 +151,13 @@ class Builder {
         objects_.bounds.extend(bounds);
     }
 
-    static std::unique_ptr<MeshObject> make_mesh_object(
-        const GeometryDesc& desc, TriangleMesh mesh, const std::optional<Spectrum>& reflectance) {
-        auto object = std::make_unique<MeshObject>();
-        object->mesh = std::move(mesh);
-        object->reflectance = reflectance;
-        object->is_pbr = desc.is_pbr;
-        object->vertex_count = object->mesh.vertex_count();
-        auto& materials = object->mesh.materials;
-        object->has_holes = std::ranges::any_of(
-            materials, [](const MeshMaterial& material) { return material.alpha_cutoff > 0; });
-        if (reflectance && !desc.is_pbr && std::ranges::none_of(materials, has_more_than_color)) {
-            object->mesh.uvs = {};
-            object->mesh.colors = {};
-            for (MeshMaterial& material : materials) material.base_map = {};
-        }
-        object->mesh.positions.resize(object->mesh.positions.size() + 4);  // Embree's padding
-        return object;
-    }
-
-    MeshObject& add_mesh(const GeometryDesc& desc, TriangleMesh mesh, std::uint32_t object_id,
-                         const std::optional<Spectrum>& reflectance) {
-        if (!is_identity(desc.world_from_object)) transform(mesh, desc.world_from_object);
+    void add_box(const GeometryDesc& desc, std::uint32_t object_id) {
+        TriangleMesh mesh = box_mesh(desc);
+        place_mesh(mesh, desc.world_from_object);
         extend_bounds(desc, bounds_of(mesh));
-        objects_.meshes.push_back(make_mesh_object(desc, std::move(mesh), reflectance));
-        objects_.meshes.back()->object_id = object_id;
-        return *objects_.meshes.back();
+        const auto object = make_mesh_object(desc, std::move(mesh), reflectance(desc));
+        object->object_id = object_id;
+        objects_.meshes.push_back(object);
     }
 
     void add_sphere(const GeometryDesc& desc, std::uint32_t object_id) {
@@ -257,6 +178,7 @@ class Builder {
     }
 
     SceneObjects objects_;
+    MeshStore& meshes_;
     std::size_t entry_ = 0;  // of `geometry`
 };
 
@@ -264,10 +186,18 @@ class Builder {
 
 std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
                                          const std::vector<double>& wavelengths_nm,
-                                         std::vector<std::string>& warnings) {
-    Builder builder(wavelengths_nm);
+                                         std::vector<std::string>& warnings, MeshStore& meshes) {
+    meshes.keep_only(geometry);
+    Builder builder(wavelengths_nm, meshes);
     for (const GeometryDesc& desc : geometry) builder.add(desc, warnings);
     return make_embree_surfaces(builder.take());
+}
+
+std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
+                                         const std::vector<double>& wavelengths_nm,
+                                         std::vector<std::string>& warnings) {
+    MeshStore meshes;
+    return build_surfaces(geometry, wavelengths_nm, warnings, meshes);
 }
 
 }  // namespace uw

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/scene/geometry_desc.h"
+#include "core/surfaces/mesh_store.h"
 #include "core/surfaces/surfaces.h"
 
 namespace uw {
@@ -23,5 +24,10 @@ namespace uw {
 std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
                                          const std::vector<double>& wavelengths_nm,
                                          std::vector<std::string>& warnings);
+/// The same with the meshes of `meshes`, as far as they are there, which becomes those of this
+/// scene.
+std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
+                                         const std::vector<double>& wavelengths_nm,
+                                         std::vector<std::string>& warnings, MeshStore& meshes);
 
 }  // namespace uw

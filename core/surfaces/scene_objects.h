@@ -89,8 +89,8 @@ struct PlaneObject {
 
 /// All surfaces of a scene, before and after Embree's acceleration structure is built over them.
 struct SceneObjects {
-    std::vector<std::unique_ptr<MeshObject>> meshes;         // in world space
-    std::vector<std::unique_ptr<MeshObject>> shared_meshes;  // shown by instances
+    std::vector<std::shared_ptr<const MeshObject>> meshes;         // in world space
+    std::vector<std::shared_ptr<const MeshObject>> shared_meshes;  // shown by instances
     std::vector<MeshInstance> instances;
     std::vector<SphereObject> spheres;
     std::vector<PlaneObject> planes;

@@ -227,6 +227,31 @@ TEST_F(Images, TakeAnotherLightTransportOnTrial) {
     EXPECT_TRUE(std::ranges::equal(renderer.render({.layers = "direct"}).values(), tried.values()));
 }
 
+TEST_F(Images, HaveSlabsOnlyIfTheyNeedThem) {
+    Renderer renderer;
+    const auto has_slabs = [&](const char* layers) {
+        renderer.set_scene(SceneDesc(desc_));
+        renderer.render({.layers = layers});
+        return renderer.assembled().slabs.has_value();
+    };
+    EXPECT_FALSE(has_slabs("backscatter,depth"));
+    EXPECT_TRUE(has_slabs("backscatter_first"));
+    EXPECT_FALSE(has_slabs("depth"));
+    desc_.render.planes.near = 1;
+    EXPECT_TRUE(has_slabs("depth"));
+    desc_.render.planes.near = 10;  // behind the wall
+    EXPECT_THROW(has_slabs("depth"), InputError);
+    desc_.render.planes = {};
+    desc_.water.forward_scatter = {.K = 1, .G = 0.02, .B = 0.02};
+    EXPECT_TRUE(has_slabs("depth"));
+    desc_.water.forward_scatter = {};
+    desc_.render.integrator = RenderDesc::Integrator::planes;
+    desc_.volumes.clear();
+    EXPECT_TRUE(has_slabs("depth"));
+    renderer.set_scene(SceneDesc(desc_));
+    EXPECT_TRUE(renderer.assemble().slabs);
+}
+
 TEST_F(Images, OfAnEditedSceneAreNotTakenOver) {
     Renderer renderer;
     renderer.set_scene(SceneDesc(desc_));

@@ -7,8 +7,10 @@
 
 #include "core/base/error.h"
 #include "core/meshes/files/assimp_reader.h"
+#include "core/meshes/files/obj_materials.h"
 #include "core/meshes/files/obj_reader.h"
 #include "core/meshes/files/ply_reader.h"
+#include "core/meshes/gltf/gltf_files.h"
 #include "core/meshes/gltf/gltf_reader.h"
 #include "core/meshes/mesh_cleanup.h"
 #include "core/meshes/mesh_tangents.h"
@@ -79,6 +81,13 @@ MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& 
                          "or lamps of a glTF file (camera: true, lamps: all)");
     }
     return content;
+}
+
+std::vector<std::filesystem::path> files_named_by_mesh(const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    if (extension == ".gltf" || extension == ".glb") return files_named_by_gltf(file);
+    if (extension == ".obj") return files_named_by_obj(file);
+    return {};  // STL and PLY refer to no other files
 }
 
 }  // namespace uw

@@ -23,4 +23,8 @@ namespace uw {
 MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
                    const GltfUse& use = {});
 
+/// The other files that read_mesh reads for a mesh file: buffers, textures and material libraries.
+/// None for a file that cannot be read.
+std::vector<std::filesystem::path> files_named_by_mesh(const std::filesystem::path& file);
+
 }  // namespace uw

@@ -102,11 +102,13 @@ TEST_F(OutputFiles, NeverReplaceATableOrATexture) {
             "a phase function of the scene");
     refused("render={response: cie, white: {file: white.csv}}", "white.csv",
             "the white light of the scene");
-    refused("geometry=[{file: wall.gltf}]", "wall.png", "a texture or buffer of a mesh");
+    refused("geometry=[{file: wall.gltf}]", "wall.png",
+            "a texture, buffer or material library of a mesh");
     write("hull.obj", "mtllib hull.mtl\nv 0 0 1\nv 1 0 1\nv 0 1 1\nusemtl a\nf 1 2 3\n");
     write("hull.mtl", "newmtl a\nmap_Kd wall.png\n");
     for (const char* file : {"hull.mtl", "wall.png"})
-        refused("geometry=[{file: hull.obj}]", file, "a texture or material library of a mesh");
+        refused("geometry=[{file: hull.obj}]", file,
+                "a texture, buffer or material library of a mesh");
     EXPECT_EQ(file_count(), 7U);
 }
 

@@ -70,7 +70,7 @@ TEST(PlaceSlabs, SpansTheWaterThatTheImageSees) {
     SceneDesc desc = uniform_scene({1, -0.5, 0});
     desc.camera.port = FlatPortDesc{{0, 0, 1}, 0.02, 0.04, 1.0, 1.49, 1.334};
     desc.geometry.push_back(box({-0.1, -0.1, 1}, {0.1, 0.1, 1.1}));
-    const Slabs slabs = TestScene(desc).assembled().slabs;
+    const Slabs slabs = TestScene(desc).assembled().slabs.value();
     EXPECT_NEAR(slabs.near, 0.06, 1e-12);
     EXPECT_NEAR(slabs.thickness(), (k_plane_z - 0.06) / 64, 1e-5);  // hits are float
     // Slabs of the same thickness go on, for holes that a coarse look has not seen.
@@ -85,8 +85,8 @@ TEST(PlaceSlabs, ReachesAsFarAsTheLightWhereTheViewIsOpen) {
     desc.render.integrator = RenderDesc::Integrator::planes;
     desc.render.planes.count = 4096;
     const TestScene planes(desc);
-    EXPECT_EQ(planes.assembled().slabs.near, 0);
-    EXPECT_LT(planes.assembled().slabs.far, 100);
+    EXPECT_EQ(planes.assembled().slabs->near, 0);
+    EXPECT_LT(planes.assembled().slabs->far, 100);
     EXPECT_LE(difference(planes.image(), volume).worst, 1e-3);
 }
 
