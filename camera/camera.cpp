@@ -72,6 +72,21 @@ LensRay Camera::lens_ray(double x, double y) const {
 }
 
 std::optional<ImagePoint> Camera::project(const Point3& world) const {
+    const std::optional<Projection> seen = project_at_its_time(world);
+    return seen ? std::optional(seen->image) : std::nullopt;
+}
+
+std::optional<Sighting> Camera::sight(const Point3& world) const {
+    const std::optional<Projection> seen = project_at_its_time(world);
+    if (!seen) return std::nullopt;
+    const Ray in_housing{Point3{}, seen->in_housing};
+    const std::optional<Ray> ray = motion_
+                                       ? in_water(in_housing, world_from_camera_at(seen->image.y))
+                                       : in_water(in_housing, world_from_camera_);
+    return ray ? std::optional(Sighting{seen->image, *ray}) : std::nullopt;
+}
+
+std::optional<Camera::Projection> Camera::project_at_its_time(const Point3& world) const {
     if (!motion_ || rows_.line_time == 0)
         return project_in_camera(motion_ ? world_from_camera_at(0).inverse() * world
                                          : camera_from_world_ * world);
@@ -80,16 +95,16 @@ std::optional<ImagePoint> Camera::project(const Point3& world) const {
     constexpr int k_most_steps = 50;
     constexpr double k_close = 1e-9;  // [pixels]
     double row = 0.5 * height_;
-    std::optional<ImagePoint> image;
+    std::optional<Projection> seen;
     for (int step = 0; step < k_most_steps; ++step) {
-        image = project_in_camera(world_from_camera_at(row).inverse() * world);
-        if (!image || std::abs(image->y - row) < k_close) break;
-        row = image->y;
+        seen = project_in_camera(world_from_camera_at(row).inverse() * world);
+        if (!seen || std::abs(seen->image.y - row) < k_close) break;
+        row = seen->image.y;
     }
-    return image;
+    return seen;
 }
 
-std::optional<ImagePoint> Camera::project_in_camera(const Point3& point) const {
+std::optional<Camera::Projection> Camera::project_in_camera(const Point3& point) const {
     std::optional<Vector3> in_housing;
     if (port_) {
         in_housing = std::visit([&](const auto& port) { return port.direction_to(point); }, *port_);
@@ -99,8 +114,9 @@ std::optional<ImagePoint> Camera::project_in_camera(const Point3& point) const {
     if (!in_housing) return std::nullopt;
     const auto image = std::visit([&](const auto& lens) { return lens.image(*in_housing); }, lens_);
     if (!image) return std::nullopt;
-    return ImagePoint{intrinsics_.cx + intrinsics_.fx * image->x,
-                      intrinsics_.cy + intrinsics_.fy * image->y};
+    return Projection{
+        {intrinsics_.cx + intrinsics_.fx * image->x, intrinsics_.cy + intrinsics_.fy * image->y},
+        *in_housing};
 }
 
 }  // namespace uw

@@ -18,6 +18,12 @@ struct ImagePoint {
     double y = 0;
 };
 
+/// How a camera sees a point.
+struct Sighting {
+    ImagePoint image;
+    Ray ray;  // in water, world space: the one that passes through the point
+};
+
 /// A camera with Brown-Conrady or fisheye lens, in the water or behind a flat port or dome.
 /// Camera frame: x right, y down, z forward; image corner (0, 0), first pixel centre (0.5, 0.5).
 class Camera final : public RaySource {
@@ -58,11 +64,19 @@ class Camera final : public RaySource {
     /// glass and water are at least as dense optically as the port's air. With a rolling shutter it
     /// is where the row shows it that is exposed when it is there.
     std::optional<ImagePoint> project(const Point3& world) const;
+    /// The same with the ray, which costs less than refracted_ray at that position.
+    std::optional<Sighting> sight(const Point3& world) const;
 
   private:
-    // The ray in the water, camera frame, of one in the housing, seen from a pose.
+    /// A point as the lens images it.
+    struct Projection {
+        ImagePoint image;
+        Vector3 in_housing{0, 0, 1};  // where it comes from, camera frame
+    };
+    // The ray in the water, world space, of one in the housing, seen from a pose.
     std::optional<Ray> in_water(const Ray& in_housing, const Affine& world_from_camera) const;
-    std::optional<ImagePoint> project_in_camera(const Point3& point) const;
+    std::optional<Projection> project_at_its_time(const Point3& world) const;
+    std::optional<Projection> project_in_camera(const Point3& point) const;
 
     int width_;
     int height_;

@@ -20,9 +20,13 @@ class ViewMatcher final : public PointMatcher {
     /// other moment; null: whether a point is hidden is not asked.
     ViewMatcher(Camera camera, ObjectMotions motions, std::shared_ptr<const Surfaces> surfaces);
 
-    std::optional<PointMatch> match(const SurfaceHit& hit) const override;
+    void match(std::span<const SurfaceHit* const> hits,
+               std::span<std::optional<PointMatch>> matches) const override;
 
   private:
+    /// Where the point of a hit is at the other moment.
+    std::optional<Point3> moved(const SurfaceHit& hit) const;
+
     Camera camera_;
     ObjectMotions motions_;
     std::shared_ptr<const Surfaces> surfaces_;

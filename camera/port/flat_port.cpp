@@ -10,9 +10,9 @@ namespace uw {
 namespace {
 
 constexpr int k_flat_max_iterations = 200;
-/// Newton's last step, relative; convergence is quadratic, so no error remains, and a step
-/// backwards is rounding only.
-constexpr double k_flat_tolerance = 1e-13;
+/// Newton's last step, relative. It leaves no error: of each layer's distance |u f''| <= 3 f', so
+/// that the next step would be 1.5 times its square.
+constexpr double k_flat_tolerance = 1e-8;
 /// The origin of a water ray may be rounded into the glass by this fraction of its depth.
 constexpr double k_flat_rounding = 1e-12;
 
@@ -37,6 +37,16 @@ Reach reach(const std::array<Layer, 3>& layers, double n, double u) {
         sum.slope += layer.depth * n * (layer.index / root) * (layer.index / root) / root;
     }
     return sum;
+}
+
+/// A slope close to that of a ray through the water and thin layers before it, whose slope would be
+/// `least` if the distance were proportional to it: the water alone, with its share of that
+/// distance.
+double first_slope(const Layer& water, double n, double least) {
+    const double across = least * n / water.index;  // per depth of water
+    const double more = water.index * water.index - n * n;
+    const double rest = n * n - across * across * more;
+    return rest > 0 ? std::max(least, water.index * across / std::sqrt(rest)) : least;
 }
 
 }  // namespace
@@ -80,15 +90,17 @@ std::optional<Vector3> FlatPort::direction_to(const Point3& point) const {
     const std::array<Layer, 3> layers{
         {{desc_.distance, desc_.n_air}, {desc_.thickness, desc_.n_glass}, {water, desc_.n_water}}};
     const double n = std::min({desc_.n_air, desc_.n_glass, desc_.n_water});
-    // The distance is a concave function of the slope, so Newton's method from below never
-    // overshoots. If the distance cannot be reached (no depth in the medium of the lowest index) it
-    // diverges.
-    double u = 0;
+    // The distance is a concave function of the slope, so that a step of Newton's method ends below
+    // the root wherever it begins, and no later step overshoots: one backwards is rounding. If the
+    // distance cannot be reached (no depth in the medium of the lowest index) it diverges.
+    const double least = wanted / reach(layers, n, 0).slope;
+    double u = first_slope(layers.back(), n, least);
     for (int iteration = 0;; ++iteration) {
         const Reach here = reach(layers, n, u);
-        const double step = (wanted - here.distance) / here.slope;
-        if (iteration == k_flat_max_iterations || !std::isfinite(u + step)) return std::nullopt;
-        u += step;
+        const double next = std::max(u + (wanted - here.distance) / here.slope, least);
+        if (iteration == k_flat_max_iterations || !std::isfinite(next)) return std::nullopt;
+        const double step = iteration == 0 ? std::abs(next - u) : next - u;
+        u = next;
         if (step <= k_flat_tolerance * u) break;
     }
     const double sine = n / desc_.n_air * u / std::sqrt(1 + u * u);

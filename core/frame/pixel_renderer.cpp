@@ -56,6 +56,7 @@ void PixelRenderer::trace(int x, int y, PixelView& view) const {
     begin_view(x, y, view);
     view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
     finish_ground_truth(view);
+    find_matches(matchers_, std::span(&view, 1));
     add_samples(x, y, view);
 }
 
@@ -85,6 +86,7 @@ void PixelRenderer::trace(const PixelWindow& window, Grid2D<PixelView>& views) c
             finish_ground_truth(view);
             add_samples(window.x0 + static_cast<int>(i), y, view);
         }
+        find_matches(matchers_, row);
     }
 }
 
@@ -180,7 +182,7 @@ void PixelRenderer::store_truth(const PixelView& view, PixelResult& result) cons
     result.depth_z = view.depth_z;
     result.range = view.range;
     result.path = view.path;
-    find_matches(matchers_, view, result);
+    store_matches(matchers_, view, result);
 }
 
 void PixelRenderer::find_truth(int x, int y, PixelResult& result) const {
@@ -189,6 +191,7 @@ void PixelRenderer::find_truth(int x, int y, PixelResult& result) const {
     begin_view(x, y, view);
     view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
     finish_ground_truth(view);
+    find_matches(matchers_, std::span(&view, 1));
     store_truth(view, result);
 }
 

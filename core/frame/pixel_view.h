@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/frame/point_matcher.h"
 #include "core/integrators/surface_light.h"
 
 namespace uw {
@@ -24,6 +25,7 @@ struct PixelView {
     double depth_z = 0;  // camera-frame z of the hit
     double range = 0;    // from the camera's centre to the hit
     double path = 0;     // in water, from the outer glass surface to the hit
+    PointMatches matches;
 };
 
 }  // namespace uw

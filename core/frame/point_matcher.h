@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "core/surfaces/surfaces.h"
 
@@ -21,8 +22,15 @@ class PointMatcher {
   public:
     virtual ~PointMatcher() = default;
 
-    /// None for a point that has no counterpart.
-    virtual std::optional<PointMatch> match(const SurfaceHit& hit) const = 0;
+    /// `matches[i]` is that of `hits[i]`, none for a point that has no counterpart; neighbours
+    /// together cost less.
+    virtual void match(std::span<const SurfaceHit* const> hits,
+                       std::span<std::optional<PointMatch>> matches) const = 0;
+};
+
+/// Where a point is in other images, as far as they are asked for (PointMatchers).
+struct PointMatches {
+    std::optional<PointMatch> next, previous, other_camera;
 };
 
 /// The images in which the points of an image are looked for; null: not wanted, or there is none.

@@ -71,24 +71,13 @@ class EmbreeSurfaces final : public Surfaces {
     void occluded_many(const Point3& from, std::span<const Point3> to,
                        std::span<char> blocked) const override {
         assert(blocked.size() == to.size());
-        std::array<Query, k_packet_size> queries;
-        std::array<std::size_t, k_packet_size> places{};
-        std::size_t count = 0;
-        const auto follow = [&] {
-            const unsigned occluded = occluded_packet(traced_, std::span(queries).first(count));
-            for (std::size_t i = 0; i < count; ++i) blocked[places[i]] = (occluded >> i & 1U) != 0;
-            count = 0;
-        };
-        for (std::size_t i = 0; i < to.size(); ++i) {
-            const Query query = shadow_query(from, to[i]);
-            const bool some_way = query.direction != Vector3(0.0);
-            blocked[i] = some_way && blocked_by_plane(query) ? 1 : 0;
-            if (!some_way || blocked[i] != 0) continue;
-            queries[count] = query;
-            places[count++] = i;
-            if (count == k_packet_size) follow();
-        }
-        if (count > 0) follow();
+        find_blocked(blocked, [&](std::size_t i) { return shadow_query(from, to[i]); });
+    }
+
+    void occluded_many(std::span<const Point3> from, std::span<const Point3> to,
+                       std::span<char> blocked) const override {
+        assert(from.size() == to.size() && blocked.size() == to.size());
+        find_blocked(blocked, [&](std::size_t i) { return shadow_query(from[i], to[i]); });
     }
 
     const SurfaceNames& names() const override { return objects_.names; }
@@ -228,6 +217,29 @@ class EmbreeSurfaces final : public Surfaces {
                                const auto t = cross_plane(plane, shadow.origin, shadow.direction);
                                return t && between_ends(*t);
                            });
+    }
+
+    /// `query_of(i)`: that whose answer is `blocked[i]`.
+    template <class QueryOf>
+    void find_blocked(std::span<char> blocked, const QueryOf& query_of) const {
+        std::array<Query, k_packet_size> queries;
+        std::array<std::size_t, k_packet_size> places{};
+        std::size_t count = 0;
+        const auto follow = [&] {
+            const unsigned occluded = occluded_packet(traced_, std::span(queries).first(count));
+            for (std::size_t i = 0; i < count; ++i) blocked[places[i]] = (occluded >> i & 1U) != 0;
+            count = 0;
+        };
+        for (std::size_t i = 0; i < blocked.size(); ++i) {
+            const Query query = query_of(i);
+            const bool some_way = query.direction != Vector3(0.0);
+            blocked[i] = some_way && blocked_by_plane(query) ? 1 : 0;
+            if (!some_way || blocked[i] != 0) continue;
+            queries[count] = query;
+            places[count++] = i;
+            if (count == k_packet_size) follow();
+        }
+        if (count > 0) follow();
     }
 
     SceneObjects objects_;

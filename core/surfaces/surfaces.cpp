@@ -32,4 +32,10 @@ void Surfaces::occluded_many(const Point3& from, std::span<const Point3> to,
     for (std::size_t i = 0; i < to.size(); ++i) blocked[i] = occluded(from, to[i]) ? 1 : 0;
 }
 
+void Surfaces::occluded_many(std::span<const Point3> from, std::span<const Point3> to,
+                             std::span<char> blocked) const {
+    assert(from.size() == to.size() && blocked.size() == to.size());
+    for (std::size_t i = 0; i < to.size(); ++i) blocked[i] = occluded(from[i], to[i]) ? 1 : 0;
+}
+
 }  // namespace uw

@@ -59,6 +59,9 @@ class Surfaces {
     /// `blocked[i]` is occluded(from, to[i]), as 0 or 1.
     virtual void occluded_many(const Point3& from, std::span<const Point3> to,
                                std::span<char> blocked) const;
+    /// `blocked[i]` is occluded(from[i], to[i]), as 0 or 1.
+    virtual void occluded_many(std::span<const Point3> from, std::span<const Point3> to,
+                               std::span<char> blocked) const;
 
     /// The names behind SurfaceHit's ids; none by default.
     virtual const SurfaceNames& names() const;

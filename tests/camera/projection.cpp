@@ -28,6 +28,31 @@ TEST(Projection, UndoesTheRaysOfEveryLensBehindEveryPort) {
     }
 }
 
+TEST(Projection, SightsAreProjectionsWithTheirRays) {
+    for (const auto& [name, desc] : test::projection_cameras()) {
+        const Camera camera(desc);
+        int seen = 0;
+        for (int i = 0; i < 25; ++i) {
+            const double x = (i % 5 + 0.3) / 5 * desc.width, y = (i / 5 + 0.6) / 5 * desc.height;
+            const auto ray = camera.refracted_ray(x, y);
+            if (!ray) continue;
+            const Point3 point = ray->at(1.5 + 0.2 * i);
+            const auto image = camera.project(point);
+            const auto sight = camera.sight(point);
+            ASSERT_EQ(sight.has_value(), image.has_value()) << name;
+            if (!sight) continue;
+            ++seen;
+            EXPECT_EQ(sight->image.x, image->x) << name;
+            EXPECT_EQ(sight->image.y, image->y) << name;
+            // 1e-6 pixels, the promise of project, are 1e-8 m on a port 5 cm away.
+            EXPECT_LT(distance(sight->ray.origin, ray->origin), 1e-8) << name;
+            EXPECT_LT(glm::length(sight->ray.direction - ray->direction), 1e-8) << name;
+        }
+        EXPECT_GT(seen, 10) << name;
+    }
+    EXPECT_FALSE(Camera(wide()).sight({0, 0, -1}));
+}
+
 TEST(Projection, PinholeByHand) {
     const Camera camera(wide());
     const auto seen = camera.project({1, -0.5, 2});

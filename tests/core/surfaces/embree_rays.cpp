@@ -73,6 +73,16 @@ int compare_shadows(const Surfaces& surfaces, const Point3& from, const std::vec
     return count;
 }
 
+void compare_shadows(const Surfaces& surfaces, const std::vector<Ray>& from,
+                     const std::vector<Point3>& to) {
+    std::vector<Point3> origins;
+    for (const Ray& ray : from) origins.push_back(ray.origin);
+    std::vector<char> blocked(to.size(), 7);
+    surfaces.occluded_many(origins, to, blocked);
+    for (std::size_t i = 0; i < to.size(); ++i)
+        EXPECT_EQ(blocked[i], surfaces.occluded(origins[i], to[i]) ? 1 : 0) << i;
+}
+
 struct Counts {
     int rays = 0, hits = 0, distances = 0, shadows = 0;
 };
@@ -95,6 +105,7 @@ void compare(const Surfaces& surfaces, Random& random, const Point3& origin, con
     counts.hits += compare_hits(surfaces, rays, random.uniform(1, 30));
     counts.distances += compare_distances(surfaces, origin, directions);
     counts.shadows += compare_shadows(surfaces, origin, ends);
+    compare_shadows(surfaces, rays, ends);
 }
 
 std::vector<std::vector<GeometryDesc>> scenes() {
