@@ -6,26 +6,6 @@ namespace uw {
 
 namespace {
 
-Json port_json(const PortDesc& port) {
-    Json json;
-    const auto add_glass = [&json](const auto& p) {
-        json["thickness"] = p.thickness;
-        json["n_air"] = p.n_air;
-        json["n_glass"] = p.n_glass;
-        json["n_water"] = p.n_water;
-    };
-    if (const auto* flat = std::get_if<FlatPortDesc>(&port)) {
-        json = {
-            {"type", "flat"}, {"normal", vector_json(flat->normal)}, {"distance", flat->distance}};
-        add_glass(*flat);
-    } else {
-        const auto& dome = std::get<DomePortDesc>(port);
-        json = {{"type", "dome"}, {"center", point_json(dome.center)}, {"radius", dome.radius}};
-        add_glass(dome);
-    }
-    return json;
-}
-
 Vector3 vector_from(const Json& json) {
     return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
@@ -52,6 +32,26 @@ PortDesc port_from(const Json& json) {
 }
 
 }  // namespace
+
+Json port_json(const PortDesc& port) {
+    Json json;
+    const auto add_glass = [&json](const auto& p) {
+        json["thickness"] = p.thickness;
+        json["n_air"] = p.n_air;
+        json["n_glass"] = p.n_glass;
+        json["n_water"] = p.n_water;
+    };
+    if (const auto* flat = std::get_if<FlatPortDesc>(&port)) {
+        json = {
+            {"type", "flat"}, {"normal", vector_json(flat->normal)}, {"distance", flat->distance}};
+        add_glass(*flat);
+    } else {
+        const auto& dome = std::get<DomePortDesc>(port);
+        json = {{"type", "dome"}, {"center", point_json(dome.center)}, {"radius", dome.radius}};
+        add_glass(dome);
+    }
+    return json;
+}
 
 Json camera_json(const CameraDesc& camera) {
     const IntrinsicsDesc& k = camera.intrinsics;

@@ -4,6 +4,7 @@
 
 #include "core/base/version.h"
 #include "core/json/json.h"
+#include "dataset/camera_json.h"
 
 namespace uw {
 namespace {
@@ -14,29 +15,6 @@ Json field(const FieldOfView& field) {
     return {{"horizontal", field.horizontal * k_degrees},
             {"vertical", field.vertical * k_degrees},
             {"diagonal", field.diagonal * k_degrees}};
-}
-
-Json port(const PortDesc& desc) {
-    Json json;
-    const auto glass = [&json](const auto& of) {
-        json["thickness"] = of.thickness;
-        json["n_air"] = of.n_air;
-        json["n_glass"] = of.n_glass;
-        json["n_water"] = of.n_water;
-    };
-    if (const auto* dome = std::get_if<DomePortDesc>(&desc)) {
-        json["type"] = "dome";
-        json["center"] = {dome->center.x, dome->center.y, dome->center.z};
-        json["radius"] = dome->radius;
-        glass(*dome);
-        return json;
-    }
-    const auto& flat = std::get<FlatPortDesc>(desc);
-    json["type"] = "flat";
-    json["normal"] = {flat.normal.x, flat.normal.y, flat.normal.z};
-    json["distance"] = flat.distance;
-    glass(flat);
-    return json;
 }
 
 }  // namespace
@@ -60,7 +38,7 @@ std::string calibration_json(const CalibrationReport& report) {
     json["distortion"] = {{"model", fisheye ? "fisheye" : "brown-conrady"},
                           {"k", camera.distortion.k},
                           {"p", camera.distortion.p}};
-    json["port"] = camera.port ? port(*camera.port) : Json(nullptr);
+    json["port"] = camera.port ? port_json(*camera.port) : Json(nullptr);
     json["field_of_view_in_housing"] = field(report.in_lens);
     json["field_of_view_in_water"] = field(report.in_water.value_or(report.in_lens));
     json["fold_angle"] = report.fold_angle ? Json(*report.fold_angle * k_degrees) : Json(nullptr);

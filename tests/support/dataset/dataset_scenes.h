@@ -8,8 +8,15 @@
 
 namespace uw::test {
 
+/// The water and the surfaces of the small scene.
+inline std::string small_world() {
+    const std::string scene = k_small_scene;
+    const std::size_t begin = scene.find("water:");
+    return scene.substr(begin, scene.find("lamps:") - begin);
+}
+
 /// The small scene with a camera that moves straight for a second and turns, seven frames.
-inline constexpr const char* k_moving_scene = R"(uwvdb: 1
+inline const std::string k_moving_scene = R"(uwvdb: 1
 camera:
   resolution: [40, 30]
   intrinsics: {fx: 36, fy: 35, cx: 19, cy: 15.5}
@@ -17,32 +24,20 @@ camera:
     keyframes:
       - {time: 0, position: [0, 0, 0], look_at: [0, 0, 4], up: [0, -1, 0]}
       - {time: 1, position: [0.5, 0.1, 0.2], look_at: [0.1, 0, 4], up: [0, -1, 0]}
-water:
-  absorption: [0.35, 0.08, 0.05]
-  scattering: {b: [0.20, 0.22, 0.25], phase: {type: hg, g: 0.8}}
-geometry:
-  - {type: plane, point: [0, 0, 4], normal: [0, 0, -1]}
-  - {type: box, min: [0.2, -0.3, 1.5], max: [0.6, 0.2, 1.9], reflectance: [0.7, 0.4, 0.2]}
-lamps:
+)" + small_world() + R"(lamps:
   - {name: left, position: [-0.5, -0.2, 0], intensity: [50, 40, 30]}
 render: {fps: 6, samples: 1}
 )";
 
 /// A rectified pair, 10 cm apart, before the same wall and box.
-inline constexpr const char* k_pair_scene = R"(uwvdb: 1
+inline const std::string k_pair_scene = R"(uwvdb: 1
 rig: {pose: {position: [0, 0, 0], look_at: [0, 0, 1], up: [0, -1, 0]}}
 cameras:
   - {name: left, resolution: [40, 30], intrinsics: {fx: 36, fy: 35, cx: 19, cy: 15.5},
      pose: {position: [0, 0, 0], look_at: [0, 0, 1], up: [0, -1, 0]}}
   - {name: right, resolution: [40, 30], intrinsics: {fx: 36, fy: 35, cx: 18, cy: 15.5},
      pose: {position: [0.1, 0, 0], look_at: [0.1, 0, 1], up: [0, -1, 0]}}
-water:
-  absorption: [0.35, 0.08, 0.05]
-  scattering: {b: [0.20, 0.22, 0.25], phase: {type: hg, g: 0.8}}
-geometry:
-  - {type: plane, point: [0, 0, 4], normal: [0, 0, -1]}
-  - {type: box, min: [0.2, -0.3, 1.5], max: [0.6, 0.2, 1.9], reflectance: [0.7, 0.4, 0.2]}
-lamps:
+)" + small_world() + R"(lamps:
   - {name: left, position: [-0.5, -0.2, 0], intensity: [50, 40, 30]}
 render: {samples: 1}
 )";
