@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/image/image_writer.h"
@@ -25,10 +26,16 @@ std::string flo_text(const ViewImages& images, Layer layer) {
     append_bytes(text, 202021.25F);
     append_bytes(text, static_cast<std::int32_t>(images.width()));
     append_bytes(text, static_cast<std::int32_t>(images.height()));
-    for (int y = 0; y < images.height(); ++y)
+    std::vector<float> row(2 * static_cast<std::size_t>(images.width()));
+    text.reserve(text.size() +
+                 std::span(row).size_bytes() * static_cast<std::size_t>(images.height()));
+    for (int y = 0; y < images.height(); ++y) {
+        auto out = row.begin();
         for (int x = 0; x < images.width(); ++x)
             for (const float value : images.at(layer, x, y).first(2))
-                append_bytes(text, std::isfinite(value) ? value : k_unknown_flow);
+                *out++ = std::isfinite(value) ? value : k_unknown_flow;
+        append_floats(text, row);
+    }
     return text;
 }
 
