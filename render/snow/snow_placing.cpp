@@ -115,28 +115,35 @@ void place(const SnowPlacing& scene, const SnowParticle& particle, double range,
            const PixelWindow& window, SnowSplats& result) {
     const Camera& camera = scene.views.front().camera;
     const Point3& x = particle.position;
-    const auto at = camera.project(x);
-    if (!at) return;
-    const auto ray = camera.refracted_ray(at->x, at->y);
-    if (!ray) return;
-    const double distance = uw::distance(ray->origin, x);
+    const auto sight = camera.sight(x);
+    if (!sight) return;
+    const ImagePoint& at = sight->image;
+    const Ray& ray = sight->ray;
+    const double distance = uw::distance(ray.origin, x);
     if (distance > range || distance <= 0.5 * particle.diameter) return;
-    const AcrossAxes axes(ray->direction);
-    const auto plane = plane_from_pixels(camera, *at, *ray, x, axes);
+    // Most that are not drawn are hidden, or else outside the window: first what tells the sooner.
+    const bool is_within =
+        at.x >= window.x0 && at.x < window.x1 && at.y >= window.y0 && at.y < window.y1;
+    const auto end_of_sight = [&] {
+        return scene.surfaces.empty() ? k_infinitely_far : scene.surfaces.hit_distance(ray);
+    };
+    double end = is_within ? end_of_sight() : k_infinitely_far;
+    if (end <= distance) return;
+    const AcrossAxes axes(ray.direction);
+    const auto plane = plane_from_pixels(camera, at, ray, x, axes);
     if (!plane) return;
     const PlaneMap pixels = plane->inverse();
-    const Footprint footprint(path_of(scene.views, *at, x, scene.desc.drift, axes, pixels),
+    const Footprint footprint(path_of(scene.views, at, x, scene.desc.drift, axes, pixels),
                               0.5 * particle.diameter * pixels,
-                              blur_of(camera, *at, *ray, x, axes, pixels));
+                              blur_of(camera, at, ray, x, axes, pixels));
     const PixelWindow seen = intersection(footprint.bounds(), window);
     if (seen.width() <= 0 || seen.height() <= 0) return;
-    const double end =
-        scene.surfaces.empty() ? k_infinitely_far : scene.surfaces.hit_distance(*ray);
+    if (!is_within) end = end_of_sight();
     if (end <= distance) return;
     const std::size_t bands = scene.desc.reflectance.size();
     thread_local std::vector<double> radiance;
     radiance.resize(bands);
-    scene.lighting.radiance(x, *ray, distance, radiance);
+    scene.lighting.radiance(x, ray, distance, radiance);
     // The coefficients hold the particles in front of this one, which cover it as well.
     const double seen_through =
         std::exp(scene.model.drawn_depth(distance)) * scene.sensor.surface_factor(distance);
@@ -147,7 +154,7 @@ void place(const SnowPlacing& scene, const SnowParticle& particle, double range,
     result.splats.push_back(
         {.distance = distance,
          .id = particle.id,
-         .hidden = static_cast<float>(scene.veil.share_beyond(at->x, at->y, distance, end)),
+         .hidden = static_cast<float>(scene.veil.share_beyond(at.x, at.y, distance, end)),
          .radiance = first,
          .footprint = footprint});
 }
