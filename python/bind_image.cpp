@@ -32,6 +32,18 @@ py::array_t<float> pixels(const py::object& self) {
             self};
 }
 
+/// A derivative (rows, columns, bands), a view that keeps the image alive.
+py::array_t<float> derivative(const py::object& self, const std::string& name) {
+    const auto& image = self.cast<ImageObject&>();
+    const auto found = image.derivatives.find(name);
+    if (found == image.derivatives.end())
+        throw py::key_error(name + ": request it by derivatives=[...] when rendering");
+    const PixelWindow& window = image.film.window();
+    const std::vector<py::ssize_t> shape{window.height(), window.width(),
+                                         static_cast<py::ssize_t>(image.bands_nm.size())};
+    return py::array_t<float>(shape, found->second.data(), self);
+}
+
 double exposure_of(const ImageObject& image, std::optional<double> exposure) {
     return exposure ? *exposure : automatic_exposure(image.film).value_or(1.0);
 }
@@ -90,6 +102,7 @@ py::tuple window(const ImageObject& image) {
 void bind_image(py::module_& module) {
     py::class_<ImageObject, std::shared_ptr<ImageObject>>(module, "Image")
         .def_property_readonly("pixels", pixels)
+        .def("derivative", derivative, py::arg("name"))
         .def_property_readonly("channels",
                                [](const ImageObject& i) { return i.film.channel_names(); })
         .def_property_readonly("window", window)

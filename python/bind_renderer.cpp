@@ -13,6 +13,7 @@
 #include "python/scene_object.h"
 #include "python/watched_task.h"
 #include "render/id_table.h"
+#include "render/image_derivative.h"
 #include "render/image_header.h"
 #include "render/image_request.h"
 
@@ -27,6 +28,7 @@ struct Wanted {
     ImageRequest image;
     ImageChoice choice;
     RenderOptions options;
+    std::vector<std::string> derivatives;
 };
 
 Wanted wanted_of(const py::dict& settings) {
@@ -43,6 +45,7 @@ Wanted wanted_of(const py::dict& settings) {
     take("orders", wanted.options.paths.orders);
     take("frame", wanted.choice.frame);
     take("camera", wanted.choice.camera);
+    take("derivatives", wanted.derivatives);
     wanted.options.paths.error = wanted.image.error;
     wanted.options.frame = wanted.choice.frame.value_or(0);
     std::optional<std::array<int, 4>> crop;
@@ -108,6 +111,8 @@ class RendererObject {
             image.objects = numbered(names.objects);
             image.materials = numbered(names.materials);
         }
+        for (const std::string& name : wanted.derivatives)
+            image.derivatives[name] = image_derivative(renderer_, name, wanted.options);
         return std::make_shared<ImageObject>(std::move(image));
     }
 

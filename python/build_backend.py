@@ -39,6 +39,7 @@ def install(build, prefix):
 
 
 def metadata(project):
+    """The version, and the text of METADATA."""
     version = re.search(r"project\(uwvdb VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {version}",
              f"Summary: {project['description']}", f"Requires-Python: {project['requires-python']}",
@@ -46,14 +47,35 @@ def metadata(project):
     return version, "\n".join(lines) + "\n"
 
 
-def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    version, text = metadata(project)
+def project():
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+
+
+def tag():
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    platform = re.sub(r"\W", "_", sysconfig.get_platform())
-    tag = f"{python}-{python}-{platform}"
-    name = f"uwvdb-{version}-{tag}.whl"
-    info = f"uwvdb-{version}.dist-info"
+    return f"{python}-{python}-{re.sub(r'[^a-zA-Z0-9]', '_', sysconfig.get_platform())}"
+
+
+def info_files():
+    """The folder of the wheel's metadata, and its files but for the record."""
+    version, text = metadata(project())
+    return f"uwvdb-{version}.dist-info", {
+        "METADATA": text,
+        "WHEEL": f"Wheel-Version: 1.0\nGenerator: uwvdb\nRoot-Is-Purelib: false\nTag: {tag()}\n"}
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    info, files = info_files()
+    folder = pathlib.Path(metadata_directory) / info
+    folder.mkdir()
+    for name, text in files.items():
+        (folder / name).write_text(text)
+    return info
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    info, files = info_files()
+    name = f"{info.removesuffix('.dist-info')}-{tag()}.whl"
     record = []
     with tempfile.TemporaryDirectory() as prefix, \
             zipfile.ZipFile(pathlib.Path(wheel_directory) / name, "w",
@@ -66,9 +88,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         for file in sorted(package.rglob("*")):
             if file.is_file():
                 add(file.relative_to(package).as_posix(), file.read_bytes())
-        add(f"{info}/METADATA", text.encode())
-        add(f"{info}/WHEEL", (f"Wheel-Version: 1.0\nGenerator: uwvdb\nRoot-Is-Purelib: false\n"
-                              f"Tag: {tag}\n").encode())
+        for file, text in files.items():
+            add(f"{info}/{file}", text.encode())
         wheel.writestr(f"{info}/RECORD", "".join(record) + f"{info}/RECORD,,\n")
     return name
 

@@ -19,7 +19,8 @@ struct ImageObject {
     ImageMetadata metadata;
     RenderReport report;
     std::vector<double> bands_nm;
-    std::map<int, std::string> objects, materials;  // names by number
+    std::map<int, std::string> objects, materials;            // names by number
+    std::map<std::string, std::vector<float>> derivatives{};  // image_derivative
 };
 
 /// Writes it as its name's ending says: the OpenEXR that the program writes, or the preview as PNG

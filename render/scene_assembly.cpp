@@ -127,6 +127,26 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
     }
 }
 
+LightTransport transport_in(const Medium& medium, const PathWeight& path_weight,
+                            const AssembledScene& scene, const DeepShadows& deep_shadows) {
+    const RenderDesc& render = scene.desc.render;
+    LitScene lit = scene.lit();
+    lit.medium = &medium;
+    lit.path_weight = path_weight;
+    return integrator_kind(render.integrator)
+        .make({lit,
+               scene.desc.camera.world_from_camera,
+               scene.slabs.value_or(Slabs{}),
+               render.quality,
+               {deep_shadows.begin(), deep_shadows.end()}});
+}
+
+void weigh_as_output(const SceneDesc& desc, LightTransport& transport) {
+    if (desc.render.output == RenderDesc::Output::paper)
+        transport.integrator = std::make_unique<FocusWeightedIntegrator>(
+            std::move(transport.integrator), desc.camera.lens.value().focal_length);
+}
+
 }  // namespace
 
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
@@ -182,14 +202,7 @@ AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
 LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows) {
     const RenderDesc& render = scene.desc.render;
     const auto make = [&](const Medium& medium) {
-        LitScene lit = scene.lit();
-        lit.medium = &medium;
-        return integrator_kind(render.integrator)
-            .make({lit,
-                   scene.desc.camera.world_from_camera,
-                   scene.slabs.value_or(Slabs{}),
-                   render.quality,
-                   {deep_shadows.begin(), deep_shadows.end()}});
+        return transport_in(medium, {}, scene, deep_shadows);
     };
     LightTransport transport = make(scene.water.medium);
     if (scene.snow)
@@ -201,9 +214,14 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
     else if (scattering_of(render) == RenderDesc::Scattering::multiple)
         transport.paths = std::make_shared<PathTracer>(
             scene.lit(), PathOptions{{deep_shadows.begin(), deep_shadows.end()}});
-    if (render.output == RenderDesc::Output::paper)
-        transport.integrator = std::make_unique<FocusWeightedIntegrator>(
-            std::move(transport.integrator), scene.desc.camera.lens.value().focal_length);
+    weigh_as_output(scene.desc, transport);
+    return transport;
+}
+
+LightTransport make_single_scattering(const AssembledScene& scene, const DeepShadows& deep_shadows,
+                                      const Medium& medium, const PathWeight& path_weight) {
+    LightTransport transport = transport_in(medium, path_weight, scene, deep_shadows);
+    weigh_as_output(scene.desc, transport);
     return transport;
 }
 

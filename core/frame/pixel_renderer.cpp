@@ -227,7 +227,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
         for (std::size_t b = 0; b < bands; ++b) {
             const double emission = weight * reflection.emission()[b] * seen;
             result.clean[b] += emission;
-            result.direct[b] += emission * to_camera[b];
+            result.direct[b] += emission * to_camera[b] * light.glow_weight(sample);
         }
     }
     Spectrum brdf;

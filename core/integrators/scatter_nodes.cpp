@@ -37,6 +37,13 @@ void ScatterNodes::look_up(const ConcentrationProfile& profile) {
     }
 }
 
+void ScatterNodes::weigh(const PathWeight& path_weight) {
+    const double* const columns = path_weight.kind == PathWeight::Kind::column
+                                      ? column.data() + path_weight.constituent * size()
+                                      : nullptr;
+    for (std::size_t i = 0; i < size(); ++i) weight[i] *= columns ? columns[i] : s[i] + radius[i];
+}
+
 void ScatterNodes::evaluate_phases(const PhaseTable& table, std::size_t phases) {
     phase.resize(size() * phases);
     table.evaluate(half_tangent, phase);

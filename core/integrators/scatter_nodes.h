@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/integrators/path_weight.h"
 #include "core/optics/concentration_field.h"
 #include "core/optics/medium.h"
 #include "core/optics/optical_depth.h"
@@ -28,6 +29,9 @@ struct ScatterNodes {
     void clear();
     /// Fills column and concentration from the ray's profile and lamp_column.
     void look_up(const ConcentrationProfile& profile);
+    /// Multiplies every node's weight by that of its path, from lamp to node to the ray's origin.
+    /// After look_up.
+    void weigh(const PathWeight& path_weight);
     /// Fills phase from half_tangent; `phases` is the number of phase functions in the table.
     void evaluate_phases(const PhaseTable& table, std::size_t phases);
 };

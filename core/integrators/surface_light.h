@@ -19,6 +19,7 @@ class SurfaceLight {
         bands_ = bands;
         geometry_terms_.assign(samples * emitters.size(), 0.0);
         transmittances_.assign(samples * (1 + emitters.size()) * bands, 0.0);
+        camera_weights_.clear();
     }
 
     const std::vector<Lamp>& emitters() const { return *emitters_; }
@@ -38,6 +39,11 @@ class SurfaceLight {
     /// e^-tau per band from the sample to its ray's origin.
     std::span<const double> to_camera(std::size_t sample) const { return row(sample, 0); }
 
+    /// By what the sample's own glow is weighted (PathWeight).
+    double glow_weight(std::size_t sample) const {
+        return camera_weights_.empty() ? 1 : camera_weights_[sample];
+    }
+
     // For SurfaceLighting, which fills in the values:
 
     /// Irradiance without water for 1 W/sr on the emitter's axis [1/m^2]: relative intensity times
@@ -56,6 +62,8 @@ class SurfaceLight {
     std::span<const double> from_emitter(std::size_t sample, std::size_t emitter) const {
         return row(sample, 1 + emitter);
     }
+    /// Empty, or the weight of every sample's path to the camera.
+    std::vector<double>& camera_weights() { return camera_weights_; }
     /// All transmittances, for processing in bulk.
     std::span<double> transmittances() { return transmittances_; }
 
@@ -73,6 +81,7 @@ class SurfaceLight {
     const std::vector<Lamp>* emitters_ = nullptr;
     std::size_t bands_ = 0;
     std::vector<double> geometry_terms_;  // [sample][emitter]
+    std::vector<double> camera_weights_;
     std::vector<double> transmittances_;  // [sample][to the camera, then from each emitter][band]
 };
 

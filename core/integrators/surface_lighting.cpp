@@ -75,8 +75,11 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
     };
     columns.begin(scene_, attenuation_, {&deep_shadows_, column_tolerance_}, samples);
     columns.take_camera();
-    for (std::size_t i = 0; i < samples.size(); ++i)
+    const PathWeight& weight = scene_.path_weight;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
         set_depths(i, samples[i]->hit.distance, light.to_camera(i));
+        if (weight) light.camera_weights().push_back(weight.of(samples[i]->hit.distance, column));
+    }
     for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
         const Lamp& lamp = (*scene_.emitters)[j];
         facing.find(lamp, samples);
@@ -87,6 +90,9 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
             const std::size_t i = facing.samples[n];
             light.geometry_term(i, j) = facing.geometry_terms[n];
             set_depths(i, facing.radii[n], light.from_emitter(i, j));
+            if (weight)
+                light.geometry_term(i, j) *=
+                    light.glow_weight(i) + weight.of(facing.radii[n], column);
         }
     }
     exp_of_minus(light.transmittances());

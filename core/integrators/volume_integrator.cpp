@@ -179,6 +179,7 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
                                    static_cast<std::size_t>(w.profile.constituent_count));
         deep_shadows_[j]->columns(w.nodes.position, w.nodes.lamp_column);
         w.nodes.look_up(w.profile);
+        if (scene_.path_weight) w.nodes.weigh(scene_.path_weight);
         w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
         w.radiance.assign(distances.size(), Spectrum{});
         sum_.add(w.nodes, emitters[j].axis_intensity(), w.radiance);

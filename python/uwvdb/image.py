@@ -100,6 +100,19 @@ class Image(Mapping[str, "NDArray[np.float32]"]):
         """Names by the numbers of the layer "material", if it was requested."""
         return self._image.materials
 
+    def derivative(self, name: str) -> NDArray[np.float32]:
+        """The derivative of "total" (height, width, bands) that was requested by
+        render(derivatives=[name]), a view:
+
+        "water.absorption", "water.scattering"  by the uniform water's coefficient in the same
+                              band [radiance per 1/m]; the phase function stays as it is
+        "concentration.NAME"  by a factor on the concentrations of a constituent of the volumes
+                              (scene.water.constituents), at 1 [radiance]
+
+        Light scattered once; exact: the same sums as the image's, differentiated term by term.
+        """
+        return self._image.derivative(name)
+
     @property
     def automatic_exposure(self) -> float | None:
         """The factor by which srgb() multiplies on its own; None for a black image."""

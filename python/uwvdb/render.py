@@ -60,7 +60,8 @@ class Renderer:
                progress: Progress | None = None, *, size: tuple[int, int] | None = None,
                crop: tuple[int, int, int, int] | None = None, samples: int | None = None,
                integrator: str | None = None, error: float | None = None, orders: int = 0,
-               frame: int | None = None, camera: str | int | None = None) -> Image:
+               frame: int | None = None, camera: str | int | None = None,
+               derivatives: Sequence[str] = ()) -> Image:
         """The image of a scene. What is not given is as the scene says.
 
         layers      names of layers (docs/layers.md), or one text with commas: "total", "depth",
@@ -76,6 +77,8 @@ class Renderer:
         orders      of integrator path: layers of light by how often it was scattered, up to this
         frame       of what moves, and of files with a number; needed by the layers "flow"
         camera      of a rig: name or index; left out: its only one
+        derivatives  of the image, for Image.derivative(): "water.absorption", "water.scattering"
+                    or "concentration.NAME"; each takes one or two times as long as the image
 
         Raises InputError, IoError, UsageError, Interrupted and KeyboardInterrupt; the Renderer
         stays usable. Warns with SceneWarning.
@@ -86,7 +89,8 @@ class Renderer:
         settings: dict[str, Any] = {
             "layers": layers or "", "quality": quality, "size": size, "crop": crop,
             "samples": samples, "integrator": integrator, "error": error, "orders": orders,
-            "frame": frame, "camera": scene._camera_index(camera)}
+            "frame": frame, "camera": scene._camera_index(camera),
+            "derivatives": list(derivatives)}
         if layers is not None and not isinstance(layers, str):
             settings["layers"] = ",".join(layers)
         settings = {key: value for key, value in settings.items() if value is not None}

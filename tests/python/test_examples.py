@@ -49,3 +49,13 @@ def test_flat_port_calibration(tmp_path):
 def test_dataset(tmp_path):
     said = run_example("dataset.py", 2, folder=tmp_path).splitlines()
     assert len(said) == 2 and "'image': (3, 96, 128)" in said[0]
+
+
+def test_fit_water(tmp_path):
+    said = run_example("fit_water.py", "--size", 12, 9, folder=tmp_path)
+    rows = re.findall(r"(\S+) \+- (\S+)  \(true (\S+)\)", said)
+    assert len(rows) == 7
+    for value, error, truth in (map(float, row) for row in rows):
+        assert abs(value - truth) < 4 * error and error < 0.5 * truth
+    # One each step: by differences each would take eight.
+    assert int(said.splitlines()[-1].split()[0]) < 40

@@ -1,0 +1,126 @@
+# ctest labels: analytic
+"""Derivatives of images, against central differences."""
+
+import numpy as np
+import pytest
+
+import uwvdb
+
+# One for all: at quality exact, most of the work is light that it keeps.
+RENDERER = uwvdb.Renderer()
+
+
+@pytest.fixture
+def murky(scene):
+    scene.update({"camera.resolution": [6, 4], "water.absorption": [0.3, 0.1, 0.05],
+                  "water.scattering": {"b": [0.2, 0.25, 0.3], "phase": {"type": "hg", "g": 0.8}},
+                  "render": {"samples": 1}})
+    return scene
+
+
+def with_volumes(scene):
+    rng = np.random.default_rng(6)
+    scene.volumes.add(rng.uniform(0.2, 1, (8, 6, 6)), voxel_size=0.2, origin=(-0.7, -0.5, 1),
+                      concentration={"small": 2, "large": 10})
+    scene.volumes.add(rng.uniform(0.2, 1, (6, 6, 6)), voxel_size=0.2, origin=(-0.3, -0.6, 1.2),
+                      absorption=[2, 1.5, 1], scattering=0.8, name="ink")
+    return scene
+
+
+def central(render, step):
+    """By Richardson from two steps: the error falls with step^4."""
+    def difference(h):
+        return (render(h).astype(np.float64) - render(-h)) / (2 * h)
+    return (4 * difference(step / 2) - difference(step)) / 3
+
+
+def rendered(scene, path, values, change):
+    changed = scene.copy()
+    changed[path] = np.array(values) + change
+    return RENDERER.render(changed, quality="exact")["total"]
+
+
+def assert_alike(derivative, expected):
+    # Promised is 1e-4. Images are float32: their differences are good to some 3e-5 here.
+    assert derivative.shape == expected.shape and derivative.dtype == np.float32
+    error = np.abs(derivative - expected) / np.abs(expected).max(axis=(0, 1))
+    assert error.max() < 1e-4
+    assert np.abs(expected).max() > 0
+
+
+@pytest.mark.parametrize("name, path", [("water.absorption", "water.absorption"),
+                                        ("water.scattering", "water.scattering.b")])
+def test_by_coefficients_of_the_water(murky, name, path):
+    scene = with_volumes(murky)
+    # Particles scatter by phase functions of their own, whatever the water's.
+    scene["volumes[1].grids.ink.phase"] = {"type": "hg", "g": 0.5}
+    image = RENDERER.render(scene, quality="exact", derivatives=[name])
+    values = scene[path]
+    assert_alike(image.derivative(name),
+                 central(lambda h: rendered(scene, path, values, h), 0.004))
+
+
+@pytest.mark.parametrize("name, path", [
+    ("small", "volumes[0].grids.array1.small"), ("large", "volumes[0].grids.array1.large")])
+def test_by_concentrations(murky, name, path):
+    scene = with_volumes(murky)
+    name, value = f"concentration.{name}", scene[path]
+    image = RENDERER.render(scene, quality="exact", derivatives=[name])
+    expected = central(lambda h: rendered(scene, path, value, h * value), 0.08)
+    assert_alike(image.derivative(name), expected)
+
+
+def test_by_a_grid_with_coefficients_of_its_own(murky):
+    rng = np.random.default_rng(6)
+    murky.volumes.add(rng.uniform(0.2, 1, (8, 6, 6)), voxel_size=0.2, origin=(-0.7, -0.5, 1),
+                      absorption=[1, 0.8, 0.6], scattering=0.5, name="ink")
+    image = RENDERER.render(murky, quality="exact", derivatives=["concentration.ink"])
+
+    def render(h):
+        changed = murky.copy()
+        changed.update({"volumes[0].grids.ink.absorption": (1 + h) * np.array([1, 0.8, 0.6]),
+                        "volumes[0].grids.ink.scattering": (1 + h) * 0.5})
+        return RENDERER.render(changed, quality="exact")["total"]
+    assert_alike(image.derivative("concentration.ink"), central(render, 0.08))
+
+
+def test_a_single_path_has_the_derivative_of_its_exponential(scene):
+    # Water that only absorbs: every path's light is e^(-a l), l = from lamp to wall to camera.
+    scene.update({"lamps": scene["lamps"][:1], "render": {"samples": 1},
+                  "water.absorption": [0.3, 0.1, 0.05],
+                  "water.scattering": {"b": 0, "phase": {"type": "hg", "g": 0.8}}})
+    image = uwvdb.Renderer().render(scene, ["total", "position"], derivatives=["water.absorption"])
+    to_lamp = np.linalg.norm(image["position"] - np.array([-0.5, 0, 0]), axis=-1)
+    length = to_lamp + np.linalg.norm(image["position"], axis=-1)
+    expected = -length[..., None] * image["total"]
+    assert np.allclose(image.derivative("water.absorption"), expected, rtol=1e-5)
+
+
+def test_derivatives_leave_the_image_as_it_is_and_outlive_it(murky):
+    renderer = uwvdb.Renderer()
+    image = renderer.render(murky, "all", derivatives=["water.absorption", "water.scattering"])
+    assert np.array_equal(image.pixels, uwvdb.Renderer().render(murky, "all").pixels,
+                          equal_nan=True)
+    derivative = image.derivative("water.absorption")
+    kept = derivative.copy()
+    del image
+    renderer.render(murky)
+    assert np.array_equal(derivative, kept)
+    cropped = renderer.render(murky, crop=(1, 2, 4, 4), derivatives=["water.absorption"])
+    assert cropped.derivative("water.absorption").shape == (2, 3, 3)
+
+
+@pytest.mark.parametrize("changes, name, message", [
+    ({}, "water.absorbtion", "unknown; use water.absorption"),
+    ({}, "concentration.small", "the volumes hold nothing"),
+    ({"render.integrator": "reference"}, "water.absorption", "only integrator volume has it"),
+    ({"render.scattering": "multiple"}, "water.absorption", "is that of single scattering"),
+    ({"water.forward_scatter": {"K": 0.1, "G": 0.1, "B": 0.1}}, "water.absorption",
+     "leaves out forward scatter"),
+])
+def test_what_has_no_derivative(murky, changes, name, message):
+    murky.update(changes)
+    with pytest.raises(uwvdb.UsageError, match=message):
+        uwvdb.Renderer().render(murky, quality="draft", derivatives=[name])
+    with pytest.raises(KeyError, match="request it"):
+        uwvdb.Renderer().render(murky, quality="draft").derivative(name)
