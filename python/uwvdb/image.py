@@ -24,7 +24,7 @@ class Image(Mapping[str, "NDArray[np.float32]"]):
     `image["total"]`, and every layer of light, is (height, width, bands); `normal` and `position`
     are (height, width, 3), `flow` is (height, width, 2). Beside what was requested there are "rgb"
     and "alpha". Radiance is in W m^-2 sr^-1 per band, lengths are metres, positions and normals are
-    in the world (docs/layers.md).
+    in the world (docs/command-line.md).
 
     The arrays are views of the image's memory: nothing is copied, and they stay valid when the
     image is gone. What is written to them is in the image.
