@@ -64,8 +64,8 @@ class Renderer:
                derivatives: Sequence[str] = ()) -> Image:
         """The image of a scene. What is not given is as the scene says.
 
-        layers      names of layers (docs/command-line.md), or one text with commas: "total", "depth",
-                    "direct", "backscatter", "clean", "lamps", "all" ...; left out: total and depth
+        layers      names of layers (docs/command-line.md), or one text with commas: "total",
+                    "depth", "direct", "backscatter", "clean", "lamps", "all" ...; left out: total and depth
         quality     "draft", "final" or "exact"
         progress    called as progress(stage, fraction), in this thread, at most every 20 ms; if it
                     returns False, Interrupted is raised, and what it raises ends the work
