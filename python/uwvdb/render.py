@@ -65,7 +65,8 @@ class Renderer:
         """The image of a scene. What is not given is as the scene says.
 
         layers      names of layers (docs/command-line.md), or one text with commas: "total",
-                    "depth", "direct", "backscatter", "clean", "lamps", "all" ...; left out: total and depth
+                    "depth", "direct", "backscatter", "clean", "lamps", "all" ...; left out: total
+                    and depth
         quality     "draft", "final" or "exact"
         progress    called as progress(stage, fraction), in this thread, at most every 20 ms; if it
                     returns False, Interrupted is raised, and what it raises ends the work

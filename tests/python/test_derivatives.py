@@ -124,3 +124,17 @@ def test_what_has_no_derivative(murky, changes, name, message):
         uwvdb.Renderer().render(murky, quality="draft", derivatives=[name])
     with pytest.raises(KeyError, match="request it"):
         uwvdb.Renderer().render(murky, quality="draft").derivative(name)
+
+
+def test_light_matrix_mixes_lamps(scene):
+    matrix = RENDERER.light_matrix(scene, quality="exact")
+    assert matrix.lamps == ["left", "right"] and matrix.images.shape == (2, 8, 12, 3)
+    assert np.abs(matrix.rest).max() < 1e-6
+    factors = np.array([[2, 0.5, 1], [0, 3, 0.1]])
+    mixed = matrix.mix(factors)
+    scene.update({"lamps.left.intensity": factors[0] * scene["lamps.left.intensity"],
+                  "lamps.right.intensity": factors[1] * scene["lamps.right.intensity"]})
+    assert np.allclose(mixed, RENDERER.render(scene, quality="exact")["total"], rtol=1e-6)
+    assert np.allclose(matrix.mix([1, 1]), matrix.images.sum(axis=0), rtol=1e-6)
+    with pytest.raises(uwvdb.UsageError, match=r"expected factors of shape \(2,\) or \(2, 3\)"):
+        matrix.mix([1, 2, 3])
