@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/text.h"
 
 namespace uw {
@@ -164,6 +165,13 @@ void Options::window(std::string names, std::optional<std::array<int, 4>>& varia
 
 void Options::threads(int& variable) {
     integer("--threads", "N", variable, 0, 1024, "threads to use; 0, the default: all");
+}
+
+void Options::confine() {
+    Option& option = all_.emplace_back();
+    option.names = "--confine";
+    option.help = "refuse scenes that read files outside their own folder";
+    option.take = [](const std::string&) { confine_inputs(); };
 }
 
 }  // namespace uw

@@ -73,6 +73,8 @@ class Options {
     void window(std::string names, std::optional<std::array<int, 4>>& variable, std::string help);
     /// `--threads N`.
     void threads(int& variable);
+    /// `--confine`: confine_inputs.
+    void confine();
 
     /// All that were declared, in that order.
     const std::deque<Option>& all() const { return all_; }

@@ -169,6 +169,7 @@ Options dataset_options(DatasetArguments& a) {
     options.path("--merge", "FOLDER", a.merge,
                  "check the set in a folder whose shards are done, and complete it");
     options.threads(a.image.threads);
+    options.confine();
     options.flag("--quiet", a.image.quiet, "print nothing but warnings and errors");
     return options;
 }

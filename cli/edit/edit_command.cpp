@@ -92,6 +92,7 @@ Options edit_options(EditArguments& a) {
     options.path("SCENE", "", a.scene, "the scene file").required = true;
     options.integer("--port", "N", a.port, 0, 65535, "listen there; default 0: any free port");
     options.flag("--no-browser", a.no_browser, "print the address only");
+    options.confine();
     return options;
 }
 

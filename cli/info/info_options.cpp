@@ -31,6 +31,7 @@ Options info_options(InfoArguments& a) {
     options.path("--svg", "OUT.svg", a.svg,
                  "of a scene that moves: draw the camera's path over it, from above and by height");
     options.flag("--json", a.json, "print everything as JSON");
+    options.confine();
     return options;
 }
 

@@ -160,6 +160,7 @@ Options render_options(RenderArguments& a) {
                               "integrated for every pixel"),
                  k_quality_names);
     options.threads(a.threads);
+    options.confine();
     options.path("--stats", "FILE", a.stats, "write times, rays, voxels and memory as JSON");
     options.path("--numbers", "FILE.csv", a.numbers,
                  "measure signal, backscatter, contrast and evenness, lamp by lamp; -: print them");

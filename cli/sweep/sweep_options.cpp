@@ -79,6 +79,7 @@ Options sweep_options(SweepArguments& a) {
     quality.value = Option::Value::word;
     for (const auto& [word, meaning] : k_quality_names) quality.words.emplace_back(word);
     options.threads(a.threads);
+    options.confine();
     options.flag("--quiet", a.quiet, "print nothing but warnings and errors");
     return options;
 }

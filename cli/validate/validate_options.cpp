@@ -25,6 +25,7 @@ Options validate_options(ValidateArguments& a) {
     options.number("--tolerance", "R", a.tolerance, 0, 1,
                    "largest relative difference allowed at a pixel; default 0.001");
     options.threads(a.threads);
+    options.confine();
     options.flag("--quiet", a.quiet, "print failed checks and errors only");
     return options;
 }

@@ -1,11 +1,16 @@
 #include "core/base/input_files.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/file_stamp.h"
+#include "core/base/text.h"
 
 namespace uw {
 
@@ -28,11 +33,25 @@ struct Input {
 struct Registry {
     std::mutex mutex;
     std::multimap<Identity, Input> inputs;
+    bool is_confined = false;
+    std::optional<fs::path> confines;  // once an input was named
 };
 
 Registry& registry() {
     static Registry all;
     return all;
+}
+
+// Precondition: the registry is locked.
+void check_confines(const fs::path& file, Registry& all) {
+    if (!all.is_confined) return;
+    std::error_code error;
+    const fs::path place = fs::weakly_canonical(file, error);
+    if (!all.confines) all.confines = place.parent_path();
+    const fs::path& folder = *all.confines;
+    if (!error && std::ranges::mismatch(folder, place).in1 == folder.end()) return;
+    throw InputError(fmt::format("{}: lies outside '{}', to which --confine keeps what is read",
+                                 printable(file.string()), printable(folder.string())));
 }
 
 bool is_as_old(const FileStamp& a, const FileStamp& b) {
@@ -41,14 +60,21 @@ bool is_as_old(const FileStamp& a, const FileStamp& b) {
 
 }  // namespace
 
+void confine_inputs() {
+    Registry& all = registry();
+    const std::lock_guard lock(all.mutex);
+    all.is_confined = true;
+}
+
 void remember_input(const fs::path& file) {
+    Registry& all = registry();
+    const std::lock_guard lock(all.mutex);
+    check_confines(file, all);
     const std::optional<FileStamp> stamp = stamp_of(file);
     if (!stamp) return;
     std::error_code error;
     fs::path absolute = fs::absolute(file, error);
     if (error) absolute = file;
-    Registry& all = registry();
-    const std::lock_guard lock(all.mutex);
     const auto [begin, end] = all.inputs.equal_range(identity_of(*stamp));
     for (auto input = begin; input != end; ++input) {
         if (input->second.file != absolute) continue;

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <string>
 
+#include "core/base/input_files.h"
+
 namespace uw {
 namespace {
 
@@ -25,6 +27,7 @@ std::filesystem::path config_of(const std::filesystem::path& data_file) {
 bool read_gzip(const std::filesystem::path& file, std::array<std::int32_t, k_values>& values) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) return false;
+    remember_input(file);
     const gzFile in = gzopen(file.c_str(), "rb");
     if (in == nullptr) return false;
     const int size = static_cast<int>(sizeof values);
