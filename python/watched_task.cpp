@@ -5,6 +5,8 @@
 #include <thread>
 #include <utility>
 
+#include "core/base/parallel.h"
+
 namespace uw {
 
 namespace {
@@ -36,6 +38,7 @@ void WatchedTask::run(const std::function<void()>& work, const Watch& watch) {
     news_.clear();
     std::exception_ptr fault, stop;
     std::thread worker([&] {
+        const StopScope scope(is_cancelled_);
         try {
             work();
         } catch (...) {

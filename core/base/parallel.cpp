@@ -7,9 +7,13 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_scheduler_observer.h>
 
+#include "core/base/error.h"
+
 namespace uw {
 
 namespace {
+
+thread_local const std::atomic<bool>* stop_of_thread = nullptr;
 
 // A tenth of the weight of what runs at the usual niceness.
 constexpr int k_background_niceness = 10;
@@ -38,13 +42,25 @@ class PoolObserver final : public tbb::task_scheduler_observer {
 
 }  // namespace
 
+StopScope::StopScope(const std::atomic<bool>& stop) {
+    stop_of_thread = &stop;
+}
+
+StopScope::~StopScope() {
+    stop_of_thread = nullptr;
+}
+
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
     // By the calling thread's floating-point settings. Otherwise they are those that the thread had
     // when it used the pool first: inside Embree, which flushes denormal numbers to 0 meanwhile.
     using Context = tbb::task_group_context;
     Context context(Context::bound, Context::default_traits | Context::fp_settings);
-    tbb::parallel_for(
-        std::size_t{0}, count, [&](std::size_t i) { body(i); }, context);
+    const std::atomic<bool>* const stop = stop_of_thread;
+    const auto step = [&](std::size_t i) {
+        if (stop != nullptr && *stop) throw Interrupted();
+        body(i);
+    };
+    tbb::parallel_for(std::size_t{0}, count, step, context);
 }
 
 int permitted_threads() {

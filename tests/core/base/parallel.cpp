@@ -14,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/error.h"
+
 namespace uw {
 namespace {
 
@@ -45,6 +47,25 @@ TEST(Parallel, RunsWithTheCallersFloatingPointSettings) {
         _mm_setcsr(before);
         EXPECT_EQ(std::ranges::count(halves, expected), 1000) << mode;
     }
+}
+
+TEST(Parallel, StopsWithinItsScope) {
+    std::atomic<bool> stop = false;
+    std::atomic<int> runs = 0;
+    const auto run = [&] {
+        parallel_for(1000, [&](std::size_t) {
+            if (++runs == 10) stop = true;
+        });
+    };
+    {
+        const StopScope scope(stop);
+        EXPECT_THROW(run(), Interrupted);
+        EXPECT_LT(runs, 1000);
+        EXPECT_THROW(with_threads(2, run), Interrupted);
+    }
+    runs = 0;
+    run();
+    EXPECT_EQ(runs, 1000);
 }
 
 TEST(Parallel, WithThreadsLimitsThemForItself) {
