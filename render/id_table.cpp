@@ -78,7 +78,7 @@ void write_id_table(const std::filesystem::path& file, const SurfaceNames& names
     write("id", names.objects);
     write("material", names.materials);
     out.close();
-    if (!out) throw IoError(fmt::format("{}: cannot write", file.string()));
+    if (!out) throw IoError(fmt::format("{}: cannot write; is the disk full?", file.string()));
     target.commit();
 }
 

@@ -100,7 +100,7 @@ struct StatsJson {
         std::ofstream out(target.temporary_path());
         out << json.dump(2) << "\n";
         out.close();
-        if (!out) throw IoError(fmt::format("{}: cannot write", file.string()));
+        if (!out) throw IoError(fmt::format("{}: cannot write; is the disk full?", file.string()));
         target.commit();
     }
 };

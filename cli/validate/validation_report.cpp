@@ -237,7 +237,7 @@ void write_validation_report(const std::filesystem::path& file,
     std::ofstream out(target.temporary_path(), std::ios::binary);
     out << html;
     out.close();
-    if (!out) throw IoError(fmt::format("{}: cannot write", file.string()));
+    if (!out) throw IoError(fmt::format("{}: cannot write; is the disk full?", file.string()));
     target.commit();
 }
 

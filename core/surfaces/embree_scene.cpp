@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@ EmbreeScene::EmbreeScene(const SceneObjects& objects)
     : objects_(objects),
       device_(rtcNewDevice(nullptr), &rtcReleaseDevice),
       scene_(nullptr, &rtcReleaseScene) {
+    if (!device_ && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (!device_) throw std::runtime_error("Embree cannot start on this processor");
     scene_ = new_scene();
     for (const auto& mesh : objects_.meshes) attach(scene_.get(), *mesh);

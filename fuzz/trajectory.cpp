@@ -1,0 +1,18 @@
+#include "core/motion/files/pose_file_reader.h"
+#include "fuzz/fuzzing.h"
+
+// Files of poses, each as one of every format, since none has a mark of its own.
+UWVDB_FUZZ(data, size) {
+    using namespace uw;
+    static const fuzz::InputFolder folder;
+    const std::filesystem::path file = folder.write("poses", fuzz::text_of(data, size));
+    for (const PoseFormat format :
+         {PoseFormat::tum, PoseFormat::euroc, PoseFormat::colmap, PoseFormat::nerfstudio})
+        fuzz::parse([&] {
+            const PoseFile poses = read_pose_file(file, format, "scene.yaml:5: trajectory");
+            for (std::size_t k = 1; k < poses.poses.size(); ++k)
+                if (!(poses.poses[k - 1].time < poses.poses[k].time)) __builtin_trap();
+            if (poses.poses.empty()) __builtin_trap();  // at least one is promised
+        });
+    return 0;
+}

@@ -1,0 +1,99 @@
+// Preloaded into the program by tests/cli/faults: fails one call to the system, the one that the
+// environment variable UWVDB_FAIL names, "write:3" for the third of its kind, and then creates the
+// file UWVDB_FAIL_DONE. Kinds: open (to write), write, rename, allocate (1 MiB or more).
+// Writes to the standard streams are not counted.
+
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdarg>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+
+extern "C" {
+
+void* __libc_malloc(std::size_t bytes);
+void* __libc_memalign(std::size_t alignment, std::size_t bytes);
+
+namespace {
+
+std::atomic<long> calls{0};
+
+/// Whether this call of the kind is the one to fail.
+bool is_due(const char* kind) {
+    const char* const fault = std::getenv("UWVDB_FAIL");
+    if (fault == nullptr) return false;
+    const std::size_t length = std::strlen(kind);
+    if (std::strncmp(fault, kind, length) != 0 || fault[length] != ':') return false;
+    if (++calls != std::atol(fault + length + 1)) return false;
+    if (const char* const done = std::getenv("UWVDB_FAIL_DONE"))
+        ::syscall(SYS_close, ::syscall(SYS_openat, AT_FDCWD, done, O_WRONLY | O_CREAT, 0600));
+    return true;
+}
+
+constexpr std::size_t k_large = std::size_t{1} << 20;
+
+bool fails_allocation(std::size_t bytes) {
+    if (bytes < k_large || !is_due("allocate")) return false;
+    errno = ENOMEM;
+    return true;
+}
+
+}  // namespace
+
+ssize_t write(int file, const void* data, std::size_t bytes) {
+    if (file > STDERR_FILENO && is_due("write")) {
+        errno = ENOSPC;
+        return -1;
+    }
+    return ::syscall(SYS_write, file, data, bytes);
+}
+
+ssize_t writev(int file, const iovec* parts, int count) {
+    if (file > STDERR_FILENO && is_due("write")) {
+        errno = ENOSPC;
+        return -1;
+    }
+    return ::syscall(SYS_writev, file, parts, count);
+}
+
+int rename(const char* from, const char* to) noexcept {
+    if (is_due("rename")) {
+        errno = EDQUOT;
+        return -1;
+    }
+    return static_cast<int>(::syscall(SYS_rename, from, to));
+}
+
+int open(const char* name, int flags, ...) {
+    std::va_list rest;
+    va_start(rest, flags);
+    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(rest, mode_t) : 0;
+    va_end(rest);
+    if ((flags & O_ACCMODE) != O_RDONLY && is_due("open")) {
+        errno = ENOSPC;
+        return -1;
+    }
+    return static_cast<int>(::syscall(SYS_openat, AT_FDCWD, name, flags, mode));
+}
+
+void* malloc(std::size_t bytes) noexcept {
+    return fails_allocation(bytes) ? nullptr : __libc_malloc(bytes);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t bytes) noexcept {
+    return fails_allocation(bytes) ? nullptr : __libc_memalign(alignment, bytes);
+}
+
+int posix_memalign(void** to, std::size_t alignment, std::size_t bytes) noexcept {
+    if (fails_allocation(bytes)) return ENOMEM;
+    *to = __libc_memalign(alignment, bytes);
+    return *to != nullptr ? 0 : ENOMEM;
+}
+
+}  // extern "C"
