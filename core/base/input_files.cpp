@@ -1,15 +1,14 @@
 #include "core/base/input_files.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/file_stamp.h"
 #include "core/base/text.h"
 
 namespace uw {
@@ -59,6 +58,13 @@ bool is_as_old(const FileStamp& a, const FileStamp& b) {
 }
 
 }  // namespace
+
+std::optional<FileStamp> stamp_of(const fs::path& file) {
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) return std::nullopt;
+    return FileStamp{status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
+                     status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+}
 
 void confine_inputs() {
     Registry& all = registry();
