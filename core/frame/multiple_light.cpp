@@ -156,7 +156,7 @@ void MultipleLight::give(std::size_t group, std::size_t band, double radiance,
     if (group < result.lamps.size()) result.lamps[group][band] += radiance;
 }
 
-void MultipleLight::add_water(const PixelView& view, PixelResult& result) const {
+void MultipleLight::add_water(const PixelView& view, std::span<double> light) const {
     thread_local std::vector<Corner> corners;
     thread_local std::vector<float> weights;
     weight_lattice_.find(view.x, view.y, weights);
@@ -182,24 +182,26 @@ void MultipleLight::add_water(const PixelView& view, PixelResult& result) const 
                             sum +=
                                 corner.weight *
                                 corner.node->light.water[(interval * groups + group) * bands_ + b];
-                    result.multiple_volume[b] += share * sum;
-                    give(group, b, share * sum, result);
+                    light[group * bands_ + b] += share * sum;
                 }
             }
         }
     }
 }
 
-void MultipleLight::add_glow(const PixelView& view, PixelResult& result) const {
-    thread_local std::vector<double> glow;
+// What nodes hold beside the glow is a difference, and so noisy; light is not below zero.
+void MultipleLight::add_volume(const PixelView& view, PixelResult& result) const {
+    thread_local std::vector<double> light;
     const std::size_t groups = estimator_.options().groups;
-    glow.assign(groups * bands_, 0.0);
+    light.assign(groups * bands_, 0.0);
+    add_water(view, light);
     for (std::size_t d = 0; d < view.distances.size(); ++d)
-        glow_->add(view.x, view.y, view.distances[d], view.weights[d], glow);
+        glow_->add(view.x, view.y, view.distances[d], view.weights[d], light);
     for (std::size_t group = 0; group < groups; ++group) {
         for (std::size_t b = 0; b < bands_; ++b) {
-            result.multiple_volume[b] += glow[group * bands_ + b];
-            give(group, b, glow[group * bands_ + b], result);
+            const double radiance = std::max(0.0, light[group * bands_ + b]);
+            result.multiple_volume[b] += radiance;
+            give(group, b, radiance, result);
         }
     }
 }
@@ -269,7 +271,8 @@ void MultipleLight::add_surface(const SurfaceSample& sample, std::span<const dou
             }
             double reflected = sample.hit.reflectance[b] * diffuse / total;
             if (reflection.is_glossy()) reflected += glossy / total + mirrored[group * bands_ + b];
-            const double radiance = weight * to_camera[b] * reflected;
+            // What nodes give is smoothed by fits, which may fall below zero where it is dark.
+            const double radiance = weight * to_camera[b] * std::max(0.0, reflected);
             result.multiple_surface[b] += radiance;
             give(group, b, radiance, result);
         }
@@ -279,8 +282,7 @@ void MultipleLight::add_surface(const SurfaceSample& sample, std::span<const dou
 void MultipleLight::add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
                         PixelResult& result) const {
     if (!view.ray) return;
-    add_water(view, result);
-    add_glow(view, result);
+    add_volume(view, result);
     for (std::size_t i = 0; i < view.samples.size(); ++i)
         add_surface(view.samples[i], light.to_camera(first_sample + i), result);
 }

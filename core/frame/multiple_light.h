@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/grid2d.h"
@@ -69,8 +70,8 @@ class MultipleLight {
                       std::vector<Corner>& matches) const;
     void find_matches(double x, double y, const SurfaceHit& hit, double least_cosine,
                       std::vector<Corner>& matches) const;
-    void add_water(const PixelView& view, PixelResult& result) const;
-    void add_glow(const PixelView& view, PixelResult& result) const;
+    void add_water(const PixelView& view, std::span<double> light) const;
+    void add_volume(const PixelView& view, PixelResult& result) const;
     void add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
                      PixelResult& result) const;
     void give(std::size_t group, std::size_t band, double radiance, PixelResult& result) const;

@@ -16,8 +16,9 @@ namespace {
 
 /// Of a polygon whose rest may become a fan: its triangles overlap, which rays have to pay for.
 constexpr std::size_t k_most_fan_corners = 1000;
-/// Steps of the search for ears. Outlines of what was made, not spun, need some 20 per corner.
-constexpr std::size_t k_steps_per_corner = 1000;
+/// Steps of the search for ears, of some 15 ns. Outlines of what was made, not spun, need some 20
+/// per corner; small ones may need what they like.
+constexpr std::size_t k_steps = 100'000, k_steps_per_corner = 200;
 
 struct Corner {
     std::uint32_t vertex = 0;
@@ -179,7 +180,7 @@ void triangulate_polygon(std::span<const std::uint32_t> corners, std::span<const
     // anything.
     while (left > 3 && tried < left) {
         const Corner &b = polygon[tip], &a = polygon[b.before], &c = polygon[b.after];
-        if (++steps > k_steps_per_corner * corners.size()) fail("is too intricate");
+        if (++steps > k_steps + k_steps_per_corner * corners.size()) fail("is too intricate");
         const bool is_ear =
             cross(b.at - a.at, c.at - b.at) > 0 && !reflex.any_within(a, b, c, steps);
         if (is_ear) {
