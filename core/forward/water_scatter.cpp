@@ -93,7 +93,8 @@ void WaterScatter::prepare(std::size_t index, const SlabImages& images,
     if (!level_)
         level_ = std::make_unique<Level>(spacing, desc_, plane_, medium_, images.light.size());
     sums_ = &sums;
-    cut_ = extent_.nearest < slabs_.face(index + 1);
+    // What ends at the slab's face ends in it: beyond the face there is nothing more of that pixel.
+    cut_ = extent_.nearest <= slabs_.face(index + 1);
 }
 
 void WaterScatter::cover(std::size_t index) {
