@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "core/base/text.h"
 
@@ -51,13 +52,30 @@ py::tuple state_of(const ConfigPosition& position) {
 }
 
 /// Positions of a scene have few origins, which they share.
-ConfigPosition position_of(const py::tuple& state) {
-    static std::map<std::string, std::weak_ptr<const std::string>> known;  // under the GIL
-    auto origin = state[0].cast<std::string>();
-    std::weak_ptr<const std::string>& kept = known[origin];
-    auto shared = kept.lock();
-    if (!shared) kept = shared = std::make_shared<const std::string>(origin);
-    return {shared, state[1].cast<int>(), state[2].cast<int>()};
+using Origins = std::map<std::string, std::shared_ptr<const std::string>>;
+
+ConfigPosition position_of(const py::tuple& state, Origins& origins) {
+    auto text = state[0].cast<std::string>();
+    auto& origin = origins[text];
+    if (!origin) origin = std::make_shared<const std::string>(std::move(text));
+    return {origin, state[1].cast<int>(), state[2].cast<int>()};
+}
+
+ConfigNode node_of_state(const py::tuple& state, Origins& origins) {
+    ConfigNode node;
+    node.kind = static_cast<Kind>(state[0].cast<int>());
+    node.quoted = state[1].cast<bool>();
+    node.scalar = state[2].cast<std::string>();
+    for (const py::handle item : state[3])
+        node.items.push_back(node_of_state(item.cast<py::tuple>(), origins));
+    for (const py::handle handle : state[4]) {
+        const auto entry = handle.cast<py::tuple>();
+        node.entries.push_back({entry[0].cast<std::string>(),
+                                position_of(entry[1].cast<py::tuple>(), origins),
+                                node_of_state(entry[2].cast<py::tuple>(), origins)});
+    }
+    node.position = position_of(state[5].cast<py::tuple>(), origins);
+    return node;
 }
 
 }  // namespace
@@ -120,20 +138,8 @@ py::object state_of(const ConfigNode& node) {
 }
 
 ConfigNode node_of_state(const py::tuple& state) {
-    ConfigNode node;
-    node.kind = static_cast<Kind>(state[0].cast<int>());
-    node.quoted = state[1].cast<bool>();
-    node.scalar = state[2].cast<std::string>();
-    for (const py::handle item : state[3])
-        node.items.push_back(node_of_state(item.cast<py::tuple>()));
-    for (const py::handle handle : state[4]) {
-        const auto entry = handle.cast<py::tuple>();
-        node.entries.push_back({entry[0].cast<std::string>(),
-                                position_of(entry[1].cast<py::tuple>()),
-                                node_of_state(entry[2].cast<py::tuple>())});
-    }
-    node.position = position_of(state[5].cast<py::tuple>());
-    return node;
+    Origins origins;
+    return node_of_state(state, origins);
 }
 
 }  // namespace uw

@@ -8,8 +8,7 @@
 namespace uw {
 
 /// The part of an image's header that follows from the scene's description alone: images of the
-/// same scene, frame, request and program have the
-/// same.
+/// same scene, frame, request and program have the same.
 ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
                           const PathRequest& paths = {});
 

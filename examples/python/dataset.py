@@ -4,8 +4,8 @@ an object with a length whose items are arrays. It needs no PyTorch.
     python3 dataset.py 4
 """
 
+import argparse
 import multiprocessing
-import sys
 
 import numpy as np
 
@@ -55,7 +55,9 @@ class UnderwaterImages:
 
 
 def main():
-    images = UnderwaterImages(int(sys.argv[1]) if len(sys.argv) > 1 else 4)
+    parser = argparse.ArgumentParser(description=__doc__.split(",")[0])
+    parser.add_argument("length", type=int, nargs="?", default=4, help="how many images")
+    images = UnderwaterImages(parser.parse_args().length)
     # What DataLoader(images, batch_size=None, num_workers=2) does.
     with multiprocessing.Pool(2) as workers:
         for number, item in enumerate(workers.imap(images.__getitem__, range(len(images)))):
