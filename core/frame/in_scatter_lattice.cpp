@@ -156,8 +156,9 @@ bool InScatterLattice::confirmed(int i, int j, int spacing) {
     Corners from{};
     if (!corners(i, j, spacing, from)) return false;
     const int half = spacing / 2;
-    // Features that five nodes miss in a large cell are found by those of smaller cells.
-    const double allowed = tolerance_ * k_coarsest / spacing;
+    // Few pixels lie in small cells, and features that five nodes miss in a large one are found
+    // by those of smaller ones.
+    const double allowed = tolerance_ * std::pow(static_cast<double>(k_coarsest) / spacing, 1.5);
     for (int v = 0; v <= 2; ++v) {
         for (int u = 0; u <= 2; ++u) {
             if (u != 1 && v != 1) continue;

@@ -67,10 +67,12 @@ void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
     flow = flow_back = disparity = {k_none, k_none};
     flow_occluded = disparity_occluded = k_none;
-    for (Spectrum* const values :
-         {&direct, &forward, &backscatter, &backscatter_first, &multiple_volume, &multiple_surface,
-          &snow, &error, &irradiance, &exitance, &clean, &transmittance})
-        std::ranges::fill(values->first(bands), 0.0);
+    // Bands are few: band by band is faster than spectrum by spectrum.
+    for (std::size_t b = 0; b < bands; ++b)
+        for (Spectrum* const values :
+             {&direct, &forward, &backscatter, &backscatter_first, &multiple_volume,
+              &multiple_surface, &snow, &error, &irradiance, &exitance, &clean, &transmittance})
+            (*values)[b] = 0;
     lamps.assign(lamp_count, Spectrum{});
     orders.clear();
     reflections.clear();
