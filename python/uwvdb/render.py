@@ -95,7 +95,7 @@ class Renderer:
         if layers is not None and not isinstance(layers, str):
             settings["layers"] = ",".join(layers)
         settings = {key: value for key, value in settings.items() if value is not None}
-        image = Image(self._renderer.render(scene._scene, settings, progress))
+        image = Image(self._renderer.render(scene._native, settings, progress))
         for line in image.warnings:
             warnings.warn(line, SceneWarning, stacklevel=2)
         return image

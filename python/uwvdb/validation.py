@@ -43,5 +43,5 @@ def validate(scene: Scene, *, tolerance: float = 1e-3, camera: str | int | None 
     """Compares the ways of computing single scattering of `scene`, as `uwvdb validate` does: sums
     over planes, quadrature, the reference integrator and a grid of constant value against what
     renders. Takes seconds to minutes. `tolerance`: of relative differences. Raises InputError."""
-    checks = _uwvdb.validate(scene._scene, tolerance, scene._camera_index(camera), frame)
+    checks = _uwvdb.validate(scene._native, tolerance, scene._camera_index(camera), frame)
     return Validation([Check(**check) for check in checks])

@@ -9,18 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _uwvdb
+from ._native import Native
 
 __all__ = ["Water"]
 
 
-class Water:
+class Water(Native[_uwvdb.Water]):
     """Homogeneous water: absorption, scattering and phase function by wavelength."""
-
-    _water: _uwvdb.Water
 
     def __init__(self, preset: str | None = None, *,
                  bands: Iterable[float] | None = None, **keys: Any) -> None:
-        """Water of a Jerlov type ("jerlov-I" to "jerlov-9C"), or pure, with any key of a scene's
+        """Water of a Jerlov type ("jerlov-IB" to "jerlov-5C"), or pure, with any key of a scene's
         `water`: salinity, temperature, particles={"small": 0.03}, absorption, scattering and so on.
 
         bands  wavelengths [nm]; left out: 620, 540, 450
@@ -32,28 +31,22 @@ class Water:
             section["preset"] = preset
         if bands is not None:
             section["bands"] = list(bands)
-        self._water = _uwvdb.Water.of_section(section)
-
-    @classmethod
-    def _of(cls, water: _uwvdb.Water) -> Water:
-        made = cls.__new__(cls)
-        made._water = water
-        return made
+        self._native = _uwvdb.Water.of_section(section)
 
     @property
     def bands(self) -> NDArray[np.float64]:
         """Its wavelengths (bands,) [nm]."""
-        return np.array(self._water.bands)
+        return np.array(self._native.bands)
 
     @property
     def absorption(self) -> NDArray[np.float64]:
         """a (bands,) [1/m]."""
-        return self._water.absorption
+        return self._native.absorption
 
     @property
     def scattering(self) -> NDArray[np.float64]:
         """b (bands,) [1/m]."""
-        return self._water.scattering
+        return self._native.scattering
 
     @property
     def attenuation(self) -> NDArray[np.float64]:
@@ -64,7 +57,7 @@ class Water:
         """The volume scattering function (bands, *angles.shape) [1/(m sr)] at angles of scattering
         [degrees, 0 forward to 180]."""
         flat = _arrays.numbers("scattering_function", angles, np.float64)
-        values = self._water.scattering_function(np.ascontiguousarray(flat.ravel()))
+        values = self._native.scattering_function(np.ascontiguousarray(flat.ravel()))
         return values.reshape((len(values), *flat.shape))
 
     def phase(self, angles: ArrayLike) -> NDArray[np.float64]:
@@ -79,15 +72,15 @@ class Water:
     @property
     def phase_functions(self) -> list[str]:
         """What it scatters by, in words."""
-        return self._water.phase_functions
+        return self._native.phase_functions
 
     @property
     def constituents(self) -> list[_uwvdb.Constituent]:
         """What volumes add to a scene's water: name, unit, and absorption and scattering (bands,)
         [1/m] per unit."""
-        return self._water.constituents
+        return self._native.constituents
 
     @property
     def warnings(self) -> list[str]:
         """One line each."""
-        return self._water.warnings
+        return self._native.warnings

@@ -1,0 +1,157 @@
+"""Volumes and surfaces of a scene, made of arrays."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays, _uwvdb
+from .errors import UsageError
+
+__all__ = ["Geometry", "Volumes"]
+
+
+class Section:
+    """A list of the scene's, with entries from files and from memory."""
+
+    _name: str
+    _kind: str
+
+    def __init__(self, scene: _uwvdb.Scene) -> None:
+        self._scene = scene
+
+    def _entries(self) -> list[dict[str, Any]]:
+        entries: list[dict[str, Any]] = (
+            self._scene.get(self._name) if self._scene.has(self._name) else [])
+        return entries
+
+    def __len__(self) -> int:
+        return len(self._entries())
+
+    def __getitem__(self, index: int) -> dict[str, Any]:
+        """An entry as it is written."""
+        return self._entries()[index]
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return iter(self._entries())
+
+    def __delitem__(self, index: int) -> None:
+        self._entries()[index]  # IndexError
+        self._scene.remove(f"{self._name}[{index % len(self)}]")
+
+    def _new_name(self, name: str | None) -> str:
+        taken = set(self._scene.arrays)
+        if name is None:
+            number = 1
+            while f"{self._kind}{number}" in taken:
+                number += 1
+            return f"{self._kind}{number}"
+        if name in taken:
+            raise UsageError(f"{self._name}.add: there is a '{name}' already; give another name")
+        return name
+
+
+class Volumes(Section):
+    """The volumes of a scene: `len`, iteration and `del` work as on a list of their entries."""
+
+    _name, _kind = "volumes", "array"
+
+    def add(self, array: ArrayLike, *, voxel_size: ArrayLike | None = None,
+            origin: ArrayLike = (0, 0, 0), world_from_index: ArrayLike | None = None,
+            concentration: Mapping[str, float] | None = None,
+            absorption: ArrayLike | None = None, scattering: ArrayLike | None = None,
+            phase: Mapping[str, Any] | None = None, name: str | None = None,
+            transform: Mapping[str, Any] | None = None) -> str:
+        """Adds a grid of values, without a file. Returns its name.
+
+        array          (nx, ny, nz) real numbers of any type and memory order; array[i, j, k] lies
+                       at origin + voxel_size * (i, j, k) in the world, and between the values they
+                       are interpolated; outside, and where they are negative or not finite, there
+                       is nothing. The values are copied, quantised to 16 bits per block of 8^3.
+        voxel_size     [m], or three along x, y, z
+        origin         where array[0, 0, 0] lies [m, world]
+        world_from_index  (4, 4) instead of these two: takes (i, j, k, 1) to the world [m]
+        concentration  {"small": s, "large": l}: ppm of particles per unit of value
+        absorption, scattering, phase  instead of it: coefficients [1/m] per unit of value, one per
+                       band or one for all, and a phase function as scene files have it
+        transform      of a scene file's volume: scale, rotate, translate, applied last
+
+        The entry can then be changed as any other: `scene["volumes[0].grids.array1.small"] = 2`.
+        Raises UsageError for an array of another shape, InputError for meanings that no scene file
+        could have.
+        """
+        where = "volumes.add"
+        values = _arrays.numbers(where, array, np.float32)
+        if values.ndim != 3 or 0 in values.shape:
+            raise UsageError(f"{where}: expected an array of shape (nx, ny, nz), "
+                             f"found {_arrays.shape_text(values.shape)}")
+        if voxel_size is not None and world_from_index is None:
+            place = _placed(where, voxel_size, origin)
+        elif world_from_index is not None and voxel_size is None:
+            place = _arrays.matrix(f"{where}: world_from_index", world_from_index)
+        else:
+            raise UsageError(f"{where}: give either voxel_size, with origin, or world_from_index")
+        meaning: dict[str, Any] = dict(concentration or {})
+        for key, value in (("absorption", absorption), ("scattering", scattering),
+                           ("phase", phase)):
+            if value is not None:
+                meaning[key] = value
+        if not meaning:
+            raise UsageError(f"{where}: does not say what the values mean; give concentration in "
+                             "ppm per unit, or absorption and scattering in 1/m")
+        name = self._new_name(name)
+        entry: dict[str, Any] = {"array": name, "grids": {name: meaning}}
+        if transform is not None:
+            entry["transform"] = dict(transform)
+        self._scene.add_volume(name, values, place, entry, where)
+        return name
+
+
+def _placed(where: str, voxel_size: ArrayLike, origin: ArrayLike) -> NDArray[np.float64]:
+    edges = _arrays.vector(f"{where}: voxel_size", voxel_size)
+    if not (np.isfinite(edges).all() and (edges > 0).all()):
+        raise UsageError(f"{where}: voxel_size: expected lengths above 0 m, found {voxel_size!r}")
+    place = np.diag([*edges, 1.0])
+    place[:3, 3] = _arrays.vector(f"{where}: origin", origin)
+    return place
+
+
+class Geometry(Section):
+    """The surfaces of a scene: `len`, iteration and `del` work as on a list of their entries."""
+
+    _name, _kind = "geometry", "mesh"
+
+    def add(self, vertices: ArrayLike, faces: ArrayLike, *,
+            reflectance: ArrayLike | None = None, name: str | None = None,
+            transform: Mapping[str, Any] | None = None,
+            trajectory: Mapping[str, Any] | None = None) -> str:
+        """Adds a mesh of diffuse triangles, opaque from both sides. Returns its name.
+
+        vertices     (V, 3) positions [m, world]
+        faces        (F, 3) whole numbers: the vertices of each triangle, counted from 0
+        reflectance  0 to 1, one per band or one for all; 0.5 if left out
+        transform, trajectory  as scene files have them
+
+        Raises UsageError for arrays of another shape, and InputError.
+        """
+        where = "geometry.add"
+        points = _arrays.numbers(f"{where}: vertices", vertices, np.float64)
+        corners = np.asarray(faces)
+        for what, found in (("vertices", points), ("faces", corners)):
+            if found.ndim != 2 or found.shape[1] != 3 or len(found) == 0:
+                raise UsageError(f"{where}: {what}: expected an array of shape "
+                                 f"({what[0].upper()}, 3), found {_arrays.shape_text(found.shape)}")
+        if corners.dtype.kind not in "iu":
+            raise UsageError(f"{where}: faces: expected whole numbers, found {corners.dtype}")
+        name = self._new_name(name)
+        entry: dict[str, Any] = {"mesh": name}
+        for key, value in (("reflectance", reflectance), ("transform", transform),
+                           ("trajectory", trajectory)):
+            if value is not None:
+                entry[key] = copy.copy(value)
+        self._scene.add_mesh(name, points, corners.astype(np.int64, copy=False), entry, where)
+        return name
