@@ -18,8 +18,8 @@ namespace {
 
 // Pixels that one task renders, in a row.
 constexpr int k_run = 8;
-// Paths between two reports of progress.
-constexpr std::uint64_t k_report = 1024;
+// Paths between two reports of progress, at which an image can be stopped: milliseconds of work.
+constexpr std::uint64_t k_report = 64;
 // The error of so many paths is no more than a guess: more of them than it says are traced.
 constexpr double k_margin = 1.05;
 // Paths per pixel that an image is taken to need before anything is known of it.

@@ -180,6 +180,20 @@ TEST_F(PathFilms, CanBeStopped) {
     EXPECT_THROW(renderer.render(), Interrupted);
 }
 
+TEST_F(PathFilms, CanBeStoppedAfterEach64Paths) {
+    int reports = 0;
+    std::mutex mutex;
+    Renderer renderer([&](const std::string& stage, double) {
+        const std::lock_guard lock(mutex);
+        reports += stage == "render" ? 1 : 0;
+        return true;
+    });
+    desc_.render.samples = 32;
+    renderer.set_scene(SceneDesc(desc_));
+    renderer.render();
+    EXPECT_GE(reports, 12 * 9 * 32 / 64);
+}
+
 TEST_F(PathFilms, OfOnePathHaveNoError) {
     desc_.render.samples = 1;
     render();
