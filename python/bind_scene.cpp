@@ -24,6 +24,13 @@ namespace {
 
 using ScenePointer = std::unique_ptr<SceneObject>;
 
+py::dict variation_values(const SceneObject& scene, int number) {
+    py::dict values;
+    for (const auto& [path, value] : scene.variation_values(number))
+        values[py::str(path)] = object_of(value);
+    return values;
+}
+
 ScenePointer load(const std::filesystem::path& file) {
     return std::make_unique<SceneObject>(read_scene_tree(file, {}), file);
 }
@@ -156,6 +163,13 @@ void bind_scene(py::module_& module) {
         .def("remove", &SceneObject::remove, py::arg("path"))
         .def("add_volume", add_volume)
         .def("add_mesh", add_mesh)
+        .def(
+            "variation",
+            [](const SceneObject& scene, int number) {
+                return std::make_unique<SceneObject>(scene.variation(number));
+            },
+            py::arg("number"))
+        .def("variation_values", variation_values, py::arg("number"))
         .def("copy", [](const SceneObject& scene) { return std::make_unique<SceneObject>(scene); })
         .def_property_readonly("file", &SceneObject::file)
         .def_property_readonly("lamps", lamp_names)

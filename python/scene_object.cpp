@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/text/flow_text.h"
 #include "core/scene/variations/variations_reader.h"
 #include "core/scene/yaml/scene_override.h"
+#include "core/scene/yaml/yaml_document.h"
 #include "render/scene_loading.h"
+#include "render/scene_variations.h"
 
 namespace uw {
 
@@ -21,6 +24,19 @@ void set_origin(ConfigNode& value, const std::shared_ptr<const std::string>& ori
         entry.position = {origin, 0, 0};
         set_origin(entry.value, origin);
     }
+}
+
+/// Its variations, of which `number` is one.
+SceneVariations variations_of(const SceneObject& scene, int number) {
+    if (number < 0)
+        throw UsageError(
+            fmt::format("variation: expected a whole number of 0 or more, found {}", number));
+    SceneVariations variations(scene.tree(), scene.file());
+    if (!variations.desc())
+        throw UsageError(
+            "variation: the scene has no variations; set them, such as scene[\"variations\"] = "
+            "{\"keys\": {\"lamps[0].power\": {\"uniform\": [10, 30]}}}");
+    return variations;
 }
 
 }  // namespace
@@ -75,6 +91,23 @@ void SceneObject::append(const std::string& section, ConfigNode entry, SceneArra
     for (auto& grid : arrays.grids) all.grids.insert(std::move(grid));
     for (auto& mesh : arrays.meshes) all.meshes.insert(std::move(mesh));
     replace(std::move(tree), std::move(all));
+}
+
+SceneObject SceneObject::variation(int number) const {
+    VariedScene varied = variations_of(*this, number).varied(number, &arrays_);
+    SceneObject scene;
+    scene.tree_ = std::move(varied.tree);
+    scene.file_ = file_;
+    scene.arrays_ = arrays_;
+    scene.desc_ = std::make_shared<const SceneDesc>(std::move(varied.desc));
+    return scene;
+}
+
+SceneObject::Changes SceneObject::variation_values(int number) const {
+    Changes values;
+    for (const DrawnValue& value : variations_of(*this, number).values(number))
+        values.emplace_back(value.key, parse_yaml_value(value.text, value.override_text()));
+    return values;
 }
 
 }  // namespace uw

@@ -34,7 +34,14 @@ class SceneObject {
     /// Adds an entry to the list of a section ("volumes"), and what is in memory for it.
     void append(const std::string& section, ConfigNode entry, SceneArrays arrays);
 
+    /// The scene with the values of one of its variations, counted from 0 (SceneVariations).
+    /// UsageError if there is none.
+    SceneObject variation(int number) const;
+    /// Those values, by their paths.
+    Changes variation_values(int number) const;
+
   private:
+    SceneObject() = default;
     void replace(ConfigNode tree, SceneArrays arrays);
 
     ConfigNode tree_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -44,7 +45,10 @@ SceneVariations::SceneVariations(const std::filesystem::path& file,
     if (desc_) refuse_overrides_of_drawn(tree_, *desc_, overrides);
 }
 
-SceneDesc SceneVariations::scene(int variation) const {
+SceneVariations::SceneVariations(ConfigNode tree, std::filesystem::path file)
+    : file_(std::move(file)), tree_(std::move(tree)), desc_(read_variations(tree_, file_)) {}
+
+VariedScene SceneVariations::varied(int variation, const SceneArrays* arrays) const {
     ConfigNode tree = tree_;
     const std::vector<DrawnValue> drawn = values(variation);
     try {
@@ -52,7 +56,8 @@ SceneDesc SceneVariations::scene(int variation) const {
             const std::string place = origin_of(value, variation);
             set_value(tree, value.key, parse_yaml_value(value.text, place), place);
         }
-        return load_scene_tree(tree, file_);
+        SceneDesc desc = load_scene_tree(tree, file_, arrays);
+        return {std::move(tree), std::move(desc)};
     } catch (const InputError& fault) {
         // What lies in one of the values says so itself.
         const std::string_view what = fault.what();

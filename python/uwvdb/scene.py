@@ -90,6 +90,16 @@ class Scene(Native[_uwvdb.Scene]):
     def __deepcopy__(self, memo: Any) -> Scene:
         return self.copy()
 
+    def variation(self, number: int) -> Scene:
+        """The scene with the values that its section `variations` draws for this number, from 0:
+        that of `uwvdb render --variation`. Raises UsageError if it has no such section, and
+        InputError where it is no valid scene with these values."""
+        return self._of(self._native.variation(number))
+
+    def variation_values(self, number: int) -> dict[str, Any]:
+        """What variation(number) sets: values by their paths. Raises UsageError."""
+        return self._native.variation_values(number)
+
     @property
     def volumes(self) -> Volumes:
         """Its volumes, to add arrays to."""
