@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/integrators/integrator_table.h"
+#include "media/water/particle_derivative.h"
 #include "render/exposure.h"
 
 namespace uw {
@@ -17,6 +18,7 @@ namespace uw {
 namespace {
 
 constexpr std::string_view k_concentration = "concentration.";
+constexpr std::string_view k_small = "water.particles.small", k_large = "water.particles.large";
 
 void refuse_other_light(const AssembledScene& scene, const std::string& name) {
     const auto refuse = [&](const char* what) {
@@ -24,14 +26,23 @@ void refuse_other_light(const AssembledScene& scene, const std::string& name) {
     };
     const RenderDesc& render = scene.desc.render;
     if (render.integrator != RenderDesc::Integrator::volume)
-        refuse("only integrator volume has it; write that");
+        refuse(
+            "it is computed term by term from the sums of integrator volume, which others do not "
+            "have; choose integrator volume");
     if (scattering_of(render) == RenderDesc::Scattering::multiple)
-        refuse("is that of single scattering; set render.scattering to single");
+        refuse(
+            "light scattered more than once is the mean over random paths and has none; set "
+            "render.scattering to single, whose image this is the derivative of");
     if (scene.desc.water.forward_scatter.K > 0)
-        refuse("leaves out forward scatter; set water.forward_scatter.K to 0");
-    if (scene.snow) refuse("leaves out marine snow; remove water.snow");
+        refuse(
+            "forward scatter blurs the finished image, and how is not differentiated; remove "
+            "water.forward_scatter, or set its K to 0");
+    if (scene.snow)
+        refuse("marine snow is drawn particle by particle and has none; remove water.snow");
     if (Exposure(scene).part_count() > 0)
-        refuse("is that of one moment; set render.shutter and camera.line_time to 0");
+        refuse(
+            "it is that of a single moment, not of the mean over an exposure; set render.shutter "
+            "and camera.line_time to 0");
 }
 
 /// Coefficients with the same attenuation, of which `scattering` is scattered.
@@ -42,18 +53,22 @@ OpticalCoefficients with_scattering(const OpticalCoefficients& coefficients,
     return changed;
 }
 
-std::vector<Spectrum> nothing_like(const std::vector<Spectrum>& scattering) {
-    return std::vector<Spectrum>(scattering.size());
+using PhaseFunctions = std::vector<std::shared_ptr<const PhaseFunction>>;
+
+/// The medium in which nothing scatters that did, but everything attenuates as before, to scatter
+/// by these phase functions.
+Medium without_scattering(const Medium& medium, PhaseFunctions phases) {
+    Medium dark = medium;
+    const std::vector<Spectrum> nothing(phases.size());
+    dark.phase_functions = std::move(phases);
+    dark.uniform = with_scattering(medium.uniform, nothing);
+    for (Constituent& constituent : dark.constituents)
+        constituent.per_unit = with_scattering(constituent.per_unit, nothing);
+    return dark;
 }
 
-/// The medium in which nothing scatters that did, but everything attenuates as before.
 Medium without_scattering(const Medium& medium) {
-    Medium dark = medium;
-    dark.uniform = with_scattering(medium.uniform, nothing_like(medium.uniform.scattering));
-    for (Constituent& constituent : dark.constituents)
-        constituent.per_unit =
-            with_scattering(constituent.per_unit, nothing_like(constituent.per_unit.scattering));
-    return dark;
+    return without_scattering(medium, medium.phase_functions);
 }
 
 /// Sums images of a scene with other light transports.
@@ -115,6 +130,15 @@ std::vector<Spectrum> shares_of_scattering(const Medium& medium) {
     return shares;
 }
 
+ParticleDerivative derivative_by_particles(const AssembledScene& scene, const std::string& name) {
+    try {
+        return particle_derivative(scene.desc.water, scene.desc.volumes,
+                                   name == k_small ? WaterParticles::small : WaterParticles::large);
+    } catch (const UsageError& fault) {
+        throw UsageError(fmt::format("derivative {}: {}", name, fault.what()));
+    }
+}
+
 std::size_t constituent_called(const std::string& name, const Medium& medium) {
     const std::string_view wanted = std::string_view(name).substr(k_concentration.size());
     const auto found = std::ranges::find(medium.constituents, wanted, &Constituent::name);
@@ -146,11 +170,21 @@ std::vector<float> image_derivative(Renderer& renderer, const std::string& name,
         sum.add(itself, {}, false, one);
         return std::move(sum).take();
     }
+    if (name == k_small || name == k_large) {
+        ParticleDerivative particles = derivative_by_particles(scene, name);
+        Medium themselves = without_scattering(medium, std::move(particles.phase_functions));
+        themselves.uniform = with_scattering(medium.uniform, particles.per_ppm.scattering);
+        sum.add(medium, {PathWeight::Kind::length, 0}, true,
+                minus * particles.per_ppm.attenuation());
+        sum.add(themselves, {}, false, one);
+        return std::move(sum).take();
+    }
     constexpr std::array<std::string_view, 2> k_names{"water.absorption", "water.scattering"};
     if (std::ranges::find(k_names, name) == k_names.end())
         throw UsageError(
             fmt::format("derivative '{}': unknown; use water.absorption, "
-                        "water.scattering or concentration.NAME of a constituent",
+                        "water.scattering, water.particles.small, water.particles.large or "
+                        "concentration.NAME of a constituent",
                         printable(name)));
     if (name == "water.scattering") {
         Medium itself = without_scattering(medium);

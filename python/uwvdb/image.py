@@ -106,6 +106,8 @@ class Image(Mapping[str, "NDArray[np.float32]"]):
 
         "water.absorption", "water.scattering"  by the uniform water's coefficient in the same
                               band [radiance per 1/m]; the phase function stays as it is
+        "water.particles.small", "water.particles.large"  by the concentration of the water's own
+                              particles [radiance per ppm]
         "concentration.NAME"  by a factor on the concentrations of a constituent of the volumes
                               (scene.water.constituents), at 1 [radiance]
 

@@ -78,8 +78,9 @@ class Renderer:
         orders      of integrator path: layers of light by how often it was scattered, up to this
         frame       of what moves, and of files with a number; needed by the layers "flow"
         camera      of a rig: name or index; left out: its only one
-        derivatives  of the image, for Image.derivative(): "water.absorption", "water.scattering"
-                    or "concentration.NAME"; each takes one or two times as long as the image
+        derivatives  of the image, for Image.derivative(): "water.absorption", "water.scattering",
+                    "water.particles.small", "water.particles.large" or "concentration.NAME"; each
+                    takes one or two times as long as the image
 
         Raises InputError, IoError, UsageError, Interrupted and KeyboardInterrupt; the Renderer
         stays usable. Warns with SceneWarning.

@@ -70,6 +70,47 @@ def test_by_concentrations(murky, name, path):
     assert_alike(image.derivative(name), expected)
 
 
+def particles_of(scene):
+    """The water is that of a preset, and so are its particles unless others are given."""
+    for key in ("absorption", "scattering"):
+        del scene[f"water.{key}"]
+    return scene
+
+
+@pytest.mark.parametrize("kind, ppm, given", [
+    ("small", 0.05, {"large": 0.3}), ("large", 0.3, {"small": 0.05}),
+    # Which absorb, but for the preset's own, 0.5 ppm, that its measured absorption holds.
+    ("large", 0.7, {"absorption": "mineral"}), ("large", 0.2, {"absorption": "mineral"})])
+def test_by_the_waters_own_particles(murky, kind, ppm, given):
+    scene = with_volumes(particles_of(murky))
+    scene["volumes[1].grids.ink.phase"] = {"type": "hg", "g": 0.5}
+    scene["water.particles"] = {kind: ppm, **given}
+    name = f"water.particles.{kind}"
+    image = RENDERER.render(scene, quality="exact", derivatives=[name])
+    assert_alike(image.derivative(name),
+                 central(lambda h: rendered(scene, name, ppm, h), 0.08 * ppm))
+
+
+def test_by_particles_that_the_water_has_none_of(murky):
+    scene = particles_of(murky)
+    scene["water.particles"] = {"small": 0, "large": 0}
+    image = RENDERER.render(scene, quality="exact", derivatives=["water.particles.large"])
+
+    def render(h):
+        return rendered(scene, "water.particles.large", 0, h).astype(np.float64)
+    # There is no less than nothing: forwards, by Richardson from three steps.
+    zero, h = render(0), 0.08
+    first = [(render(step) - zero) / step for step in (h, h / 2, h / 4)]
+    second = [2 * finer - coarser for coarser, finer in zip(first, first[1:])]
+    assert_alike(image.derivative("water.particles.large"), (4 * second[1] - second[0]) / 3)
+
+
+def test_particles_that_change_what_a_grid_scatters_like(murky):
+    scene = with_volumes(particles_of(murky))
+    with pytest.raises(uwvdb.UsageError, match="grid ink scatters like the water.*give .* a phase"):
+        RENDERER.render(scene, quality="draft", derivatives=["water.particles.small"])
+
+
 def test_by_a_grid_with_coefficients_of_its_own(murky):
     rng = np.random.default_rng(6)
     murky.volumes.add(rng.uniform(0.2, 1, (8, 6, 6)), voxel_size=0.2, origin=(-0.7, -0.5, 1),
@@ -113,14 +154,18 @@ def test_derivatives_leave_the_image_as_it_is_and_outlive_it(murky):
 @pytest.mark.parametrize("changes, name, message", [
     ({}, "water.absorbtion", "unknown; use water.absorption"),
     ({}, "concentration.small", "the volumes hold nothing"),
-    ({"render.integrator": "reference"}, "water.absorption", "only integrator volume has it"),
-    ({"render.scattering": "multiple"}, "water.absorption", "is that of single scattering"),
+    ({"render.integrator": "reference"}, "water.absorption", "choose integrator volume"),
+    ({"render.scattering": "multiple"}, "water.absorption",
+     "more than once is the mean over random paths and has none; set render.scattering to single"),
     ({"water.forward_scatter": {"K": 0.1, "G": 0.1, "B": 0.1}}, "water.absorption",
-     "leaves out forward scatter"),
+     "blurs the finished image, .*; remove water.forward_scatter, or set its K to 0"),
+    ({"water.snow": {"number": 2000, "diameter": ["0.2 mm", "5 mm"]}}, "water.absorption",
+     "drawn particle by particle.*; remove water.snow"),
+    ({}, "water.particles.small", "the water's scattering is given.*; remove water.scattering"),
 ])
 def test_what_has_no_derivative(murky, changes, name, message):
     murky.update(changes)
-    with pytest.raises(uwvdb.UsageError, match=message):
+    with pytest.raises(uwvdb.UsageError, match=f"^derivative '?{name}'?: .*{message}"):
         uwvdb.Renderer().render(murky, quality="draft", derivatives=[name])
     with pytest.raises(KeyError, match="request it"):
         uwvdb.Renderer().render(murky, quality="draft").derivative(name)
