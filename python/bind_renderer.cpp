@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <mutex>
@@ -8,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/text.h"
 #include "python/bindings.h"
 #include "python/image_object.h"
 #include "python/scene_object.h"
@@ -23,6 +26,8 @@ namespace uw {
 
 namespace {
 
+constexpr std::size_t k_longest_value = 80;  // in messages
+
 /// What of a scene is rendered, and how.
 struct Wanted {
     ImageRequest image;
@@ -31,25 +36,48 @@ struct Wanted {
     std::vector<std::string> derivatives;
 };
 
+[[noreturn]] void refuse_setting(const py::dict& settings, const char* key, const char* expected) {
+    throw UsageError(
+        fmt::format("{}: expected {}, found {}", key, expected,
+                    printable(py::repr(settings[key]).cast<std::string>(), k_longest_value)));
+}
+
+template <class T>
+void take_setting(const py::dict& settings, const char* key, T& value, const char* expected) {
+    if (!settings.contains(key)) return;
+    try {
+        value = settings[key].cast<T>();
+    } catch (const py::cast_error&) {
+        refuse_setting(settings, key, expected);
+    }
+}
+
 Wanted wanted_of(const py::dict& settings) {
     Wanted wanted;
-    const auto take = [&]<class T>(const char* key, T& value) {
-        if (settings.contains(key)) value = settings[key].cast<T>();
+    const auto take = [&](const char* key, auto& value, const char* expected) {
+        take_setting(settings, key, value, expected);
     };
-    take("quality", wanted.image.quality);
-    take("integrator", wanted.image.integrator);
-    take("samples", wanted.image.samples);
-    take("error", wanted.image.error);
-    take("size", wanted.image.size);
-    take("layers", wanted.options.layers);
-    take("orders", wanted.options.paths.orders);
-    take("frame", wanted.choice.frame);
-    take("camera", wanted.choice.camera);
-    take("derivatives", wanted.derivatives);
+    const char* const name = "a name";
+    const char* const number = "a whole number of 0 or more";
+    take("quality", wanted.image.quality, name);
+    take("integrator", wanted.image.integrator, name);
+    take("samples", wanted.image.samples, "a whole number of 1 or more");
+    take("error", wanted.image.error, "a number");
+    take("size", wanted.image.size, "(width, height) in whole pixels");
+    take("layers", wanted.options.layers, "names of layers");
+    take("orders", wanted.options.paths.orders, number);
+    take("frame", wanted.choice.frame, "a whole number");
+    take("camera", wanted.choice.camera, number);
+    take("derivatives", wanted.derivatives, "names of derivatives");
+    if (wanted.image.samples && *wanted.image.samples < 1)
+        refuse_setting(settings, "samples", "a whole number of 1 or more");
+    if (wanted.image.size && std::ranges::min(*wanted.image.size) < 1)
+        refuse_setting(settings, "size", "(width, height) of 1 pixel or more");
+    if (wanted.options.paths.orders < 0) refuse_setting(settings, "orders", number);
     wanted.options.paths.error = wanted.image.error;
     wanted.options.frame = wanted.choice.frame.value_or(0);
     std::optional<std::array<int, 4>> crop;
-    take("crop", crop);
+    take("crop", crop, "(x0, y0, x1, y1) in whole pixels");
     if (crop) wanted.options.window = PixelWindow{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
     return wanted;
 }
@@ -75,6 +103,7 @@ class RendererObject {
                 "render: this Renderer is at work, in another thread or further up; make one for "
                 "each thread");
         const Wanted wanted = wanted_of(settings);
+        // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): other threads may change it
         const std::shared_ptr<const SceneDesc> desc = scene.desc();
         std::shared_ptr<ImageObject> image;
         const py::gil_scoped_release release;

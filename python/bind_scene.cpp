@@ -47,8 +47,12 @@ ScenePointer of_sections(const py::dict& sections, const std::filesystem::path& 
 
 void set(SceneObject& scene, const py::dict& changes) {
     SceneObject::Changes nodes;
-    for (const auto& [path, value] : changes)
+    for (const auto& [path, value] : changes) {
+        if (!py::isinstance<py::str>(path))
+            throw py::type_error("paths of a scene are str, found " +
+                                 py::repr(path).cast<std::string>());
         nodes.emplace_back(path.cast<std::string>(), node_of(value));
+    }
     scene.set(nodes);
 }
 

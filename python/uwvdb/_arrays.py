@@ -17,7 +17,8 @@ def numbers(what: str, array: ArrayLike, dtype: type) -> NDArray[np.generic]:
     found = np.asarray(array)
     if found.dtype.kind not in "biuf":
         raise UsageError(f"{what}: expected real numbers, found {found.dtype}; convert the array")
-    return found.astype(dtype, copy=False)
+    with np.errstate(over="ignore"):  # what is infinite then is warned of as such
+        return found.astype(dtype, copy=False)
 
 
 def rows(what: str, array: ArrayLike, width: int) -> NDArray[np.float64]:
@@ -30,17 +31,21 @@ def rows(what: str, array: ArrayLike, width: int) -> NDArray[np.float64]:
 
 
 def vector(what: str, value: ArrayLike) -> NDArray[np.float64]:
-    """One number for all of three, or three."""
+    """One finite number for all of three, or three."""
     found = numbers(what, value, np.float64)
     if found.shape not in ((), (3,)):
         raise UsageError(f"{what}: expected a number or three, found {shape_text(found.shape)}")
+    if not np.isfinite(found).all():
+        raise UsageError(f"{what}: expected finite numbers, found {value!r}")
     return np.array(np.broadcast_to(found, 3), dtype=np.float64)
 
 
 def matrix(what: str, value: ArrayLike) -> NDArray[np.float64]:
-    """An affine map as a matrix of 4 x 4 numbers."""
+    """An affine map that can be inverted, as a matrix of 4 x 4 numbers."""
     found = numbers(what, value, np.float64)
     if found.shape != (4, 4) or not np.array_equal(found[3], [0, 0, 0, 1]):
         raise UsageError(f"{what}: expected a (4, 4) matrix whose last row is 0, 0, 0, 1, "
                          f"found {shape_text(found.shape)}")
+    if not np.isfinite(found).all() or np.linalg.matrix_rank(found[:3, :3]) < 3:
+        raise UsageError(f"{what}: expected finite numbers, and axes that span a volume")
     return np.array(found, dtype=np.float64)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple, Union
@@ -52,6 +53,7 @@ class Renderer:
 
     def __init__(self, threads: int = 0) -> None:
         """`threads`: how many it uses at most; 0: as many as there are processors."""
+        threads = operator.index(threads)
         if threads < 0:
             raise UsageError(f"Renderer: threads: expected 0 or more, found {threads}")
         self._renderer = _uwvdb.Renderer(threads)
@@ -61,7 +63,7 @@ class Renderer:
                crop: tuple[int, int, int, int] | None = None, samples: int | None = None,
                integrator: str | None = None, error: float | None = None, orders: int = 0,
                frame: int | None = None, camera: str | int | None = None,
-               derivatives: Sequence[str] = ()) -> Image:
+               derivatives: str | Sequence[str] = ()) -> Image:
         """The image of a scene. What is not given is as the scene says.
 
         layers      names of layers (docs/command-line.md), or one text with commas: "total",
@@ -85,6 +87,9 @@ class Renderer:
         Raises InputError, IoError, UsageError, Interrupted and KeyboardInterrupt; the Renderer
         stays usable. Warns with SceneWarning.
         """
+        if not isinstance(scene, Scene):
+            raise UsageError(f"render: expected a Scene, found {type(scene).__name__}; "
+                             "Scene.load(file) reads one")
         if camera is None and len(scene.cameras) > 1:
             raise UsageError(f"camera: the scene has several; choose one of "
                              f"{', '.join(scene.cameras)}")
@@ -92,7 +97,7 @@ class Renderer:
             "layers": layers or "", "quality": quality, "size": size, "crop": crop,
             "samples": samples, "integrator": integrator, "error": error, "orders": orders,
             "frame": frame, "camera": scene._camera_index(camera),
-            "derivatives": list(derivatives)}
+            "derivatives": [derivatives] if isinstance(derivatives, str) else list(derivatives)}
         if layers is not None and not isinstance(layers, str):
             settings["layers"] = ",".join(layers)
         settings = {key: value for key, value in settings.items() if value is not None}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Mapping
 from typing import Any, Union
@@ -94,11 +95,11 @@ class Scene(Native[_uwvdb.Scene]):
         """The scene with the values that its section `variations` draws for this number, from 0:
         that of `uwvdb render --variation`. Raises UsageError if it has no such section, and
         InputError where it is no valid scene with these values."""
-        return self._of(self._native.variation(number))
+        return self._of(self._native.variation(operator.index(number)))
 
     def variation_values(self, number: int) -> dict[str, Any]:
         """What variation(number) sets: values by their paths. Raises UsageError."""
-        return self._native.variation_values(number)
+        return self._native.variation_values(operator.index(number))
 
     @property
     def volumes(self) -> Volumes:
@@ -133,6 +134,7 @@ class Scene(Native[_uwvdb.Scene]):
                 there = ", ".join(names) or "one camera, which has no name"
                 raise UsageError(f"camera: the scene has no camera '{camera}'; it has {there}")
             return names.index(camera)
+        camera = operator.index(camera)
         if not 0 <= camera < max(1, len(names)):
             raise UsageError(f"camera: there is no camera {camera}; count from 0 "
                              f"to {max(1, len(names)) - 1}")

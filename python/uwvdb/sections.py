@@ -95,6 +95,9 @@ class Volumes(Section):
             place = _arrays.matrix(f"{where}: world_from_index", world_from_index)
         else:
             raise UsageError(f"{where}: give either voxel_size, with origin, or world_from_index")
+        if concentration is not None and not isinstance(concentration, Mapping):
+            raise UsageError(f"{where}: concentration: expected ppm per unit of value, such as "
+                             f"{{'small': 0.1, 'large': 1}}, found {concentration!r}")
         meaning: dict[str, Any] = dict(concentration or {})
         for key, value in (("absorption", absorption), ("scattering", scattering),
                            ("phase", phase)):
@@ -113,7 +116,7 @@ class Volumes(Section):
 
 def _placed(where: str, voxel_size: ArrayLike, origin: ArrayLike) -> NDArray[np.float64]:
     edges = _arrays.vector(f"{where}: voxel_size", voxel_size)
-    if not (np.isfinite(edges).all() and (edges > 0).all()):
+    if not (edges > 0).all():
         raise UsageError(f"{where}: voxel_size: expected lengths above 0 m, found {voxel_size!r}")
     place = np.diag([*edges, 1.0])
     place[:3, 3] = _arrays.vector(f"{where}: origin", origin)

@@ -126,6 +126,11 @@ def test_pictures(tmp_path, scene, renderer):
         image.save(tmp_path / "picture.png/image.exr")
 
 
+def test_what_is_no_scene(renderer):
+    with pytest.raises(uwvdb.UsageError, match="expected a Scene, found str; Scene.load"):
+        renderer.render("plume.yaml")
+
+
 def test_warnings_are_python_warnings(capfd, renderer):
     scene = uwvdb.Scene(camera={"resolution": [4, 4], "intrinsics": {"fov_x": 50}})
     with pytest.warns(uwvdb.SceneWarning, match="there are no lamps, so the image will be black"):
@@ -144,6 +149,14 @@ def test_warnings_are_python_warnings(capfd, renderer):
     ({"layers": "flow"}, "flow"),
     ({"camera": "left"}, "the scene has no camera 'left'; it has one camera"),
     ({"camera": 1}, "there is no camera 1"),
+    ({"size": (8.5, 6)}, r"size: expected \(width, height\) in whole pixels, found \(8.5, 6\)"),
+    ({"size": 8}, "size: expected .width, height. in whole pixels, found 8"),
+    ({"size": (8, -6)}, "size: expected .width, height. of 1 pixel or more"),
+    ({"crop": (0, 0, 4)}, "crop: expected .x0, y0, x1, y1. in whole pixels"),
+    ({"samples": 0}, "samples: expected a whole number of 1 or more, found 0"),
+    ({"samples": "many"}, "samples: expected a whole number of 1 or more, found 'many'"),
+    ({"orders": -1}, "orders: expected a whole number of 0 or more, found -1"),
+    ({"frame": "3"}, "frame: expected a whole number, found '3'"),
 ])
 def test_what_cannot_be_rendered(scene, renderer, settings, message):
     with pytest.raises(uwvdb.UsageError, match=message) as caught:

@@ -48,6 +48,8 @@ def test_sets_values_of_every_kind_of_python():
     assert "camera.port" not in scene
     with pytest.raises(KeyError):
         del scene["camera.port"]
+    with pytest.raises(TypeError, match="paths of a scene are str, found 3"):
+        scene.update({3: 4})
     with pytest.raises(TypeError, match="numbers, text, lists and dicts"):
         scene["water.salinity"] = object()
 
