@@ -41,8 +41,8 @@ class SplineLine {
             tap(i, 1.0);
             return;
         }
-        for (int n = -2; n <= 2; ++n)
-            tap(reflected(i + n), k_at_nodes[static_cast<std::size_t>(n + 2)]);
+        for (std::size_t n = 0; n < k_at_nodes.size(); ++n)
+            tap(reflected(i + static_cast<int>(n) - 2), k_at_nodes[n]);
     }
 
     /// Adds each pixel to the nodes around it.
