@@ -1,4 +1,5 @@
 #include <exception>
+#include <utility>
 
 #include "core/base/error.h"
 #include "python/bindings.h"
@@ -18,7 +19,7 @@ void raise(const char* name, const std::exception& fault) {
 void bind_errors(py::module_& /*module*/) {
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {
-            if (thrown) std::rethrow_exception(thrown);
+            if (thrown) std::rethrow_exception(std::move(thrown));
         } catch (const InputError& fault) {
             raise("InputError", fault);
         } catch (const IoError& fault) {

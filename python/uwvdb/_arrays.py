@@ -42,10 +42,10 @@ def vector(what: str, value: ArrayLike) -> NDArray[np.float64]:
 
 def matrix(what: str, value: ArrayLike) -> NDArray[np.float64]:
     """An affine map that can be inverted, as a matrix of 4 x 4 numbers."""
-    found = numbers(what, value, np.float64)
+    found = np.asarray(numbers(what, value, np.float64), dtype=np.float64)
     if found.shape != (4, 4) or not np.array_equal(found[3], [0, 0, 0, 1]):
         raise UsageError(f"{what}: expected a (4, 4) matrix whose last row is 0, 0, 0, 1, "
                          f"found {shape_text(found.shape)}")
     if not np.isfinite(found).all() or np.linalg.matrix_rank(found[:3, :3]) < 3:
         raise UsageError(f"{what}: expected finite numbers, and axes that span a volume")
-    return np.array(found, dtype=np.float64)
+    return found.copy()

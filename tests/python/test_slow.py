@@ -74,13 +74,20 @@ def least_seconds(action, times):
     return min(once() for _ in range(times))
 
 
+def sorting_seconds():
+    """What sorting a million numbers takes, 0.085 CPU s where 0.3 s and the rest were promised:
+    figures are ratios to it, so that they hold on slower and on busy machines."""
+    numbers = np.random.default_rng(0).uniform(0, 1, 1 << 20)
+    return least_seconds(lambda: np.sort(numbers), 5)
+
+
 def test_a_volume_of_256_cubed_is_made_in_a_fraction_of_a_second(scene):
     array = np.random.default_rng(5).uniform(0, 1, (256, 256, 256)).astype(np.float32)
     seconds = least_seconds(lambda: scene.copy().volumes.add(
         array, voxel_size=0.01, concentration={"small": 1}), 3)
     print(f"256^3: {seconds:.3f} CPU s")
     # Promised are 0.3 s on two processors.
-    assert seconds < 0.6
+    assert seconds < 7 * sorting_seconds()
 
 
 def test_small_images_by_the_hundred_per_second(scene):
@@ -95,7 +102,7 @@ def test_small_images_by_the_hundred_per_second(scene):
     seconds = least_seconds(render, 3) / 50
     print(f"64 x 64: {1 / seconds:.0f} per CPU second")
     # Promised are 100 per second on two processors.
-    assert seconds < 0.02
+    assert seconds < 0.23 * sorting_seconds()
 
 
 def test_calls_cost_little(scene):
@@ -117,7 +124,7 @@ def test_calls_cost_little(scene):
     seconds = [least_seconds(action, 5) / 100 for action in (render, change, view)]
     print("render {:.3f} ms, set {:.3f} ms, view {:.4f} ms".format(*(1e3 * s for s in seconds)))
     # Promised is 1 ms beside the rendering; here that is one pixel's.
-    assert sum(seconds) < 1e-3
+    assert sum(seconds) < 0.0117 * sorting_seconds()
 
 
 def test_stubs():
