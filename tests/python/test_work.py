@@ -19,6 +19,8 @@ LONG = dict(integrator="path", samples=60000, size=(480, 320))
 
 def test_ctrl_c_stops_at_once_and_leaves_the_renderer_usable(scene, renderer):
     expected = renderer.render(scene).pixels.copy()
+    # What runs in the background of a shell ignores it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     begun, sent, later = threading.Event(), threading.Event(), []
 
     def interrupt():
