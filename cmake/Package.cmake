@@ -48,6 +48,8 @@ if(UWVDB_BUILD_PYTHON)
     set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-uwvdb)
     set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
     set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS uwvdb)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/python/postinst
+                                                  ${PROJECT_SOURCE_DIR}/cmake/debian/python/prerm)
     math(EXPR uwvdb_next_python "${Python_VERSION_MINOR} + 1")
     set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
         "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${uwvdb_next_python}), python3-numpy")

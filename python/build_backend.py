@@ -38,12 +38,19 @@ def install(build, prefix):
     return package
 
 
+def numpy_requirement():
+    """Of the module that is built here: before pybind11 2.12 it cannot read NumPy 2's arrays."""
+    found = subprocess.run(["pkg-config", "--modversion", "pybind11"], capture_output=True, text=True)
+    version = re.match(r"(\d+)\.(\d+)", found.stdout)
+    return "numpy<2" if version and tuple(map(int, version.groups())) < (2, 12) else "numpy"
+
+
 def metadata(project):
     """The version, and the text of METADATA."""
     version = re.search(r"project\(uwvdb VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {version}",
              f"Summary: {project['description']}", f"Requires-Python: {project['requires-python']}",
-             *(f"Requires-Dist: {name}" for name in project["dependencies"])]
+             f"Requires-Dist: {numpy_requirement()}"]
     return version, "\n".join(lines) + "\n"
 
 
