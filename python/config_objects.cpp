@@ -24,6 +24,10 @@ ConfigNode scalar(std::string text, bool quoted) {
     return node;
 }
 
+ConfigNode number(const py::object& value) {
+    return scalar(py::repr(value).cast<std::string>(), false);
+}
+
 ConfigNode map_of(const py::dict& dict) {
     ConfigNode node;
     node.kind = Kind::map;
@@ -85,8 +89,10 @@ ConfigNode node_of(py::handle object) {
     if (py::isinstance<py::bool_>(object))
         return scalar(object.cast<bool>() ? "true" : "false", false);
     if (py::isinstance<py::str>(object)) return scalar(object.cast<std::string>(), true);
-    if (py::isinstance<py::int_>(object) || py::isinstance<py::float_>(object))
-        return scalar(py::repr(object).cast<std::string>(), false);
+    // Of other types than Python's own, as NumPy's float64, repr() names the type, too.
+    if (py::isinstance<py::int_>(object))
+        return number(py::reinterpret_steal<py::object>(PyNumber_Long(object.ptr())));
+    if (py::isinstance<py::float_>(object)) return number(py::float_(object.cast<double>()));
     if (py::isinstance<py::dict>(object)) return map_of(py::reinterpret_borrow<py::dict>(object));
     if (py::hasattr(object, "tolist")) return node_of(object.attr("tolist")());
     if (py::hasattr(object, "__fspath__"))

@@ -1,6 +1,7 @@
 # ctest labels: unit
 """Scenes as objects: values at paths, checks, messages."""
 
+import enum
 import pathlib
 import subprocess
 
@@ -32,6 +33,13 @@ def test_reads_values_as_they_are_written():
         scene["water.bands"]
 
 
+class Practical(float):
+    """A number that, like NumPy's, does not show itself as one."""
+
+    def __repr__(self):
+        return f"Practical({float(self)})"
+
+
 def test_sets_values_of_every_kind_of_python():
     scene = uwvdb.Scene.parse(TEXT)
     scene["lamps.left.intensity"] = np.array([1, 2, 3], dtype=np.float32)
@@ -48,6 +56,9 @@ def test_sets_values_of_every_kind_of_python():
     assert "camera.port" not in scene
     with pytest.raises(KeyError):
         del scene["camera.port"]
+    scene["water.salinity"] = Practical(30)
+    scene["camera.resolution"] = [enum.IntEnum("Size", "small")(1), 8]
+    assert scene["water.salinity"] == 30 and scene["camera.resolution"] == [1, 8]
     with pytest.raises(TypeError, match="paths of a scene are str, found 3"):
         scene.update({3: 4})
     with pytest.raises(TypeError, match="numbers, text, lists and dicts"):
