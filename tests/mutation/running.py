@@ -51,11 +51,8 @@ class Tests:
             result = "passed" if process.wait(limit) == 0 else "failed"
         except subprocess.TimeoutExpired:
             result = "late"
-        try:  # whatever it started
-            os.killpg(process.pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
-        process.wait()
+            os.killpg(process.pid, signal.SIGKILL)  # with whatever it started
+            process.wait()
         return result, time.monotonic() - begin
 
     def measured(self, name):

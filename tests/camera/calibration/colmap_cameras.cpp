@@ -10,6 +10,11 @@ namespace {
 
 class ColmapCameras : public test::CalibrationReading {};
 
+TEST_F(ColmapCameras, NamesTheCameraRead) {
+    EXPECT_EQ(read("7 PINHOLE 640 480 500 500 320 240\n").camera, "7");
+    for (const char* name : {"2", "12", "21"}) EXPECT_EQ(read(test::k_colmap, name).camera, name);
+}
+
 TEST_F(ColmapCameras, RefusesInOneLine) {
     expect_refused(test::k_colmap, "has 5 cameras (1, 2, 12, 20, 21); choose one");
     expect_refused(test::k_colmap, "has no camera '3'", "3");

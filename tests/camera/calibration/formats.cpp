@@ -56,10 +56,12 @@ TEST(CalibrationFormats, DistortionIsAnyCoefficient) {
         EXPECT_TRUE(has_radial_above(radial, i));
         EXPECT_FALSE(has_radial_above(radial, i + 1));
     }
-    DistortionDesc tangential;
-    tangential.p[1] = -1e-9;
-    EXPECT_TRUE(is_distorted(tangential));
-    EXPECT_FALSE(has_radial_above(tangential, 0));
+    for (std::size_t i = 0; i < 2; ++i) {
+        DistortionDesc tangential;
+        tangential.p[i] = -1e-9;
+        EXPECT_TRUE(is_distorted(tangential));
+        EXPECT_FALSE(has_radial_above(tangential, 0));
+    }
 }
 
 }  // namespace

@@ -13,6 +13,19 @@ using test::replaced;
 
 class OpencvYaml : public test::CalibrationReading {};
 
+TEST_F(OpencvYaml, RefusesEachCoefficientThatItHasNoModelFor) {
+    const std::string plain = replaced(test::k_ros_plumb_bob, "distortion_model: plumb_bob\n", "");
+    for (int which = 8; which < 14; ++which) {
+        std::string numbers = "cols: 14\n  data: [0";
+        for (int i = 1; i < 14; ++i) numbers += i == which ? ", 0.1" : ", 0";
+        const std::string data =
+            "cols: 5\n  data: [0.01864117263397289, -0.0807953154457166, 0.0006701578887838996, "
+            "-0.001800282263098739, 0";
+        expect_refused(replaced(plain, data, numbers),
+                       which < 12 ? "has a thin-prism coefficient" : "has a sensor tilt");
+    }
+}
+
 TEST_F(OpencvYaml, RefusesInOneLine) {
     const std::string& ros = test::k_ros_plumb_bob;
     expect_refused(replaced(ros, "image_width: 640\n", ""), "'image_width' is missing");

@@ -52,6 +52,22 @@ TEST(DomePort, KeepsTheInvariantOfBouguer) {
     }
 }
 
+// Rays along the line through the centre and the camera meet both surfaces at right angles.
+TEST(DomePort, PointsOnTheLineThroughItsCentreAreSeenStraightOn) {
+    for (const Vector3& offset : {Vector3{0, 0, 0.02}, Vector3{0.01, -0.02, 0.03}}) {
+        const DomePort port(dome(at_origin_plus(offset)));
+        const Vector3 away = glm::normalize(offset);
+        for (const double distance : {0.2, 3.0})
+            for (const double side : {1.0, -1.0}) {
+                const auto seen =
+                    port.direction_to(at_origin_plus(offset + side * distance * away));
+                ASSERT_TRUE(seen);
+                // 1e-7: a point is off the line by its own rounding, and that by the square root.
+                EXPECT_LT(glm::length(*seen - side * away), 1e-7) << distance;
+            }
+    }
+}
+
 TEST(DomePort, OffAxisRayByPlaneTrigonometry) {
     // The camera 2 cm before the centre looks sideways: at right angles to the offset, so that the
     // angle in air at the inner sphere is asin(0.02 / 0.05) and everything stays in one plane.

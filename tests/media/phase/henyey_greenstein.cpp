@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "core/base/error.h"
 #include "tests/support/phase_function_laws.h"
@@ -30,6 +32,25 @@ TEST(HenyeyGreenstein, MeanCosineIsItsParameter) {
             test::integral_over_sphere([&](double psi) { return p.evaluate(psi) * std::cos(psi); }),
             g, 1e-6);
     }
+}
+
+// The first split is as far from the peak as the pole of p from the real axis; the others follow at
+// ratios of 3, up to a right angle.
+TEST(HenyeyGreenstein, IsSplitAwayFromItsPeak) {
+    for (const double g : {0.6, 0.9, 0.99}) {
+        const std::vector<double> splits = HenyeyGreenstein(g).breakpoints();
+        ASSERT_FALSE(splits.empty());
+        EXPECT_NEAR(splits.front(), std::log(1 / g), 1e-15);
+        for (std::size_t i = 1; i < splits.size(); ++i)
+            EXPECT_NEAR(splits[i] / splits[i - 1], 3, 1e-12);
+        EXPECT_LT(splits.back(), std::numbers::pi / 2);
+        EXPECT_GE(3 * splits.back(), std::numbers::pi / 2);
+        std::vector<double> mirrored = HenyeyGreenstein(-g).breakpoints();
+        ASSERT_EQ(mirrored.size(), splits.size());
+        for (std::size_t i = 0; i < splits.size(); ++i)
+            EXPECT_NEAR(mirrored[splits.size() - 1 - i], std::numbers::pi - splits[i], 1e-15);
+    }
+    EXPECT_TRUE(HenyeyGreenstein(0.49).breakpoints().empty());
 }
 
 TEST(HenyeyGreenstein, RefusesImpossibleParameters) {
