@@ -141,6 +141,33 @@ TEST(DomePort, TotalReflectionWhereAirIsDenser) {
     EXPECT_TRUE(DomePort(port).refracted_ray({0, 0, 1}));
 }
 
+// A direction found leads to its point, and none is found for a point that no light reaches: behind
+// a camera close to the glass most is reflected totally.
+TEST(DomePort, DirectionsFoundLeadToTheirPoints) {
+    DomePortDesc desc = dome({0, 0, -0.045});
+    desc.n_air = desc.n_glass = 1.5;
+    desc.n_water = 1;
+    const DomePort port(desc);
+    int found = 0, none = 0;
+    for (int i = 0; i < 60; ++i) {
+        const double angle = std::numbers::pi * (i + 0.5) / 60;
+        const Point3 point = desc.center + 0.3 * Vector3(std::sin(angle), 0, std::cos(angle));
+        const auto seen = port.direction_to(point);
+        if (!seen) {
+            ++none;
+            continue;
+        }
+        ++found;
+        const auto ray = port.refracted_ray(*seen);
+        ASSERT_TRUE(ray) << i;
+        const Vector3 to_point = point - ray->origin;
+        EXPECT_LT(glm::length(glm::cross(to_point, ray->direction)), 1e-9) << i;
+        EXPECT_GT(glm::dot(to_point, ray->direction), 0) << i;
+    }
+    EXPECT_GT(found, 0);
+    EXPECT_GT(none, 0);
+}
+
 TEST(DomePort, FresnelOfACentredDomeIsThatOfNormalIncidence) {
     DomePortDesc port = dome({0, 0, 0});
     port.fresnel = true;

@@ -26,6 +26,15 @@ TEST(PiecewiseFunction, FollowsEachSegmentsLaw) {
     EXPECT_EQ(f.evaluate(k_half_turn), 0);
 }
 
+// 2 and 4 begin new exponents, by which segments are looked up.
+TEST(PiecewiseFunction, EndsAtAPowerOfTwo) {
+    for (const double end : {2.0, 4.0}) {
+        const PiecewiseFunction f({0, 1, end}, {3, 2, 1}, {SegmentLaw::linear, SegmentLaw::linear});
+        EXPECT_NEAR(f.evaluate(end), 1, 1e-15);
+        EXPECT_NEAR(f.evaluate(0.5 * (1 + end)), 1.5, 1e-15);
+    }
+}
+
 TEST(PiecewiseFunction, BeyondItsEndsIsTheNearerEnd) {
     const PiecewiseFunction f({0, 1, k_half_turn}, {3, 2, 1},
                               {SegmentLaw::linear, SegmentLaw::linear});
