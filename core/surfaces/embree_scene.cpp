@@ -19,8 +19,7 @@ EmbreeScene::EmbreeScene(const SceneObjects& objects)
     for (const auto& mesh : objects_.meshes) attach(scene_.get(), *mesh);
     attach_instances();
     if (!objects_.spheres.empty()) attach_spheres();
-    rtcCommitScene(scene_.get());
-    check("building the acceleration structure");
+    commit(scene_.get());
 }
 
 void EmbreeScene::check(const char* doing) const {
@@ -29,6 +28,18 @@ void EmbreeScene::check(const char* doing) const {
     const std::string reason =
         error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(error);
     throw std::runtime_error(std::string("Embree failed while ") + doing + ": " + reason);
+}
+
+void EmbreeScene::commit(RTCScene scene) const {
+    rtcCommitScene(scene);
+    try {
+        check("building the acceleration structure");
+    } catch (...) {
+        // Never freed: where memory runs out, tasks of the building may be left behind, and to free
+        // the scene is to wait for them for ever, or std::terminate.
+        rtcRetainScene(scene);
+        throw;
+    }
 }
 
 EmbreeScene::Scene EmbreeScene::new_scene() const {
@@ -64,7 +75,7 @@ void EmbreeScene::attach_instances() const {
     for (const auto& shared : objects_.shared_meshes) {
         Scene scene = new_scene();
         attach(scene.get(), *shared);
-        rtcCommitScene(scene.get());
+        commit(scene.get());
         scenes.emplace(shared.get(), std::move(scene));
     }
     for (const MeshInstance& instance : objects_.instances) {

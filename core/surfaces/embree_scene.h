@@ -28,6 +28,8 @@ class EmbreeScene {
     void attach(RTCScene scene, const MeshObject& object) const;
     void attach_instances() const;
     void attach_spheres() const;
+    /// Builds what the scene holds.
+    void commit(RTCScene scene) const;
     void check(const char* doing) const;
 
     const SceneObjects& objects_;

@@ -1,9 +1,13 @@
 // Preloaded into the program by tests/cli/faults: fails one call to the system, the one that the
 // environment variable UWVDB_FAIL names, "write:3" for the third of its kind, and then creates the
-// file UWVDB_FAIL_DONE. Kinds: open (to write), write, rename, allocate (1 MiB or more).
-// Writes to the standard streams are not counted.
+// file UWVDB_FAIL_DONE. Kinds: open (to write), write, rename, fsync, allocate (1 MiB or more),
+// map, thread. Neither writes to the standard streams are counted nor what libraries do as they are
+// loaded.
 
+#include <dlfcn.h>
 #include <fcntl.h>
+#include <pthread.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -23,11 +27,16 @@ void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 namespace {
 
 std::atomic<long> calls{0};
+// Set as the last libraries are: those preloaded come after what they do not depend on.
+bool is_loaded = false;
+__attribute__((constructor)) void begin_counting() {
+    is_loaded = true;
+}
 
 /// Whether this call of the kind is the one to fail.
 bool is_due(const char* kind) {
     const char* const fault = std::getenv("UWVDB_FAIL");
-    if (fault == nullptr) return false;
+    if (fault == nullptr || !is_loaded) return false;
     const std::size_t length = std::strlen(kind);
     if (std::strncmp(fault, kind, length) != 0 || fault[length] != ':') return false;
     if (++calls != std::atol(fault + length + 1)) return false;
@@ -60,6 +69,32 @@ ssize_t writev(int file, const iovec* parts, int count) {
         return -1;
     }
     return ::syscall(SYS_writev, file, parts, count);
+}
+
+void* mmap(void* at, std::size_t bytes, int protection, int flags, int file,
+           off_t offset) noexcept {
+    if (is_due("map")) {
+        errno = ENOMEM;
+        return MAP_FAILED;
+    }
+    // NOLINTNEXTLINE(performance-no-int-to-ptr)
+    return reinterpret_cast<void*>(::syscall(SYS_mmap, at, bytes, protection, flags, file, offset));
+}
+
+int fsync(int file) {
+    if (is_due("fsync")) {
+        errno = EIO;
+        return -1;
+    }
+    return static_cast<int>(::syscall(SYS_fsync, file));
+}
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*run)(void*),
+                   void* argument) noexcept {
+    if (is_due("thread")) return EAGAIN;
+    using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+    static const auto create = reinterpret_cast<Create>(::dlsym(RTLD_NEXT, "pthread_create"));
+    return create(thread, attributes, run, argument);
 }
 
 int rename(const char* from, const char* to) noexcept {

@@ -95,5 +95,10 @@ TEST_F(FailingCalls, MemoryThatIsNotThere) {
     EXPECT_GE(fail_each("allocate", {0, 1, 3}), 1);
 }
 
+// Which Embree asks for; it must not be waited for where it gave up (EmbreeScene::commit).
+TEST_F(FailingCalls, MemoryThatCannotBeMapped) {
+    EXPECT_GE(fail_each("map", {0, 1, 3}), 5);
+}
+
 }  // namespace
 }  // namespace uw
