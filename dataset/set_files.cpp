@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/sha256.h"
 #include "core/image/output_file.h"
+#include "dataset/sha256.h"
 
 namespace uw {
 

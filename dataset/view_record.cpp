@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/base/sha256.h"
 #include "dataset/camera_json.h"
+#include "dataset/sha256.h"
 
 namespace uw {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/cholesky.h"
+#include "core/multiple/cholesky.h"
 
 namespace uw {
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <thread>
 
-#include "core/base/sha256.h"
+#include "dataset/sha256.h"
 #include "tests/support/dataset/dataset_scenes.h"
 #include "tests/support/full_disk.h"
 

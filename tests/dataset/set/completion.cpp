@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <regex>
 
-#include "core/base/sha256.h"
 #include "core/image/image_reader.h"
 #include "core/json/json.h"
 #include "core/tables/csv_table.h"
+#include "dataset/sha256.h"
 #include "tests/support/dataset/dataset_scenes.h"
 
 namespace uw {

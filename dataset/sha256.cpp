@@ -1,4 +1,4 @@
-#include "core/base/sha256.h"
+#include "dataset/sha256.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "core/base/cholesky.h"
+#include "core/multiple/cholesky.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/base/sha256.h"
+#include "dataset/sha256.h"
 
 #include <gtest/gtest.h>
 

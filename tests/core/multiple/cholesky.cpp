@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/base/cholesky.h"
+#include "core/multiple/cholesky.h"
 
 #include <gtest/gtest.h>
 
