@@ -12,7 +12,8 @@ namespace uw {
 namespace {
 
 volatile std::sig_atomic_t g_orderly = 0;
-volatile std::sig_atomic_t g_stop = 0;
+std::atomic<bool> g_stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler sets it
 volatile std::sig_atomic_t g_skip = 1;  // 0 on a terminal, where "^C" or a bar fills the line
 
 sigset_t stop_signals() {
@@ -31,7 +32,7 @@ void on_signal(int signal) {
         if (write(STDERR_FILENO, line, std::strlen(line)) < 0) _exit(k_exit_interrupted);
         _exit(k_exit_interrupted);
     }
-    g_stop = 1;
+    g_stop = true;
     std::signal(signal, SIG_DFL);
 }
 
@@ -48,7 +49,11 @@ void begin_orderly_stop() {
 }
 
 bool stop_requested() {
-    return g_stop != 0;
+    return g_stop;
+}
+
+const std::atomic<bool>& stop_flag() {
+    return g_stop;
 }
 
 void hold_stop_signal() {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+
 namespace uw {
 
 /// Lets Ctrl-C (SIGINT, SIGTERM) end the program at once with exit code 130 and a one-line message:
@@ -10,8 +12,10 @@ void install_stop_signal();
 /// the program at once.
 void begin_orderly_stop();
 
-/// Whether an orderly stop has been requested.
+/// Whether an orderly stop has been requested; the same for a StopScope around work that is given
+/// up in the middle.
 bool stop_requested();
+const std::atomic<bool>& stop_flag();
 
 /// For a program that has nothing to do until it is stopped, instead of the above: Ctrl-C waits for
 /// wait_for_stop_signal(). To be called before any thread is started.

@@ -5,7 +5,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/base/parallel.h"
+#include "core/base/stop.h"
 
 namespace uw {
 

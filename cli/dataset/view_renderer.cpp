@@ -13,6 +13,7 @@
 #include "cli/stop_signal.h"
 #include "core/base/available_memory.h"
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "core/image/preview.h"
 #include "core/sensor/development.h"
 #include "dataset/formats/clean_film.h"
@@ -65,6 +66,7 @@ void ViewRenderer::warn(const std::vector<std::string>& warnings) {
 }
 
 Exposures ViewRenderer::exposures_of(const DatasetDefinition& definition, const SceneDesc& scene) {
+    const StopScope scope(stop_flag());
     const bool with_clean = definition.has_format("clean");
     const std::string layers = with_clean ? "clean" : "depth";
     const std::size_t views = definition.frames.size() * definition.cameras.size();
@@ -107,6 +109,7 @@ void ViewRenderer::load_points(const DatasetFile& set, std::size_t draw, const S
 }
 
 void ViewRenderer::render(const DatasetFile& set, const View& view, const SceneDesc& scene) {
+    const StopScope scope(stop_flag());
     const DatasetDefinition& definition = set.definition;
     load_points(set, view.draw, scene);
     const std::optional<int> number = definition.frames[view.frame];

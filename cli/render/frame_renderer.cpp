@@ -11,6 +11,7 @@
 #include "cli/render/irradiance_export.h"
 #include "cli/stop_signal.h"
 #include "core/base/available_memory.h"
+#include "core/base/stop.h"
 #include "core/image/preview.h"
 #include "core/integrators/integrator_table.h"
 #include "render/image_header.h"
@@ -158,6 +159,7 @@ void FrameRenderer::write_irradiance(const std::filesystem::path& file) {
 }
 
 void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats stats) {
+    const StopScope scope(stop_flag());
     const OutputFiles& files = frame.files;
     const bool with_irradiance = !files.irradiance_vdb.empty();
     RenderOptions options{

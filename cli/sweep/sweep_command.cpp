@@ -11,6 +11,7 @@
 #include "cli/text_files.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/stop.h"
 #include "core/base/text.h"
 
 namespace uw {
@@ -37,6 +38,7 @@ void run_sweep(const SweepArguments& a) {
     begin_orderly_stop();
     Sweep sweep;
     {
+        const StopScope scope(stop_flag());
         Progress progress("sweep", "pictures", static_cast<double>(a.count()), a.quiet);
         sweep = run_pictures(a, [&](double share) {
             progress.update(share);

@@ -64,6 +64,7 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     if (a.scene.empty()) keep(validate_by_table(lamp_table(), options));
     for (auto& [name, desc] : all_light) keep(validate_all_light(std::move(desc), name, options));
     if (!a.report.empty()) {
+        begin_orderly_stop();  // or a temporary file might stay
         write_validation_report(a.report, results, lights);
         if (!a.quiet) print_message(fmt::format("wrote {}\n", a.report.string()));
     }

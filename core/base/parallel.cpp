@@ -7,13 +7,11 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_scheduler_observer.h>
 
-#include "core/base/error.h"
+#include "core/base/stop.h"
 
 namespace uw {
 
 namespace {
-
-thread_local const std::atomic<bool>* stop_of_thread = nullptr;
 
 // A tenth of the weight of what runs at the usual niceness.
 constexpr int k_background_niceness = 10;
@@ -42,22 +40,15 @@ class PoolObserver final : public tbb::task_scheduler_observer {
 
 }  // namespace
 
-StopScope::StopScope(const std::atomic<bool>& stop) {
-    stop_of_thread = &stop;
-}
-
-StopScope::~StopScope() {
-    stop_of_thread = nullptr;
-}
-
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
     // By the calling thread's floating-point settings. Otherwise they are those that the thread had
     // when it used the pool first: inside Embree, which flushes denormal numbers to 0 meanwhile.
     using Context = tbb::task_group_context;
     Context context(Context::bound, Context::default_traits | Context::fp_settings);
-    const std::atomic<bool>* const stop = stop_of_thread;
+    const std::atomic<bool>* const stop = StopScope::of_this_thread();
     const auto step = [&](std::size_t i) {
-        if (stop != nullptr && *stop) throw Interrupted();
+        const StopScope scope(stop);
+        throw_if_stopped();
         body(i);
     };
     tbb::parallel_for(std::size_t{0}, count, step, context);

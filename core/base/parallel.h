@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <functional>
 
@@ -8,20 +7,8 @@ namespace uw {
 
 /// Runs `body(i)` for i in [0, count) on all permitted threads. Iterations must be independent; the
 /// first exception thrown by a body stops the rest and is rethrown. All run with the calling
-/// thread's floating-point settings.
+/// thread's floating-point settings, and stop when it is to stop (StopScope).
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
-
-/// As long as it lives, what its thread runs by parallel_for ends with Interrupted once `stop` is
-/// set: work that tells its progress seldom, or never, can be stopped at any time. One at a time.
-class StopScope {
-  public:
-    explicit StopScope(const std::atomic<bool>& stop);
-    ~StopScope();
-    StopScope(const StopScope&) = delete;
-    StopScope& operator=(const StopScope&) = delete;
-    StopScope(StopScope&&) = delete;
-    StopScope& operator=(StopScope&&) = delete;
-};
 
 /// How many threads parallel_for may use now.
 int permitted_threads();

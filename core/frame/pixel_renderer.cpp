@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/stop.h"
 #include "core/frame/pixel_matches.h"
 #include "core/surfaces/surface_reflection.h"
 
@@ -122,6 +123,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
     const bool differ = has_aperture || rays_.moves();
     const PixelSampling sampling(samples_, x, y);
     for (int i = 0; i < count; ++i) {
+        throw_if_stopped();
         const ImageOffset offset = sampling.offset(i);
         const AperturePoint point = has_aperture ? sampling.aperture(i) : AperturePoint{};
         const std::optional<Ray> ray =
@@ -165,8 +167,10 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
     result.reset(in_scatter_.parts().lamps ? scene_.lamp_count() : 0, bands);
     result.alpha = view.alpha;
     store_truth(view, result);
-    for (std::size_t i = 0; i < view.samples.size(); ++i)
+    for (std::size_t i = 0; i < view.samples.size(); ++i) {
+        throw_if_stopped();
         add_surface(view.samples[i], light, first_sample + i, result);
+    }
     if (!view.samples.empty())
         for (double& transmittance : result.transmittance.first(bands))
             transmittance /= static_cast<double>(view.samples.size());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 
 namespace uw {
 
@@ -68,6 +69,7 @@ void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
     result.reset(distances.size(), scene_.lamp_count());
     place_samples(ray, begin, distances, w.samples);
     for (std::size_t j = 0; j < emitters.size(); ++j) {
+        throw_if_stopped();
         light_samples(ray, emitters[j], w);
         const std::size_t lamp = emitters[j].index();
         Spectrum whole;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/stop.h"
+
 namespace uw {
 
 namespace {
@@ -143,6 +145,7 @@ void QuadratureIntegrator::in_scatter(const Ray& ray, std::span<const double> di
     const std::vector<Lamp>& emitters = *scene_.emitters;
     result.reset(distances.size(), scene_.lamp_count());
     for (std::size_t j = 0; j < emitters.size(); ++j) {
+        throw_if_stopped();
         RayIntegral integral(*this, ray, emitters[j]);
         Spectrum sum;
         double begin = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/stop.h"
 #include "core/integrators/ray_panels.h"
 
 namespace uw {
@@ -48,6 +49,7 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
         for (std::size_t i = 0; i < distances.size(); ++i) {
             const double end = distances[i];
             while (s < std::min(end, reach)) {
+                throw_if_stopped();
                 double length = step_ * scale_at(s);
                 const bool in_grid = s < grid.end && s + length > grid.begin;
                 if (in_grid) length = std::min(length, 0.25 * voxel);

@@ -1,13 +1,19 @@
 #include "core/integrators/surface_lighting.h"
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "core/base/fast_exp.h"
+#include "core/base/stop.h"
 #include "core/integrators/surface_columns.h"
 
 namespace uw {
 
 namespace {
+
+// A tile of thousands of samples per pixel has a million shadow rays to each lamp.
+constexpr std::size_t k_rays_at_once = 1024;
 
 /// The samples that one lamp may illuminate: they face it and lie within its beam.
 struct Facing {
@@ -41,11 +47,18 @@ struct Facing {
 
     void trace_shadows(const Lamp& lamp, const Surfaces& surfaces) {
         if (!lamp.sunlight()) {
-            surfaces.occluded_many(lamp.position(), positions, hidden);
+            for (std::size_t n = 0; n < positions.size(); n += k_rays_at_once) {
+                throw_if_stopped();
+                const std::size_t count = std::min(k_rays_at_once, positions.size() - n);
+                surfaces.occluded_many(lamp.position(), std::span(positions).subspan(n, count),
+                                       std::span(hidden).subspan(n, count));
+            }
             return;
         }
-        for (std::size_t n = 0; n < positions.size(); ++n)
+        for (std::size_t n = 0; n < positions.size(); ++n) {
+            throw_if_stopped();
             hidden[n] = surfaces.occluded(lamp.origin(positions[n]), positions[n]) ? 1 : 0;
+        }
     }
 };
 
@@ -69,6 +82,7 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
     light.reset(samples.size(), *scene_.emitters, bands);
     // Compute optical depths first; all are converted to transmittances at once.
     const auto set_depths = [&](std::size_t sample, double length, std::span<double> depths) {
+        throw_if_stopped();
         columns.column(sample, column);
         for (std::size_t b = 0; b < bands; ++b)
             depths[b] = attenuation_.optical_depth(b, length, column);

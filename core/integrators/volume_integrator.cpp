@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/quadrature.h"
+#include "core/base/stop.h"
 
 namespace uw {
 
@@ -163,6 +164,7 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
     result.reset(distances.size(), scene_.lamp_count());
     scene_.field->profile_within(tolerance_, ray, distances.back(), w.profile);
     for (std::size_t j = 0; j < emitters.size(); ++j) {
+        throw_if_stopped();
         const LampPassage passage(ray, emitters[j]);
         double reach = distances.back();
         if (smallest_attenuation_ > 0)

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/fast_exp.h"
+#include "core/base/stop.h"
 #include "core/base/vector_clones.h"
 #include "core/integrators/integrator.h"
 
@@ -50,11 +51,13 @@ WaterOptics::WaterOptics(const LitScene& scene)
 }
 
 void WaterOptics::trace(const Ray& ray, WaterSegment& segment) const {
+    throw_if_stopped();
     const bool found = scene_.surfaces->closest_hit(ray, k_far, segment.hit);
     set(ray, found ? &segment.hit : nullptr, segment);
 }
 
 void WaterOptics::trace_briefly(const Ray& ray, WaterSegment& segment) const {
+    throw_if_stopped();
     segment.ray = ray;
     segment.has_hit = false;
     segment.length = std::min(scene_.surfaces->hit_distance(ray), k_far);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/base/stop.h"
 
 namespace uw {
 
@@ -120,6 +121,7 @@ void ColumnFace::trace(int apart, const DepthTolerance& tolerance, const March& 
         const int v = static_cast<int>(row) * apart;
         for (int u = 0; u < rays_.width(); u += apart) {
             if (rays_(u, v).traced() || !wanted(u, v, apart)) continue;
+            throw_if_stopped();
             march(u, v, profile);
             store(profile, tolerance, rows_[static_cast<std::size_t>(v)], rays_(u, v));
         }

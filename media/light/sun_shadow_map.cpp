@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/base/stop.h"
 #include "media/light/bounds_corners.h"
 #include "media/light/lit_edges.h"
 
@@ -79,6 +80,7 @@ void SunShadowMap::trace(const LightSquare& square) {
         const double v = square.v + square.half * (2.0 * static_cast<double>(row) / n - 1);
         const std::span<float> depths = samples.row(static_cast<int>(row));
         for (int column = 0; column <= n; ++column) {
+            throw_if_stopped();
             const double u = square.u + square.half * (2.0 * column / n - 1);
             const double entry = frame_.entry_depth(u, v);
             const Ray ray{frame_.world({u, v, entry}), frame_.sun().direction};

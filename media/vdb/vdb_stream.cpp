@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/base/stop.h"
 #include "media/vdb/nvdb_grid.h"
 #include "media/vdb/vdb_layout.h"
 
@@ -147,6 +148,7 @@ void read_slabs(const VdbHeader& header, const GridSummary& grid, std::size_t sl
     }
     first.reset();
     for (const openvdb::CoordBBox& slab : slabs) {
+        throw_if_stopped();
         const openvdb::GridBase::Ptr part = stream.read_topology();
         stream.read_values(*part, slab);
         take(part);

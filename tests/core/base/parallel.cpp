@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 
 namespace uw {
 namespace {
@@ -62,10 +63,31 @@ TEST(Parallel, StopsWithinItsScope) {
         EXPECT_THROW(run(), Interrupted);
         EXPECT_LT(runs, 1000);
         EXPECT_THROW(with_threads(2, run), Interrupted);
+        EXPECT_THROW(throw_if_stopped(), Interrupted);
+        const std::atomic<bool> never = false;
+        const StopScope within(never);
+        EXPECT_NO_THROW(throw_if_stopped());
     }
+    EXPECT_NO_THROW(throw_if_stopped());
     runs = 0;
     run();
     EXPECT_EQ(runs, 1000);
+}
+
+// Work inside a body asks by itself: on every thread, in loops within loops.
+TEST(Parallel, TellsItsBodiesToStop) {
+    std::atomic<bool> stop = false;
+    std::atomic<int> steps = 0;
+    const StopScope scope(stop);
+    const auto work = [&](std::size_t) {
+        for (;;) {
+            throw_if_stopped();
+            if (++steps == 1000) stop = true;
+        }
+    };
+    const ThreadLimit all(4);
+    EXPECT_THROW(parallel_for(4, [&](std::size_t) { parallel_for(4, work); }), Interrupted);
+    EXPECT_LT(steps, 1000 + permitted_threads());
 }
 
 TEST(Parallel, WithThreadsLimitsThemForItself) {
