@@ -3,23 +3,23 @@
 #include <atomic>
 #include <exception>
 #include <functional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
 namespace uw {
 
-/// Work that is done on a thread of its own, from construction on. The destructor waits for it.
+/// Work that is done on a thread of its own, from construction on; by the constructor where the
+/// system grants no thread. The destructor waits for it.
 class BackgroundTask {
   public:
-    explicit BackgroundTask(std::function<void()> work)
-        : thread_([this, work = std::move(work)] {
-              try {
-                  work();
-              } catch (...) {
-                  error_ = std::current_exception();
-              }
-              is_done_ = true;
-          }) {}
+    explicit BackgroundTask(std::function<void()> work) : work_(std::move(work)) {
+        try {
+            thread_ = std::thread([this] { run(); });
+        } catch (const std::system_error&) {
+            run();
+        }
+    }
     ~BackgroundTask() {
         if (thread_.joinable()) thread_.join();
     }
@@ -32,11 +32,21 @@ class BackgroundTask {
     bool is_done() const { return is_done_; }
     /// Waits for the work, and throws what it threw. To be called once.
     void finish() {
-        thread_.join();
+        if (thread_.joinable()) thread_.join();
         if (error_) std::rethrow_exception(error_);
     }
 
   private:
+    void run() {
+        try {
+            work_();
+        } catch (...) {
+            error_ = std::current_exception();
+        }
+        is_done_ = true;
+    }
+
+    std::function<void()> work_;
     std::exception_ptr error_;
     std::atomic<bool> is_done_{false};
     std::thread thread_;  // last: it uses the others

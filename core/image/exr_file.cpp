@@ -149,7 +149,11 @@ std::optional<ExrHeader> known_header(const Imf::Header& header) {
 
 void write_exr_file(OutputFile& out, const Film& film, const ExrHeader& header) {
     const int threads = permitted_threads();
-    Imf::setGlobalThreadCount(threads > 1 ? threads : 0);  // 0: the calling thread alone
+    try {
+        Imf::setGlobalThreadCount(threads > 1 ? threads : 0);  // 0: the calling thread alone
+    } catch (const std::exception&) {
+        // The system grants no thread: those that there are, if any, will do.
+    }
     ExrStream stream(out);
     try {
         Imf::OutputFile file(stream, openexr_header(header));

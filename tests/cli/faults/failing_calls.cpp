@@ -100,5 +100,10 @@ TEST_F(FailingCalls, MemoryThatCannotBeMapped) {
     EXPECT_GE(fail_each("map", {0, 1, 3}), 5);
 }
 
+// Its work is done by the others.
+TEST_F(FailingCalls, ThreadsThatCannotBeStarted) {
+    EXPECT_GE(fail_each("thread", {0, 1}), 2);
+}
+
 }  // namespace
 }  // namespace uw
