@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/folder_lock.h"
 #include "core/image/preview.h"
 #include "render/id_table.h"
 
@@ -62,6 +63,8 @@ void write_images(const OutputFiles& files, const Film& film,
     const std::optional<double> automatic = automatic_exposure(film);
     const double exposure = storage.exposure.value_or(automatic.value_or(1.0));
     const bool with_exr = !files.image.empty();
+    std::optional<FolderLock> lock;  // or the EXR might be of one run and its preview of another
+    lock.emplace(files.main().parent_path());
     if (with_exr) {
         ImageMetadata with_names = metadata;
         if (!files.ids.empty()) add_id_names(names, with_names);
@@ -71,6 +74,7 @@ void write_images(const OutputFiles& files, const Film& film,
     if (sensor) write_sensor_image(files.sensor, *sensor, metadata);
     metadata["exposure"] = exposure;
     if (!files.preview.empty()) write_preview(files.preview, film, storage, exposure, metadata);
+    lock.reset();
     warn_of_darkness(film, !automatic, warn);
     if (with_exr && storage.exr.precision == ExrOptions::Precision::half) warn_of_half(film, warn);
     if (with_exr) say(fmt::format("wrote {}", files.image.string()));

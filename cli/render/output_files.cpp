@@ -129,7 +129,11 @@ void OutputCheck::take_outputs(const OutputFiles& files) {
             throw UsageError(fmt::format("{}: {} would replace {}; give another name",
                                          printable(file.string(), 300), name, other->second));
     }
-    for (const auto& [name, file] : named(files)) const AtomicFile probe(file);
+    for (const auto& [name, file] : named(files)) {
+        if (tidied_.insert(file.parent_path()).second)
+            AtomicFile::remove_left_overs(file.parent_path());
+        const AtomicFile probe(file);
+    }
 }
 
 }  // namespace uw

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,12 +50,13 @@ class OutputCheck {
   public:
     /// Registers files that are read.
     void take_inputs(const std::vector<InputFile>& inputs);
-    /// Throws UsageError if two files are the same, or one has been registered before; IoError if
-    /// one cannot be created.
+    /// Removes what killed runs left where they are to be, too. Throws UsageError if two files are
+    /// the same, or one has been registered before; IoError if one cannot be created.
     void take_outputs(const OutputFiles& files);
 
   private:
     std::map<std::filesystem::path, std::string> taken_;
+    std::set<std::filesystem::path> tidied_;  // folders
 };
 
 }  // namespace uw

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@
 #include "cli/render/variation_manifest.h"
 #include "cli/stop_signal.h"
 #include "cli/text_files.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/contact_sheet.h"
@@ -222,6 +224,9 @@ void run_render(const RenderArguments& typed) {
     std::optional<double> exposure;
     if (a.resume) exposure = leave_out_rendered(sequence, scenes, a);
     if (sequence.frames.empty()) {
+        std::set<std::filesystem::path> folders;
+        for (const Frame& frame : all.frames) folders.insert(frame.files.main().parent_path());
+        for (const auto& folder : folders) AtomicFile::remove_left_overs(folder);
         manifest.write(a.quiet);
         write_contact_sheet(all, a.quiet);
         return;

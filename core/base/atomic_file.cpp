@@ -2,8 +2,11 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <string>
@@ -16,6 +19,8 @@ namespace uw {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* k_prefix = ".uwvdb-";
 
 [[noreturn]] void fail(const fs::path& target, const std::string& why) {
     throw IoError(fmt::format("{}: cannot write: {}", target.string(), why));
@@ -69,7 +74,38 @@ std::error_code make_folders(const fs::path& folder, std::vector<fs::path>& made
     return error;
 }
 
+/// What temporary files of this machine's begin with. Folders may be shared with others, whose
+/// locks are not seen everywhere.
+std::string temporary_prefix() {
+    std::array<char, 65> host{};
+    ::gethostname(host.data(), host.size() - 1);
+    return fmt::format("{}{}-", k_prefix, host.data());
+}
+
+/// Removes a file that nobody has locked.
+void remove_unlocked(const fs::path& file) {
+    const int opened = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (opened < 0) return;
+    if (::flock(opened, LOCK_EX | LOCK_NB) == 0) ::unlink(file.c_str());
+    ::close(opened);
+}
+
 }  // namespace
+
+void AtomicFile::remove_left_overs(const fs::path& folder, bool of_others_too) {
+    std::error_code error;
+    const std::string own = temporary_prefix();
+    fs::directory_iterator entry(folder.empty() ? "." : folder, error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (!name.starts_with(k_prefix) || !name.ends_with(".tmp")) continue;
+        std::error_code ignored;
+        if (name.starts_with(own))
+            remove_unlocked(entry->path());
+        else if (of_others_too)
+            fs::remove(entry->path(), ignored);
+    }
+}
 
 AtomicFile::AtomicFile(const fs::path& target, ReadTarget read_target)
     : read_target_(read_target), target_(checked(target)) {
@@ -86,20 +122,28 @@ int AtomicFile::create_in(const fs::path& folder) {
     static std::atomic<unsigned> counter{0};
     // The process id alone is not unique among machines that share a folder; O_EXCL is.
     constexpr int k_attempts = 1000;
+    const std::string prefix = temporary_prefix();
     int error = EEXIST;
     for (int attempt = 0; attempt < k_attempts && error == EEXIST; ++attempt) {
-        temporary_ = folder / fmt::format(".uwvdb-{}-{}.tmp", ::getpid(), counter++);
-        const int file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file >= 0) {
-            ::close(file);
-            return 0;
+        temporary_ = folder / fmt::format("{}{}-{}.tmp", prefix, ::getpid(), counter++);
+        lock_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (lock_ < 0) {
+            error = errno;
+            continue;
         }
-        error = errno;
+        // Where there are no locks nobody can remove it either. One that was removed just before it
+        // was locked is made again.
+        ::flock(lock_, LOCK_EX);
+        struct stat status {};
+        if (::fstat(lock_, &status) == 0 && status.st_nlink > 0) return 0;
+        ::close(lock_);
+        lock_ = -1;
     }
     return error;
 }
 
 AtomicFile::~AtomicFile() {
+    if (lock_ >= 0) ::close(lock_);
     if (temporary_.empty()) return;
     std::error_code ignored;
     fs::remove(temporary_, ignored);

@@ -29,6 +29,11 @@ class AtomicFile {
 
     const std::filesystem::path& temporary_path() const { return temporary_; }
 
+    /// Removes what runs on this machine that were killed left in `folder`: temporary files that
+    /// nobody is writing any more. `of_others_too`: and those of other machines that share it,
+    /// of which that cannot be known.
+    static void remove_left_overs(const std::filesystem::path& folder, bool of_others_too = false);
+
     /// Renames the temporary file to the target, replacing any existing file. Throws IoError.
     void commit();
 
@@ -42,6 +47,7 @@ class AtomicFile {
     ReadTarget read_target_;
     std::filesystem::path target_;
     std::filesystem::path temporary_;
+    int lock_ = -1;                                    // held on it, open, as long as it is written
     std::vector<std::filesystem::path> made_folders_;  // outermost first
 };
 

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/contact_sheet.h"
@@ -95,17 +96,14 @@ class Completion {
                         faulty.size() > k_named ? ", ..." : ""));
     }
 
-    /// What AtomicFile could not remove because its process was killed. No other works on the set
-    /// any more, since all views are there.
+    /// What AtomicFile could not remove because its process was killed. Nothing of other machines
+    /// works on the set any more, since all views are there.
     void remove_left_overs() const {
         std::error_code error;
-        std::vector<fs::path> found;
-        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_, error)) {
-            const std::string name = entry.path().filename().string();
-            if (name.starts_with(".uwvdb-") && name.ends_with(".tmp"))
-                found.push_back(entry.path());
-        }
-        for (const fs::path& file : found) fs::remove(file, error);
+        std::vector<fs::path> folders{folder_};
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_, error))
+            if (entry.is_directory(error)) folders.push_back(entry.path());
+        for (const fs::path& folder : folders) AtomicFile::remove_left_overs(folder, true);
     }
 
     void complete_draw(std::size_t draw) {

@@ -160,5 +160,22 @@ TEST_F(AtomicFileTest, FolderWithoutPermission) {
     EXPECT_NE(error.find("no permission to write"), std::string::npos) << error;
 }
 
+// Of a process that was killed; those of a machine that shares the folder are in other hands.
+TEST_F(AtomicFileTest, RemovesWhatNobodyWritesAnyMore) {
+    const AtomicFile file(target_);
+    fs::path left = folder_ / AtomicFile(target_).temporary_path().filename();
+    const fs::path other = folder_ / ".uwvdb-1234-5.tmp", own = folder_ / "mine.tmp";
+    for (const fs::path& name : {left, other, own}) write(name, "half");
+    AtomicFile::remove_left_overs(folder_);
+    EXPECT_TRUE(fs::exists(file.temporary_path()));
+    EXPECT_FALSE(fs::exists(left));
+    EXPECT_TRUE(fs::exists(other));
+    AtomicFile::remove_left_overs(folder_, true);
+    EXPECT_TRUE(fs::exists(file.temporary_path()));
+    EXPECT_FALSE(fs::exists(other));
+    EXPECT_TRUE(fs::exists(own));
+    EXPECT_NO_THROW(AtomicFile::remove_left_overs(folder_ / "none"));
+}
+
 }  // namespace
 }  // namespace uw
