@@ -110,11 +110,11 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
         const auto surfaces = std::make_shared<StoppingSurfaces>(assembled.surfaces, until);
         assembled.surfaces = surfaces;
         const LayerPlan plan = layer_plan(desc, "default");
-        if (needs_slabs(desc, plan)) assembled.slabs = place_slabs(assembled);
         const BandColour colour = make_band_colour(desc.render.colour, desc.water.bands_nm);
         Film film(desc.camera.width, desc.camera.height,
                   {0, 0, desc.camera.width, desc.camera.height}, plan.channel_names());
         const auto render = [&] {
+            if (needs_slabs(desc, plan)) assembled.slabs = place_slabs(assembled);
             const DeepShadows light = LightSplatter().splat(
                 assembled, deep_shadow_options(desc.render.quality, assembled.water.medium));
             render_scene(assembled, light, make_light_transport(assembled, light), plan, colour,

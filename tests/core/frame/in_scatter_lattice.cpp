@@ -13,10 +13,10 @@
 namespace uw::test {
 namespace {
 
-// Twice what InScatterLattice allows halfway between the nodes of its finest cells, which is 8^1.5
+// Twice what InScatterLattice allows halfway between the nodes of its finest cells, which is eight
 // times what it is given, the tolerance of the coarsest.
 constexpr double k_tolerance = 1e-3;
-constexpr double k_coarsest_tolerance = k_tolerance / 45.3;
+constexpr double k_coarsest_tolerance = k_tolerance / 16;
 
 /// The backscatter of a scene's image, mixed and by itself.
 class MixedImage {
