@@ -18,6 +18,7 @@
 #include "cli/stop_signal.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/folder_lock.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "dataset/formats/format_table.h"
@@ -104,7 +105,7 @@ class DatasetRun {
         DatasetDefinition wanted = definition_of(a_, scene_);
         wanted.draws = std::move(draws);
         check(wanted, scene_);
-        begin(std::move(wanted));
+        begin(wanted);
         if (a_.slurm_tasks)
             submit();
         else
@@ -166,7 +167,7 @@ class DatasetRun {
     }
 
     /// Continues the set that is in the folder, or begins it.
-    void begin(DatasetDefinition wanted) {
+    void begin(const DatasetDefinition& wanted) {
         const fs::path& folder = a_.image.output;
         if (auto there = read_dataset_file(folder)) {
             check_same_set(folder, there->definition, wanted);
@@ -174,16 +175,21 @@ class DatasetRun {
             return;
         }
         const AtomicFile probe(folder / k_dataset_file);  // before the work rather than after it
-        set_.definition = std::move(wanted);
+        set_.definition = wanted;
         const ImageChoice first = choice_of(set_.definition, scene_, {});
         if (const auto& exposure = set_.definition.exposure)
             set_.exposures = {*exposure, *exposure};
         else
             set_.exposures = ViewRenderer(a_, 1).exposures_of(set_.definition, scene_);
         set_.facts = facts_of(ResolvedScene(scene_of_image(scene_, first)).desc());
-        SetFiles(folder).add_bytes("set", k_dataset_file, dataset_text(set_));
+        {
+            const FolderLock lock(folder);  // of several that begin at once, one says what it is
+            if (!read_dataset_file(folder))
+                SetFiles(folder).add_bytes("set", k_dataset_file, dataset_text(set_));
+        }
         // What is read again is what all others read.
         set_ = read_dataset_file(folder).value();
+        check_same_set(folder, set_.definition, wanted);
     }
 
     void render(const std::vector<std::size_t>& views) {

@@ -74,6 +74,24 @@ TEST_F(DatasetCommand, ShardsMayRunAtTheSameTime) {
     EXPECT_EQ(sums("parts"), sums("whole"));
 }
 
+// Both find the folder empty and measure an exposure before either has written what the set is.
+TEST_F(DatasetCommand, OfTwoSetsBegunInOneFolderOneIsMade) {
+    const std::vector<std::string> frames{"--frames", "0-3"},
+        other_frames{"--frames", "0-3", "--samples", "2"};
+    expect_runs(command("one", frames));
+    expect_runs(command("other", other_frames));
+    std::map<int, int> codes;
+    {
+        test::Program first(command("both", frames), {.folder = folder_.path()});
+        test::Program second(command("both", other_frames), {.folder = folder_.path()});
+        ++codes[first.wait().exit_code];
+        ++codes[second.wait().exit_code];
+    }
+    EXPECT_EQ(codes, (std::map<int, int>{{0, 1}, {2, 1}}));
+    const auto made = sums("both");
+    EXPECT_TRUE(made == sums("one") || made == sums("other"));
+}
+
 TEST_F(DatasetCommand, ShardsMayBeMoreThanFrames) {
     expect_runs(command("whole", {"--frames", "0-1"}));
     for (const char* shard : {"1/4", "2/4", "3/4", "4/4"})
