@@ -183,18 +183,18 @@ FrameSequence images_of(const RenderArguments& a, RunScenes& scenes, VariationMa
 }
 
 // Renders all frames; `stats` are those of the first so far. Whatever ends the run, the frames that
-// were rendered are written, and so added to `done`.
+// were rendered are written, and so counted in `done`.
 void render_frames(const FrameSequence& sequence, FrameScenes& scenes, FrameRenderer& renderer,
-                   RunStats stats, const std::vector<RunStats>& done) {
+                   RunStats stats, const std::size_t& done) {
     try {
         for (const Frame& frame : sequence.frames)
             renderer.render(frame, scenes.take(frame), std::exchange(stats, RunStats()));
         renderer.finish();
     } catch (const Interrupted&) {
         renderer.finish();
-        if (done.empty()) throw;
+        if (done == 0) throw;
         throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume continues",
-                                      done.size(), sequence.frames.size()));
+                                      done, sequence.frames.size()));
     } catch (...) {
         renderer.finish();
         throw;
@@ -236,21 +236,25 @@ void run_render(const RenderArguments& typed) {
         return scenes.of(variation);
     });
     manifest.write(a.quiet);
-    std::vector<RunStats> done;
+    std::size_t done = 0;
+    // Kept only if they are asked for: there may be many thousands.
+    const bool keeps_stats = !sequence.stats.empty() || !a.numbers.empty();
+    std::vector<RunStats> all_stats;
     FrameRenderer renderer(a, sequence.frames.size(),
                            first.camera_name.empty() && !first.variation ? "frame" : "image",
                            [&](const Frame& frame, RunStats of_frame) {
                                if (!frame.files.stats.empty())
                                    of_frame.write_json(frame.files.stats,
                                                        a.scene.filename().string());
-                               done.push_back(std::move(of_frame));
+                               ++done;
+                               if (keeps_stats) all_stats.push_back(std::move(of_frame));
                            });
     if (exposure) renderer.keep_exposure(*exposure);
     const auto write_stats = [&] {
-        write_numbers(a, sequence.numbers, done);
-        if (!done.empty()) write_contact_sheet(all, a.quiet);
-        if (!sequence.stats.empty() && !done.empty())
-            RunStats::write_json(sequence.stats, a.scene.filename().string(), done);
+        write_numbers(a, sequence.numbers, all_stats);
+        if (done > 0) write_contact_sheet(all, a.quiet);
+        if (!sequence.stats.empty() && done > 0)
+            RunStats::write_json(sequence.stats, a.scene.filename().string(), all_stats);
     };
     try {
         render_frames(sequence, frame_scenes, renderer, std::move(stats), done);
