@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/ray.h"
+#include "media/vdb/cells/lattice_line.h"
 
 namespace uw {
 
@@ -14,12 +14,6 @@ namespace uw {
 struct GridStretch {
     double begin = 0, end = 0;  // line parameter
     bool constant = false;      // one value throughout
-};
-
-/// A straight line in lattice space: p(t) = origin + t * direction.
-struct LatticeLine {
-    Point3 origin;
-    Vector3 direction{0, 0, 1};
 };
 
 /// One sparse grid of 16-bit quantised values (NanoVDB, Fp16: within a block of 8^3 voxels the
