@@ -114,16 +114,24 @@ ColumnFace::ColumnFace(int width, int height, int constituents, double step, dou
     for (std::vector<float>& row : rows_) row.shrink_to_fit();
 }
 
-// Traces what is missing of the rays `apart` texels apart in the squares that need them.
+// Traces what is missing of the rays `apart` texels apart in the squares that need them, square by
+// square: rays beside each other read the same voxels.
 void ColumnFace::trace(int apart, const DepthTolerance& tolerance, const March& march) {
-    parallel_for(static_cast<std::size_t>((rays_.height() - 1) / apart + 1), [&](std::size_t row) {
+    const auto bands = static_cast<std::size_t>((rays_.height() - 1) / k_square + 1);
+    parallel_for(bands, [&](std::size_t band) {
         thread_local ConcentrationProfile profile;
-        const int v = static_cast<int>(row) * apart;
-        for (int u = 0; u < rays_.width(); u += apart) {
-            if (rays_(u, v).traced() || !wanted(u, v, apart)) continue;
-            throw_if_stopped();
-            march(u, v, profile);
-            store(profile, tolerance, rows_[static_cast<std::size_t>(v)], rays_(u, v));
+        const int v0 = static_cast<int>(band) * k_square;
+        const int v1 = std::min(v0 + k_square, rays_.height());
+        for (int u0 = 0; u0 < rays_.width(); u0 += k_square) {
+            const int u1 = std::min(u0 + k_square, rays_.width());
+            for (int v = v0; v < v1; v += apart) {
+                for (int u = u0; u < u1; u += apart) {
+                    if (rays_(u, v).traced() || !wanted(u, v, apart)) continue;
+                    throw_if_stopped();
+                    march(u, v, profile);
+                    store(profile, tolerance, rows_[static_cast<std::size_t>(v)], rays_(u, v));
+                }
+            }
         }
     });
 }
