@@ -31,7 +31,7 @@ const outlines = new Observable([]);
 const settings = makeSettings();
 const status = new StatusBar(byId("status"));
 const banners = new Banners(byId("banners"));
-// Nothing fails in silence: a browser without WebGL 2, or a mistake of ours.
+// Nothing fails in silence: a browser that lacks something, or a mistake of ours.
 const fail = (message) =>
     banners.show("fault", `The page does not work: ${message}`, { kind: "error" });
 addEventListener("error", (event) => event.message && fail(event.message));

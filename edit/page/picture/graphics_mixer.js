@@ -1,4 +1,4 @@
-// Mixes planes into the picture on a canvas, by WebGL 2.
+// Mixes planes into the picture on a canvas, by WebGL 2 on a graphics card.
 
 import { RAMP } from "./false_colour.js";
 import { PlaneTexture } from "./plane_texture.js";
@@ -14,21 +14,32 @@ function compile(gl, type, source) {
     return shader;
 }
 
-export class Mixer {
+// What browsers call WebGL that the processor computes.
+const COMPUTED = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+/** Whether there is WebGL 2, on a graphics card. */
+export function hasGraphicsCard() {
+    // A canvas that has been asked for WebGL cannot be drawn on otherwise.
+    const gl = document.createElement("canvas").getContext("webgl2",
+        { failIfMajorPerformanceCaveat: true });
+    if (!gl) return false;
+    const info = gl.getExtension("WEBGL_debug_renderer_info");
+    const renderer = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+    gl.getExtension("WEBGL_lose_context")?.loseContext();
+    return !COMPUTED.test(renderer);
+}
+
+export class GraphicsMixer {
     #gl;
     #uniforms;
     #table;
 
-    /** Throws if the browser has no WebGL 2. */
+    /** Where hasGraphicsCard(). */
     constructor(canvas) {
         // What was drawn is kept, for the picture is exported as it is seen.
         this.#gl = canvas.getContext("webgl2", {
             alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true,
         });
-        if (!this.#gl) {
-            throw new Error("this browser has no WebGL 2, which mixes the lamps' light: allow it " +
-                "hardware acceleration in its settings, or open this address in another");
-        }
         this.#build();
     }
 
@@ -58,7 +69,7 @@ export class Mixer {
         this.#build();
     }
 
-    newTexture() {
+    newPlanes() {
         return new PlaneTexture(this.#gl);
     }
 
@@ -71,7 +82,7 @@ export class Mixer {
     }
 
     /** Draws the columns from `from` to `to` (fractions of the width). */
-    draw(texture, mix, { exposure, falseColour = false, from = 0, to = 1 }) {
+    draw(planes, mix, { exposure, falseColour = false, from = 0, to = 1 }) {
         const gl = this.#gl;
         const width = gl.drawingBufferWidth;
         const first = Math.round(from * width);
@@ -83,7 +94,7 @@ export class Mixer {
         gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, table.length / 4, 1, 0, gl.RGBA, gl.FLOAT,
             table);
         gl.activeTexture(gl.TEXTURE0);
-        gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture.texture);
+        gl.bindTexture(gl.TEXTURE_2D_ARRAY, planes.texture);
         gl.uniform1i(this.#uniforms.mix_count, mix.length);
         gl.uniform1f(this.#uniforms.exposure, exposure);
         gl.uniform1i(this.#uniforms.false_colour, falseColour ? 1 : 0);

@@ -33,3 +33,14 @@ export const valueReader = (image) =>
     image.data instanceof Uint16Array
         ? (index) => halfToNumber(image.data[index])
         : (index) => image.data[index];
+
+let numbersOfHalves = null;
+
+/** Half floats (Uint16Array) or floats as floats. */
+export function toNumbers(values) {
+    if (!(values instanceof Uint16Array)) return values;
+    numbersOfHalves ??= Float32Array.from({ length: 65536 }, (_, half) => halfToNumber(half));
+    const numbers = new Float32Array(values.length);
+    for (let i = 0; i < values.length; ++i) numbers[i] = numbersOfHalves[values[i]];
+    return numbers;
+}

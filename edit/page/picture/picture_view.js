@@ -4,10 +4,11 @@
 import { h, setText, svg } from "../base/dom.js";
 import { oncePerFrame } from "../base/frame.js";
 import { automaticStops } from "./exposure.js";
+import { GraphicsMixer, hasGraphicsCard } from "./graphics_mixer.js";
 import { LampHandles } from "./lamp_handles.js";
 import { lampGains, LOOKS, mixOf } from "./mix.js";
-import { Mixer } from "./mixer.js";
 import { PatchRectangle } from "./patch_rectangle.js";
+import { PlainMixer } from "./plain_mixer.js";
 import { SplitBar } from "./split_bar.js";
 
 export class PictureView {
@@ -23,8 +24,8 @@ export class PictureView {
     #note;
     #box;
     #image = null;
-    #texture;
-    #snapshot = null; // {image, texture, gains, revision}
+    #planes;
+    #snapshot = null; // {image, planes, gains, revision}
     #factors = {}; // of brightness sliders that are being moved, by lamp name
     #drawSoon;
 
@@ -38,8 +39,9 @@ export class PictureView {
         this.#note = h("div", { class: "picture-note" });
         this.#box = h("div", { class: "picture-box" }, this.#canvas, this.#overlay, this.#note);
         place.append(this.#box);
+        const Mixer = hasGraphicsCard() ? GraphicsMixer : PlainMixer;
         this.#mixer = new Mixer(this.#canvas);
-        this.#texture = this.#mixer.newTexture();
+        this.#planes = this.#mixer.newPlanes();
         this.#drawSoon = oncePerFrame(() => this.#draw());
         this.#patch = new PatchRectangle(this.#overlay, this.#box, settings);
         this.#handles = new LampHandles(this.#overlay,
@@ -65,7 +67,7 @@ export class PictureView {
 
     setImage(image) {
         this.#image = image;
-        this.#texture.upload(image);
+        this.#planes.upload(image);
         this.#drawSoon();
     }
 
@@ -89,17 +91,17 @@ export class PictureView {
     /** Keeps the picture at hand for the split view. Exposure and layer apply to both. */
     keepSnapshot() {
         if (!this.#image) return;
-        this.#snapshot?.texture.free();
+        this.#snapshot?.planes.free();
         this.#snapshot = {
-            image: this.#image, texture: this.#texture, gains: this.#gains(this.#image),
+            image: this.#image, planes: this.#planes, gains: this.#gains(this.#image),
         };
-        this.#texture = this.#mixer.newTexture();
-        this.#texture.upload(this.#image);
+        this.#planes = this.#mixer.newPlanes();
+        this.#planes.upload(this.#image);
         this.#settings.update({ split: { ...this.#settings.value.split, on: true } });
     }
 
     dropSnapshot() {
-        this.#snapshot?.texture.free();
+        this.#snapshot?.planes.free();
         this.#snapshot = null;
         this.#settings.update({ split: { ...this.#settings.value.split, on: false } });
     }
@@ -108,11 +110,11 @@ export class PictureView {
         this.#canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
         this.#canvas.addEventListener("webglcontextrestored", () => {
             this.#mixer.rebuild();
-            this.#texture = this.#mixer.newTexture();
-            if (this.#image) this.#texture.upload(this.#image);
+            this.#planes = this.#mixer.newPlanes();
+            if (this.#image) this.#planes.upload(this.#image);
             if (this.#snapshot) {
-                this.#snapshot.texture = this.#mixer.newTexture();
-                this.#snapshot.texture.upload(this.#snapshot.image);
+                this.#snapshot.planes = this.#mixer.newPlanes();
+                this.#snapshot.planes.upload(this.#snapshot.image);
             }
             this.#drawSoon();
         });
@@ -162,11 +164,11 @@ export class PictureView {
             exposure: 2 ** stops, falseColour: LOOKS[look].falseColour ?? false,
         };
         if (splits) {
-            const { image, texture, gains } = this.#snapshot;
-            this.#mixer.draw(texture, mixOf(image, look, gains, onlyLamp),
+            const { image, planes, gains } = this.#snapshot;
+            this.#mixer.draw(planes, mixOf(image, look, gains, onlyLamp),
                 { ...options, from: 0, to: from });
         }
-        this.#mixer.draw(this.#texture, this.#mix(this.#image), { ...options, from, to: 1 });
+        this.#mixer.draw(this.#planes, this.#mix(this.#image), { ...options, from, to: 1 });
         performance.mark("picture", {
             detail: { revision: this.#image.revision, quality: this.#image.quality },
         });

@@ -11,7 +11,7 @@ import time
 
 PROGRAMS = ["chromium", "chromium-browser", "google-chrome"]
 
-# The pictures are mixed by WebGL, for which a machine without graphics card has SwiftShader.
+# Where WebGL mixes the pictures, it is by SwiftShader on a machine without a graphics card.
 OPTIONS = [
     "--headless", "--no-first-run", "--no-default-browser-check", "--disable-extensions",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",

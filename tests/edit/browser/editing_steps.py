@@ -228,6 +228,32 @@ class EditingSteps(unittest.TestCase):
             for x in range(middle + 12, split.width - 4, 11):
                 self.assertEqual(split.at(x, y), after.at(x, y))
 
+    def test_both_mixers_show_the_same(self):
+        by_webgl = EditorPage(self.browser, self.editor, by_webgl=True)
+        self.addCleanup(by_webgl.page.close)
+        by_webgl.wait_final()
+        is_webgl = "document.querySelector('.picture-box canvas').getContext('webgl2') !== null"
+        self.assertFalse(self.page.evaluate(is_webgl))
+        self.assertTrue(by_webgl.page.evaluate(is_webgl))
+        for look in ["total", "backscatter", "irradiance"]:
+            pictures = []
+            for view in (self.view, by_webgl):
+                view.page.command("Page.bringToFront")
+                view.page.click(f'[title="See {look}"]')
+                view.page.evaluate("new Promise((done) => requestAnimationFrame(() => "
+                                   "requestAnimationFrame(done)))")
+                pictures.append(view.canvas())
+            plain, graphics = pictures
+            self.assertEqual((plain.width, plain.height), (graphics.width, graphics.height))
+            self.assertGreater(graphics.brightness(), 5)
+            differences = [abs(a - b) for p, g in zip(plain.planes, graphics.planes)
+                           for a, b in zip(p, g)]
+            # Enlarged, light is interpolated before or after it is turned into colours: a step of
+            # light differs there.
+            self.assertLess(sum(differences) / len(differences), 0.5, look)
+            self.assertLess(sorted(differences)[int(0.99 * len(differences))], 8, look)
+        self.assertEqual(by_webgl.page.complaints, [])
+
     def test_suggest(self):
         self.page.click('.lamp-option:has(.swatch)')
         self.page.click('[title^="Search a place"]')

@@ -104,9 +104,20 @@ class EditorPage:
     # What was drawn last: the page marks it for measurements.
     DRAWN = "performance.getEntriesByName('picture').at(-1)?.detail"
 
-    def __init__(self, browser, editor, width=1024, height=700):
+    # As if SwiftShader were a graphics card.
+    ANY_WEBGL = """
+        const { getParameter } = WebGL2RenderingContext.prototype;
+        WebGL2RenderingContext.prototype.getParameter = function (name) {
+            const value = getParameter.call(this, name);
+            return typeof value === 'string' ? 'a graphics card' : value;
+        };
+    """
+
+    def __init__(self, browser, editor, width=1024, height=700, by_webgl=False):
         self.page = browser.new_page(width, height)
         self.editor = editor
+        if by_webgl:
+            self.page.command("Page.addScriptToEvaluateOnNewDocument", source=self.ANY_WEBGL)
         self.open()
 
     def open(self):
