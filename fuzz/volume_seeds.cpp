@@ -16,12 +16,16 @@ int main(int count, char** arguments) {
     std::filesystem::create_directories(vdb);
     std::filesystem::create_directories(nano);
 
-    VdbFixture blob;  // across a corner of blocks, so that all levels of the tree are there
-    blob.min = {-2, -2, -2};
-    blob.max = {2, 2, 2};
-    blob.value = [](int i, int j, int k) { return std::exp(-0.3 * (i * i + j * j + k * k)); };
+    // Across a corner of leaves, in one node of each level above: such a node of the highest takes
+    // 8 kB, and scripts/fuzz cuts what is longer than 64 kB.
+    VdbFixture blob;
+    blob.min = {6, 6, 6};
+    blob.max = {10, 10, 10};
+    blob.value = [](int i, int j, int k) {
+        return std::exp(-0.3 * ((i - 8) * (i - 8) + (j - 8) * (j - 8) + (k - 8) * (k - 8)));
+    };
     VdbFixture tiles = blob;
-    tiles.boxes = {{{0, 0, 0}, {127, 15, 15}, 0.5}};
+    tiles.boxes = {{{0, 16, 16}, {127, 31, 31}, 0.5}};
     VdbFixture half = blob, wide = blob, blender = blob;
     half.numbers = VdbNumbers::half;
     wide.numbers = VdbNumbers::float64;
@@ -35,8 +39,6 @@ int main(int count, char** arguments) {
     write_bool_and_int_grids(vdb / "integers.vdb");
     write_instanced_grids(vdb / "instances.vdb");
     write_frustum_grid(vdb / "frustum.vdb");
-    for (const char* precision : {"float", "fp4", "fp8", "fp16", "fpN"})
-        write_nvdb_fixture(nano / (std::string(precision) + ".nvdb"), blob, precision);
     write_nvdb_fixture(nano / "zip.nvdb", blob, "float", 1);
     write_nvdb_fixture(nano / "blosc.nvdb", blob, "fp8", 2);
     return 0;

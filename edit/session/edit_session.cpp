@@ -151,10 +151,11 @@ void EditSession::check_conflicts(std::int64_t revision, const std::string& grou
     bool is_late = revision < all_touched_;
     for (const auto& [path, touch] : touches_) {
         const bool is_own = !group.empty() && touch.group == group;
-        is_late = is_late || (revision < touch.revision && !is_own &&
-                              std::ranges::any_of(touched, [&](const std::string& other) {
-                                  return overlap(path, other);
-                              }));
+        is_late =
+            is_late || (revision < touch.revision && !is_own &&
+                        std::ranges::any_of(touched, [&path = path](const std::string& other) {
+                            return overlap(path, other);
+                        }));
     }
     if (is_late)
         throw ConflictError("this has been changed in another window; look at it and try again");
