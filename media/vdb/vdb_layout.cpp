@@ -138,4 +138,15 @@ void check_layout(const VdbHeader& header, const GridSummary& grid, std::int64_t
     LayoutWalk(in, header, grid).walk_tree();
 }
 
+void check_transform(const VdbHeader& header, const GridSummary& grid,
+                     const SourceLocation& where) {
+    constexpr const char* k_frustum = "NonlinearFrustumMap";
+    if (grid.map_type != k_frustum) return;
+    ByteReader in(header.file, where);
+    in.seek(grid.transform_offset);
+    in.text();                    // that name
+    in.skip(8 * sizeof(double));  // its box, taper and depth
+    if (in.text() == k_frustum) in.fail_damaged();
+}
+
 }  // namespace uw

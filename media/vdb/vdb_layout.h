@@ -13,4 +13,9 @@ namespace uw {
 void check_layout(const VdbHeader& header, const GridSummary& grid, std::int64_t tree_offset,
                   const SourceLocation& where);
 
+/// Checks what OpenVDB 10 believes of a frustum transform: the length of its second map's name, for
+/// which it makes room, and that this is no frustum again, which it reads by recursion. Throws
+/// InputError starting with `where`.
+void check_transform(const VdbHeader& header, const GridSummary& grid, const SourceLocation& where);
+
 }  // namespace uw

@@ -70,6 +70,8 @@ GridStream::GridStream(const VdbHeader& header, const GridSummary& grid, const G
       voxels_(voxels),
       where_(where),
       stream_(header.file, std::ios::binary) {
+    check_transform(header, grid, where);
+    check_transform(header, voxels, where);
     stream_.exceptions(std::ios::failbit | std::ios::badbit);
     metadata_->setFileVersion(header.version);
     metadata_->setLibraryVersion({header.library_major, header.library_minor});

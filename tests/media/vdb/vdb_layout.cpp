@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 
 #include "core/base/error.h"
+#include "media/vdb/vdb_inspect.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_loading.h"
 
@@ -57,6 +59,50 @@ TEST(VdbLayout, ForgedBlocksAreRefusedBeforeTheyAreRead) {
         }
     }
     EXPECT_GT(refused, 0);
+}
+
+// A frustum states a second map by its name, before OpenVDB 10 looks whether the file holds one so
+// long, and calls itself where that is a frustum again.
+class VdbFrustum : public testing::Test {
+  protected:
+    VdbFrustum() {
+        test::write_frustum_grid(dir_ / "a.vdb");
+        bytes_ = file_bytes(dir_ / "a.vdb");
+        begin_ = bytes_.find(k_name) + k_name.size();
+        second_ = begin_ + 8 * sizeof(double);  // after its box, taper and depth
+    }
+    /// What is said about the file with these bytes in place of those from `second_` on.
+    std::string refusal_of(const std::string& bytes) const {
+        std::string forged = bytes_;
+        forged.replace(second_, bytes.size(), bytes);
+        write_file_bytes(dir_ / "forged.vdb", forged);
+        try {
+            inspect_vdb(dir_ / "forged.vdb", test::k_where);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    }
+
+    static constexpr std::string_view k_name = "NonlinearFrustumMap";
+    TempDir dir_;
+    std::string bytes_;
+    std::size_t begin_ = 0, second_ = 0;
+};
+
+TEST_F(VdbFrustum, OfAHugeNameIsRefusedBeforeItIsRead) {
+    expect_contains(refusal_of("\xff\xff\xff\xff"), "absurdly long name");
+}
+
+TEST_F(VdbFrustum, WithinAFrustumIsRefused) {
+    const std::string length(1, static_cast<char>(k_name.size()));
+    const std::string level = length + std::string(3, '\0') + std::string(k_name) +
+                              bytes_.substr(begin_, second_ - begin_);
+    std::string levels;
+    for (int n = 0; n < 100'000; ++n) levels += level;  // more than a stack holds
+    // The grid ends after them.
+    for (const std::string_view end : {level, levels})
+        expect_contains(refusal_of(std::string(end)), "truncated or damaged");
 }
 
 }  // namespace
