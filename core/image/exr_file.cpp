@@ -23,6 +23,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/image/exr_sizes.h"
 
 namespace uw {
 namespace {
@@ -173,6 +174,7 @@ std::optional<ExrHeader> read_exr_header(const std::filesystem::path& file) {
     std::error_code status;
     // A pipe or device under an image's name would block the reader.
     if (!std::filesystem::is_regular_file(file, status)) return std::nullopt;
+    if (!exr_attributes_fit(file)) return std::nullopt;
     try {
         constexpr int k_no_threads = 0;
         constexpr bool k_restore_offsets = false;
