@@ -1,4 +1,4 @@
-// ctest labels: metamorphic
+// ctest labels: metamorphic threads
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit threads
 #include <gtest/gtest.h>
 
 #include <csignal>

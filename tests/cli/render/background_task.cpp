@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit threads
 #include "cli/render/background_task.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit threads
 #include "core/base/parallel.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// ctest labels: unit analytic
+// ctest labels: unit analytic threads
 #include "core/forward/cosine_transform.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit threads
 #include "edit/server/edit_server.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,10 @@ using namespace uw::test;
 
 class EditServerTest : public testing::Test {
   protected:
-    EditServerTest() { client_.set_keep_alive(true); }
+    EditServerTest() {
+        client_.set_keep_alive(true);
+        client_.set_read_timeout(300);  // 5 s are few for a sanitizer on a busy machine
+    }
 
     std::string path(const std::string& rest) const { return "/" + server_.token() + rest; }
     Json get(const std::string& address, int status = 200) {

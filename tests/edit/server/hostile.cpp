@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit threads
 // What other pages and other programs may try on the server of the lamp editor.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit threads
 #include "edit/session/edit_session.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// ctest labels: unit metamorphic
+// ctest labels: unit metamorphic threads
 #include "edit/session/picture.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// ctest labels: unit analytic
+// ctest labels: unit analytic threads
 #include "edit/session/view_geometry.h"
 
 #include <gtest/gtest.h>
