@@ -42,6 +42,17 @@ TEST(RayPanels, ThroughTheLampScatteringIsStraightOnOrBack) {
     EXPECT_TRUE(std::isinf(passage.half_tangent(3, 1)));
 }
 
+TEST(RayPanels, AgainstASunScatteringIsStraightOn) {
+    const WaterSurfaceDesc surface{{0, 0, 0}, {0, 1, 0}};
+    const Lamp overhead("sun", {{0, -1, 0}, surface}, Spectrum{});
+    const LampPassage up({{0, -5, 0}, {0, 1, 0}}, overhead);
+    EXPECT_EQ(up.half_tangent(1, up.radius(1)), 0);
+    EXPECT_EQ(up.radius(1), 4);  // the light's way from the surface
+    EXPECT_EQ(up.rate(), 0);     // what the ray comes nearer to it, the light has less to go
+    const LampPassage across({{0, -5, 0}, {1, 0, 0}}, overhead);
+    EXPECT_NEAR(across.half_tangent(1, across.radius(1)), 1, 1e-15);  // by a right angle
+}
+
 /// The breaks with the interval's ends, ascending.
 std::vector<double> octave_panels(const LampPassage& passage, const Interval& interval) {
     std::vector<double> s{interval.begin, interval.end};

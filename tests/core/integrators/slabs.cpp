@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/base/error.h"
 #include "core/integrators/planes_integrator.h"
 #include "tests/support/planes_scene.h"
@@ -88,6 +91,31 @@ TEST(PlaceSlabs, ReachesAsFarAsTheLightWhereTheViewIsOpen) {
     EXPECT_EQ(planes.assembled().slabs->near, 0);
     EXPECT_LT(planes.assembled().slabs->far, 100);
     EXPECT_LE(difference(planes.image(), volume).worst, 1e-3);
+}
+
+/// A camera all of whose rays miss the port.
+class BlindCamera : public RaySource {
+  public:
+    int width() const override { return 8; }
+    int height() const override { return 6; }
+    std::optional<Ray> refracted_ray(double, double) const override { return std::nullopt; }
+    LensRay lens_ray(double, double) const override { return {}; }
+    bool port_dims() const override { return false; }
+    const Affine& world_from_camera() const override { return pose_; }
+
+  private:
+    Affine pose_;
+};
+
+TEST(PlaceSlabs, SpansTheReachOfTheLightForACameraThatSeesNoWater) {
+    const TestScene scene(uniform_scene({1, -0.5, 0}));
+    const LitScene lit = scene.assembled().lit();
+    const Slabs slabs = place_slabs({64, {}, {}, ""}, BlindCamera(), lit);
+    const OpticalCoefficients& water = lit.medium->uniform;
+    const double least =
+        std::min({water.attenuation(0), water.attenuation(1), water.attenuation(2)});
+    EXPECT_EQ(slabs.near, 0);
+    EXPECT_NEAR(slabs.far, std::hypot(1, 0.5) + 5 / least, 1e-9);  // e^-5 beyond the lamp
 }
 
 TEST(PlaceSlabs, RefusesSlabsWithoutWater) {

@@ -40,13 +40,14 @@ class SurfaceColumnsTest : public ::testing::Test {
             field_, nothing_, lamps_.front().position(), DeepShadowOptions{16, 2, 1 << 24}));
     }
 
-    /// `depth(x, y)`: where the surface is, camera z [m].
+    /// `depth(x, y)`: where the surface is, camera z [m]. The tile's first pixel is (x0, y0).
     template <typename Depth>
-    void look(const Depth& depth) {
+    void look(const Depth& depth, int x0 = 0, int y0 = 0) {
         for (int y = 0; y < k_tile; ++y)
             for (int x = 0; x < k_tile; ++x) {
                 const Vector3 v((x + 0.5 - 16) / 300, (y + 0.5 - 16) / 300, 1);
-                SurfaceSample sample{{{0, 0, 0}, glm::normalize(v)}, {}, x + 0.5, y + 0.5};
+                SurfaceSample sample{
+                    {{0, 0, 0}, glm::normalize(v)}, {}, x0 + x + 0.5, y0 + y + 0.5};
                 sample.hit.position = Point3{} + depth(x, y) * v;
                 sample.hit.distance = depth(x, y) * glm::length(v);
                 samples_.push_back(sample);
@@ -107,6 +108,18 @@ TEST_F(SurfaceColumnsTest, ASmoothSurfaceTakesFewIntegrals) {
         EXPECT_GT(outcome.worst, 0) << from_lamp;
         EXPECT_LT(outcome.integrated, k_samples / 4) << from_lamp;
     }
+}
+
+TEST_F(SurfaceColumnsTest, ATileTakesAsFewWhereverItLiesInTheImage) {
+    const auto depth = [](int x, int y) { return 2.0 + 0.004 * x - 0.003 * y; };
+    look(depth);
+    const Outcome first = run(true);
+    samples_.clear();
+    seen_.clear();
+    look(depth, 32, 96);
+    const Outcome other = run(true);
+    EXPECT_EQ(other.integrated, first.integrated);
+    EXPECT_NEAR(other.worst, first.worst, 1e-12);  // of positions' rounding
 }
 
 TEST_F(SurfaceColumnsTest, ARoughSurfaceIsWithinTheTolerance) {
