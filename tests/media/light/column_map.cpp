@@ -143,5 +143,14 @@ TEST(ColumnMap, BreaksFallOnlyWhereTheLightHasMetParticles) {
     EXPECT_LE(s.size(), 2u);
 }
 
+TEST(ColumnMap, NoBreaksOnTheSidesOfTheLampWithoutParticles) {
+    const GaussianField field({0, 0, 2}, 0.1, 1.0, 0.05);
+    const ColumnMap map(field, {0, 0, 0}, 2, 1 << 26);
+    std::vector<double> s;
+    map.append_breaks({{-1, 0, -2}, {1, 0, 0}}, {0, 2}, s);   // behind the lamp
+    map.append_breaks({{-2, 0, 0.1}, {0, 1, 0}}, {0, 1}, s);  // beside it
+    EXPECT_TRUE(s.empty());
+}
+
 }  // namespace
 }  // namespace uw::test

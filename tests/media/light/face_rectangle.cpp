@@ -86,6 +86,23 @@ TEST(FaceRectangle, IsTheWholeFaceFromInsideTheBox) {
     }
 }
 
+TEST(FaceRectangle, IsTheWholeFaceFromASideOfTheBox) {
+    const Bounds box{{-1, -1, -1}, {1, 1, 1}};
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double side : {-1.0, 1.0}) {
+            Point3 center{0.2, 0.3, 0.4};
+            center[axis] = side;
+            for (int face = 0; face < 6; ++face) {
+                const FaceRectangle r = project_box(box, center, CubeFace(face));
+                EXPECT_EQ(r.u_min, -1) << axis << side;
+                EXPECT_EQ(r.u_max, 1) << axis << side;
+                EXPECT_EQ(r.v_min, -1) << axis << side;
+                EXPECT_EQ(r.v_max, 1) << axis << side;
+            }
+        }
+    }
+}
+
 TEST(FaceRectangle, ChordsThroughASlabAreItsThicknessOverTheCosine) {
     const Bounds slab{{-9, -9, 2}, {9, 9, 2.5}};
     const double got = integrate_chords(slab, {0, 0, 0}, CubeFace(4), {-1, 1, -1, 1});

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "media/light/bounds_corners.h"
 #include "media/light/deep_shadow_map.h"
 #include "tests/support/column_errors.h"
 #include "tests/support/gaussian_field.h"
@@ -117,6 +118,59 @@ TEST(SunShadowMap, SquaresFollowTheCameraInSteps) {
         }
     }
     EXPECT_TRUE(SunShadowMap::squares_around({}, 60, Bounds{}, k_sun).empty());
+}
+
+/// A thin roof of a given height over (x, z), infinite where there is none, under a vertical sun.
+class Roof : public SphereSurface {
+  public:
+    using Height = double (*)(double x, double z);
+    explicit Roof(Height height) : SphereSurface({}, 4), height_(height) {}
+    double hit_distance(const Ray& ray) const override {
+        const double s = height_(ray.origin.x, ray.origin.z) - ray.origin.y;
+        return s > 0 ? s : std::numeric_limits<double>::infinity();
+    }
+    bool occluded(const Point3& from, const Point3& to) const override {
+        const double height = height_(to.x, to.z);
+        return height > from.y && height < to.y;
+    }
+
+  private:
+    Height height_;
+};
+
+// Texels of 1 m, from -4 m to 4 m.
+constexpr int k_roof_texels = 8;
+const std::vector<LightSquare> k_roof_square{{0, 0, 4}};
+const Sunlight k_noon{{0, 1, 0}, k_sea_level};
+
+TEST(SunShadowMap, AShadowsEdgeInTheOutermostTexelsIsFound) {
+    const Roof roof([](double x, double z) {
+        return std::max(std::abs(x), std::abs(z)) < 3.5 ? 0 : k_infinity;
+    });
+    const SunShadowMap map(roof, k_noon, k_roof_square, k_roof_texels);
+    for (const Vector3& outwards : {Vector3(1, 0, 0), {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
+        const double edge = 3.5 - glm::dot(outwards, Vector3(0.2, 0, 0.3));
+        const double end = edge + 0.4;  // before the last ray of the map
+        std::vector<Interval> lit;
+        map.lit_intervals({{0.2, 1, 0.3}, outwards}, {0, end}, lit);
+        ASSERT_EQ(lit.size(), 1U);
+        EXPECT_NEAR(lit[0].begin, edge, 3e-5 * end);
+        EXPECT_EQ(lit[0].end, end);
+    }
+}
+
+TEST(SunShadowMap, SurfacesMayRiseAQuarterTexelBetweenTheRaysOfTheMap) {
+    // A ridge of 0.2 m along x between rays, which meet the roof at its feet.
+    const Roof roof(
+        [](double /*x*/, double z) { return -0.2 * std::max(0.0, 1 - std::abs(z + 0.5) / 0.5); });
+    const SunShadowMap map(roof, k_noon, k_roof_square, k_roof_texels);
+    // Below the ridge, down through it.
+    const double length = std::hypot(6, 2);
+    std::vector<Interval> lit;
+    map.lit_intervals({{-3, -1, -0.5}, Vector3(6, 2, 0) / length}, {0, length}, lit);
+    ASSERT_EQ(lit.size(), 1U);
+    EXPECT_EQ(lit[0].begin, 0);
+    EXPECT_NEAR(lit[0].end, 0.4 * length, 3e-5 * length);
 }
 
 TEST(SunColumnMap, MatchesTheClosedFormAndErrorFallsWithTheSquareOfTheVoxel) {
