@@ -63,6 +63,9 @@ TEST(Projection, PinholeByHand) {
     EXPECT_FALSE(camera.project({0, 0, -1}));
     EXPECT_FALSE(camera.project({1, 0, 0}));
     EXPECT_FALSE(camera.project({0, 0, 0}));
+    CameraDesc all_around = wide();
+    all_around.distortion.model = DistortionDesc::Model::fisheye;
+    EXPECT_FALSE(Camera(all_around).project({0, 0, 0}));  // of no direction
 }
 
 TEST(Projection, FlatPortByPlaneTrigonometry) {
