@@ -74,10 +74,13 @@ def wrapped(body, group, statement):
 
 
 class Build:
-    """A copy of the sources, in which mutants are put, and its build."""
+    """A copy of the sources, in which mutants are put, and its build. `tests`: a build of the same
+    sources without mutants, the objects of whose tests are linked instead of compiled again; only
+    where there are no mutants in headers."""
 
-    def __init__(self, root, folder, jobs):
+    def __init__(self, root, folder, jobs, tests=None):
         self.root, self.jobs = root, jobs
+        self.tests = tests and tests.resolve()
         self.source, self.build = folder / "source", folder / "build"
         self.log = folder / "build.log"
 
@@ -117,11 +120,39 @@ class Build:
 
     def make(self):
         """Builds the programs of tests; returns what the compiler said if it failed."""
-        result = subprocess.run(["ninja", "-C", self.build, "-k", "0", "-j", str(self.jobs),
-                                 "uwvdb_failing_calls", *(f"tests_{layer}" for layer in LAYERS)],
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        targets = [f"tests_{layer}" for layer in LAYERS]
+        if self.tests:
+            targets = sorted({"uwvdb", *(word for target in targets
+                                         for word in self.linking(self.build, target).split()
+                                         if re.fullmatch(r"[^/].*\.a", word))})
+        said = self.run(["ninja", "-k", "0", "-j", str(self.jobs), "uwvdb_failing_calls", *targets])
+        if said is None and self.tests:
+            said = self.link()
+        return said
+
+    def run(self, command):
+        result = subprocess.run(command, cwd=self.build, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, text=True)
         self.log.write_text(result.stdout)
         return None if result.returncode == 0 else result.stdout
+
+    @staticmethod
+    def linking(build, target):
+        """The command that links a program of tests."""
+        said = subprocess.run(["ninja", "-C", build, "-t", "commands", target], check=True,
+                              capture_output=True, text=True).stdout
+        return said.splitlines()[-1]
+
+    def link(self):
+        """Links the programs of tests from the other build's objects and the mutated libraries."""
+        programs = [f"tests_{layer}" for layer in LAYERS]
+        said = self.run(["ninja", "-C", self.tests, *programs])
+        for program in programs:
+            if said is None:
+                command = self.linking(self.tests, program)
+                said = self.run(["sh", "-c", command.replace(
+                    " tests/CMakeFiles/", f" {self.tests}/tests/CMakeFiles/")])
+        return said
 
     def build_with(self, drawn, count, refused):
         """Puts in the first `count` mutants of those drawn that compile, and returns them; adds
