@@ -3,6 +3,7 @@
 // distance along the ray.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -48,7 +49,8 @@ class OneEmitter {
             return medium_.uniform.scattering[0][band] * henyey_greenstein(cosine) *
                    k_intensity[band] / lamp.spread(radius) * std::exp(-c * (s + radius));
         };
-        return AdaptiveQuadrature::integrate(per_metre, begin, end, 1e-10);
+        const double tolerance = 1e-9 * std::max(per_metre(begin), per_metre(end));
+        return AdaptiveQuadrature::integrate(per_metre, begin, end, tolerance);
     }
 
     std::unique_ptr<VolumeIntegrator> volume() const {
@@ -113,8 +115,8 @@ TEST(QuadratureIntegrator, RefinesTheEdgesOfShadows) {
     }
 }
 
-// In clear water, a third of the light of a near lamp comes from beyond 15 m: what is left out is
-// counted in optical depths, not in metres.
+// In clear water, a near lamp lights what lies far away: what is left out is counted in optical
+// depths, not in metres.
 TEST(ReferenceIntegrator, ReachesFarInClearWater) {
     const OneEmitter scene(lamp_at({5, 0, 0}), hg_medium(k_g, {0.002, 0.004}, {0.001, 0.002}),
                            k_aside);
@@ -142,6 +144,77 @@ TEST(VolumeIntegrator, GathersNothingWithinTheLamp) {
             scene.between(ray, 0, 2 - half, band) + scene.between(ray, 2 + half, 4, band);
         // Panels of an octave each with a few Gauss nodes: 1e-3 at the phase function's peak.
         EXPECT_NEAR(light.at(0, 0)[band], truth, 2e-3 * truth);
+    }
+}
+
+/// Nothing of one constituent and the same of another everywhere, with a knot at every metre.
+class SecondOfTwo : public ConcentrationField {
+  public:
+    int constituent_count() const override { return 2; }
+    Bounds bounds() const override { return {{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}}; }
+    double finest_voxel() const override { return 1; }
+    void sample(const Point3&, std::span<double> concentration) const override {
+        concentration[0] = 0;
+        concentration[1] = 1;
+    }
+    void column(const Point3& a, const Point3& b, std::span<double> column) const override {
+        column[0] = 0;
+        column[1] = distance(a, b);
+    }
+    void profile(const Ray&, double s_end, ConcentrationProfile& profile) const override {
+        profile.constituent_count = 2;
+        profile.s.clear();
+        profile.concentration.clear();
+        for (double s = 0; s <= s_end; s += 1) {
+            profile.s.push_back(s);
+            profile.concentration.insert(profile.concentration.end(), {0, 1});
+        }
+        profile.integrate();
+    }
+};
+
+/// Of a lamp in it, without surfaces.
+class ClearShadow : public DeepShadow {
+  public:
+    ClearShadow(const ConcentrationField& field, const Point3& lamp) : field_(field), lamp_(lamp) {}
+    void lit_intervals(const Ray&, const Interval& stretch,
+                       std::vector<Interval>& lit) const override {
+        lit.assign(1, stretch);
+    }
+    void append_column_breaks(const Ray&, const Interval&, std::vector<double>&) const override {}
+    void columns(std::span<const Point3> x, std::span<double> column) const override {
+        for (std::size_t i = 0; i < x.size(); ++i)
+            field_.column(lamp_, x[i], column.subspan(2 * i, 2));
+    }
+    std::size_t bytes() const override { return 0; }
+
+  private:
+    const ConcentrationField& field_;
+    Point3 lamp_;
+};
+
+// Over each metre the light falls by 17 optical depths, to which panels must be cut whichever
+// constituent is the thick one.
+TEST(VolumeIntegrator, CutsPanelsToTheOpticalDepthOfAllConstituents) {
+    const Point3 position{0.3, 0, -0.5};
+    const std::vector<Lamp> emitters{lamp_at(position)};
+    const SecondOfTwo field;
+    Medium medium = murky();
+    add_particles(medium, {0.01, 0.01}, {0.01, 0.01});
+    add_particles(medium, {6, 5}, {2, 3});
+    const LitScene lit{&medium, &field, &k_aside, &emitters};
+    const VolumeIntegrator volume(lit, {std::make_shared<ClearShadow>(field, position)},
+                                  DepthTolerance(medium, 0), {.knots_per_panel = 1});
+    const OneEmitter as_thick(emitters[0], hg_medium(k_g, {6.2, 5.05}, {2.3, 3.2}), k_aside);
+    const Ray ray{{0, 0, 0}, {0, 0, 1}};
+    InScatter light;
+    for (const double begin : {0.0, 1.0, 2.0}) {
+        volume.in_scatter_from(ray, begin, std::vector<double>{begin + 1}, light);
+        for (std::size_t band = 0; band < k_bands; ++band) {
+            const double truth = as_thick.between(ray, begin, begin + 1, band);
+            // Two Gauss nodes on panels of 1.5 optical depths.
+            EXPECT_NEAR(light.at(0, 0)[band], truth, 2e-3 * truth) << begin;
+        }
     }
 }
 
