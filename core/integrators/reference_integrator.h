@@ -14,8 +14,9 @@ class ReferenceIntegrator final : public Integrator {
     static const IntegratorKind k_kind;
 
     /// `step`: step length relative to the distance from the lamp, or, for a sun, to that over
-    /// which its light falls to 1/e; inside the field's bounds, steps are never longer than a
-    /// quarter of the finest voxel. The error falls as step^2, but only as step at shadow edges.
+    /// which its light falls to 1/e, which for water is that to the camera or less; inside the
+    /// field's bounds, steps are never longer than a quarter of the finest voxel. The error falls
+    /// as step^2, but only as step at shadow edges.
     explicit ReferenceIntegrator(const LitScene& scene, double step = 0.005);
 
     void in_scatter(const Ray& ray, std::span<const double> distances,

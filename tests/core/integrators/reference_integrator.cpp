@@ -1,0 +1,68 @@
+// ctest labels: analytic
+#include "core/integrators/reference_integrator.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/stop.h"
+#include "tests/support/hg_medium.h"
+#include "tests/support/sphere_surface.h"
+
+namespace uw::test {
+namespace {
+
+/// Nothing but the water, at most so many steps of which are taken.
+class CountedWater final : public ConcentrationField {
+  public:
+    explicit CountedWater(std::size_t most) : most_(most) {}
+
+    const std::atomic<bool>& stop() const { return stop_; }
+    int constituent_count() const override { return 0; }
+    Bounds bounds() const override { return {}; }
+    double finest_voxel() const override { return 0; }
+    void sample(const Point3&, std::span<double>) const override {
+        if (++steps_ > most_) stop_ = true;
+    }
+    void column(const Point3&, const Point3&, std::span<double>) const override {}
+    void profile(const Ray&, double, ConcentrationProfile&) const override {}
+
+  private:
+    std::size_t most_;
+    mutable std::size_t steps_ = 0;
+    mutable std::atomic<bool> stop_{false};
+};
+
+// Steps of the scale on which one band's light ends, as far as that of another reaches, would be
+// 10^10 of them.
+TEST(ReferenceIntegrator, TakesSunlightInWaterClearInOneBandAndBlackInAnother) {
+    constexpr double k_clear = 1e-5, k_black = 300;
+    const Medium medium = hg_medium(0.0, {k_clear, k_black / 2}, {k_clear, k_black / 2});
+    const CountedWater water(100'000);
+    const SphereSurface nothing({0, 0, -5}, 0.1);
+    for (const double y : {-0.4, 0.0, 0.4}) {
+        const Sunlight sun{glm::normalize(Vector3(0.3, 1, 0)), {{0, -0.01, 0}, {0, -1, 0}}};
+        const std::vector<Lamp> lamps{{"sun", sun, Spectrum{1, 1}}};
+        const ReferenceIntegrator integrator({&medium, &water, &nothing, &lamps});
+        const Ray ray{{0, 0, 0}, glm::normalize(Vector3(0, y, 1))};
+        const StopScope scope(water.stop());
+        InScatter result;
+        constexpr std::array k_distances{1e4};
+        integrator.in_scatter(ray, k_distances, result);
+        const double slope = sun.slope(ray.direction), begin = sun.length_to(ray.origin);
+        // Where the ray leaves the water.
+        const double end = slope < 0 ? std::min(1e4, -begin / slope) : 1e4;
+        for (std::size_t b = 0; b < 2; ++b) {
+            const double c = b == 0 ? 2 * k_clear : k_black, rate = c * (1 + slope);
+            const double expected = c / 2 / (4 * std::numbers::pi) * std::exp(-c * begin) *
+                                    -std::expm1(-rate * end) / rate;
+            // A step's 0.005, with which the last may cross the surface.
+            EXPECT_NEAR(result.at(0, 0)[b], expected, 5e-3 * expected) << y << ", band " << b;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace uw::test
