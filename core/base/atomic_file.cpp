@@ -170,10 +170,19 @@ void AtomicFile::keep_permissions() const {
     if (error) fail(target_, error.message());
 }
 
+// Else the new name may reach the disk before what is in the file, and a power cut leave neither.
+void AtomicFile::write_through() const {
+    if (::fsync(lock_) == 0) return;
+    // Some file systems cannot.
+    if (errno == EINVAL || errno == ENOSYS || errno == ENOTSUP) return;
+    fail(target_, std::generic_category().message(errno));
+}
+
 void AtomicFile::commit() {
     refuse_input(target_);  // it may have been read in the meantime
     if (read_target_ == ReadTarget::replace) keep_permissions();
     std::error_code error;
+    if (fs::exists(target_, error)) write_through();
     fs::rename(temporary_, target_, error);
     if (error) fail(target_, error.message());
     temporary_.clear();

@@ -34,7 +34,8 @@ class AtomicFile {
     /// of which that cannot be known.
     static void remove_left_overs(const std::filesystem::path& folder, bool of_others_too = false);
 
-    /// Renames the temporary file to the target, replacing any existing file. Throws IoError.
+    /// Renames the temporary file to the target, replacing any existing file, which is there until
+    /// the new one is on the disk, whatever happens to the machine. Throws IoError.
     void commit();
 
   private:
@@ -43,6 +44,8 @@ class AtomicFile {
     int create_in(const std::filesystem::path& folder);
     void remove_folders() const;
     void keep_permissions() const;
+    /// Waits until what was written is on the disk.
+    void write_through() const;
 
     ReadTarget read_target_;
     std::filesystem::path target_;

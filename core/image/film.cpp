@@ -21,8 +21,12 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
             "to {}, and x0 < x1, y0 < y1",
             window.x0, window.y0, window.x1, window.y1, width, height));
     }
-    const double bytes =
-        4.0 * window.width() * window.height() * static_cast<double>(channel_names_.size());
+    // With what rendering and writing it take besides: measured as a seventh of its own size, and
+    // some tens of megabytes for lamps and surfaces of most scenes.
+    constexpr double k_with_writing = 1.2, k_least_besides = 5e7;
+    const double bytes = k_with_writing * 4.0 * window.width() * window.height() *
+                             static_cast<double>(channel_names_.size()) +
+                         k_least_besides;
     const auto no_memory = [&] {
         return InputError(fmt::format(
             "camera.resolution: {} x {} pixels of {} channels need {:.3g} GB of memory, but only "
