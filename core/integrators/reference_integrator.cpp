@@ -40,10 +40,11 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
         const double reach =
             least_c > 0 ? passage.reach(k_negligible_optical_depth / least_c) : k_far;
         const auto scale_at = [&](double s) {
-            // Of each band no more than e^(-c s) is left at s, so that a scale below the sum of 1/c
-            // and s is that of a band without light.
+            // Ten times as far as the densest band's light reaches only the others' is left, of
+            // which steps of that length in proportion are as small a part.
             if (passage.parallel)
-                return greatest_c > 0 ? (1 / greatest_c + s) / (1 + passage.rate()) : k_far;
+                return greatest_c > 0 ? std::max(1 / greatest_c, 0.1 * s) / (1 + passage.rate())
+                                      : k_far;
             return std::max(passage.radius(s), k_lamp_radius);
         };
         Spectrum sum;

@@ -14,7 +14,7 @@ class ReferenceIntegrator final : public Integrator {
     static const IntegratorKind k_kind;
 
     /// `step`: step length relative to the distance from the lamp, or, for a sun, to that over
-    /// which its light falls to 1/e, which for water is that to the camera or less; inside the
+    /// which its light falls to 1/e, from ten times that distance on growing with it; inside the
     /// field's bounds, steps are never longer than a quarter of the finest voxel. The error falls
     /// as step^2, but only as step at shadow edges.
     explicit ReferenceIntegrator(const LitScene& scene, double step = 0.005);

@@ -40,7 +40,7 @@ class CountedWater final : public ConcentrationField {
 TEST(ReferenceIntegrator, TakesSunlightInWaterClearInOneBandAndBlackInAnother) {
     constexpr double k_clear = 1e-5, k_black = 300;
     const Medium medium = hg_medium(0.0, {k_clear, k_black / 2}, {k_clear, k_black / 2});
-    const CountedWater water(100'000);
+    const CountedWater water(1'000'000);
     const SphereSurface nothing({0, 0, -5}, 0.1);
     for (const double y : {-0.4, 0.0, 0.4}) {
         const Sunlight sun{glm::normalize(Vector3(0.3, 1, 0)), {{0, -0.01, 0}, {0, -1, 0}}};
