@@ -1,8 +1,9 @@
 // Preloaded into the program by tests/cli/faults: fails one call to the system, the one that the
 // environment variable UWVDB_FAIL names, "write:3" for the third of its kind, and then creates the
 // file UWVDB_FAIL_DONE. Kinds: open (to write), write, rename, fsync, allocate (1 MiB or more),
-// map, thread. Neither writes to the standard streams are counted nor what libraries do as they are
-// loaded.
+// map, thread. "space:1000000" is a disk with so many bytes free, "quota:1000000" one on which the
+// user may write as many: what is beyond is not written, and nothing from then on. Neither writes
+// to the standard streams are counted nor what libraries do as they are loaded.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -12,6 +13,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>
@@ -26,23 +28,51 @@ void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
 namespace {
 
-std::atomic<long> calls{0};
+std::atomic<long> calls{0}, written{0};
 // Set as the last libraries are: those preloaded come after what they do not depend on.
 bool is_loaded = false;
 __attribute__((constructor)) void begin_counting() {
     is_loaded = true;
 }
 
-/// Whether this call of the kind is the one to fail.
-bool is_due(const char* kind) {
+/// The number after the kind; -1 if another kind is to fail.
+long number_of(const char* kind) {
     const char* const fault = std::getenv("UWVDB_FAIL");
-    if (fault == nullptr || !is_loaded) return false;
+    if (fault == nullptr || !is_loaded) return -1;
     const std::size_t length = std::strlen(kind);
-    if (std::strncmp(fault, kind, length) != 0 || fault[length] != ':') return false;
-    if (++calls != std::atol(fault + length + 1)) return false;
+    if (std::strncmp(fault, kind, length) != 0 || fault[length] != ':') return -1;
+    return std::atol(fault + length + 1);
+}
+
+void note_failure() {
     if (const char* const done = std::getenv("UWVDB_FAIL_DONE"))
         ::syscall(SYS_close, ::syscall(SYS_openat, AT_FDCWD, done, O_WRONLY | O_CREAT, 0600));
+}
+
+/// Whether this call of the kind is the one to fail.
+bool is_due(const char* kind) {
+    const long number = number_of(kind);
+    if (number < 0 || ++calls != number) return false;
+    note_failure();
     return true;
+}
+
+/// How many of `bytes` are written; -1, with errno, if none are.
+ssize_t room_for(std::size_t bytes) {
+    if (is_due("write")) {
+        errno = ENOSPC;
+        return -1;
+    }
+    const bool is_quota = number_of("quota") >= 0;
+    const long room = is_quota ? number_of("quota") : number_of("space");
+    const auto wanted = static_cast<ssize_t>(bytes);
+    if (room < 0) return wanted;
+    const ssize_t left = room - written.fetch_add(wanted);
+    if (left >= wanted) return wanted;
+    note_failure();
+    if (left > 0) return left;
+    errno = is_quota ? EDQUOT : ENOSPC;
+    return -1;
 }
 
 constexpr std::size_t k_large = std::size_t{1} << 20;
@@ -56,19 +86,22 @@ bool fails_allocation(std::size_t bytes) {
 }  // namespace
 
 ssize_t write(int file, const void* data, std::size_t bytes) {
-    if (file > STDERR_FILENO && is_due("write")) {
-        errno = ENOSPC;
-        return -1;
-    }
-    return ::syscall(SYS_write, file, data, bytes);
+    if (file <= STDERR_FILENO) return ::syscall(SYS_write, file, data, bytes);
+    const ssize_t room = room_for(bytes);
+    return room < 0 ? -1 : ::syscall(SYS_write, file, data, room);
 }
 
 ssize_t writev(int file, const iovec* parts, int count) {
-    if (file > STDERR_FILENO && is_due("write")) {
-        errno = ENOSPC;
-        return -1;
-    }
-    return ::syscall(SYS_writev, file, parts, count);
+    if (file <= STDERR_FILENO) return ::syscall(SYS_writev, file, parts, count);
+    std::size_t bytes = 0;
+    for (int n = 0; n < count; ++n) bytes += parts[n].iov_len;
+    const ssize_t room = room_for(bytes);
+    if (room == static_cast<ssize_t>(bytes)) return ::syscall(SYS_writev, file, parts, count);
+    // No more than the first part, so that what is there remains in order.
+    const std::size_t first = parts[0].iov_len;
+    return room < 0 ? -1
+                    : ::syscall(SYS_write, file, parts[0].iov_base,
+                                std::min(first, static_cast<std::size_t>(room)));
 }
 
 void* mmap(void* at, std::size_t bytes, int protection, int flags, int file,
