@@ -2,249 +2,274 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <initializer_list>
-#include <random>
+#include <sstream>
+
+#include "tests/support/random/random_draw.h"
 
 namespace uw::test {
 namespace {
 
 const std::string k_assets = UWVDB_SOURCE_DIR "/assets/";
 
-class SceneDraw {
+/// The sections but the camera's. What is drawn is written by <<, as the order of arguments and of
+/// operands of + is up to the compiler.
+class SceneText {
   public:
-    explicit SceneDraw(std::uint64_t seed) : bits_(seed) {}
+    SceneText(RandomDraw& draw, const SceneKinds& kinds) : draw_(draw), kinds_(kinds) {
+        out_.precision(17);
+    }
 
-    std::string scene() {
-        draw_kinds();
-        return "uwvdb: 1\n" + camera() + water() + volumes() + geometry() + lamps() + render();
+    std::string sections() {
+        water();
+        volumes();
+        geometry();
+        lamps();
+        render();
+        return out_.str();
     }
 
   private:
-    // The library's distributions differ from one to another.
-    double uniform(double low, double high) {
-        return low + (high - low) * (static_cast<double>(bits_() >> 11U) * 0x1p-53);
-    }
-    double log_uniform(double low, double high) {
-        return std::exp(uniform(std::log(low), std::log(high)));
-    }
-    bool chance(double share) { return uniform(0, 1) < share; }
-    int whole(int low, int high) { return static_cast<int>(uniform(low, high + 1)); }
-    std::string one_of(std::initializer_list<std::string> choices) {
-        return choices.begin()[whole(0, static_cast<int>(choices.size()) - 1)];
-    }
-    std::string vector(double size) {
-        return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", uniform(-size, size),
-                           uniform(-size, size), uniform(-size, size));
-    }
-    /// A list of one number per band, or a single one.
     std::string per_band(double low, double high) {
-        if (chance(0.3)) return fmt::format("{:.17g}", log_uniform(low, high));
-        std::string list;
-        for (int band = 0; band < bands_; ++band)
-            list += fmt::format("{}{:.17g}", band == 0 ? "" : ", ",
-                                chance(0.1) ? 0.0 : log_uniform(low, high));
-        return "[" + list + "]";
+        return draw_.per_band(kinds_.bands, low, high);
     }
 
-    /// What different sections have to agree on.
-    void draw_kinds() {
-        bands_ = chance(0.7) ? 3 : whole(1, 6);
-        is_fisheye_ = chance(0.15);
-        integrator_ = chance(0.12) && !is_fisheye_ ? "planes"
-                      : chance(0.1)                ? "reference"
-                                                   : "volume";
-        has_volume_ = integrator_ != "planes" && chance(0.3);
-        has_surface_ = chance(0.2);
-        is_multiple_ = integrator_ == "volume" && chance(0.15);
-        size_ = log_uniform(0.05, 300);  // of the scene [m]
-    }
-
-    std::string camera() {
-        std::string text = "camera:\n  resolution: [16, 9]\n";
-        text += is_fisheye_ ? fmt::format("  intrinsics: {{fov_x: {:.17g}}}\n", uniform(5, 300))
-                : chance(0.7)
-                    ? fmt::format("  intrinsics: {{fov_x: {:.17g}}}\n",
-                                  chance(0.2) ? log_uniform(1e-3, 1) : uniform(1, 150))
-                    : fmt::format("  intrinsics: {{fx: {:.17g}, fy: {:.17g}, cx: {:.17g}}}\n",
-                                  log_uniform(2, 1e4), log_uniform(2, 1e4), uniform(-16, 32));
-        if (is_fisheye_) text += "  distortion: {model: fisheye}\n";
-        if (!is_fisheye_ && chance(0.3))
-            text += fmt::format("  distortion: {{k: [{:.17g}, {:.17g}, 0], p: [{:.17g}, 0]}}\n",
-                                uniform(-0.3, 0.3), uniform(-0.1, 0.1), uniform(-0.01, 0.01));
-        if (!is_fisheye_ && chance(0.3))
-            text += fmt::format(
-                "  port: {{type: flat, distance: {:.17g}, thickness: {:.17g}, n_water: {:.17g}, "
-                "normal: [{:.17g}, 0, 1], fresnel: {}}}\n",
-                chance(0.2) ? 0 : log_uniform(1e-6, 1), chance(0.2) ? 0 : log_uniform(1e-6, 1),
-                uniform(1, 1.5), chance(0.5) ? 0 : uniform(-0.3, 0.3), one_of({"true", "false"}));
-        else if (chance(0.2))
-            text += fmt::format("  port: {{type: dome, radius: {:.17g}, thickness: {:.17g}}}\n",
-                                log_uniform(1e-3, 1), log_uniform(1e-5, 0.1));
-        // Sometimes exactly on what is there.
-        const std::string position = chance(0.15) ? "[0, 0, 0]" : vector(size_);
-        const std::string target =
-            fmt::format("[{:.17g}, {:.17g}, {:.17g}]", size_ * uniform(1.1, 2),
-                        size_ * uniform(-1, 1), size_ * uniform(1.1, 2));
-        return text + "  pose: {position: " + position + ", look_at: " + target + "}\n";
-    }
-
-    std::string phase() {
-        switch (whole(0, 4)) {
+    void phase() {
+        switch (draw_.whole(0, 4)) {
             case 0:
-                return fmt::format("{{type: fournier-forand, n: {:.17g}, mu: {:.17g}}}",
-                                   uniform(1.001, 1.5), uniform(3.05, 4.9));
+                out_ << "{type: fournier-forand, n: " << draw_.uniform(1.001, 1.5)
+                     << ", mu: " << draw_.uniform(3.05, 4.9) << "}";
+                break;
             case 1:
-                return "{type: petzold}";
+                out_ << "{type: petzold}";
+                break;
             case 2:
-                return "{type: water}";
+                out_ << "{type: water}";
+                break;
             default:
-                return fmt::format("{{type: hg, g: {:.17g}}}",
-                                   chance(0.2) ? uniform(-0.99, 0.99) : uniform(0, 0.98));
+                out_ << "{type: hg, g: "
+                     << (draw_.chance(0.2) ? draw_.uniform(-0.99, 0.99) : draw_.uniform(0, 0.98))
+                     << "}";
         }
     }
 
-    std::string water() {
-        std::string text = "water:\n";
-        if (bands_ != 3) {
-            text += "  bands: [";
-            for (int band = 0; band < bands_; ++band)
-                text += fmt::format("{}{}", band == 0 ? "" : ", ", 400 + 50 * band);
-            text += "]\n";
+    void water() {
+        out_ << "water:\n";
+        if (kinds_.bands != 3) {
+            out_ << "  bands: [";
+            for (int band = 0; band < kinds_.bands; ++band)
+                out_ << (band == 0 ? "" : ", ") << 400 + 50 * band;
+            out_ << "]\n";
         }
-        if (chance(0.5)) {
-            text += "  absorption: " + per_band(1e-6, 1e3) + "\n";
-            text += "  scattering: {b: " + per_band(1e-6, 1e3) + ", phase: " + phase() + "}\n";
+        if (draw_.chance(0.5)) {
+            out_ << "  absorption: " << per_band(1e-6, 1e3) << "\n";
+            out_ << "  scattering: {b: " << per_band(1e-6, 1e3) << ", phase: ";
+            phase();
+            out_ << "}\n";
         } else {
-            text += chance(0.5)
-                        ? "  preset: " + one_of({"jerlov-IB", "jerlov-II", "jerlov-5C"}) + "\n"
-                        : fmt::format("  chlorophyll: {:.17g}\n  cdom: {:.17g}\n",
-                                      log_uniform(1e-3, 30), log_uniform(1e-3, 5));
-            text += fmt::format("  particles: {{small: {:.17g}, large: {:.17g}{}}}\n",
-                                log_uniform(1e-6, 1e3), log_uniform(1e-6, 1e3),
-                                chance(0.3) ? ", absorption: mineral" : "");
+            if (draw_.chance(0.5))
+                out_ << "  preset: " << draw_.one_of({"jerlov-IB", "jerlov-II", "jerlov-5C"})
+                     << "\n";
+            else
+                out_ << "  chlorophyll: " << draw_.log_uniform(1e-3, 30)
+                     << "\n  cdom: " << draw_.log_uniform(1e-3, 5) << "\n";
+            out_ << "  particles: {small: " << draw_.log_uniform(1e-6, 1e3)
+                 << ", large: " << draw_.log_uniform(1e-6, 1e3)
+                 << (draw_.chance(0.3) ? ", absorption: mineral" : "") << "}\n";
         }
-        if (!is_multiple_ && integrator_ != "reference" && chance(0.15))
-            text += fmt::format("  forward_scatter: {{K: {:.17g}, B: {:.17g}, shape: {}}}\n",
-                                log_uniform(1e-3, 2), log_uniform(1e-4, 0.3),
-                                one_of({"gaussian", "exponential"}));
-        if (has_surface_)
-            text += fmt::format("  surface: {{point: [0, {:.17g}, 0], normal: [0, 1, 0]}}\n",
-                                size_ * uniform(2, 20));
-        return text;
+        if (kinds_.has_forward_scatter)
+            out_ << "  forward_scatter: {K: " << draw_.log_uniform(1e-3, 2)
+                 << ", B: " << draw_.log_uniform(1e-4, 0.3)
+                 << ", shape: " << draw_.one_of({"gaussian", "gaussian", "exponential"}) << "}\n";
+        if (kinds_.has_surface)
+            out_ << "  surface: {point: [0, " << kinds_.size * draw_.uniform(2, 20)
+                 << ", 0], normal: [0, 1, 0]}\n";
+        if (kinds_.has_snow) snow();
     }
 
-    std::string volumes() {
-        if (!has_volume_) return "";
-        const std::string mapping =
-            chance(0.5) ? fmt::format("{{small: {:.17g}, large: {:.17g}}}", log_uniform(1e-6, 1e4),
-                                      log_uniform(1e-6, 1e4))
-                        : "{absorption: " + per_band(1e-6, 1e4) +
-                              ", scattering: " + per_band(1e-6, 1e4) + ", phase: " + phase() + "}";
-        const double scale = chance(0.2) ? log_uniform(1e-5, 1e4) : size_ * log_uniform(0.1, 1);
-        return "volumes:\n  - file: " + k_assets +
-               "grids/plume128_blosc_half_0030.vdb\n    grids: {density: " + mapping +
-               fmt::format("}}\n    transform: {{scale: {:.17g}, rotate: {}, translate: {}}}\n",
-                           scale, vector(180), vector(size_));
+    void snow() {
+        const double least = draw_.log_uniform(1e-6, 0.05);
+        out_ << "  snow: {number: " << draw_.log_uniform(1e-3, 1e8) << ", diameter: [" << least
+             << ", " << least + draw_.uniform(1e-6, 0.1 - least)
+             << "], exponent: " << draw_.uniform(0, 10) << ", reflectance: " << per_band(1e-3, 1)
+             << ", drift: " << draw_.vector(kinds_.size)
+             << ", mean: added, ground_truth: " << draw_.one_of({"ignored", "held"})
+             << ", most: " << draw_.whole(1, 3000) << ", seed: " << draw_.whole(0, 1000) << "}\n";
     }
 
-    std::string geometry() {
-        std::string text;
-        for (int n = whole(0, 3); n > 0; --n) {
-            text += "  - {reflectance: " + reflectance();
-            switch (whole(0, 2)) {
+    void volumes() {
+        if (!kinds_.has_volume) return;
+        out_ << "volumes:\n  - file: " << k_assets
+             << "grids/plume128_blosc_half_0030.vdb\n    grids: {density: ";
+        if (draw_.chance(0.5)) {
+            out_ << "{small: " << draw_.log_uniform(1e-6, 1e4)
+                 << ", large: " << draw_.log_uniform(1e-6, 1e4) << "}";
+        } else {
+            out_ << "{absorption: " << per_band(1e-6, 1e4)
+                 << ", scattering: " << per_band(1e-6, 1e4) << ", phase: ";
+            phase();
+            out_ << "}";
+        }
+        out_ << "}\n    transform: {scale: "
+             << (draw_.chance(0.2) ? draw_.log_uniform(1e-5, 1e4)
+                                   : kinds_.size * draw_.log_uniform(0.1, 1))
+             << ", rotate: " << draw_.vector(180) << ", translate: " << draw_.vector(kinds_.size)
+             << "}\n";
+    }
+
+    void geometry() {
+        const int count = draw_.whole(0, 3);
+        if (count > 0) out_ << "geometry:\n";
+        for (int n = 0; n < count; ++n) {
+            out_ << "  - {";
+            switch (draw_.whole(0, 6)) {
                 case 0:
-                    text += fmt::format(", type: plane, point: [0, 0, {:.17g}], normal: {}}}\n",
-                                        chance(0.3) ? 0 : uniform(-size_, size_), normal());
-                    break;
                 case 1:
-                    text += fmt::format(
-                        ", type: sphere, center: {}, radius: {:.17g}}}\n", vector(size_),
-                        chance(0.2) ? log_uniform(1e-5, 1e5) : size_ * log_uniform(0.01, 1));
+                    out_ << reflectance() << "type: plane, point: [0, 0, "
+                         << (draw_.chance(0.3) ? 0 : draw_.uniform(-kinds_.size, kinds_.size))
+                         << "], normal: " << draw_.normal();
                     break;
-                default: {
-                    std::string min, max;
-                    for (int axis = 0; axis < 3; ++axis) {
-                        const double from = uniform(-size_, size_);
-                        const double to = from + size_ * log_uniform(1e-3, 1);
-                        min += fmt::format("{}{:.17g}", axis == 0 ? "" : ", ", from);
-                        max += fmt::format("{}{:.17g}", axis == 0 ? "" : ", ", to);
-                    }
-                    text += ", type: box, min: [" + min + "], max: [" + max + "]}\n";
-                }
+                case 2:
+                case 3:
+                    out_ << reflectance() << "type: sphere, center: " << draw_.vector(kinds_.size)
+                         << ", radius: "
+                         << (draw_.chance(0.2) ? draw_.log_uniform(1e-5, 1e5)
+                                               : kinds_.size * draw_.log_uniform(0.01, 1));
+                    break;
+                case 4:
+                case 5:
+                    box();
+                    break;
+                default:
+                    mesh();
             }
+            if (kinds_.moves && draw_.chance(0.3))
+                out_ << ", trajectory: " << draw_.trajectory(kinds_.size, false);
+            out_ << "}\n";
         }
-        return text.empty() ? "" : "geometry:\n" + text;
-    }
-    std::string normal() {
-        return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", uniform(-1, 1), uniform(-1, 1),
-                           log_uniform(1e-3, 1e3));
     }
     std::string reflectance() {
-        const double r = chance(0.1) ? 0 : chance(0.1) ? 1 : uniform(0, 1);
-        return fmt::format("{:.17g}", r);
+        const double r = draw_.chance(0.1) ? 0 : draw_.chance(0.1) ? 1 : draw_.uniform(0, 1);
+        return fmt::format("reflectance: {:.17g}, ", r);
+    }
+    void box() {
+        out_ << reflectance() << "type: box";
+        std::string min, max;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double from = draw_.uniform(-kinds_.size, kinds_.size);
+            const double to = from + kinds_.size * draw_.log_uniform(1e-3, 1);
+            min += fmt::format("{}{:.17g}", axis == 0 ? "" : ", ", from);
+            max += fmt::format("{}{:.17g}", axis == 0 ? "" : ", ", to);
+        }
+        out_ << ", min: [" << min << "], max: [" << max << "]";
+    }
+    void mesh() {
+        // The wreck has textures with holes, bumps and emission.
+        const std::string file =
+            draw_.one_of({"cube_quads.ply", "housing.glb", "housing.glb", "wreck.glb"});
+        if (draw_.chance(0.3)) out_ << reflectance();
+        if (file != "cube_quads.ply" && draw_.chance(0.5)) out_ << "material: pbr, ";
+        out_ << "file: " << k_assets << "meshes/" << file
+             << ", transform: {scale: " << kinds_.size * draw_.log_uniform(0.01, 3)
+             << ", rotate: " << draw_.vector(180) << ", translate: " << draw_.vector(kinds_.size)
+             << "}";
     }
 
-    std::string profile() {
-        switch (whole(0, 3)) {
+    void profile() {
+        switch (draw_.whole(0, 3)) {
             case 0:
-                return "{type: isotropic}";
+                out_ << "{type: isotropic}";
+                break;
             case 1: {
-                const double beam = chance(0.2) ? log_uniform(0.01, 1) : uniform(1, 179);
-                return fmt::format("{{type: spot, beam: {:.17g}, edge: {:.17g}}}", beam,
-                                   chance(0.3) ? 0 : uniform(0, 0.9 * beam));
+                const double beam =
+                    draw_.chance(0.2) ? draw_.log_uniform(0.01, 1) : draw_.uniform(1, 179);
+                out_ << "{type: spot, beam: " << beam
+                     << ", edge: " << (draw_.chance(0.3) ? 0 : draw_.uniform(0, 0.9 * beam))
+                     << ", falloff: "
+                     << (beam > 90 ? "smooth" : draw_.one_of({"smooth", "gltf", "blender-3.4"}))
+                     << "}";
+                break;
             }
             case 2:
-                return fmt::format("{{type: cosine, fwhm: {:.17g}}}", uniform(1, 179));
+                out_ << "{type: cosine, fwhm: " << draw_.uniform(1, 179) << "}";
+                break;
             default:
-                return "{type: ies, file: " + k_assets + "ies/synthetic_spot_6000lm_20deg.ies}";
+                out_ << "{type: ies, file: " << k_assets << "ies/synthetic_spot_6000lm_20deg.ies}";
         }
     }
 
-    std::string lamps() {
-        std::string text = "lamps:\n";
-        for (int n = whole(1, 3); n > 0; --n) {
-            if (has_surface_ && chance(0.5)) {
-                text += fmt::format(
-                    "  - {{type: sun, direction: [{:.17g}, -1, {:.17g}], irradiance: {}, angle: "
-                    "{}, samples: 4}}\n",
-                    uniform(-2, 2), uniform(-2, 2), per_band(1e-3, 1e3), chance(0.5) ? 0 : 5);
-                continue;
-            }
-            std::string extent;
-            if (chance(0.1)) extent = "type: disk, samples: 4, radius: ";
-            if (!extent.empty()) extent += fmt::format("{:.17g}, ", size_ * log_uniform(1e-3, 0.3));
-            text += "  - {" + extent + "position: " + (chance(0.1) ? "[0, 0, 0]" : vector(size_)) +
-                    ", direction: " + normal() +
-                    ", profile: " + (extent.empty() ? profile() : "{type: isotropic}") +
-                    (chance(0.7) ? ", intensity: " : ", power: ") + per_band(1e-6, 1e6) +
-                    ", frame: " + one_of({"camera", "world"}) + "}\n";
+    void lamps() {
+        out_ << "lamps:\n";
+        for (int n = draw_.whole(1, 3); n > 0; --n) {
+            if (kinds_.has_surface && draw_.chance(0.5))
+                sun();
+            else
+                lamp();
         }
-        return text;
+    }
+    void sun() {
+        out_ << "  - {type: sun, direction: [" << draw_.uniform(-2, 2) << ", -1, "
+             << draw_.uniform(-2, 2) << "], irradiance: " << per_band(1e-3, 1e3)
+             << ", angle: " << (draw_.chance(0.5) ? 0 : 5) << ", samples: 4}\n";
+    }
+    void lamp() {
+        const bool has_extent = draw_.chance(0.1);
+        out_ << "  - {";
+        if (has_extent && draw_.chance(0.5))
+            out_ << "type: disk, samples: 4, radius: " << kinds_.size * draw_.log_uniform(1e-3, 0.3)
+                 << ", ";
+        else if (has_extent)
+            out_ << "type: rectangle, samples: 4, width: "
+                 << kinds_.size * draw_.log_uniform(1e-3, 0.3)
+                 << ", height: " << kinds_.size * draw_.log_uniform(1e-3, 0.3) << ", ";
+        out_ << "position: " << (draw_.chance(0.1) ? "[0, 0, 0]" : draw_.vector(kinds_.size))
+             << ", direction: " << draw_.normal() << ", profile: ";
+        if (has_extent)
+            out_ << "{type: isotropic}";
+        else
+            profile();
+        if (draw_.chance(0.1))
+            out_ << ", spectrum: "
+                 << draw_.one_of({"{type: led, name: LED-B3}", "{type: d65}", "{type: flat}",
+                                  "{type: blackbody, temperature: 3200}"})
+                 << draw_.one_of({", intensity: ", ", power: ", ", lumens: "})
+                 << draw_.log_uniform(1e-6, 1e6);
+        else
+            out_ << (draw_.chance(0.7) ? ", intensity: " : ", power: ") << per_band(1e-6, 1e6);
+        if (kinds_.moves && draw_.chance(0.3))
+            out_ << ", trajectory: " << draw_.trajectory(kinds_.size, false);
+        else
+            out_ << ", frame: " << draw_.one_of({"camera", "world"});
+        out_ << "}\n";
     }
 
-    std::string render() {
-        std::string text =
-            fmt::format("render:\n  integrator: {}\n  samples: {}\n", integrator_, whole(1, 2));
-        if (is_multiple_) text += "  scattering: multiple\n";
-        if (integrator_ == "planes" || chance(0.1))
-            text +=
-                fmt::format("  planes: {{count: {}, near: {:.17g}, far: {:.17g}}}\n", whole(1, 64),
-                            size_ * log_uniform(1e-3, 0.1), size_ * log_uniform(0.2, 3));
-        return text;
+    void render() {
+        out_ << "render:\n  integrator: " << kinds_.integrator
+             << "\n  samples: " << draw_.whole(1, kinds_.moves ? 4 : 2) << "\n";
+        if (kinds_.is_multiple) out_ << "  scattering: multiple\n";
+        if (kinds_.moves) out_ << "  shutter: " << draw_.log_uniform(1e-5, 2) << "\n";
+        if (kinds_.has_lens && !kinds_.has_sensor)
+            out_ << "  output: "
+                 << (kinds_.is_multiple ? draw_.one_of({"radiance", "sensor_irradiance"})
+                                        : draw_.one_of({"radiance", "sensor_irradiance", "paper"}))
+                 << "\n";
+        if (kinds_.integrator == "planes" || draw_.chance(0.1))
+            out_ << "  planes: {count: " << draw_.whole(1, 64)
+                 << ", near: " << kinds_.size * draw_.log_uniform(1e-3, 0.1)
+                 << ", far: " << kinds_.size * draw_.log_uniform(0.2, 3) << "}\n";
     }
 
-    std::mt19937_64 bits_;
-    int bands_ = 3;
-    bool is_fisheye_ = false, has_volume_ = false, has_surface_ = false, is_multiple_ = false;
-    std::string integrator_;
-    double size_ = 1;
+    RandomDraw& draw_;
+    const SceneKinds& kinds_;
+    std::ostringstream out_;
 };
 
 }  // namespace
 
 std::string random_scene(std::uint64_t seed) {
-    return SceneDraw(seed).scene();
+    RandomDraw draw(seed);
+    const SceneKinds kinds(draw);
+    const std::string camera = random_camera(draw, kinds);
+    return "uwvdb: 1\n" + camera + SceneText(draw, kinds).sections();
 }
 
 }  // namespace uw::test
