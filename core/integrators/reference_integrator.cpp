@@ -47,11 +47,14 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
                                       : k_far;
             return std::max(passage.radius(s), k_lamp_radius);
         };
+        // The water's surface may be less than a step away.
+        const Interval lit =
+            passage.parallel ? emitters[j].beam(ray, {0, reach}) : Interval{0, reach};
         Spectrum sum;
-        double s = 0;
+        double s = lit.begin;
         for (std::size_t i = 0; i < distances.size(); ++i) {
-            const double end = distances[i];
-            while (s < std::min(end, reach)) {
+            const double end = std::min(distances[i], lit.end);
+            while (s < end) {
                 throw_if_stopped();
                 double length = step_ * scale_at(s);
                 const bool in_grid = s < grid.end && s + length > grid.begin;
