@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Measures the lamp editor in a real browser: how long a dragged lamp's picture takes, and what
-memory does while lamps are dragged.
+memory does while lamps are dragged, on a machine without a graphics card.
 
     bench/edit_latency.py build/release/cli/uwvdb assets/scenes/plume.yaml [--drags 100]
     bench/edit_latency.py build/release/cli/uwvdb assets/scenes/plume.yaml --minutes 10
@@ -18,7 +18,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/edit/browser"))
 
-from chromium import Chromium  # noqa: E402
+from chromium import WITHOUT_GRAPHICS, Chromium  # noqa: E402
 from editor import Editor, EditorPage  # noqa: E402
 
 # When the pointer moved last, and when each quality was drawn first since then.
@@ -122,7 +122,7 @@ def main():
     arguments = parser.parse_args()
     editor = Editor(str(pathlib.Path(arguments.program).resolve()), file=arguments.scene.resolve())
     try:
-        with Chromium() as browser:
+        with Chromium(graphics=WITHOUT_GRAPHICS) as browser:
             view = EditorPage(browser, editor)
             view.wait_final()
             if arguments.minutes:

@@ -11,14 +11,17 @@ import time
 
 PROGRAMS = ["chromium", "chromium-browser", "google-chrome"]
 
-# Where WebGL mixes the pictures, it is by SwiftShader on a machine without a graphics card.
 OPTIONS = [
     "--headless", "--no-first-run", "--no-default-browser-check", "--disable-extensions",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
-    "--disable-dev-shm-usage", "--mute-audio", "--hide-scrollbars", "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader", "--force-color-profile=srgb", "--force-device-scale-factor=1",
-    "--remote-debugging-pipe",
+    "--disable-dev-shm-usage", "--mute-audio", "--hide-scrollbars",
+    "--force-color-profile=srgb", "--force-device-scale-factor=1", "--remote-debugging-pipe",
 ]
+
+# Pages are put together by WebGL that SwiftShader computes, in place of a graphics card, or
+# without any, as a browser on a machine without one does.
+WITH_WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+WITHOUT_GRAPHICS = ["--disable-gpu"]
 
 
 class ProtocolError(Exception):
@@ -28,7 +31,7 @@ class ProtocolError(Exception):
 class Chromium:
     """One browser; `with Chromium() as browser` ends it and removes its profile."""
 
-    def __init__(self, width=1280, height=800):
+    def __init__(self, width=1280, height=800, graphics=WITH_WEBGL):
         program = next(filter(None, map(shutil.which, PROGRAMS)), None)
         if program is None:
             raise FileNotFoundError("chromium is missing: scripts/install-packages --tests")
@@ -40,6 +43,7 @@ class Chromium:
         # It reads file descriptor 3 and writes 4.
         self._process = subprocess.Popen(
             ["bash", "-c", f'exec "$@" 3<&{to_read} 4>&{to_write}', "bash", program, *OPTIONS,
+             *graphics,
              *sandbox, f"--user-data-dir={self._profile}", f"--window-size={width},{height}",
              "about:blank"],
             pass_fds=(to_read, to_write), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
