@@ -108,7 +108,8 @@ std::optional<Camera::Projection> Camera::project_in_camera(const Point3& point)
     std::optional<Vector3> in_housing;
     if (port_) {
         in_housing = std::visit([&](const auto& port) { return port.direction_to(point); }, *port_);
-    } else if (const double range = glm::length(from_origin(point)); range > 0) {
+    } else if (const double range = glm::length(from_origin(point));
+               range > 0 && std::isfinite(range)) {
         in_housing = from_origin(point) / range;
     }
     if (!in_housing) return std::nullopt;

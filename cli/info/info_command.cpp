@@ -23,6 +23,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/frame_pattern.h"
+#include "core/base/input_files.h"
 #include "core/base/pointer_file.h"
 #include "core/base/text.h"
 #include "core/image/image_writer.h"
@@ -227,6 +228,8 @@ std::string info_on_scene(const InfoArguments& a) {
     const Surfaces& surfaces = *renderer.assembled().surfaces;
     survey.path = survey_path(all, surfaces);
     survey.variations = survey_variations(a);
+    for (const fs::path& file : inputs_outside(fs::absolute(a.subject).parent_path()))
+        survey.files_outside.push_back(printable(file.string(), 300));
     if (!a.svg.empty()) write_path_plot(a, survey.path, surfaces);
     return a.json ? survey_json(survey) : survey_text(survey);
 }

@@ -65,7 +65,8 @@ struct SceneSurvey {
     std::array<double, 2> field_of_view{};  // in the water, through the centre [degrees]
     std::optional<PathSurvey> path;         // of the camera; none: nothing moves
     std::optional<VariationsSurvey> variations;
-    std::vector<std::string> warnings;  // the scene's, then what will be black or opaque
+    std::vector<std::string> files_outside;  // read by the scene, but not in its folder
+    std::vector<std::string> warnings;       // the scene's, then what will be black or opaque
 };
 
 }  // namespace uw

@@ -179,6 +179,7 @@ std::string survey_json(const SceneSurvey& survey) {
     json["path"] = path_json(survey.path);
     json["variations"] = variations_json(survey.variations);
     json["reach"] = k_reach;
+    json["files_outside"] = survey.files_outside;
     json["warnings"] = survey.warnings;
     return json_text(json);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/frame_list.h"
@@ -106,6 +107,16 @@ std::string describe_geometry(const AssembledScene& scene) {
     return text;
 }
 
+std::string describe_files(const std::vector<std::string>& outside) {
+    if (outside.empty()) return {};
+    constexpr std::size_t k_most = 20;
+    std::string text = "files outside the scene's folder, which --confine refuses\n";
+    for (std::size_t i = 0; i < std::min(k_most, outside.size()); ++i)
+        text += "  " + outside[i] + "\n";
+    if (outside.size() > k_most) text += fmt::format("  and {} more\n", outside.size() - k_most);
+    return text;
+}
+
 std::string describe_view(const SceneSurvey& survey) {
     const CentralRaySurvey& ray = survey.central_ray;
     const ViewSurvey& view = survey.view;
@@ -164,7 +175,7 @@ std::string survey_text(const SceneSurvey& survey) {
         text += fmt::format("  in view {}, in reach of a lamp {}, both {}\n", percent(grid.in_view),
                             percent(grid.in_reach), percent(grid.in_both));
     }
-    text += describe_view(survey);
+    text += describe_view(survey) + describe_files(survey.files_outside);
     if (survey.path) text += path_text(*survey.path);
     if (survey.variations) text += variations_text(*survey.variations);
     if (survey.contrast)

@@ -41,6 +41,11 @@ Registry& registry() {
     return all;
 }
 
+/// Both are canonical.
+bool lies_in(const fs::path& folder, const fs::path& file) {
+    return std::ranges::mismatch(folder, file).in1 == folder.end();
+}
+
 // Precondition: the registry is locked.
 void check_confines(const fs::path& file, Registry& all) {
     if (!all.is_confined) return;
@@ -48,7 +53,7 @@ void check_confines(const fs::path& file, Registry& all) {
     const fs::path place = fs::weakly_canonical(file, error);
     if (!all.confines) all.confines = place.parent_path();
     const fs::path& folder = *all.confines;
-    if (!error && std::ranges::mismatch(folder, place).in1 == folder.end()) return;
+    if (!error && lies_in(folder, place)) return;
     throw InputError(fmt::format("{}: lies outside '{}', to which --confine keeps what is read",
                                  printable(file.string()), printable(folder.string())));
 }
@@ -88,6 +93,23 @@ void remember_input(const fs::path& file) {
         return;
     }
     all.inputs.emplace(identity_of(*stamp), Input{std::move(absolute), *stamp});
+}
+
+std::vector<fs::path> inputs_outside(const fs::path& folder) {
+    std::error_code error;
+    const fs::path place = fs::weakly_canonical(folder, error);
+    std::vector<fs::path> outside;
+    Registry& all = registry();
+    const std::lock_guard lock(all.mutex);
+    for (const auto& [identity, input] : all.inputs) {
+        const fs::path file = fs::weakly_canonical(input.file, error);
+        if (!lies_in(place, error ? input.file : file))
+            outside.push_back(error ? input.file : file);
+    }
+    std::ranges::sort(outside);
+    const auto repeated = std::ranges::unique(outside);
+    outside.erase(repeated.begin(), repeated.end());
+    return outside;
 }
 
 // A file that was deleted may have left its number to another one: that is not an input unless it

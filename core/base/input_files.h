@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace uw {
 
@@ -29,6 +30,10 @@ void remember_input(const std::filesystem::path& file);
 /// From now on, until the program ends, all inputs have to lie in the folder of the first of them
 /// or below it, after symbolic links: what a scene from a stranger names cannot lead elsewhere.
 void confine_inputs();
+
+/// The files remembered so far that lie, after symbolic links, neither in `folder` nor below it:
+/// absolute, in alphabetical order. Thread safe.
+std::vector<std::filesystem::path> inputs_outside(const std::filesystem::path& folder);
 
 /// Whether `file` is one of those, by whatever name, symbolic or hard link. Thread safe.
 bool is_input(const std::filesystem::path& file);

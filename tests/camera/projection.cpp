@@ -156,6 +156,13 @@ TEST(Projection, HostilePointsGiveNothing) {
         for (const double bad : {k_infinity, -k_infinity, std::nan("")})
             EXPECT_FALSE(camera.project({bad, 1, bad})) << name;
     }
+    // Which no rotation makes NaN on their way to the lens.
+    CameraDesc fisheye = wide();
+    fisheye.distortion.model = DistortionDesc::Model::fisheye;
+    for (const CameraDesc& desc : {wide(), fisheye})
+        for (const Point3& point : {Point3(k_infinity, 0, 1), Point3(0, 0, k_infinity),
+                                    Point3(-k_infinity, 1, 1), Point3(1, k_infinity, k_infinity)})
+            EXPECT_FALSE(Camera(desc).project(point));
 }
 
 }  // namespace

@@ -65,6 +65,23 @@ TEST_F(Confine, OthersAreNot) {
     EXPECT_EQ(run(k_render).exit_code, 0);  // without --confine
 }
 
+TEST_F(Confine, InfoNamesOthers) {
+    write_scene("salinity: 30", "meshes/own.ply");
+    EXPECT_EQ(run({"info", "given/s.yaml"}).out.find("outside the scene's folder"),
+              std::string::npos);
+    std::filesystem::create_symlink("../secret.ply", folder_ / "given/link.ply");
+    for (const char* mesh : {"../secret.ply", "link.ply"}) {
+        write_scene("scattering: {b: 1, phase: {type: table, file: ../secret.csv}}", mesh);
+        const std::string named = std::filesystem::canonical(folder_.path()).string();
+        EXPECT_NE(run({"info", "given/s.yaml"})
+                      .out.find("files outside the scene's folder, which --confine refuses\n  " +
+                                named + "/secret.csv\n  " + named + "/secret.ply\n"),
+                  std::string::npos);
+        EXPECT_NE(run({"info", "given/s.yaml", "--json"}).out.find("\"files_outside\": "),
+                  std::string::npos);
+    }
+}
+
 TEST_F(Confine, LinksDoNotLeadOut) {
     std::filesystem::create_symlink("../secret.ply", folder_ / "given/link.ply");
     write_scene("salinity: 30", "link.ply");

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <fstream>
+#include <vector>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -41,6 +42,24 @@ TEST_F(InputFiles, AreKnownByEveryName) {
     fs::copy_file(file, folder_ / "copy");
     EXPECT_FALSE(is_input(folder_ / "copy"));
     EXPECT_FALSE(is_input(folder_ / "missing"));
+}
+
+TEST_F(InputFiles, AreNamedIfTheyLieElsewhere) {
+    for (const char* sub : {"scenes", "scenes/meshes", "scenes of others"})
+        fs::create_directory(folder_ / sub);
+    const fs::path elsewhere = write("plume.vdb"), neighbour = write("scenes of others/a.csv");
+    fs::create_symlink(elsewhere, folder_ / "scenes/link.vdb");
+    for (const char* name :
+         {"scenes/meshes/../meshes/b.ply", "scenes/s.yaml", "scenes/link.vdb", "plume.vdb"}) {
+        if (!fs::exists(folder_ / name)) write(name);
+        remember_input(folder_ / name);
+    }
+    remember_input(neighbour);
+    std::vector<fs::path> of_this_test;
+    for (const fs::path& file : inputs_outside(folder_ / "scenes" / "meshes" / ".."))
+        if (file.string().starts_with(fs::canonical(folder_).string()))
+            of_this_test.push_back(file);
+    EXPECT_EQ(of_this_test, (std::vector{fs::canonical(elsewhere), fs::canonical(neighbour)}));
 }
 
 TEST_F(InputFiles, StayInputsWhenTheyAreRenamedOrChanged) {
