@@ -175,7 +175,7 @@ std::string survey_text(const SceneSurvey& survey) {
         text += fmt::format("  in view {}, in reach of a lamp {}, both {}\n", percent(grid.in_view),
                             percent(grid.in_reach), percent(grid.in_both));
     }
-    text += describe_view(survey) + describe_files(survey.files_outside);
+    text += describe_files(survey.files_outside) + describe_view(survey);
     if (survey.path) text += path_text(*survey.path);
     if (survey.variations) text += variations_text(*survey.variations);
     if (survey.contrast)
