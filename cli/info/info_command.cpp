@@ -228,7 +228,7 @@ std::string info_on_scene(const InfoArguments& a) {
     const Surfaces& surfaces = *renderer.assembled().surfaces;
     survey.path = survey_path(all, surfaces);
     survey.variations = survey_variations(a);
-    for (const fs::path& file : inputs_outside(fs::absolute(a.subject).parent_path()))
+    for (const fs::path& file : inputs_outside(fs::weakly_canonical(a.subject).parent_path()))
         survey.files_outside.push_back(printable(file.string(), 300));
     if (!a.svg.empty()) write_path_plot(a, survey.path, surfaces);
     return a.json ? survey_json(survey) : survey_text(survey);

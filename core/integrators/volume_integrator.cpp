@@ -96,6 +96,12 @@ void add_knots(const ConcentrationProfile& profile, int knots, PanelBreaks& brea
     }
 }
 
+/// Whether parallel light gets brighter along the ray: towards the water's surface its way gets
+/// shorter by more than the ray gets longer.
+bool brightens(const LampPassage& passage) {
+    return passage.slope < -1;
+}
+
 LightTransport make_volume(const IntegratorInputs& inputs) {
     using Quality = RenderDesc::Quality;
     const LitScene& scene = inputs.scene;
@@ -213,12 +219,12 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     append_octaves(passage, interval, w.marks);
     for (const double s : w.marks)
         w.breaks.add_mark(s, fineness_.least_relative_panel * passage.radius(s));
-    // Parallel light has no octaves: where light of the densest bands has ended, those of the
-    // others.
+    // Of parallel light, octaves of the distance from the interval's brighter end: the light of the
+    // densest bands ends in the first, and of ever fewer others in each of the next.
     if (passage.parallel)
-        for (double s = k_negligible_optical_depth / (largest_attenuation_ * passage.rate());
-             s < interval.end; s *= 2)
-            w.breaks.add_edge(s);
+        for (double u = k_negligible_optical_depth / (largest_attenuation_ * passage.rate());
+             u < interval.length(); u *= 2)
+            w.breaks.add_edge(brightens(passage) ? interval.end - u : interval.begin + u);
     for (const double cotangent :
          passage.parallel ? std::span<const double>{} : std::span(phase_cotangents_))
         w.breaks.add_edge(passage.foot - passage.distance * cotangent);
@@ -251,9 +257,11 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         while (next + 1 < distances.size() && distances[next] < middle) ++next;
         while (knot + 2 < profile.s.size() && profile.s[knot + 1] < middle) ++knot;
         double attenuation = largest_attenuation_;
-        if (passage.parallel)  // of bands whose light gets there
-            attenuation =
-                std::min(attenuation, k_negligible_optical_depth / (passage.rate() * panel.begin));
+        if (passage.parallel) {  // of bands whose light gets there from the brighter end
+            const double u =
+                brightens(passage) ? breaks.back() - panel.end : panel.begin - breaks.front();
+            attenuation = std::min(attenuation, k_negligible_optical_depth / (passage.rate() * u));
+        }
         for (std::size_t k = 0; k < largest_per_unit_.size(); ++k)
             attenuation +=
                 largest_per_unit_[k] * profile.concentration[knot * largest_per_unit_.size() + k];

@@ -85,43 +85,6 @@ TEST_P(Sun, LightsAWallAndTheWaterAsTheClosedFormSays) {
     EXPECT_GT(rays - left, 20);
 }
 
-class SunInDeepWater : public testing::TestWithParam<RenderDesc::Integrator> {};
-
-// Light of a dense band ends within centimetres, of a clear one it reaches kilometres or up to the
-// surface, and each is to be integrated on its own scale.
-TEST_P(SunInDeepWater, IsScatteredInBandsOfAnyAttenuation) {
-    for (const auto& [absorption, scattering] :
-         {std::pair{PerBand{0.0018, 18, 0.0011}, PerBand{6e-6, 0.0057, 0.025}},
-          std::pair{PerBand{1.2e-6, 0, 8.7e-5}, PerBand{2.5e-5, 2.5e-5, 2.5e-5}}}) {
-        SceneDesc desc = sunlit_scene();
-        desc.geometry.clear();
-        desc.water.absorption = absorption;
-        desc.water.scattering->b = scattering;
-        desc.render.integrator = GetParam();
-        const TestScene scene(desc);
-        const Sunlight sun{desc.lamps[0].direction, *desc.water.surface};
-        for (const auto& [x, y] : {std::pair{2, 1}, {12, 9}, {20, 16}}) {
-            const PixelResult pixel = scene.pixel(x, y);
-            const Ray ray = *scene.assembled().camera->refracted_ray(x + 0.5, y + 0.5);
-            const double begin = sun.length_to(ray.origin), slope = sun.slope(ray.direction);
-            for (std::size_t b = 0; b < 3; ++b) {
-                const double c = absorption[b] + scattering[b], rate = c * (1 + slope);
-                const double end = slope < 0 ? std::min(k_far, -begin / slope) : k_far;
-                const double expected = desc.lamps[0].intensity->at(b) * scattering[b] *
-                                        phase(-glm::dot(sun.direction, ray.direction)) *
-                                        std::exp(-c * begin) * -std::expm1(-rate * end) / rate;
-                // Gauss panels of 1.5 optical depths, as in water of one attenuation.
-                EXPECT_NEAR(pixel.backscatter[b], expected, 2e-5 * expected)
-                    << "pixel " << x << ", " << y << ", band " << b;
-            }
-        }
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Integrators, SunInDeepWater,
-                         testing::Values(RenderDesc::Integrator::volume,
-                                         RenderDesc::Integrator::reference));
-
 INSTANTIATE_TEST_SUITE_P(Integrators, Sun,
                          testing::Values(RenderDesc::Integrator::volume,
                                          RenderDesc::Integrator::planes,

@@ -27,19 +27,21 @@ const FALSE_COLOURS = tableOf((value) => {
 });
 
 export class NumberPlanes {
-    #width = 0;
-    #height = 0;
     #planes = [];
+    #light; // their sum
+    #picture; // and its colours
     #painted = document.createElement("canvas"); // of the image's size
     #paintedAs = null; // what it shows
 
     /** Takes an image's planes over. */
     upload({ width, height, planes, data }) {
-        this.#width = this.#painted.width = width;
-        this.#height = this.#painted.height = height;
+        this.#painted.width = width;
+        this.#painted.height = height;
         const size = width * height * 3;
         this.#planes = planes.map((_, plane) =>
             toNumbers(data.subarray(plane * size, (plane + 1) * size)));
+        if (this.#light?.length !== size) this.#light = new Float32Array(size);
+        this.#picture = new ImageData(width, height);
         this.#paintedAs = null;
     }
 
@@ -51,16 +53,16 @@ export class NumberPlanes {
     paint(mix, exposure, falseColour) {
         const as = JSON.stringify([mix, exposure, falseColour]);
         if (as !== this.#paintedAs) {
-            const picture = new ImageData(this.#width, this.#height);
-            this.#colour(this.#sum(mix), exposure, falseColour, picture.data);
-            this.#painted.getContext("2d", { alpha: false }).putImageData(picture, 0, 0);
+            this.#sum(mix);
+            this.#colour(exposure, falseColour);
+            this.#painted.getContext("2d", { alpha: false }).putImageData(this.#picture, 0, 0);
             this.#paintedAs = as;
         }
         return this.#painted;
     }
 
     #sum(mix) {
-        const light = new Float32Array(this.#width * this.#height * 3);
+        const light = this.#light.fill(0);
         for (const { plane, weight: [red, green, blue] } of mix) {
             const from = this.#planes[plane];
             for (let i = 0; i < light.length; i += 3) {
@@ -69,10 +71,11 @@ export class NumberPlanes {
                 light[i + 2] += blue * from[i + 2];
             }
         }
-        return light;
     }
 
-    #colour(light, exposure, falseColour, bytes) {
+    #colour(exposure, falseColour) {
+        const light = this.#light;
+        const bytes = this.#picture.data;
         const scale = exposure * STEPS;
         // Negative light and what is no number are black.
         const place = (value) =>

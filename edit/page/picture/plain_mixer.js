@@ -5,6 +5,7 @@ import { NumberPlanes } from "./number_planes.js";
 
 export class PlainMixer {
     #context;
+    #whole = document.createElement("canvas"); // of the window's size, where columns are drawn
 
     constructor(canvas) {
         this.#context = canvas.getContext("2d", { alpha: false });
@@ -36,9 +37,8 @@ export class PlainMixer {
     }
 
     #aside(width, height) {
-        const canvas = document.createElement("canvas");
-        canvas.width = width;
-        canvas.height = height;
-        return canvas.getContext("2d", { alpha: false });
+        if (this.#whole.width !== width) this.#whole.width = width;
+        if (this.#whole.height !== height) this.#whole.height = height;
+        return this.#whole.getContext("2d", { alpha: false });
     }
 }

@@ -29,4 +29,8 @@ enum class Scattered { once, any };
 /// - the fast integrator agrees with the reference at two pixels.
 InvariantCounts hold_invariants(std::uint64_t first, int count, Scattered scattered);
 
+/// hold_invariants of a hundred scenes of single scattering or so, from the seed `first` on, whose
+/// number, refusals and comparisons are expected, and printed.
+void hold_about_a_hundred(int first);
+
 }  // namespace uw::test
