@@ -32,8 +32,8 @@ constexpr double k_slab_spacing = 0.0091;  // rad
 // How far in-scatter that is interpolated between pixels may be from that of their own rays
 // (InScatterLattice), relative, where the lattice is confirmed; the image is interpolated from
 // closer nodes and has a quarter of that error.
-constexpr double k_in_scatter_tolerance = 1e-3;
-constexpr double k_draft_tolerance = 0.025;
+constexpr double k_in_scatter_tolerance = 4e-3;
+constexpr double k_draft_tolerance = 0.05;
 // How far the columns of a lamp's map may be off between two of its rays, as optical depth: rays
 // half as far apart are used. A camera's ray meets hundreds of such errors, of either sign: the
 // image is off by less than 1e-4 of its mean (RMS).

@@ -158,7 +158,7 @@ bool InScatterLattice::confirmed(int i, int j, int spacing) {
     const int half = spacing / 2;
     // Few pixels lie in small cells, and features that five nodes miss in a large one are found
     // by those of smaller ones.
-    const double allowed = tolerance_ * k_coarsest / spacing;
+    const double allowed = tolerance_ * std::sqrt(static_cast<double>(k_coarsest) / spacing);
     for (int v = 0; v <= 2; ++v) {
         for (int u = 0; u <= 2; ++u) {
             if (u != 1 && v != 1) continue;

@@ -24,9 +24,9 @@ class InScatterLattice {
     static constexpr int k_tile = 32;
 
     /// `tolerance`: largest permitted relative difference, halfway between the nodes of the
-    /// coarsest lattice, between the interpolated value and that integrated there; twice that for
-    /// the next finer lattice, and so on. Pixels are interpolated from the halfway nodes as well,
-    /// so their error is smaller. All references must outlive this object.
+    /// coarsest lattice, between the interpolated value and that integrated there; sqrt(2) times
+    /// that for the next finer lattice, and so on. Pixels are interpolated from the halfway nodes
+    /// as well, so their error is smaller. All references must outlive this object.
     InScatterLattice(const RaySource& rays, const RayInScatter& in_scatter, double tolerance);
 
     /// Computes the in-scatter of the pixels of `tile` (k_tile along an edge, less at the image's

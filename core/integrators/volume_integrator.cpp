@@ -27,7 +27,7 @@ constexpr VolumeIntegrator::Fineness k_fineness;
 constexpr VolumeIntegrator::Fineness k_draft_fineness{.knots_per_panel = 6};
 // A measured profile (IES) bends where its angles were taken, anywhere on a panel.
 constexpr VolumeIntegrator::Fineness k_exact_fineness{.least_relative_panel = 0.1, .pieces = 2};
-constexpr double k_column_tolerance = 1e-3;
+constexpr double k_column_tolerance = 5e-4;
 constexpr double k_draft_column_tolerance = 0.01;
 
 std::vector<double> cotangents_of_breakpoints(const Medium& medium) {

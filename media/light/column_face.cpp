@@ -15,6 +15,10 @@ namespace {
 constexpr int k_widest = 4;
 // Samples along a ray are at most this many of the least steps apart.
 constexpr int k_longest_steps = 16;
+// What an error along a ray counts of one across rays. Columns bend the same way throughout a
+// cloud, so that those of rays beside each other are off to the same side along all that a camera
+// sees.
+constexpr double k_along = 5;
 
 // The stretch of a profile outside which there are no particles, as knots.
 struct Filled {
@@ -69,7 +73,7 @@ bool follows(const ConcentrationProfile& profile, const Filled& part, std::size_
         const double at = (profile.s[knot] - begin) * per_metre;
         const std::size_t i = std::min(static_cast<std::size_t>(at), count - 1);
         const double t = at - static_cast<double>(i);
-        const double weight = weight_at(profile.s[knot], reference);
+        const double weight = k_along * weight_at(profile.s[knot], reference);
         for (std::size_t k = 0; k < constituents; ++k) {
             const auto low = static_cast<double>(samples[i * constituents + k]);
             const auto high = static_cast<double>(samples[(i + 1) * constituents + k]);
