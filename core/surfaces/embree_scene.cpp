@@ -1,18 +1,52 @@
 #include "core/surfaces/embree_scene.h"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <atomic>
+#include <cstdint>
 #include <map>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "core/base/available_memory.h"
+#include "core/base/error.h"
+#include "core/base/stop.h"
+
 namespace uw {
+namespace {
+
+// Of a triangle in Embree's structure, measured with 10^7 of them while it is built.
+constexpr double k_bytes_per_triangle = 100;
+
+// Checked first: Linux grants more memory than it has, and kills the process that uses it.
+void check_memory(const SceneObjects& objects) {
+    std::uint64_t triangles = 0;
+    for (const auto& meshes : {objects.meshes, objects.shared_meshes})
+        for (const auto& object : meshes) triangles += object->mesh.triangle_count();
+    const double bytes = k_bytes_per_triangle * static_cast<double>(triangles);
+    const auto free = static_cast<double>(available_memory_bytes());
+    if (bytes > free)
+        throw InputError(fmt::format(
+            "geometry: {} triangles need {:.3g} GB of memory to be traced, but only {:.3g} GB are "
+            "free; simplify the meshes",
+            triangles, bytes * 1e-9, free * 1e-9));
+}
+
+// What Embree asks, from any of its threads, while it builds.
+bool goes_on(void* stop, double /*share*/) {
+    return !static_cast<const std::atomic<bool>*>(stop)->load(std::memory_order_relaxed);
+}
+
+}  // namespace
 
 EmbreeScene::EmbreeScene(const SceneObjects& objects)
     : objects_(objects),
       device_(rtcNewDevice(nullptr), &rtcReleaseDevice),
       scene_(nullptr, &rtcReleaseScene) {
+    check_memory(objects_);
     if (!device_ && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (!device_) throw std::runtime_error("Embree cannot start on this processor");
     scene_ = new_scene();
@@ -25,15 +59,22 @@ EmbreeScene::EmbreeScene(const SceneObjects& objects)
 void EmbreeScene::check(const char* doing) const {
     const RTCError error = rtcGetDeviceError(device_.get());
     if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_CANCELLED) throw Interrupted();
     const std::string reason =
         error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(error);
     throw std::runtime_error(std::string("Embree failed while ") + doing + ": " + reason);
 }
 
 void EmbreeScene::commit(RTCScene scene) const {
+    const std::atomic<bool>* const stop = StopScope::of_this_thread();
+    if (stop != nullptr)  // which Embree takes as non-const, and goes_on only reads
+        rtcSetSceneProgressMonitorFunction(scene, goes_on, const_cast<std::atomic<bool>*>(stop));
     rtcCommitScene(scene);
+    rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
     try {
         check("building the acceleration structure");
+    } catch (const Interrupted&) {
+        throw;
     } catch (...) {
         // Never freed: where memory runs out, tasks of the building may be left behind, and to free
         // the scene is to wait for them for ever, or std::terminate.

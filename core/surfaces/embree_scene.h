@@ -11,8 +11,8 @@ namespace uw {
 /// TracedScene says; for embree_*.cpp only.
 class EmbreeScene {
   public:
-    /// Refers to `objects`, whose vertices it does not copy. Throws std::runtime_error with
-    /// Embree's message.
+    /// Refers to `objects`, whose vertices it does not copy. Throws InputError if they do not fit
+    /// into free memory, Interrupted, and std::runtime_error with Embree's message.
     explicit EmbreeScene(const SceneObjects& objects);
 
     TracedScene traced() const { return {scene_.get(), &objects_}; }

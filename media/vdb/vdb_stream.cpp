@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/base/available_memory.h"
 #include "core/base/stop.h"
 #include "media/vdb/nvdb_grid.h"
 #include "media/vdb/vdb_layout.h"
@@ -34,13 +35,35 @@ std::size_t bytes_of_leaf(const openvdb::GridBase& grid) {
     return bytes;
 }
 
+/// What slabs hold at most, if `total` bytes are cut into slabs of about `slab_bytes`.
+std::size_t largest_slab(std::size_t total, std::size_t slab_bytes) {
+    return std::min(total, std::max(slab_bytes, total / 8));
+}
+
+// Checked first: Linux grants more memory than it has, and kills the process that uses it.
+void check_memory(const openvdb::GridBase& grid, std::size_t slab_bytes,
+                  const std::string& prefix) {
+    const std::size_t leaves = grid.constBaseTree().leafCount();
+    const std::size_t total = leaves * bytes_of_leaf(grid);
+    // A voxel takes 16 bits in what is kept, and a slab is there twice while it is converted.
+    constexpr std::size_t k_kept_bytes_per_leaf = 2 * 512;
+    const double bytes = static_cast<double>(leaves * k_kept_bytes_per_leaf) +
+                         2 * static_cast<double>(largest_slab(total, slab_bytes));
+    const auto free = static_cast<double>(available_memory_bytes());
+    if (bytes > free)
+        throw InputError(fmt::format(
+            "{}it needs {:.3g} GB of memory, but only {:.3g} GB are free; resample it to larger "
+            "voxels",
+            prefix, bytes * 1e-9, free * 1e-9));
+}
+
 /// The boxes into which a grid (topology only) is split for read_slabs; empty: no need to split.
 std::vector<openvdb::CoordBBox> cut_into_slabs(const openvdb::GridBase& grid,
                                                std::size_t slab_bytes) {
     const std::size_t leaf_bytes = bytes_of_leaf(grid);
     const std::size_t total = grid.constBaseTree().leafCount() * leaf_bytes;
     if (total <= slab_bytes) return {};
-    slab_bytes = std::max(slab_bytes, total / 8);
+    slab_bytes = largest_slab(total, slab_bytes);
 
     openvdb::CoordBBox box;
     for_each_leaf(grid, [&](const openvdb::Coord& origin) { box.expand(origin); });
@@ -65,11 +88,9 @@ std::vector<openvdb::CoordBBox> cut_into_slabs(const openvdb::GridBase& grid,
 
 GridStream::GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
                        const SourceLocation& where)
-    : header_(header),
-      grid_(grid),
-      voxels_(voxels),
-      where_(where),
-      stream_(header.file, std::ios::binary) {
+    : header_(header), grid_(grid), voxels_(voxels), where_(where) {
+    if (file_.open(header.file, std::ios::in | std::ios::binary) == nullptr)
+        stream_.setstate(std::ios::failbit);
     check_transform(header, grid, where);
     check_transform(header, voxels, where);
     stream_.exceptions(std::ios::failbit | std::ios::badbit);
@@ -142,6 +163,7 @@ void read_slabs(const VdbHeader& header, const GridSummary& grid, std::size_t sl
     }
     GridStream stream(header, grid, holder_of_voxels(header, grid), where);
     openvdb::GridBase::Ptr first = stream.read_topology();
+    check_memory(*first, slab_bytes, describe_grid_place(header, grid, where));
     const std::vector<openvdb::CoordBBox> slabs = cut_into_slabs(*first, slab_bytes);
     if (slabs.empty()) {
         stream.read_values(*first);

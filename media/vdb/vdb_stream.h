@@ -5,16 +5,27 @@
 #include <cstddef>
 #include <fstream>
 #include <functional>
+#include <istream>
 #include <new>
 #include <string>
 
 #include "core/base/affine.h"
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "media/vdb/openvdb_grids.h"
 #include "media/vdb/vdb_header.h"
 
 /// Grids of a VDB file as OpenVDB objects, for the files that access voxels.
 namespace uw {
+
+/// A file whose reading ends with Interrupted once the calling thread's work is to stop.
+class StoppableFile : public std::filebuf {
+  protected:
+    std::streamsize xsgetn(char* bytes, std::streamsize count) override {
+        throw_if_stopped();
+        return std::filebuf::xsgetn(bytes, count);
+    }
+};
 
 /// One grid's part of the file, as a stream set up as openvdb::io::File does it. File itself would
 /// reject the whole file for one grid of an unknown type, and clips in world space.
@@ -39,7 +50,8 @@ class GridStream {
     const GridSummary& voxels_;
     const SourceLocation& where_;
     bool layout_checked_ = false;
-    std::ifstream stream_;
+    StoppableFile file_;
+    std::istream stream_{&file_};
     // The stream keeps a pointer to this member.
     openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
 };
@@ -57,18 +69,22 @@ Affine to_affine(const openvdb::math::Transform& transform);
 /// Reads a grid in slabs of about `slab_bytes` and passes each to `take`; their active voxels are
 /// disjoint. The grid is split along its longest axis at block boundaries, so that no slab holds
 /// more than `slab_bytes` of leaf values, or an eighth of all. A NanoVDB grid comes as a single
-/// slab. The value type is one of ReadableGrids. Throws InputError starting with `where`, and
-/// OpenVDB's exceptions.
+/// slab. The value type is one of ReadableGrids. Throws InputError starting with `where`, also if a
+/// slab and what is made of all of them do not fit into free memory; Interrupted; and OpenVDB's
+/// exceptions.
 void read_slabs(const VdbHeader& header, const GridSummary& grid, std::size_t slab_bytes,
                 const SourceLocation& where,
                 const std::function<void(const openvdb::GridBase::Ptr&)>& take);
 
-/// The result of `read`; OpenVDB's exceptions become an InputError that starts with `prefix`.
+/// The result of `read`; OpenVDB's exceptions become an InputError that starts with `prefix`, and
+/// Interrupted passes.
 template <class Read>
 auto read_guarded(const std::string& prefix, const Read& read) {
     try {
         return read();
     } catch (const InputError&) {
+        throw;
+    } catch (const Interrupted&) {
         throw;
     } catch (const std::ios_base::failure&) {
         throw InputError(prefix + "the file is truncated or damaged; copy or export it again");

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <cstdint>
+#include <string>
+
 #include "tests/support/cli_test.h"
+#include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw::test {
 namespace {
@@ -12,12 +16,15 @@ class LittleMemory : public CliTest {
   protected:
     /// The program has 2 GB of address space for all that it is and does.
     ProgramResult run_in_2_gb(const std::vector<std::string>& arguments) const {
+        return run_in(2'000'000'000, arguments);
+    }
+    ProgramResult run_in(rlim_t bytes, const std::vector<std::string>& arguments) const {
         struct Restore {
             rlimit limit{};
             Restore() { ::getrlimit(RLIMIT_AS, &limit); }
             ~Restore() { ::setrlimit(RLIMIT_AS, &limit); }
         } const restore;
-        const rlimit little{2'000'000'000, restore.limit.rlim_max};
+        const rlimit little{bytes, restore.limit.rlim_max};
         ::setrlimit(RLIMIT_AS, &little);
         return run(arguments);
     }
@@ -36,6 +43,53 @@ TEST_F(LittleMemory, RefusesWhatDoesNot) {
     EXPECT_EQ(result.exit_code, 3) << result.err;
     EXPECT_EQ(line_count(result.err), 1) << result.err;
     EXPECT_NE(result.err.find("but only 1."), std::string::npos) << result.err;
+    EXPECT_FALSE(exists("out.exr"));
+}
+
+TEST_F(LittleMemory, RefusesAVolumeThatDoesNotFit) {
+    VdbFixture
+        scattered;  // 405 224 blocks of one voxel each: few bytes in the file, 0.8 GB of values
+    scattered.max = {591, 591, 591};
+    scattered.value = [](int i, int j, int k) { return ((i | j | k) & 7) == 0 ? 1.0 : 0.0; };
+    scattered.file_from_index = Affine::scale(Vector3(0.001));
+    write_fixture(folder_ / "scattered.vdb", {scattered});
+    write("volume.yaml", std::string(k_small_scene) +
+                             "volumes:\n  - {file: scattered.vdb, grids: {density: {small: 1}}}\n");
+    const ProgramResult result = run_in(
+        900'000'000, {"render", "volume.yaml", "-o", "out.exr", "--threads", "1", "--quiet"});
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_EQ(line_count(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("scattered.vdb': it needs 0.952 GB of memory, but only 0."),
+              std::string::npos)
+        << result.err;
+    EXPECT_FALSE(exists("out.exr"));
+}
+
+TEST_F(LittleMemory, RefusesMeshesThatDoNotFit) {
+    constexpr std::uint32_t k_triangles = 3'000'000;
+    std::string ply =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+        "property float y\nproperty float z\nelement face " +
+        std::to_string(k_triangles) + "\nproperty list uchar uint vertex_indices\nend_header\n";
+    const auto append = [&](const auto& value) {
+        ply.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    for (const float value : {0.F, 0.F, 3.F, 1.F, 0.F, 3.F, 0.F, 1.F, 3.F}) append(value);
+    for (std::uint32_t k = 0; k < k_triangles; ++k) {
+        append(std::uint8_t{3});
+        for (const std::uint32_t corner : {0U, 1U, 2U}) append(corner);
+    }
+    write("many.ply", ply);
+    std::string scene = k_small_scene;
+    scene.insert(scene.find("  - {type: plane"), "  - {file: many.ply}\n");
+    write("meshes.yaml", scene);
+    const ProgramResult result = run_in(
+        500'000'000, {"render", "meshes.yaml", "-o", "out.exr", "--threads", "1", "--quiet"});
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_EQ(line_count(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("triangles need 0.3 GB of memory to be traced, but only 0."),
+              std::string::npos)
+        << result.err;
     EXPECT_FALSE(exists("out.exr"));
 }
 

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
+#include "core/base/stop.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_loading.h"
 
@@ -47,6 +49,17 @@ TEST(VdbFile, RefusesLevelSetsWithOrWithoutTheirClass) {
     const std::string message = refusal(dir / "unknown.vdb", "surface");
     expect_contains(message, "is a level set, though its class is 'unknown'");
     expect_contains(message, "surface (float, unknown)");
+}
+
+TEST(VdbFile, ReadingStops) {
+    const TempDir dir;
+    test::write_fixture(dir / "a.vdb", {single_voxel("density")});
+    const VdbHeader header = read_vdb_header(dir / "a.vdb", k_where);
+    std::atomic<bool> stop{true};
+    const StopScope scope(stop);
+    EXPECT_THROW(load_grid(header, "density", k_where), Interrupted);
+    stop = false;
+    EXPECT_EQ(load_grid(header, "density", k_where).statistics.max, 1);
 }
 
 TEST(VdbFile, MissingAndAmbiguousNames) {
