@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstddef>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/meshes/files/assimp_reader.h"
@@ -55,6 +58,36 @@ void check_file(const std::filesystem::path& file) {
     }
 }
 
+// Every ray would meet the triangles of all of them: 3000 nodes that show the same 3000 triangles
+// in the same place are nine million in its way.
+void drop_coincident_placements(MeshFile& content, const std::string& name,
+                                std::vector<std::string>& warnings) {
+    std::size_t before = 0, after = 0;
+    for (SharedMesh& shared : content.shared) {
+        const auto order = [](const SharedMesh::Placement& placement) {
+            const Affine& map = placement.file_from_mesh;
+            std::array<double, 12> values{};
+            for (int column = 0; column < 4; ++column)
+                for (int row = 0; row < 3; ++row)
+                    values[static_cast<std::size_t>(3 * column + row)] =
+                        column < 3 ? map.linear()[column][row] : map.offset()[row];
+            return values;
+        };
+        before += shared.placements.size();
+        std::set<std::array<double, 12>> seen;
+        std::erase_if(shared.placements, [&](const SharedMesh::Placement& placement) {
+            return !seen.insert(order(placement)).second;
+        });
+        after += shared.placements.size();
+    }
+    if (after < before)
+        warnings.push_back(
+            fmt::format("{}: {} of {} objects that share meshes are in the place of another that "
+                        "shows the same "
+                        "mesh; only the first is kept",
+                        name, before - after, before));
+}
+
 }  // namespace
 
 MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
@@ -73,6 +106,7 @@ MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& 
     std::erase_if(content.shared, [](const SharedMesh& shared) {
         return shared.mesh.triangles.empty() || shared.placements.empty();
     });
+    drop_coincident_placements(content, file.string(), warnings);
     dropped.report(file.string(), warnings);
     clamped.report(file.string(), warnings);
     if (!content.has_triangles() && !use.camera_or_lamps) {

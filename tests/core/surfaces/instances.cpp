@@ -1,11 +1,13 @@
 // ctest labels: unit metamorphic
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "core/surfaces/geometry_scene.h"
 #include "core/surfaces/surfaces.h"
 #include "tests/support/geometry_descs.h"
 #include "tests/support/meshes/mesh_fixtures.h"
@@ -176,6 +178,25 @@ TEST_F(Instances, LookAsCopiesOfTheMeshDo) {
         }
         for (const std::size_t id : {1, 2, 3, 4, 5, 6}) EXPECT_GT(seen[id], 10) << id;
     }
+}
+
+TEST_F(Instances, InTheSamePlaceAreKeptOnce) {
+    std::string text = sheets_text(true, R"({"name":"paint"})");
+    const std::string flat = R"({"name":"flat","mesh":0,"scale":[1,0,1]})";
+    ASSERT_NE(text.find(flat), std::string::npos);
+    text.replace(text.find(flat), flat.size(), R"({"name":"again","mesh":0})");
+    folder_.write("t.png", test::four_texel_png());
+    GeometryDesc desc;
+    desc.file = folder_.write("twice.gltf", text);
+    std::vector<std::string> warnings;
+    const auto surfaces = build_surfaces({desc}, {620, 540, 450}, warnings);
+    EXPECT_EQ(surfaces->triangle_count(), 5 * 2 * k_side * k_side);
+    EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& warning) {
+        return warning.find("twice.gltf: 1 of 6 objects") != std::string::npos;
+    }));
+    // The one that is left out keeps its number.
+    ASSERT_EQ(surfaces->names().objects.size(), 6U);
+    EXPECT_EQ(surfaces->names().objects[5].name, "again");
 }
 
 TEST_F(Instances, AreNamedAndPlacedAsTheirNodes) {
