@@ -3,12 +3,13 @@
 // file UWVDB_FAIL_DONE. Kinds: open (to write), write, rename, fsync, allocate (1 MiB or more),
 // map, thread. "space:1000000" is a disk with so many bytes free, "quota:1000000" one on which the
 // user may write as many: what is beyond is not written, and nothing from then on. Neither writes
-// to the standard streams are counted nor what libraries do as they are loaded.
+// to anything but files are counted nor what libraries do as they are loaded.
 
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -75,6 +76,11 @@ ssize_t room_for(std::size_t bytes) {
     return -1;
 }
 
+bool is_regular(int file) {
+    struct stat status {};
+    return file > STDERR_FILENO && ::fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 constexpr std::size_t k_large = std::size_t{1} << 20;
 
 bool fails_allocation(std::size_t bytes) {
@@ -86,13 +92,13 @@ bool fails_allocation(std::size_t bytes) {
 }  // namespace
 
 ssize_t write(int file, const void* data, std::size_t bytes) {
-    if (file <= STDERR_FILENO) return ::syscall(SYS_write, file, data, bytes);
+    if (!is_regular(file)) return ::syscall(SYS_write, file, data, bytes);
     const ssize_t room = room_for(bytes);
     return room < 0 ? -1 : ::syscall(SYS_write, file, data, room);
 }
 
 ssize_t writev(int file, const iovec* parts, int count) {
-    if (file <= STDERR_FILENO) return ::syscall(SYS_writev, file, parts, count);
+    if (!is_regular(file)) return ::syscall(SYS_writev, file, parts, count);
     std::size_t bytes = 0;
     for (int n = 0; n < count; ++n) bytes += parts[n].iov_len;
     const ssize_t room = room_for(bytes);
