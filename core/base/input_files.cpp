@@ -107,8 +107,7 @@ std::vector<fs::path> inputs_outside(const fs::path& folder) {
             outside.push_back(error ? input.file : file);
     }
     std::ranges::sort(outside);
-    const auto repeated = std::ranges::unique(outside);
-    outside.erase(repeated.begin(), repeated.end());
+    outside.erase(std::unique(outside.begin(), outside.end()), outside.end());
     return outside;
 }
 
