@@ -39,6 +39,14 @@ SceneVariations variations_of(const SceneObject& scene, int number) {
     return variations;
 }
 
+void refuse_taken(const std::string& section, const std::string& name, const SceneArrays& there) {
+    if (there.grids.contains(name) || there.meshes.contains(name))
+        throw UsageError(fmt::format(
+            "{}.add: there is a '{}' already, added meanwhile; add one after the other, or give "
+            "each a name",
+            section, printable(name)));
+}
+
 }  // namespace
 
 void set_origin(ConfigNode& value, const std::string& origin) {
@@ -78,6 +86,8 @@ bool SceneObject::remove(const std::string& path) {
 }
 
 void SceneObject::append(const std::string& section, ConfigNode entry, SceneArrays arrays) {
+    for (const auto& [name, grid] : arrays.grids) refuse_taken(section, name, arrays_);
+    for (const auto& [name, mesh] : arrays.meshes) refuse_taken(section, name, arrays_);
     ConfigNode tree = tree_;
     ConfigNode* list = tree.find(section);
     if (list == nullptr) {

@@ -32,6 +32,7 @@ class SceneObject {
     /// Removes the value at a path (remove_value); false if there is none.
     bool remove(const std::string& path);
     /// Adds an entry to the list of a section ("volumes"), and what is in memory for it.
+    /// UsageError if something in memory has its name already.
     void append(const std::string& section, ConfigNode entry, SceneArrays arrays);
 
     /// The scene with the values of one of its variations, counted from 0 (SceneVariations).

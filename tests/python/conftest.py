@@ -23,6 +23,9 @@ SECTIONS = {
                "intensity": [20, 30, 40]}],
 }
 
+# How to render what takes seconds on any machine if nothing ends it.
+LONG = dict(integrator="path", samples=60000, size=(480, 320))
+
 
 @pytest.fixture
 def scene():

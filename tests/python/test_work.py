@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 
 import uwvdb
-
-# Takes seconds on any machine if nothing ends it.
-LONG = dict(integrator="path", samples=60000, size=(480, 320))
+from conftest import LONG
 
 
 def test_ctrl_c_stops_at_once_and_leaves_the_renderer_usable(scene, renderer):
