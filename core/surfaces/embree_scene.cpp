@@ -24,8 +24,8 @@ constexpr double k_bytes_per_triangle = 100;
 // Checked first: Linux grants more memory than it has, and kills the process that uses it.
 void check_memory(const SceneObjects& objects) {
     std::uint64_t triangles = 0;
-    for (const auto& meshes : {objects.meshes, objects.shared_meshes})
-        for (const auto& object : meshes) triangles += object->mesh.triangle_count();
+    for (const auto* meshes : {&objects.meshes, &objects.shared_meshes})
+        for (const auto& object : *meshes) triangles += object->mesh.triangle_count();
     const double bytes = k_bytes_per_triangle * static_cast<double>(triangles);
     const auto free = static_cast<double>(available_memory_bytes());
     if (bytes > free)

@@ -47,8 +47,8 @@ TEST_F(LittleMemory, RefusesWhatDoesNot) {
 }
 
 TEST_F(LittleMemory, RefusesAVolumeThatDoesNotFit) {
-    VdbFixture
-        scattered;  // 405 224 blocks of one voxel each: few bytes in the file, 0.8 GB of values
+    // 405 224 blocks of one voxel each: few bytes in the file, 0.8 GB of values.
+    VdbFixture scattered;
     scattered.max = {591, 591, 591};
     scattered.value = [](int i, int j, int k) { return ((i | j | k) & 7) == 0 ? 1.0 : 0.0; };
     scattered.file_from_index = Affine::scale(Vector3(0.001));

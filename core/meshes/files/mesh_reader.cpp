@@ -64,7 +64,7 @@ void drop_coincident_placements(MeshFile& content, const std::string& name,
                                 std::vector<std::string>& warnings) {
     std::size_t before = 0, after = 0;
     for (SharedMesh& shared : content.shared) {
-        const auto order = [](const SharedMesh::Placement& placement) {
+        const auto key = [](const SharedMesh::Placement& placement) {
             const Affine& map = placement.file_from_mesh;
             std::array<double, 12> values{};
             for (int column = 0; column < 4; ++column)
@@ -76,15 +76,14 @@ void drop_coincident_placements(MeshFile& content, const std::string& name,
         before += shared.placements.size();
         std::set<std::array<double, 12>> seen;
         std::erase_if(shared.placements, [&](const SharedMesh::Placement& placement) {
-            return !seen.insert(order(placement)).second;
+            return !seen.insert(key(placement)).second;
         });
         after += shared.placements.size();
     }
     if (after < before)
         warnings.push_back(
             fmt::format("{}: {} of {} objects that share meshes are in the place of another that "
-                        "shows the same "
-                        "mesh; only the first is kept",
+                        "shows the same mesh; only the first is kept",
                         name, before - after, before));
 }
 
