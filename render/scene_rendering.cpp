@@ -35,8 +35,8 @@ constexpr double k_slab_spacing = 0.0091;  // rad
 constexpr double k_in_scatter_tolerance = 4e-3;
 constexpr double k_draft_tolerance = 0.05;
 // How far the columns of a lamp's map may be off between two of its rays, as optical depth: rays
-// half as far apart are used. A camera's ray meets hundreds of such errors, of either sign: the
-// image is off by less than 1e-4 of its mean (RMS).
+// half as far apart are used. A camera's ray meets hundreds of such errors, of either sign; those
+// along a ray, which add up, are held to less (ColumnFace).
 constexpr double k_column_tolerance = 0.02;
 // Rays per pixel for what is not a mean over light paths, in images that are.
 constexpr int k_most_samples_beside_paths = 16;

@@ -1,5 +1,6 @@
 #include "core/base/available_memory.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -95,6 +96,17 @@ std::uint64_t left_of_address_space(const fs::path& root) {
 std::uint64_t available_memory_bytes(const fs::path& root) {
     return std::min(
         {available_on_the_machine(root), left_in_groups(root), left_of_address_space(root)});
+}
+
+InputError lack_of_memory(double bytes, std::string_view what, std::string_view mend) {
+    return InputError(fmt::format("{} {:.3g} GB of memory, but only {:.3g} GB are free; {}", what,
+                                  bytes * 1e-9,
+                                  static_cast<double>(available_memory_bytes()) * 1e-9, mend));
+}
+
+void require_memory(double bytes, std::string_view what, std::string_view mend) {
+    if (bytes > static_cast<double>(available_memory_bytes()))
+        throw lack_of_memory(bytes, what, mend);
 }
 
 }  // namespace uw

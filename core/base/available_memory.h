@@ -2,6 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
+
+#include "core/base/error.h"
 
 namespace uw {
 
@@ -13,5 +16,13 @@ namespace uw {
 /// - what its limit of address space (ulimit -v) leaves.
 /// The largest representable number if none can be read. `root`: of the file system, for tests.
 std::uint64_t available_memory_bytes(const std::filesystem::path& root = "/");
+
+/// What is said of `bytes` that cannot be had: "WHAT 1.2 GB of memory, but only 0.8 GB are free;
+/// MEND".
+InputError lack_of_memory(double bytes, std::string_view what, std::string_view mend);
+
+/// Throws lack_of_memory() if `bytes` are more than is available. To be called first: Linux grants
+/// more memory than it has, and kills the process that uses it.
+void require_memory(double bytes, std::string_view what, std::string_view mend);
 
 }  // namespace uw

@@ -33,11 +33,10 @@ void for_each_row(const ScatterPlane& plane, const std::function<void(int y)>& r
 
 void check_memory(const ScatterPlane& plane, std::size_t values_per_pixel) {
     const double bytes = 4.0 * plane.width * plane.height * static_cast<double>(values_per_pixel);
-    if (bytes > static_cast<double>(available_memory_bytes()))
-        throw InputError(
-            fmt::format("water.forward_scatter: {} x {} pixels need another {:.3g} GB of memory; "
-                        "render a smaller --size, leave out the lamps' layers, or set K to 0",
-                        plane.width, plane.height, bytes * 1e-9));
+    require_memory(bytes,
+                   fmt::format("water.forward_scatter: {} x {} pixels need another", plane.width,
+                               plane.height),
+                   "render a smaller --size, leave out the lamps' layers, or set K to 0");
 }
 
 }  // namespace

@@ -43,11 +43,10 @@ class Spread {
     Spread(const PixelWindow& window, std::size_t bands) : window_(window), bands_(bands) {
         const double bytes =
             4.0 * static_cast<double>(bands_ + 1) * window.width() * window.height();
-        if (bytes > static_cast<double>(available_memory_bytes()))
-            throw InputError(fmt::format(
-                "camera.resolution: the standard error of {} x {} pixels needs {:.3g} GB of "
-                "memory; render it in parts, with --crop, or make it smaller, with --size",
-                window.width(), window.height(), bytes * 1e-9));
+        require_memory(bytes,
+                       fmt::format("camera.resolution: the standard error of {} x {} pixels needs",
+                                   window.width(), window.height()),
+                       "render it in parts, with --crop, or make it smaller, with --size");
         values_.assign(window.width() * static_cast<int>(bands_ + 1), window.height());
     }
 

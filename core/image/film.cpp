@@ -28,13 +28,11 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
                              static_cast<double>(channel_names_.size()) +
                          k_least_besides;
     const auto no_memory = [&] {
-        return InputError(fmt::format(
-            "camera.resolution: {} x {} pixels of {} channels need {:.3g} GB of memory, but only "
-            "{:.3g} GB are free; ask for fewer --layers, a --crop or a smaller --size",
-            window_.width(), window_.height(), channel_names_.size(), bytes * 1e-9,
-            static_cast<double>(available_memory_bytes()) * 1e-9));
+        return lack_of_memory(bytes,
+                              fmt::format("camera.resolution: {} x {} pixels of {} channels need",
+                                          window_.width(), window_.height(), channel_names_.size()),
+                              "ask for fewer --layers, a --crop or a smaller --size");
     };
-    // Checked first: Linux grants more memory than it has, and kills the process that uses it.
     if (bytes > static_cast<double>(available_memory_bytes())) throw no_memory();
     try {
         values_.assign(window.width() * static_cast<int>(channel_names_.size()), window.height());

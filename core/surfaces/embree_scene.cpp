@@ -21,18 +21,13 @@ namespace {
 // Of a triangle in Embree's structure, measured with 10^7 of them while it is built.
 constexpr double k_bytes_per_triangle = 100;
 
-// Checked first: Linux grants more memory than it has, and kills the process that uses it.
 void check_memory(const SceneObjects& objects) {
     std::uint64_t triangles = 0;
     for (const auto* meshes : {&objects.meshes, &objects.shared_meshes})
         for (const auto& object : *meshes) triangles += object->mesh.triangle_count();
-    const double bytes = k_bytes_per_triangle * static_cast<double>(triangles);
-    const auto free = static_cast<double>(available_memory_bytes());
-    if (bytes > free)
-        throw InputError(fmt::format(
-            "geometry: {} triangles need {:.3g} GB of memory to be traced, but only {:.3g} GB are "
-            "free; simplify the meshes",
-            triangles, bytes * 1e-9, free * 1e-9));
+    require_memory(k_bytes_per_triangle * static_cast<double>(triangles),
+                   fmt::format("geometry: to trace {} triangles takes", triangles),
+                   "simplify the meshes");
 }
 
 // What Embree asks, from any of its threads, while it builds.

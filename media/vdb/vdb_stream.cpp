@@ -40,21 +40,15 @@ std::size_t largest_slab(std::size_t total, std::size_t slab_bytes) {
     return std::min(total, std::max(slab_bytes, total / 8));
 }
 
-// Checked first: Linux grants more memory than it has, and kills the process that uses it.
 void check_memory(const openvdb::GridBase& grid, std::size_t slab_bytes,
                   const std::string& prefix) {
     const std::size_t leaves = grid.constBaseTree().leafCount();
     const std::size_t total = leaves * bytes_of_leaf(grid);
     // A voxel takes 16 bits in what is kept, and a slab is there twice while it is converted.
     constexpr std::size_t k_kept_bytes_per_leaf = 2 * 512;
-    const double bytes = static_cast<double>(leaves * k_kept_bytes_per_leaf) +
-                         2 * static_cast<double>(largest_slab(total, slab_bytes));
-    const auto free = static_cast<double>(available_memory_bytes());
-    if (bytes > free)
-        throw InputError(fmt::format(
-            "{}it needs {:.3g} GB of memory, but only {:.3g} GB are free; resample it to larger "
-            "voxels",
-            prefix, bytes * 1e-9, free * 1e-9));
+    require_memory(static_cast<double>(leaves * k_kept_bytes_per_leaf) +
+                       2 * static_cast<double>(largest_slab(total, slab_bytes)),
+                   prefix + "it needs", "resample it to larger voxels");
 }
 
 /// The boxes into which a grid (topology only) is split for read_slabs; empty: no need to split.

@@ -87,7 +87,7 @@ TEST_F(LittleMemory, RefusesMeshesThatDoNotFit) {
         500'000'000, {"render", "meshes.yaml", "-o", "out.exr", "--threads", "1", "--quiet"});
     EXPECT_EQ(result.exit_code, 3) << result.err;
     EXPECT_EQ(line_count(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find("triangles need 0.3 GB of memory to be traced, but only 0."),
+    EXPECT_NE(result.err.find("to trace 3000012 triangles takes 0.3 GB of memory, but only 0."),
               std::string::npos)
         << result.err;
     EXPECT_FALSE(exists("out.exr"));

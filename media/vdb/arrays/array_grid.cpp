@@ -143,11 +143,10 @@ GridArray read_grid_array(const VdbHeader& header, const std::string& name,
         array.size[axis] = static_cast<std::size_t>(box.dim()[axis]);
         bytes *= static_cast<double>(array.size[axis]);
     }
-    if (bytes > static_cast<double>(available_memory_bytes()))
-        throw InputError(fmt::format(
-            "{}all values of its box of {} x {} x {} voxels take {:.0f} GB, more memory than "
-            "there is; use the file itself",
-            prefix, array.size[0], array.size[1], array.size[2], 1e-9 * bytes));
+    require_memory(bytes,
+                   fmt::format("{}all values of its box of {} x {} x {} voxels take", prefix,
+                               array.size[0], array.size[1], array.size[2]),
+                   "use the file itself");
     array.values.resize(array.size[0] * array.size[1] * array.size[2]);
     for (const openvdb::FloatGrid::Ptr& slab : slabs) copy_values(*slab, array);
     return array;
