@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "cli/dataset/dataset_command.h"
 #include "cli/edit/edit_command.h"
 #include "cli/info/info_command.h"
+#include "cli/memory_limit.h"
 #include "cli/points/project_command.h"
 #include "cli/points/rays_command.h"
 #include "cli/render/render_command.h"
@@ -46,10 +48,26 @@ void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::manual_command(commands));
 }
 
+// Where an exception must not pass, as on the threads of libraries.
+[[noreturn]] void end_by_unexpected() {
+    try {
+        if (const std::exception_ptr error = std::current_exception())
+            std::rethrow_exception(error);
+    } catch (const std::bad_alloc& error) {
+        fail(uw::k_exit_internal, uw::line_of(error));
+        std::_Exit(uw::k_exit_internal);
+    } catch (...) {
+        // A fault of ours, to be looked at where it arose.
+    }
+    std::abort();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     uw::prepare_streams();
+    uw::limit_memory();
+    std::set_terminate(end_by_unexpected);
     try {
         std::vector<uw::Command> commands;
         add_all(commands);
@@ -62,10 +80,7 @@ int main(int argc, char** argv) {
         return fail(uw::k_exit_io, error.what());
     } catch (const uw::Interrupted& stop) {
         return fail(uw::k_exit_interrupted, stop.what());
-    } catch (const std::bad_alloc&) {
-        return fail(uw::k_exit_internal,
-                    "out of memory; try --crop, fewer --layers or a smaller --size");
     } catch (const std::exception& error) {
-        return fail(uw::k_exit_internal, error.what());
+        return fail(uw::k_exit_internal, uw::line_of(error));
     }
 }

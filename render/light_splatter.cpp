@@ -1,9 +1,13 @@
 #include "render/light_splatter.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
+#include "core/base/available_memory.h"
 #include "core/optics/optical_depth.h"
 
 namespace uw {
@@ -47,6 +51,7 @@ void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Dire
             std::make_shared<ShadowMap>(*scene.surfaces, maps.lamp, maps.shadow_resolution, beam);
         ++counts_.shadow_maps;
         counts_.rays += maps.shadows->rays_traced();
+        counts_.bytes += maps.shadows->bytes();
     }
     if (!maps.columns) {
         maps.columns =
@@ -54,6 +59,7 @@ void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Dire
                                         options_.column_budget, options_.column_tolerance);
         ++counts_.column_maps;
         counts_.rays += maps.columns->rays_traced();
+        counts_.bytes += maps.columns->bytes();
     }
 }
 
@@ -69,9 +75,19 @@ DeepShadows LightSplatter::splat(const AssembledScene& scene, const DeepShadowOp
     for (const Lamp& emitter : scene.emitters) {
         fields.push_back(emitter.sunlight() ? splat_sun(scene, emitter, suns_before)
                                             : splat_lamp(scene, emitter, before));
+        expect_room(fields.size(), scene.emitters.size());
         progress(static_cast<double>(fields.size()) / static_cast<double>(scene.emitters.size()));
     }
     return fields;
+}
+
+// The maps to come are taken to be as large as those so far. Asked whenever these have doubled.
+void LightSplatter::expect_room(std::size_t done, std::size_t all) const {
+    if (!std::has_single_bit(done)) return;
+    const double share_to_come = static_cast<double>(all - done) / static_cast<double>(done);
+    require_memory(static_cast<double>(counts_.bytes) * share_to_come,
+                   fmt::format("lamps: what {} points of light see takes another", all),
+                   "use fewer lamps, fewer `samples` of those with an extent, or --quality draft");
 }
 
 std::shared_ptr<const DeepShadow> LightSplatter::splat_lamp(const AssembledScene& scene,
@@ -121,6 +137,7 @@ std::shared_ptr<const DeepShadow> LightSplatter::splat_sun(const AssembledScene&
                                                       maps.shadow_resolution);
         ++counts_.shadow_maps;
         counts_.rays += maps.shadows->rays_traced();
+        counts_.bytes += maps.shadows->bytes();
     }
     if (!maps.columns) {
         maps.columns =
@@ -128,6 +145,7 @@ std::shared_ptr<const DeepShadow> LightSplatter::splat_sun(const AssembledScene&
                                            options_.column_budget, options_.column_tolerance);
         ++counts_.column_maps;
         counts_.rays += maps.columns->rays_traced();
+        counts_.bytes += maps.columns->bytes();
     }
     sun_maps_.push_back(maps);
     return std::make_shared<SunDeepShadow>(maps.shadows, maps.columns);

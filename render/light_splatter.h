@@ -18,6 +18,7 @@ using ShareCallback = std::function<void(double share)>;
 struct SplatCounts {
     std::size_t shadow_maps = 0, column_maps = 0;
     std::uint64_t rays = 0;  // traced for them
+    std::size_t bytes = 0;   // that they hold
 };
 
 /// Splats the light of a scene's lamps and keeps it for the next render. A shadow map depends on
@@ -32,6 +33,7 @@ class LightSplatter {
     /// The light of every emitter of `scene`, the same to the bit as from a new splatter. Surfaces
     /// and field are the same if they are the same objects. The surfaces are kept alive; a field is
     /// not, so that its memory is free for the next one. What `progress` throws ends the splat.
+    /// Throws InputError if the maps of all emitters will not fit into free memory.
     DeepShadows splat(
         const AssembledScene& scene, const DeepShadowOptions& options,
         const ShareCallback& progress = [](double) {});
@@ -61,6 +63,7 @@ class LightSplatter {
                                                 const std::vector<SunMaps>& before);
     int shadow_resolution(const Lamp& emitter) const;
     void drop_outdated(const AssembledScene& scene, const DeepShadowOptions& share);
+    void expect_room(std::size_t done, std::size_t all) const;
     void complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam);
 
     std::shared_ptr<const Surfaces> surfaces_;

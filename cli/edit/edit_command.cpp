@@ -13,6 +13,7 @@
 #include <string>
 
 #include "cli/console.h"
+#include "cli/memory_limit.h"
 #include "cli/stop_signal.h"
 #include "edit/server/edit_server.h"
 #include "edit/session/edit_session.h"
@@ -51,6 +52,7 @@ void open_browser(const std::string& address) {
     std::string program = "xdg-open", argument = address;
     char* const arguments[] = {program.data(), argument.data(), nullptr};
     pid_t process = 0;
+    const MemoryLimitLifted lifted;
     const int failure =
         posix_spawnp(&process, program.c_str(), &actions, &attributes, arguments, environ);
     posix_spawnattr_destroy(&attributes);

@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <limits>
+#include <sstream>
 #include <string>
 
 namespace uw {
@@ -21,17 +23,23 @@ std::uint64_t less(std::uint64_t all, std::uint64_t used) {
     return all > used ? all - used : 0;
 }
 
-// MemAvailable and SwapFree of /proc/meminfo, "MemAvailable:   21333764 kB".
-std::uint64_t available_on_the_machine(const fs::path& root) {
-    std::ifstream in(root / "proc/meminfo");
-    std::uint64_t kilobytes = 0, value = 0;
-    bool found = false;
-    for (std::string key, unit; in >> key >> value; std::getline(in, unit)) {
-        if (key != "MemAvailable:" && key != "SwapFree:") continue;
-        found = found || key == "MemAvailable:";
-        kilobytes += value;
+// The value of `key` in a file of lines as "MemAvailable:   21333764 kB", [bytes].
+std::uint64_t bytes_of(std::string_view key, const fs::path& file) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with(key)) continue;
+        std::istringstream value(line.substr(key.size()));
+        std::uint64_t kilobytes = 0;
+        return value >> kilobytes ? kilobytes * 1024 : k_unknown;
     }
-    return found ? kilobytes * 1024 : k_unknown;
+    return k_unknown;
+}
+
+std::uint64_t available_on_the_machine(const fs::path& root) {
+    const fs::path file = root / "proc/meminfo";
+    const std::uint64_t available = bytes_of("MemAvailable:", file);
+    const std::uint64_t swap = bytes_of("SwapFree:", file);
+    return available == k_unknown || swap == k_unknown ? available : available + swap;
 }
 
 /// The number in a file; `k_unknown` if there is none, as where it says "max".
@@ -43,11 +51,12 @@ std::uint64_t number_in(const fs::path& file) {
 
 /// What the files of a version of control groups are called.
 struct GroupFiles {
-    const char *limit, *usage, *cached;
+    const char *limit, *usage;
+    std::array<std::string_view, 2> cached;  // entries of memory.stat
 };
-constexpr GroupFiles k_version_1{"memory.limit_in_bytes", "memory.usage_in_bytes",
-                                 "total_inactive_file"};
-constexpr GroupFiles k_version_2{"memory.max", "memory.current", "inactive_file"};
+constexpr GroupFiles k_version_1{
+    "memory.limit_in_bytes", "memory.usage_in_bytes", {"total_inactive_file", "total_active_file"}};
+constexpr GroupFiles k_version_2{"memory.max", "memory.current", {"inactive_file", "active_file"}};
 
 std::uint64_t left_in_group(const fs::path& group, const GroupFiles& files) {
     const std::uint64_t limit = number_in(group / files.limit);
@@ -56,7 +65,7 @@ std::uint64_t left_in_group(const fs::path& group, const GroupFiles& files) {
     std::uint64_t cached = 0, value = 0;
     std::ifstream statistics(group / "memory.stat");
     for (std::string key; statistics >> key >> value;)
-        if (key == files.cached) cached = value;
+        if (std::ranges::find(files.cached, key) != files.cached.end()) cached += value;
     return less(limit, less(used == k_unknown ? 0 : used, cached));
 }
 
@@ -91,11 +100,22 @@ std::uint64_t left_of_address_space(const fs::path& root) {
     return less(limit.rlim_cur, pages == k_unknown ? 0 : pages * page);
 }
 
+std::uint64_t left_of_data(const fs::path& root) {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return k_unknown;
+    return less(limit.rlim_cur, data_bytes(root));
+}
+
 }  // namespace
 
+std::uint64_t data_bytes(const fs::path& root) {
+    const std::uint64_t data = bytes_of("VmData:", root / "proc/self/status");
+    return data == k_unknown ? 0 : data;
+}
+
 std::uint64_t available_memory_bytes(const fs::path& root) {
-    return std::min(
-        {available_on_the_machine(root), left_in_groups(root), left_of_address_space(root)});
+    return std::min({available_on_the_machine(root), left_in_groups(root),
+                     left_of_address_space(root), left_of_data(root)});
 }
 
 InputError lack_of_memory(double bytes, std::string_view what, std::string_view mend) {

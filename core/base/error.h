@@ -1,5 +1,7 @@
 #pragma once
 
+#include <exception>
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -27,5 +29,12 @@ class Interrupted : public std::runtime_error {
     Interrupted() : std::runtime_error("interrupted; nothing was written") {}
     using std::runtime_error::runtime_error;
 };
+
+/// The line for the user: what(), or what to do where memory could not be had.
+inline const char* line_of(const std::exception& error) {
+    if (!dynamic_cast<const std::bad_alloc*>(&error)) return error.what();
+    return "out of memory; render a smaller --size or --crop, fewer --layers or a --quality draft, "
+           "or use smaller volumes, meshes and textures";
+}
 
 }  // namespace uw

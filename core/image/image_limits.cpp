@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 
 namespace uw {
@@ -24,6 +25,11 @@ void check_image_size(std::int64_t width, std::int64_t height, int channels,
             fmt::format("{}: {} bytes cannot hold {} x {} pixels; the file is truncated", name,
                         encoded_bytes, width, height));
     }
+    // A byte or two as the codec gives it, and a float.
+    constexpr double k_bytes_per_value = 5;
+    require_memory(k_bytes_per_value * static_cast<double>(width * height * channels),
+                   fmt::format("{}: {} x {} pixels need", name, width, height),
+                   "scale the image down");
 }
 
 }  // namespace uw

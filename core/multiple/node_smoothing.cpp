@@ -1,8 +1,11 @@
 #include "core/multiple/node_smoothing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <vector>
 
+#include "core/base/available_memory.h"
 #include "core/base/parallel.h"
 #include "core/multiple/lattice_fit.h"
 #include "core/multiple/node_kinship.h"
@@ -184,6 +187,19 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
 }
 
 }  // namespace
+
+// Nodes as they were estimated, with their variances averaged, and smoothed.
+void require_room_for_nodes(std::size_t nodes, std::size_t intervals, std::size_t groups,
+                            const LitScene& scene) {
+    const auto bands = static_cast<std::size_t>(scene.medium->band_count());
+    const std::size_t copies = 2 * (1 + 2 * groups) + groups;
+    const double bytes = static_cast<double>(sizeof(float) * copies) *
+                         static_cast<double>(nodes * intervals * bands);
+    require_memory(bytes,
+                   fmt::format("render.scattering: multiple: {} lamps in {} bands need",
+                               scene.lamp_count(), bands),
+                   "leave out the lamps' layers, use fewer bands, or --quality draft");
+}
 
 Grid2D<SmoothNode> smoothed(const Grid2D<MultipleNode>& raw, const DistanceIntervals& intervals,
                             std::size_t groups) {

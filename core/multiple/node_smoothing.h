@@ -21,6 +21,11 @@ struct SmoothNode {
     double mean_light = 0, variance = 0;  // of the node's ray, and of its smoothed light
 };
 
+/// Throws InputError if so many nodes, with the copies that smoothing makes, do not fit into free
+/// memory. `groups`: MultipleNodeOptions::groups.
+void require_room_for_nodes(std::size_t nodes, std::size_t intervals, std::size_t groups,
+                            const LitScene& scene);
+
 /// Smooths the nodes of a lattice (share_outliers, then LatticeFit): the water's light interval by
 /// interval over the nodes whose rays reach it, the surfaces' over those that see the same surface.
 /// The neighbourhood for either half of the estimates is chosen by the other one: if a half chose

@@ -156,7 +156,7 @@ HttpResponse EditServer::answer(const HttpRequest& request) {
     } catch (const IoError& error) {
         return error_response(422, error.what());
     } catch (const std::exception& error) {
-        return error_response(500, error.what());
+        return error_response(500, line_of(error));
     }
 }
 

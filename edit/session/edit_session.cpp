@@ -63,7 +63,7 @@ void EditSession::open() {
         all_touched_ = revision_ + 1;
         take(std::move(scene));
     } catch (const std::exception& error) {
-        error_ = error.what();
+        error_ = line_of(error);
         announce();
     }
 }

@@ -123,7 +123,7 @@ void PictureRenderer::run() {
         } catch (const Interrupted&) {
             // There is a newer scene, or no further one.
         } catch (const std::exception& error) {
-            callbacks_.failed(error.what());
+            callbacks_.failed(line_of(error));
         }
         lock.lock();
     }

@@ -215,7 +215,7 @@ void SessionMeasures::search(std::int64_t id, const ResolvedScene& scene,
         event["state"] = "cancelled";
     } catch (const std::exception& error) {
         event["state"] = "failed";
-        event["message"] = error.what();
+        event["message"] = line_of(error);
     }
     tell(std::move(event));
 }

@@ -5,7 +5,11 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "core/image/digital_image.h"
+#include "core/image/output_file.h"
+#include "core/image/png_writer.h"
 #include "tests/support/cli_test.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 
@@ -88,6 +92,71 @@ TEST_F(LittleMemory, RefusesMeshesThatDoNotFit) {
     EXPECT_EQ(result.exit_code, 3) << result.err;
     EXPECT_EQ(line_count(result.err), 1) << result.err;
     EXPECT_NE(result.err.find("to trace 3000012 triangles takes 0.3 GB of memory, but only 0."),
+              std::string::npos)
+        << result.err;
+    EXPECT_FALSE(exists("out.exr"));
+}
+
+TEST_F(LittleMemory, RefusesATextureThatDoesNotFit) {
+    constexpr int k_side = 8000;
+    OutputFile png(folder_ / "large.png");
+    write_png_file(png,
+                   DigitalImage{.width = k_side,
+                                .height = k_side,
+                                .values = std::vector<std::uint16_t>(std::size_t{k_side} * k_side)},
+                   {});
+    png.commit();
+    write("large.mtl", "newmtl large\nmap_Kd large.png\n");
+    write("large.obj",
+          "mtllib large.mtl\nv 0 0 3\nv 1 0 3\nv 0 1 3\nvt 0 0\nusemtl large\nf 1/1 2/1 3/1\n");
+    std::string scene = k_small_scene;
+    scene.insert(scene.find("  - {type: plane"), "  - {file: large.obj}\n");
+    write("texture.yaml", scene);
+    const ProgramResult result = run_in(
+        500'000'000, {"render", "texture.yaml", "-o", "out.exr", "--threads", "1", "--quiet"});
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_EQ(line_count(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("large.png: 8000 x 8000 pixels need 0.32 GB of memory, but only 0."),
+              std::string::npos)
+        << result.err;
+    EXPECT_FALSE(exists("out.exr"));
+}
+
+// Each of 10 240 points has shadows of its own: known from the first few.
+TEST_F(LittleMemory, RefusesLightOfLampsThatDoesNotFit) {
+    std::string scene = k_small_scene;
+    for (int n = 0; n < 10; ++n)
+        scene +=
+            "  - {type: disk, radius: 0.3, samples: 1024, position: [0, 0, 0], direction: "
+            "[0, 0, 1], profile: {type: isotropic}, intensity: 1}\n";
+    write("lamps.yaml", scene);
+    const ProgramResult result =
+        run_in(900'000'000, {"render", "lamps.yaml", "-o", "out.exr", "--threads", "1", "--quiet"});
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_EQ(line_count(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("lamps: what 10241 points of light see takes another"),
+              std::string::npos)
+        << result.err;
+    EXPECT_FALSE(exists("out.exr"));
+}
+
+// Which has no maps of lamps where there is nothing to throw shadows.
+TEST_F(LittleMemory, RefusesMultipleScatteringThatDoesNotFit) {
+    std::string scene = k_small_scene;
+    scene.erase(scene.find("  bands:"));
+    scene += "  preset: jerlov-II\n  bands: [420";
+    for (int nm = 430; nm <= 670; nm += 10) scene += ", " + std::to_string(nm);
+    scene += "]\nlamps:\n";
+    for (int n = 0; n < 60; ++n)
+        scene += "  - {position: [" + std::to_string(n + 1) +
+                 ", 0, 0], direction: [0, 0, 1], profile: {type: isotropic}, intensity: 1}\n";
+    write("multiple.yaml", scene + "render: {scattering: multiple}\n");
+    const ProgramResult result =
+        run_in(600'000'000, {"render", "multiple.yaml", "-o", "out.exr", "--layers", "lamps",
+                             "--threads", "1", "--quiet"});
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_EQ(line_count(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("render.scattering: multiple: 60 lamps in 26 bands need"),
               std::string::npos)
         << result.err;
     EXPECT_FALSE(exists("out.exr"));

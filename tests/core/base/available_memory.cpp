@@ -55,7 +55,8 @@ TEST_F(FreeMemory, IsWhatTheControlGroupLeaves) {
     write("sys/fs/cgroup/user.slice/job/memory.current", "900000000\n");
     EXPECT_EQ(available(), 1'100'000'000U);
     // Files that are read and not written are let go where memory is needed.
-    write("sys/fs/cgroup/user.slice/job/memory.stat", "anon 300000000\ninactive_file 600000000\n");
+    write("sys/fs/cgroup/user.slice/job/memory.stat",
+          "anon 300000000\ninactive_file 500000000\nactive_file 100000000\n");
     EXPECT_EQ(available(), 1'700'000'000U);
     // That of a group above may leave less, and more may be used than a limit set since.
     write("sys/fs/cgroup/user.slice/memory.max", "1500000000\n");
@@ -70,7 +71,7 @@ TEST_F(FreeMemory, IsWhatAGroupOfTheFirstVersionLeaves) {
     write("sys/fs/cgroup/memory/job/memory.limit_in_bytes", "2000000000\n");
     write("sys/fs/cgroup/memory/job/memory.usage_in_bytes", "500000000\n");
     write("sys/fs/cgroup/memory/job/memory.stat",
-          "inactive_file 1\ntotal_inactive_file 100000000\n");
+          "inactive_file 1\ntotal_inactive_file 60000000\ntotal_active_file 40000000\n");
     EXPECT_EQ(available(), 1'600'000'000U);
 }
 
