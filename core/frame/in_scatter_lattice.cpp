@@ -24,13 +24,15 @@ struct InScatterLattice::Place {
     std::span<const double> distances, weights;
 };
 
-InScatterLattice::InScatterLattice(const RaySource& rays, const RayInScatter& in_scatter,
-                                   double tolerance)
+InScatterLattice::InScatterLattice(const RaySource& rays, const LitScene& scene,
+                                   const RayInScatter& in_scatter, double tolerance)
     : rays_(rays),
       in_scatter_(in_scatter),
       tolerance_(tolerance),
       distance_reach_(distance_reach(tolerance)),
       value_count_(in_scatter.value_count()),
+      beams_(rays, *scene.emitters),
+      particles_(rays, scene),
       floor_(in_scatter.band_count()),
       interpolated_(value_count_),
       integrated_(value_count_) {}
@@ -43,6 +45,10 @@ void InScatterLattice::evaluate(const PixelWindow& tile, const Grid2D<PixelView>
     nodes_.assign(k_side, k_side);
     node_values_.clear();
     set_floor();
+    const double reach =
+        distances_.empty() ? 0 : *std::max_element(distances_.begin(), distances_.end());
+    beams_.begin(cell(0, 0, k_coarsest), k_coarsest / 2, reach);
+    particles_.begin(tile, reach);
     for (int j = 0; j < tile.height(); j += k_coarsest)
         for (int i = 0; i < tile.width(); i += k_coarsest) fill_cell(i, j, k_coarsest);
 }
@@ -174,7 +180,20 @@ bool InScatterLattice::confirmed(int i, int j, int spacing) {
             }
         }
     }
-    return true;
+    return !has_fine(i, j, spacing);
+}
+
+ImageRectangle InScatterLattice::cell(int i, int j, int spacing) const {
+    const int x = tile_.x0 + i, y = tile_.y0 + j;
+    return {static_cast<double>(x), static_cast<double>(y),
+            static_cast<double>(std::min(x + spacing + 1, tile_.x1)),
+            static_cast<double>(std::min(y + spacing + 1, tile_.y1))};
+}
+
+bool InScatterLattice::has_fine(int i, int j, int spacing) {
+    const int half = spacing / 2;
+    if (beams_.has_any(cell(i, j, spacing), half)) return true;
+    return half > FineParticles::k_spacing && particles_.has_any(i, j, spacing, half);
 }
 
 bool InScatterLattice::agree(const Corners& from, const Place& place, const Node& node,

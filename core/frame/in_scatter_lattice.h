@@ -6,6 +6,8 @@
 
 #include "core/base/grid2d.h"
 #include "core/base/ray_source.h"
+#include "core/frame/fine_beams.h"
+#include "core/frame/fine_particles.h"
 #include "core/frame/pixel_view.h"
 #include "core/frame/ray_in_scatter.h"
 #include "core/image/film.h"
@@ -27,7 +29,8 @@ class InScatterLattice {
     /// coarsest lattice, between the interpolated value and that integrated there; sqrt(2) times
     /// that for the next finer lattice, and so on. Pixels are interpolated from the halfway nodes
     /// as well, so their error is smaller. All references must outlive this object.
-    InScatterLattice(const RaySource& rays, const RayInScatter& in_scatter, double tolerance);
+    InScatterLattice(const RaySource& rays, const LitScene& scene, const RayInScatter& in_scatter,
+                     double tolerance);
 
     /// Computes the in-scatter of the pixels of `tile` (k_tile along an edge, less at the image's
     /// right and bottom). `views`, those of these pixels, must stay valid while the values are
@@ -74,6 +77,10 @@ class InScatterLattice {
     // Whether interpolation between the cell's corners agrees with integration at the nodes halfway
     // between them.
     bool confirmed(int i, int j, int spacing);
+    // Its pixels, those of all its nodes in the tile included.
+    ImageRectangle cell(int i, int j, int spacing) const;
+    // Whether these nodes may miss something between them.
+    bool has_fine(int i, int j, int spacing);
     bool agree(const Corners& from, const Place& place, const Node& node, double allowed);
     void collect_distances();
     void fill_cell(int i, int j, int spacing);
@@ -89,6 +96,8 @@ class InScatterLattice {
     double distance_reach_;
     std::size_t value_count_;
 
+    FineBeams beams_;
+    FineParticles particles_;
     PixelWindow tile_;
     const Grid2D<PixelView>* views_ = nullptr;
     std::vector<double> distances_;             // of all views, one after another

@@ -27,7 +27,8 @@ TileRenderer::TileRenderer(const PixelRenderer& renderer, double in_scatter_tole
                            const PixelAdditions& additions)
     : renderer_(renderer), additions_(additions) {
     if (in_scatter_tolerance > 0)
-        lattice_.emplace(renderer.rays(), renderer.in_scatter(), in_scatter_tolerance);
+        lattice_.emplace(renderer.rays(), renderer.scene(), renderer.in_scatter(),
+                         in_scatter_tolerance);
     else
         in_scatter_.resize(renderer.in_scatter().value_count());
 }

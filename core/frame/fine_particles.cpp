@@ -1,0 +1,81 @@
+#include "core/frame/fine_particles.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uw {
+
+namespace {
+
+// Of the greatest light that particles of a square take away, the share by which interpolation may
+// miss it: what is found is a cloud beside the rays, not how its light varies.
+constexpr double k_missed = 0.25;
+// Less than that, of all light, is not looked for.
+constexpr double k_least = 1e-4;
+
+// Along the edge of a tile, both ends included: cells are whole beyond the image's edge.
+constexpr int k_most_probes = 32 / FineParticles::k_spacing + 1;
+
+double lerp(double a, double b, double t) {
+    return a + t * (b - a);
+}
+
+}  // namespace
+
+FineParticles::FineParticles(const RaySource& rays, const LitScene& scene)
+    : rays_(rays),
+      field_(scene.field && !scene.field->bounds().empty() ? scene.field : nullptr),
+      attenuation_(*scene.medium) {
+    if (field_) column_.resize(static_cast<std::size_t>(field_->constituent_count()));
+}
+
+void FineParticles::begin(const PixelWindow& tile, double reach) {
+    if (!field_) return;
+    tile_ = tile;
+    reach_ = reach;
+    taken_.assign(k_most_probes, k_most_probes, -1);
+}
+
+// The share of light that the particles along a probe take away.
+double FineParticles::taken(int i, int j) {
+    double& known = taken_(i / k_spacing, j / k_spacing);
+    if (known >= 0) return known;
+    known = 0;
+    const std::optional<Ray> ray = rays_.refracted_ray(tile_.x0 + i + 0.5, tile_.y0 + j + 0.5);
+    if (!ray) return known;
+    // As far as there are any.
+    const Bounds bounds = field_->bounds();
+    const double end = std::min(reach_, distance(ray->origin, bounds.center()) +
+                                            0.5 * glm::length(bounds.max - bounds.min));
+    field_->column(ray->origin, ray->at(end), column_);
+    for (int b = 0; b < attenuation_.band_count; ++b)
+        known -= std::expm1(-attenuation_.optical_depth(static_cast<std::size_t>(b), 0, column_)) /
+                 attenuation_.band_count;
+    return known;
+}
+
+bool FineParticles::has_any(int i, int j, int size, int spacing) {
+    if (!field_) return false;
+    // Tiles end with the image.
+    const int columns = std::min(size, tile_.width() - i),
+              rows = std::min(size, tile_.height() - j);
+    double most = 0;
+    for (int y = 0; y <= rows; y += k_spacing)
+        for (int x = 0; x <= columns; x += k_spacing) most = std::max(most, taken(i + x, j + y));
+    if (most < k_least) return false;
+    for (int y = 0; y < rows; y += k_spacing) {
+        for (int x = 0; x < columns; x += k_spacing) {
+            const int left = i + x - x % spacing, top = j + y - y % spacing;
+            const double u = static_cast<double>(x % spacing) / spacing;
+            const double v = static_cast<double>(y % spacing) / spacing;
+            const double above = lerp(taken(left, top), taken(left + spacing, top), u);
+            const double below =
+                lerp(taken(left, top + spacing), taken(left + spacing, top + spacing), u);
+            if (std::abs(taken(i + x, j + y) - lerp(above, below, v)) > k_missed * most)
+                return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace uw
