@@ -21,6 +21,8 @@ constexpr int k_fewest_node_paths = 16, k_most_node_paths = 1024;
 // more.
 constexpr double k_smoothed_variance = 0.04;
 constexpr double k_least_share_of_paths = 0.2;
+// Of the paths, for the question how many are needed.
+constexpr double k_pilot_share = 0.05;
 // Nodes see the same surface as a pixel if its normal agrees with theirs (k_least_node_cosine) and
 // it lies no farther from their tangent plane than this, relative to its distance.
 constexpr double k_most_slope = 0.35;
@@ -63,8 +65,10 @@ MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOpt
 
 // To those that are needed for a standard error.
 void MultipleLight::limit_paths(double error) {
-    const double needed = k_smoothed_variance * estimator_.relative_variance() / (error * error);
     const int most = estimator_.options().paths;
+    const double variance =
+        estimator_.relative_variance(k_pilot_share * most * node_count(pixels_.rays(), spacing_));
+    const double needed = k_smoothed_variance * variance / (error * error);
     const double least = std::max<double>(k_fewest_node_paths, k_least_share_of_paths * most);
     if (needed < most) estimator_.set_paths(static_cast<int>(std::max(needed, least)));
 }
@@ -81,6 +85,8 @@ void MultipleLight::prepare(const PixelWindow& window, const Progress& progress)
                                   (window.y1 - 1) / spacing_ + 1 + k_margin);
     const int columns = last_column - column_ + 1, rows = last_row - row_ + 1;
     Grid2D<MultipleNode> raw;
+    require_room_for_nodes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
+                           intervals_.count(), estimator_.options().groups, pixels_.scene());
     raw.assign(columns, rows);
     std::atomic<std::size_t> done = 0;
     const std::size_t count = raw.size();

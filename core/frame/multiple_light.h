@@ -46,7 +46,7 @@ class MultipleLight {
     MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options);
 
     /// Estimates the light of the pixels of `window`. Throws Interrupted if `progress` returned
-    /// false.
+    /// false, InputError if the nodes do not fit into free memory.
     void prepare(const PixelWindow& window, const Progress& progress);
 
     /// Adds a pixel's light to multiple_volume, multiple_surface and the lamps of `result`. The

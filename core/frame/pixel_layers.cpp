@@ -90,11 +90,13 @@ void multiple(const PixelResult& pixel, std::span<float> channels) {
 void total(const PixelResult& pixel, std::span<float> channels) {
     const double factor = pixel.pixel_factor;
     multiple(pixel, channels);
-    for (std::size_t b = 0; b < channels.size(); ++b)
-        channels[b] = static_cast<float>(factor * pixel.direct[b]) +
-                      static_cast<float>(factor * pixel.forward[b]) +
-                      static_cast<float>(factor * pixel.backscatter[b]) + channels[b] +
-                      static_cast<float>(factor * pixel.snow[b]);
+    for (std::size_t b = 0; b < channels.size(); ++b) {
+        const float sum = static_cast<float>(factor * pixel.direct[b]) +
+                          static_cast<float>(factor * pixel.forward[b]) +
+                          static_cast<float>(factor * pixel.backscatter[b]) + channels[b] +
+                          static_cast<float>(factor * pixel.snow[b]);
+        channels[b] = std::max(sum, 0.0F);
+    }
 }
 
 void albedo(const PixelResult& pixel, std::span<float> channels) {

@@ -83,7 +83,8 @@ void number(const PixelResult& pixel, std::span<float> channels) {
 /// The sum of `multiple_volume` and `multiple_surface`, each rounded to float before the addition.
 void multiple(const PixelResult& pixel, std::span<float> channels);
 /// The sum of direct, forward, backscatter, `multiple` and snow, in this order, each rounded to
-/// float before the addition, so that in the image they add up to the total to the bit.
+/// float before the addition, so that in the image they add up to the total to the bit; 0 where
+/// snow hides all of them and rounding leaves less.
 void total(const PixelResult& pixel, std::span<float> channels);
 /// Several numbers.
 template <std::array<double, 2> PixelResult::*values>

@@ -1,6 +1,7 @@
 #include "core/multiple/multiple_nodes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -115,18 +116,22 @@ void MultipleNodes::estimate(double x, double y, std::uint64_t seed, MultipleNod
     if (has_hit) trace_surface(seed, options_.paths, w, node);
 }
 
-double MultipleNodes::relative_variance() const {
-    constexpr int k_across = 16, k_paths = 64;
+double MultipleNodes::relative_variance(double paths) const {
+    constexpr int k_fewest_across = 4, k_most_across = 16, k_paths = 64;
+    const int across =
+        std::clamp(static_cast<int>(std::sqrt(paths / k_paths)), k_fewest_across, k_most_across);
+    const auto count = static_cast<std::size_t>(across) * static_cast<std::size_t>(across);
     MultipleNodeOptions options = options_;
     options.paths = k_paths;
     const MultipleNodes pilot(rays_, scene_, transport_, weights_, options);
-    std::vector<double> lights(k_across * k_across), variances(k_across * k_across);
+    std::vector<double> lights(count), variances(count);
     parallel_for(lights.size(), [&](std::size_t at) {
-        const auto i = at % k_across, j = at / k_across;
+        const auto i = static_cast<int>(at) % across, j = static_cast<int>(at) / across;
         MultipleNode node;
-        pilot.estimate((static_cast<double>(i) + 0.5) * rays_.width() / k_across,
-                       (static_cast<double>(j) + 0.5) * rays_.height() / k_across,
-                       PathRandom::seed_of(i, j, k_pilot), node);
+        pilot.estimate((i + 0.5) * rays_.width() / across, (j + 0.5) * rays_.height() / across,
+                       PathRandom::seed_of(static_cast<std::uint64_t>(i),
+                                           static_cast<std::uint64_t>(j), k_pilot),
+                       node);
         lights[at] = node.mean_light;
         double variance = node.diffuse_variance * node.surface_seen * node.surface_seen;
         for (const float of_interval : node.water_variance)
@@ -135,7 +140,7 @@ double MultipleNodes::relative_variance() const {
     });
     const double light = std::accumulate(lights.begin(), lights.end(), 0.0);
     const double variance = std::accumulate(variances.begin(), variances.end(), 0.0);
-    return light > 0 ? variance * static_cast<double>(lights.size()) / (light * light) : 0;
+    return light > 0 ? variance * static_cast<double>(count) / (light * light) : 0;
 }
 
 void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths,

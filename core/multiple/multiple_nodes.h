@@ -74,8 +74,8 @@ class MultipleNodes {
     void set_paths(int paths) { options_.paths = paths; }
 
     /// The variance of one path of each kind over the squared mean of all light, on the average
-    /// over the image: from a few nodes all over it.
-    double relative_variance() const;
+    /// over the image: from a few nodes all over it, by about so many paths, within limits.
+    double relative_variance(double paths) const;
 
     /// The node at image position (x, y) [pixels]. `seed`: of its random numbers.
     void estimate(double x, double y, std::uint64_t seed, MultipleNode& node) const;

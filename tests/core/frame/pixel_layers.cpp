@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <string>
 
 #include "core/image/film.h"
@@ -70,6 +72,22 @@ TEST_F(PixelLayers, RadianceHasThePixelsFactorAndTheRestHasNot) {
     EXPECT_EQ(of(Layer::lit), (Values{0.25}));
     const std::span<float> lamp = plan_.lamp_channels(0, channels_);
     EXPECT_EQ(Values(lamp.begin(), lamp.end()), (Values{50, 100, 150}));
+}
+
+// 0.1 + 0.2 in single precision is more than their sum rounded, which is what snow hides.
+TEST_F(PixelLayers, TheTotalIsNotBelowZeroWhereSnowHidesAllOfIt) {
+    PixelResult pixel = full_pixel();
+    pixel.pixel_factor = 1;
+    for (std::size_t b = 0; b < k_bands.size(); ++b) {
+        pixel.direct[b] = 0.1 * static_cast<double>(b + 1);
+        pixel.backscatter[b] = 0.7;
+        pixel.snow[b] = -std::nextafter(static_cast<float>(pixel.direct[b]) + 0.7F, 1e9F);
+    }
+    store(pixel);
+    for (const std::size_t channel : {k_red, k_green}) EXPECT_EQ(channels_[channel], 0);
+    pixel.snow[0] = std::nan("");
+    store(pixel);
+    EXPECT_TRUE(std::isnan(channels_[k_red]));  // which is for others to find
 }
 
 TEST_F(PixelLayers, GroundTruthIsThatOfTheHit) {

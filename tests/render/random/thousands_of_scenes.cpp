@@ -17,9 +17,10 @@ TEST_P(ManyRandomScenes, FulfilWhatEveryImageDoes) {
     const auto first =
         static_cast<std::uint64_t>(k_scenes_of_each) * static_cast<std::uint64_t>(GetParam());
     const InvariantCounts counts = hold_invariants(first, k_scenes_of_each, Scattered::any);
-    std::printf("seeds from %llu: %d rendered, %d refused, %d pixels compared\n",
-                static_cast<unsigned long long>(first), counts.rendered, counts.refused,
-                counts.compared);
+    std::printf(
+        "seeds from %llu: %d rendered, %d refused, %d pixels compared; slowest %llu, %.1f s\n",
+        static_cast<unsigned long long>(first), counts.rendered, counts.refused, counts.compared,
+        static_cast<unsigned long long>(counts.slowest_seed), counts.slowest_cpu_seconds);
     EXPECT_GE(counts.rendered, 9 * k_scenes_of_each / 10);
 }
 

@@ -50,8 +50,7 @@ SceneKinds::SceneKinds(RandomDraw& draw) {
                                                   : "volume";
     has_volume = integrator != "planes" && draw.chance(0.3);
     has_surface = draw.chance(0.2);
-    // The fast form's pilot traces as many paths for a few pixels as for many, in a dense plume for
-    // minutes.
+    // In a dense plume, light is scattered hundreds of times everywhere: minutes.
     is_multiple =
         integrator == "path" || (integrator == "volume" && !has_volume && draw.chance(0.12));
     has_forward_scatter = !is_multiple && integrator != "reference" && draw.chance(0.12);
@@ -60,10 +59,14 @@ SceneKinds::SceneKinds(RandomDraw& draw) {
     has_sensor = has_lens && bands == 3 && draw.chance(0.5);
     is_in_focus = !has_lens || is_fisheye || draw.chance(0.5);
     moves = draw.chance(0.12);
-    // A part of an image with forward scatter takes all of it, by the reference integrator, too.
-    const bool is_small = has_forward_scatter || is_multiple;
-    width = is_small ? draw.whole(4, 6) : draw.whole(6, 14);
-    height = is_small ? draw.whole(3, 4) : draw.whole(4, 9);
+    // A part of an image with forward scatter takes all of it, by the reference integrator, too;
+    // where light is scattered hundreds of times, each pixel takes seconds.
+    width = is_multiple           ? draw.whole(3, 4)
+            : has_forward_scatter ? draw.whole(4, 6)
+                                  : draw.whole(6, 14);
+    height = is_multiple           ? draw.whole(2, 3)
+             : has_forward_scatter ? draw.whole(3, 4)
+                                   : draw.whole(4, 9);
 }
 
 namespace {

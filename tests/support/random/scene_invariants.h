@@ -2,31 +2,14 @@
 
 #include <cstdint>
 
-namespace uw::test {
+#include "tests/support/random/held_image.h"
 
-/// What became of the scenes of some seeds.
-struct InvariantCounts {
-    int rendered = 0;
-    int refused = 0;   // by a message of one line
-    int left_out = 0;  // as `Scattered` says
-    int compared = 0;  // pixels held against the reference integrator
-    int bounded = 0;   // pixels and bands whose in-scatter has a bound (light_bounds.h)
-};
+namespace uw::test {
 
 /// All light takes longer than that which is scattered once.
 enum class Scattered { once, any };
 
-/// Renders random_scene of `count` seeds from `first` on and holds each image to what every image
-/// has to fulfil, whatever it shows; a failure names the seed:
-/// - all values are finite, and light is not negative;
-/// - direct, forward, backscatter and multiple sum to the total;
-/// - the share of lamps that light a point, transmittances and albedos are within 0..1, and direct
-///   light is not more than there would be without water in between;
-/// - a surface gets, and uniform water scatters once, no more light than the lamps could give were
-///   there nothing else (light_bounds.h);
-/// - a sensor's numbers are within its bits;
-/// - three threads give the bytes of one, and a part of the image is that part of the whole;
-/// - the fast integrator agrees with the reference at two pixels.
+/// hold_image of random_scene of `count` seeds from `first` on; a failure names the seed.
 InvariantCounts hold_invariants(std::uint64_t first, int count, Scattered scattered);
 
 /// hold_invariants of a hundred scenes of single scattering or so, from the seed `first` on, whose
