@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/integrators/integrator.h"
 
@@ -34,12 +35,16 @@ double core_angle(const Lamp& emitter, const Vector3& axis) {
         }
         return most;
     };
-    double most = brightest(0), core = 0;
-    for (double angle = k_narrowest; angle < std::numbers::pi; angle *= k_next_angle)
-        most = std::max(most, brightest(angle));
-    for (double angle = k_narrowest; angle < std::numbers::pi; angle *= k_next_angle)
-        if (brightest(angle) >= 0.5 * most) core = angle;
-    return std::max(core, k_narrowest);
+    std::vector<std::pair<double, double>> intensities;  // by angle
+    double most = 0;
+    for (double angle = k_narrowest; angle < std::numbers::pi; angle *= k_next_angle) {
+        intensities.emplace_back(angle, brightest(angle));
+        most = std::max(most, intensities.back().second);
+    }
+    double core = k_narrowest;
+    for (const auto& [angle, intensity] : intensities)
+        if (intensity >= 0.5 * most) core = angle;
+    return core;
 }
 
 // Reduces `part` to where slope * t <= most.
@@ -126,8 +131,7 @@ bool FineBeams::has_any(const ImageRectangle& area, double width) const {
                         near_, [&](const Beam* beam) { return is_fine_in(*part, *beam, width); });
 }
 
-// The beam at t metres from its lamp is a ball around the point there; each condition is linear in
-// t.
+// The beam at t metres from its lamp is a ball around the point there: each condition is linear.
 bool FineBeams::is_fine_in(const Bundle& bundle, const Beam& beam, double width) const {
     const Vector3 to_apex = beam.apex - bundle.origin;
     // The distance of the point at t from the camera, along the ray in the middle: z + t * dz.

@@ -13,9 +13,6 @@ constexpr double k_missed = 0.25;
 // Less than that, of all light, is not looked for.
 constexpr double k_least = 1e-4;
 
-// Along the edge of a tile, both ends included: cells are whole beyond the image's edge.
-constexpr int k_most_probes = 32 / FineParticles::k_spacing + 1;
-
 double lerp(double a, double b, double t) {
     return a + t * (b - a);
 }
@@ -29,11 +26,11 @@ FineParticles::FineParticles(const RaySource& rays, const LitScene& scene)
     if (field_) column_.resize(static_cast<std::size_t>(field_->constituent_count()));
 }
 
-void FineParticles::begin(const PixelWindow& tile, double reach) {
+void FineParticles::begin(const PixelWindow& tile, int edge, double reach) {
     if (!field_) return;
     tile_ = tile;
     reach_ = reach;
-    taken_.assign(k_most_probes, k_most_probes, -1);
+    taken_.assign(edge / k_spacing + 1, edge / k_spacing + 1, -1);
 }
 
 // The share of light that the particles along a probe take away.

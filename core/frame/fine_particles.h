@@ -19,8 +19,9 @@ class FineParticles {
     /// Both must outlive this object.
     FineParticles(const RaySource& rays, const LitScene& scene);
 
-    /// The probes of a tile are traced up to `reach` [m], once they are asked for.
-    void begin(const PixelWindow& tile, double reach);
+    /// The probes of a tile are traced up to `reach` [m], once they are asked for. `edge`: of its
+    /// squares, which are whole beyond the image's edge [pixels].
+    void begin(const PixelWindow& tile, int edge, double reach);
 
     /// Whether the square of `size` pixels at (i, j) of the tile holds particles that rays at
     /// multiples of `spacing` in it do not tell of, by interpolation between them. All of them are

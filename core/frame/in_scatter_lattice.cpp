@@ -48,7 +48,7 @@ void InScatterLattice::evaluate(const PixelWindow& tile, const Grid2D<PixelView>
     const double reach =
         distances_.empty() ? 0 : *std::max_element(distances_.begin(), distances_.end());
     beams_.begin(cell(0, 0, k_coarsest), k_coarsest / 2, reach);
-    particles_.begin(tile, reach);
+    particles_.begin(tile, k_tile, reach);
     for (int j = 0; j < tile.height(); j += k_coarsest)
         for (int i = 0; i < tile.width(); i += k_coarsest) fill_cell(i, j, k_coarsest);
 }
