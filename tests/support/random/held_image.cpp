@@ -63,10 +63,11 @@ class HeldImage {
     Film first_image() {
         Renderer renderer;
         renderer.set_scene(SceneDesc(desc_));
+        Film film = rendered(renderer, 1, {.layers = k_options});
         for (const Lamp& lamp : renderer.assembled().emitters)
             for (const double intensity : lamp.axis_intensity().first(desc_.water.bands_nm.size()))
                 brightest_lamp_ = std::max(brightest_lamp_, intensity);
-        return rendered(renderer, 1, {.layers = k_options});
+        return film;
     }
     int bands() const { return static_cast<int>(desc_.water.bands_nm.size()); }
     double value(int channel, int x, int y) const {
