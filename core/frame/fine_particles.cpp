@@ -12,6 +12,9 @@ namespace {
 constexpr double k_missed = 0.25;
 // Less than that, of all light, is not looked for.
 constexpr double k_least = 1e-4;
+// Where there are particles everywhere, of which the least take more than this share of what the
+// most do, they hide what is smaller than the first, wider probes.
+constexpr double k_even = 0.5;
 
 double lerp(double a, double b, double t) {
     return a + t * (b - a);
@@ -54,22 +57,40 @@ double FineParticles::taken(int i, int j) {
 bool FineParticles::has_any(int i, int j, int size, int spacing) {
     if (!field_) return false;
     // Tiles end with the image.
-    const int columns = std::min(size, tile_.width() - i),
-              rows = std::min(size, tile_.height() - j);
-    double most = 0;
-    for (int y = 0; y <= rows; y += k_spacing)
-        for (int x = 0; x <= columns; x += k_spacing) most = std::max(most, taken(i + x, j + y));
-    if (most < k_least) return false;
-    for (int y = 0; y < rows; y += k_spacing) {
-        for (int x = 0; x < columns; x += k_spacing) {
-            const int left = i + x - x % spacing, top = j + y - y % spacing;
+    const Square square{i, j, std::min(size, tile_.width() - i),
+                        std::min(size, tile_.height() - j)};
+    for (const int step : {2 * k_spacing, k_spacing}) {
+        if (step >= spacing) continue;
+        const auto [least, most] = range(square, step);
+        if (most >= k_least && differs(square, step, spacing, k_missed * most)) return true;
+        if (least > k_even * most) return false;
+    }
+    return false;
+}
+
+// Of what the probes `step` pixels apart say.
+Interval FineParticles::range(const Square& square, int step) {
+    Interval found{1, 0};
+    for (int y = 0; y <= square.height; y += step) {
+        for (int x = 0; x <= square.width; x += step) {
+            const double here = taken(square.x + x, square.y + y);
+            found = {std::min(found.begin, here), std::max(found.end, here)};
+        }
+    }
+    return found;
+}
+
+bool FineParticles::differs(const Square& square, int step, int spacing, double allowed) {
+    for (int y = 0; y < square.height; y += step) {
+        for (int x = 0; x < square.width; x += step) {
+            const int left = square.x + x - x % spacing, top = square.y + y - y % spacing;
             const double u = static_cast<double>(x % spacing) / spacing;
             const double v = static_cast<double>(y % spacing) / spacing;
             const double above = lerp(taken(left, top), taken(left + spacing, top), u);
             const double below =
                 lerp(taken(left, top + spacing), taken(left + spacing, top + spacing), u);
-            if (std::abs(taken(i + x, j + y) - lerp(above, below, v)) > k_missed * most)
-                return true;
+            const double here = taken(square.x + x, square.y + y);
+            if (std::abs(here - lerp(above, below, v)) > allowed) return true;
         }
     }
     return false;

@@ -11,7 +11,8 @@
 namespace uw {
 
 /// Clouds of particles that are small in an image: rays that are some pixels apart may pass beside
-/// them. Probes are finer: rays k_spacing pixels apart, of which only the particles are known.
+/// them. Probes are finer: rays k_spacing pixels apart, or twice that in an even haze, of which
+/// only the particles are known.
 class FineParticles {
   public:
     static constexpr int k_spacing = 2;  // [pixels]
@@ -29,7 +30,15 @@ class FineParticles {
     bool has_any(int i, int j, int size, int spacing);
 
   private:
+    /// Pixels of the tile.
+    struct Square {
+        int x, y, width, height;
+    };
+
     double taken(int i, int j);
+    Interval range(const Square& square, int step);
+    // Whether a probe is farther than `allowed` from interpolation between rays `spacing` apart.
+    bool differs(const Square& square, int step, int spacing, double allowed);
 
     const RaySource& rays_;
     const ConcentrationField* field_;

@@ -32,6 +32,19 @@ class LittleMemory : public CliTest {
         ::setrlimit(RLIMIT_AS, &little);
         return run(arguments);
     }
+    /// The program has so many bytes of address space: it renders nothing and says so in one line
+    /// that holds `message`.
+    void expect_refused(rlim_t bytes, std::vector<std::string> arguments,
+                        const std::string& message) const {
+        arguments.insert(arguments.begin(), "render");
+        for (const char* const more : {"-o", "out.exr", "--threads", "1", "--quiet"})
+            arguments.emplace_back(more);
+        const ProgramResult result = run_in(bytes, arguments);
+        EXPECT_EQ(result.exit_code, 3) << result.err;
+        EXPECT_EQ(line_count(result.err), 1) << result.err;
+        EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
+        EXPECT_FALSE(exists("out.exr"));
+    }
 };
 
 TEST_F(LittleMemory, RendersWhatFits) {
@@ -59,14 +72,8 @@ TEST_F(LittleMemory, RefusesAVolumeThatDoesNotFit) {
     write_fixture(folder_ / "scattered.vdb", {scattered});
     write("volume.yaml", std::string(k_small_scene) +
                              "volumes:\n  - {file: scattered.vdb, grids: {density: {small: 1}}}\n");
-    const ProgramResult result = run_in(
-        900'000'000, {"render", "volume.yaml", "-o", "out.exr", "--threads", "1", "--quiet"});
-    EXPECT_EQ(result.exit_code, 3) << result.err;
-    EXPECT_EQ(line_count(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find("scattered.vdb': it needs 0.952 GB of memory, but only 0."),
-              std::string::npos)
-        << result.err;
-    EXPECT_FALSE(exists("out.exr"));
+    expect_refused(900'000'000, {"volume.yaml"},
+                   "scattered.vdb': it needs 0.952 GB of memory, but only 0.");
 }
 
 TEST_F(LittleMemory, RefusesMeshesThatDoNotFit) {
@@ -87,14 +94,8 @@ TEST_F(LittleMemory, RefusesMeshesThatDoNotFit) {
     std::string scene = k_small_scene;
     scene.insert(scene.find("  - {type: plane"), "  - {file: many.ply}\n");
     write("meshes.yaml", scene);
-    const ProgramResult result = run_in(
-        500'000'000, {"render", "meshes.yaml", "-o", "out.exr", "--threads", "1", "--quiet"});
-    EXPECT_EQ(result.exit_code, 3) << result.err;
-    EXPECT_EQ(line_count(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find("to trace 3000012 triangles takes 0.3 GB of memory, but only 0."),
-              std::string::npos)
-        << result.err;
-    EXPECT_FALSE(exists("out.exr"));
+    expect_refused(500'000'000, {"meshes.yaml"},
+                   "to trace 3000012 triangles takes 0.3 GB of memory, but only 0.");
 }
 
 TEST_F(LittleMemory, RefusesATextureThatDoesNotFit) {
@@ -112,14 +113,8 @@ TEST_F(LittleMemory, RefusesATextureThatDoesNotFit) {
     std::string scene = k_small_scene;
     scene.insert(scene.find("  - {type: plane"), "  - {file: large.obj}\n");
     write("texture.yaml", scene);
-    const ProgramResult result = run_in(
-        500'000'000, {"render", "texture.yaml", "-o", "out.exr", "--threads", "1", "--quiet"});
-    EXPECT_EQ(result.exit_code, 3) << result.err;
-    EXPECT_EQ(line_count(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find("large.png: 8000 x 8000 pixels need 0.32 GB of memory, but only 0."),
-              std::string::npos)
-        << result.err;
-    EXPECT_FALSE(exists("out.exr"));
+    expect_refused(500'000'000, {"texture.yaml"},
+                   "large.png: 8000 x 8000 pixels need 0.32 GB of memory, but only 0.");
 }
 
 // Each of 10 240 points has shadows of its own: known from the first few.
@@ -130,14 +125,8 @@ TEST_F(LittleMemory, RefusesLightOfLampsThatDoesNotFit) {
             "  - {type: disk, radius: 0.3, samples: 1024, position: [0, 0, 0], direction: "
             "[0, 0, 1], profile: {type: isotropic}, intensity: 1}\n";
     write("lamps.yaml", scene);
-    const ProgramResult result =
-        run_in(900'000'000, {"render", "lamps.yaml", "-o", "out.exr", "--threads", "1", "--quiet"});
-    EXPECT_EQ(result.exit_code, 3) << result.err;
-    EXPECT_EQ(line_count(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find("lamps: what 10241 points of light see takes another"),
-              std::string::npos)
-        << result.err;
-    EXPECT_FALSE(exists("out.exr"));
+    expect_refused(900'000'000, {"lamps.yaml"},
+                   "lamps: what 10241 points of light see takes another");
 }
 
 // Which has no maps of lamps where there is nothing to throw shadows.
@@ -151,15 +140,8 @@ TEST_F(LittleMemory, RefusesMultipleScatteringThatDoesNotFit) {
         scene += "  - {position: [" + std::to_string(n + 1) +
                  ", 0, 0], direction: [0, 0, 1], profile: {type: isotropic}, intensity: 1}\n";
     write("multiple.yaml", scene + "render: {scattering: multiple}\n");
-    const ProgramResult result =
-        run_in(600'000'000, {"render", "multiple.yaml", "-o", "out.exr", "--layers", "lamps",
-                             "--threads", "1", "--quiet"});
-    EXPECT_EQ(result.exit_code, 3) << result.err;
-    EXPECT_EQ(line_count(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find("render.scattering: multiple: 60 lamps in 26 bands need"),
-              std::string::npos)
-        << result.err;
-    EXPECT_FALSE(exists("out.exr"));
+    expect_refused(600'000'000, {"multiple.yaml", "--layers", "lamps"},
+                   "render.scattering: multiple: 60 lamps in 26 bands need");
 }
 
 }  // namespace
