@@ -87,7 +87,8 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene,
             "the shutter is open; give --set water.snow.ground_truth=ignored");
     const bool scatters_forward = desc.water.forward_scatter.K > 0;
     const LightTerms terms{scatters_forward,
-                           scattering_of(desc.render) == RenderDesc::Scattering::multiple};
+                           scattering_of(desc.render) == RenderDesc::Scattering::multiple,
+                           desc.water.snow.has_value()};
     const int parts = exposure.part_count();
     ReachedByParts reached_by_parts(reached, parts);
     ExposureMean mean(plan, terms, colour, film);

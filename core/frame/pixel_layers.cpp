@@ -165,11 +165,16 @@ void restore_sums(const LayerPlan& plan, const LightTerms& terms, const BandColo
     }
     if (!plan.has(Layer::direct) || !plan.has(Layer::backscatter)) return;
     if (terms.forward && !plan.has(Layer::forward)) return;
+    if (terms.snow && !plan.has(Layer::snow)) return;
     const std::span<float> total = std::span(sums).first(plan.band_count());
     std::ranges::copy(layer(Layer::direct), total.begin());
     if (terms.forward) add_channels(total, layer(Layer::forward));
     add_channels(total, layer(Layer::backscatter));
     add_channels(total, more);
+    if (terms.snow) {
+        add_channels(total, layer(Layer::snow));
+        for (float& sum : total) sum = std::max(sum, 0.0F);
+    }
     if (plan.has(Layer::total)) std::ranges::copy(total, layer(Layer::total).begin());
     store_colour(total, colour, channels);
 }
@@ -192,8 +197,8 @@ void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
         merge([&](std::span<float> all) { return plan.order_channels(order, all); });
         merge([&](std::span<float> all) { return plan.reflection_channels(order, all); });
     }
-    // Nothing is scattered forward by a blur.
-    restore_sums(plan, {.forward = false, .multiple = true}, colour, channels);
+    // Nothing is scattered forward by a blur, and no snow is drawn.
+    restore_sums(plan, {.forward = false, .multiple = true, .snow = false}, colour, channels);
 }
 
 void store_forward_scatter(const PixelResult& pixel, const LayerPlan& plan,

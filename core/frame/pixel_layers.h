@@ -211,7 +211,7 @@ void store_truth(const PixelResult& pixel, const LayerPlan& plan, std::span<floa
 
 /// Whether light of these kinds is in an image; else it is 0.
 struct LightTerms {
-    bool forward = false, multiple = false;
+    bool forward = false, multiple = false, snow = false;
 };
 
 /// Makes sums of layers, as far as the image holds all of their terms, sums to the bit, in the

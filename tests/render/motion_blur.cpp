@@ -40,6 +40,8 @@ TEST(MotionBlur, LeavesLayersThatAddUpToTheTotal) {
     for (const Case& c :
          {Case{"", "", "direct,forward,backscatter"},
           Case{"", ", forward_scatter: {K: 0.2, G: 0.1, B: 0.1}", "direct,forward,backscatter"},
+          Case{"", ", snow: {number: 2000, diameter: [1 mm, 5 mm], exponent: 4, reflectance: 0.5}",
+               "direct,forward,backscatter,snow"},
           Case{", scattering: multiple", "",
                "direct,forward,backscatter,multiple,multiple.volume,multiple.surface"},
           Case{", integrator: path", "",
@@ -48,20 +50,24 @@ TEST(MotionBlur, LeavesLayersThatAddUpToTheTotal) {
         SceneDesc scene = moving_scene(", samples: 8, shutter: 0.04" + c.render, c.water);
         scene.render.quality = RenderDesc::Quality::draft;
         const Film film = image_of(scene, {.layers = c.layers});
-        const bool multiple = film.channel_names().size() > 13;
+        const std::size_t channels = film.channel_names().size();
         int lit = 0;
         for (int y = 0; y < film.height(); ++y)
             for (int x = 0; x < film.width(); ++x)
                 for (std::size_t b = 0; b < 3; ++b) {
                     const auto p = film.pixel(x, y);
                     float sum = p[4 + b] + p[7 + b] + p[10 + b];
-                    if (multiple) {
+                    if (channels > 13) sum += p[13 + b];  // multiple or snow
+                    if (channels > 16) {
                         EXPECT_EQ(p[13 + b], p[16 + b] + p[19 + b]);
-                        sum += p[13 + b];
                     }
                     EXPECT_EQ(p[b], sum);
                     lit += p[b] > 0 ? 1 : 0;
                 }
+        if (c.water.starts_with(", snow")) {
+            EXPECT_GT(std::ranges::count_if(film.values(), [](float v) { return v < 0; }), 100)
+                << "snow hides light";
+        }
         EXPECT_GT(lit, 4000);
     }
 }
