@@ -27,7 +27,8 @@ BlurFit::BlurFit(int levels, double pixel) : levels_(static_cast<std::size_t>(le
         const double omega = PointSpread::frequency(frequencies_) * pixel;
         shares_.push_back(transfer_of_pixels(omega));
         const double alias = 2 * std::numbers::pi - omega;
-        std::size_t index = frequencies_;
+        // Of images so fine that the table ends before their own frequencies do: its last one.
+        std::size_t index = std::min(frequencies_, PointSpread::k_frequencies - 2);
         while (index + 2 < PointSpread::k_frequencies &&
                PointSpread::frequency(index + 1) * pixel < alias)
             ++index;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -60,6 +61,20 @@ TEST(BlurFit, BlursAnEdgeAsTheTransferFunctionDoes) {
         EXPECT_NEAR(blurred(edge, 0) - blurred(edge - 1, 0), 2 * step_at(0.5) - 1,
                     0.12 * (2 * step_at(0.5) - 1))
             << edge;
+    }
+}
+
+TEST(BlurFit, TakesTheLastFrequencyForThoseBeyondTheTable) {
+    const double last = PointSpread::frequency(PointSpread::k_frequencies - 1);
+    for (const double pixel : {2.5 / last, 1 / last, 0.3 / last}) {
+        constexpr int k_levels = 3;
+        constexpr float k_share = 0.7F;
+        PointSpread::Transfer transfer;
+        transfer.fill(k_share);
+        std::array<double, k_levels> weights{};
+        BlurFit(k_levels, pixel).fit(transfer, weights);
+        // Where a surface is even, it shows this share of its light.
+        EXPECT_NEAR(weights[0] + weights[1] + weights[2], 0.7, 0.01) << pixel * last;
     }
 }
 
