@@ -21,6 +21,8 @@ constexpr double k_soft = 1.5;
 // Larger footprints hold so many samples that the shares add up to their area by themselves, to
 // 1 %: the edge of a disk of radius r, sampled n times per pixel, is off by less than 1/(n r)^1.5.
 constexpr double k_large = 16;
+// So do those, long and thin, that are looked for in more pixels than this.
+constexpr double k_most_pixels = 1 << 20;
 
 /// The standard deviations along x and y of the unit disk's image.
 std::array<double, 2> deviations(const PlaneMap& disk, const PlaneMap& blur) {
@@ -133,7 +135,7 @@ Footprint::Footprint(const Path& path, const PlaneMap& disk, const PlaneMap& blu
         bounds_ = {std::min(bounds_.x0, more.x0), std::min(bounds_.y0, more.y0),
                    std::max(bounds_.x1, more.x1), std::max(bounds_.y1, more.y1)};
     }
-    is_scaled_ = is_small_ || radius >= k_large;
+    is_scaled_ = radius >= k_large || 4 * half_[0] * half_[1] > k_most_pixels;
 }
 
 std::array<double, 2> Footprint::position(double t) const {
@@ -156,23 +158,6 @@ PixelWindow Footprint::window_around(const std::array<double, 2>& at) const {
 }
 
 void Footprint::add_shares(const PixelWindow& window, Grid2D<double>& shares) const {
-    if (is_scaled_) {
-        add_steps(window, shares);
-        return;
-    }
-    thread_local Grid2D<double> own;
-    own.assign(bounds_.width(), bounds_.height());
-    add_steps(bounds_, own);
-    double sum = 0;
-    for (const double share : own) sum += share;
-    if (!(sum > 0)) return;
-    const PixelWindow inside = intersection(window, bounds_);
-    for (int y = inside.y0; y < inside.y1; ++y)
-        for (int x = inside.x0; x < inside.x1; ++x)
-            shares(x - window.x0, y - window.y0) += own(x - bounds_.x0, y - bounds_.y0) / sum;
-}
-
-void Footprint::add_steps(const PixelWindow& window, Grid2D<double>& shares) const {
     for (int i = 0; i < steps_; ++i) {
         const std::array<double, 2> at = step_position(i);
         if (!is_small_) {
@@ -206,13 +191,28 @@ void Footprint::add_box(const std::array<double, 2>& at, const std::array<double
 
 void Footprint::add_ellipse(const std::array<double, 2>& at, double weight,
                             const PixelWindow& window, Grid2D<double>& shares) const {
-    const PixelWindow inside = intersection(window, around(at, half_));
-    const double per_sample = weight * scale_ / (samples_ * samples_);
+    const PixelWindow whole = around(at, half_), inside = intersection(window, whole);
+    if (inside.x0 >= inside.x1 || inside.y0 >= inside.y1) return;
+    const PixelWindow& drawn = is_scaled_ ? inside : whole;
+    thread_local Grid2D<double> samples;
+    samples.assign(drawn.width(), drawn.height());
+    const double sum = count_samples(at, drawn, samples);
+    if (!(sum > 0)) return;
+    const double per_sample = weight * (is_scaled_ ? scale_ / (samples_ * samples_) : 1 / sum);
+    for (int y = inside.y0; y < inside.y1; ++y)
+        for (int x = inside.x0; x < inside.x1; ++x)
+            shares(x - window.x0, y - window.y0) +=
+                per_sample * samples(x - drawn.x0, y - drawn.y0);
+}
+
+double Footprint::count_samples(const std::array<double, 2>& at, const PixelWindow& window,
+                                Grid2D<double>& counts) const {
     const double pitch = 1.0 / samples_;
     const double full = (1 - ratio_) * (1 - ratio_), none = (1 + ratio_) * (1 + ratio_);
     const SoftEdge edge(ratio_);
-    for (int y = inside.y0; y < inside.y1; ++y)
-        for (int x = inside.x0; x < inside.x1; ++x) {
+    double all = 0;
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) {
             double sum = 0;
             for (int j = 0; j < samples_; ++j)
                 for (int i = 0; i < samples_; ++i) {
@@ -226,8 +226,10 @@ void Footprint::add_ellipse(const std::array<double, 2>& at, double weight,
                     else if (square < none)
                         sum += edge(std::sqrt(square));
                 }
-            shares(x - window.x0, y - window.y0) += per_sample * sum;
+            counts(x - window.x0, y - window.y0) = sum;
+            all += sum;
         }
+    return all;
 }
 
 }  // namespace uw

@@ -50,13 +50,15 @@ class Footprint {
     void add_shares(const PixelWindow& window, Grid2D<double>& shares) const;
 
   private:
-    void add_steps(const PixelWindow& window, Grid2D<double>& shares) const;
     std::array<double, 2> position(double t) const;
     std::array<double, 2> step_position(int step) const;
     void add_box(const std::array<double, 2>& at, const std::array<double, 2>& half, double weight,
                  const PixelWindow& window, Grid2D<double>& shares) const;
     void add_ellipse(const std::array<double, 2>& at, double weight, const PixelWindow& window,
                      Grid2D<double>& shares) const;
+    // How many samples of each pixel an ellipse holds; returns their sum.
+    double count_samples(const std::array<double, 2>& at, const PixelWindow& window,
+                         Grid2D<double>& counts) const;
     PixelWindow window_around(const std::array<double, 2>& at) const;
 
     Path path_;
@@ -68,7 +70,7 @@ class Footprint {
     double ratio_ = 0;              // of the lesser to it
     int samples_ = 1;               // along each axis of a pixel
     double scale_ = 1;              // of the shares of an ellipse
-    bool is_scaled_ = true;         // so that they add up to 1
+    bool is_scaled_ = true;         // by scale_; else so that they add up to 1
     PixelWindow bounds_;
 };
 

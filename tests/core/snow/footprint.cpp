@@ -119,5 +119,22 @@ TEST(Footprint, PartsArePartsOfTheWhole) {
     }
 }
 
+/// Most of it is outside the image: a streak of a million pixels takes the memory of its disk.
+TEST(Footprint, OfALongStreakIsDrawnStepByStep) {
+    Footprint::Path path = k_still;
+    path.linear = {1e6, -1e6};
+    const Footprint footprint(path, circle(3), circle(1));
+    // The middle two of its 4096 steps, which is as many as there are.
+    const double aside = 1e6 / 4096;
+    const PixelWindow around{static_cast<int>(20.3 - aside) - 9, static_cast<int>(17.8 + aside) - 9,
+                             static_cast<int>(20.3 - aside) + 9,
+                             static_cast<int>(17.8 + aside) + 9};
+    Grid2D<double> shares(around.width(), around.height());
+    footprint.add_shares(around, shares);
+    double sum = 0;
+    for (const double share : shares) sum += share;
+    EXPECT_NEAR(sum * 4096, 1, 1e-9);
+}
+
 }  // namespace
 }  // namespace uw
