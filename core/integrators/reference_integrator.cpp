@@ -1,7 +1,9 @@
 #include "core/integrators/reference_integrator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/base/stop.h"
 #include "core/integrators/ray_panels.h"
@@ -12,6 +14,10 @@ namespace {
 
 // Light whose path exceeds the least optical depth by this much adds less than 1e-6.
 constexpr double k_negligible_optical_depth = 15;
+// Of steps among particles [optical depths], as a multiple of the step that is given: a tenth.
+constexpr double k_depth_of_steps = 20;
+// What is behind this optical depth adds less than 1e-17 of all light.
+constexpr double k_dark = 40;
 
 LightTransport make_reference(const IntegratorInputs& inputs) {
     return {std::make_unique<ReferenceIntegrator>(inputs.scene),
@@ -52,20 +58,36 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
             passage.parallel ? emitters[j].beam(ray, {0, reach}) : Interval{0, reach};
         Spectrum sum;
         double s = lit.begin;
+        double depth = 0;  // of the grid before s, in the band that sees farthest
         for (std::size_t i = 0; i < distances.size(); ++i) {
             const double end = std::min(distances[i], lit.end);
-            while (s < end) {
+            while (s < end && depth < k_dark) {
                 throw_if_stopped();
                 double length = step_ * scale_at(s);
                 const bool in_grid = s < grid.end && s + length > grid.begin;
-                if (in_grid) length = std::min(length, 0.25 * voxel);
+                const auto [least, greatest] =
+                    in_grid ? attenuation_at(ray.at(s)) : std::pair(0.0, 0.0);
+                if (in_grid)
+                    length = std::min({length, 0.25 * voxel, k_depth_of_steps * step_ / greatest});
                 length = std::min(length, end - s);
+                depth += length * least;
                 sum += length * in_scatter_per_metre(ray, s + 0.5 * length, j);
                 s = end - s > length ? s + length : end;
             }
             result.at(i, emitters[j].index()) += sum;
         }
     }
+}
+
+std::pair<double, double> ReferenceIntegrator::attenuation_at(const Point3& x) const {
+    std::vector<double> concentration(scene_.medium->constituents.size());
+    scene_.field->sample(x, concentration);
+    std::array<double, k_max_bands> values{};
+    const auto bands = std::span(values).first(static_cast<std::size_t>(attenuation_.band_count));
+    for (std::size_t b = 0; b < bands.size(); ++b)
+        bands[b] = attenuation_.optical_depth(b, 1, concentration);
+    const auto [least, greatest] = std::ranges::minmax(bands);
+    return {least, greatest};
 }
 
 Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,

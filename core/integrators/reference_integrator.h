@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "core/integrators/integrator_kind.h"
 #include "core/optics/optical_depth.h"
 
@@ -15,14 +17,16 @@ class ReferenceIntegrator final : public Integrator {
 
     /// `step`: step length relative to the distance from the lamp, or, for a sun, to that over
     /// which its light falls to 1/e, from ten times that distance on growing with it; inside the
-    /// field's bounds, steps are never longer than a quarter of the finest voxel. The error falls
-    /// as step^2, but only as step at shadow edges.
+    /// field's bounds, steps are never longer than a quarter of the finest voxel, nor than 20
+    /// `step` optical depths. The error falls as step^2, but only as step at shadow edges.
     explicit ReferenceIntegrator(const LitScene& scene, double step = 0.005);
 
     void in_scatter(const Ray& ray, std::span<const double> distances,
                     InScatter& result) const override;
 
   private:
+    /// The least and the greatest of the bands [1/m].
+    std::pair<double, double> attenuation_at(const Point3& x) const;
     /// In-scatter per metre at distance `s` of `ray` from lamp `lamp` [W m^-3 sr^-1].
     Spectrum in_scatter_per_metre(const Ray& ray, double s, std::size_t lamp) const;
 

@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "core/base/stop.h"
+#include "core/integrators/ray_panels.h"
 #include "tests/support/hg_medium.h"
 #include "tests/support/sphere_surface.h"
 
@@ -61,6 +65,44 @@ TEST(ReferenceIntegrator, TakesSunlightInWaterClearInOneBandAndBlackInAnother) {
             // A step's 0.005, with which the last may cross the surface.
             EXPECT_NEAR(result.at(0, 0)[b], expected, 5e-3 * expected) << y << ", band " << b;
         }
+    }
+}
+
+/// Particles of 1 ppm in a cube of 2 m, in voxels of 0.1 m.
+class Cloud final : public ConcentrationField {
+  public:
+    int constituent_count() const override { return 1; }
+    Bounds bounds() const override { return {{-1, -1, -1}, {1, 1, 1}}; }
+    double finest_voxel() const override { return 0.1; }
+    void sample(const Point3& x, std::span<double> concentration) const override {
+        concentration[0] = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}) <= 1 ? 1 : 0;
+    }
+    void column(const Point3& from, const Point3& to, std::span<double> column) const override {
+        const double length = distance(from, to);
+        const Interval within = inside({from, (to - from) / length}, bounds());
+        column[0] = std::max(0.0, std::min(length, within.end) - std::max(0.0, within.begin));
+    }
+    void profile(const Ray&, double, ConcentrationProfile&) const override {}
+};
+
+// Eight optical depths to a voxel: quarters of it would make the light 15 % too little.
+TEST(ReferenceIntegrator, StepsByTenthsOfAnOpticalDepthInDenseClouds) {
+    constexpr double k_a = 40, k_b = 40, k_c = k_a + k_b, k_above = 0.05;
+    Medium medium = hg_medium(0.0, {0.0}, {0.0});
+    add_particles(medium, {k_a}, {k_b});
+    const Cloud cloud;
+    const SphereSurface nothing({0, 0, -5}, 0.1);
+    const Sunlight sun{{0, 1, 0}, {{0, -k_above, 0}, {0, -1, 0}}};
+    const std::vector<Lamp> lamps{{"sun", sun, Spectrum{1}}};
+    const ReferenceIntegrator integrator({&medium, &cloud, &nothing, &lamps});
+    InScatter result;
+    constexpr std::array k_distances{0.02, 3.0};
+    integrator.in_scatter({{0, 0, 0}, {0, 0, 1}}, k_distances, result);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const double expected = k_b / (4 * std::numbers::pi) * std::exp(-k_c * k_above) *
+                                -std::expm1(-k_c * k_distances[i]) / k_c;
+        // Of the midpoint rule: 0.1^2 / 24.
+        EXPECT_NEAR(result.at(i, 0)[0], expected, 5e-4 * expected);
     }
 }
 
