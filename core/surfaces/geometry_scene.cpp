@@ -11,6 +11,7 @@
 #include "core/surfaces/embree_surfaces.h"
 #include "core/surfaces/mesh_objects.h"
 #include "core/surfaces/scene_objects.h"
+#include "core/surfaces/triangle_overlap.h"
 
 namespace uw {
 namespace {
@@ -62,6 +63,17 @@ TriangleMesh box_mesh(const GeometryDesc& desc) {
     mesh.triangles = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
                       2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
     return mesh;
+}
+
+void refuse_overlap(const SceneObjects& objects, const std::vector<GeometryDesc>& geometry) {
+    const std::optional<TriangleOverlap> overlap = find_overlap(objects);
+    if (!overlap) return;
+    const SurfaceName& object = objects.names.objects[overlap->object_id - 1];
+    const Point3& at = overlap->where;
+    throw InputError(fmt::format(
+        "{}: near ({:.4g}, {:.4g}, {:.4g}) m, at the object '{}', some {:.2g} triangles lie over "
+        "one another, and every ray there would meet all of them; remove what is in the same place",
+        geometry[object.entry].where, at.x, at.y, at.z, object.name, overlap->triangles));
 }
 
 class Builder {
@@ -190,7 +202,9 @@ std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geomet
     meshes.keep_only(geometry);
     Builder builder(wavelengths_nm, meshes);
     for (const GeometryDesc& desc : geometry) builder.add(desc, warnings);
-    return make_embree_surfaces(builder.take());
+    SceneObjects objects = builder.take();
+    refuse_overlap(objects, geometry);
+    return make_embree_surfaces(std::move(objects));
 }
 
 std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,

@@ -99,9 +99,7 @@ void shade_mesh(const PlacedMesh& mesh, std::uint32_t triangle, const TriangleCr
     hit.triangle = triangle;
     hit.u = crossing.u;
     hit.v = crossing.v;
-    hit.object_id = mesh.instance ? mesh.instance->object_id : object.object_id;
-    if (!object.mesh.triangle_objects.empty())
-        hit.object_id += object.mesh.triangle_objects[triangle];
+    hit.object_id = mesh.object_id(triangle);
     const std::uint32_t number = place.material().number;
     hit.material_id = number == 0 ? 0 : object.materials_end + number;
 }

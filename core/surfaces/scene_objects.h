@@ -61,6 +61,12 @@ struct PlacedMesh {
         : object(mesh), instance(placed) {}
 
     const MeshTransform* transform() const { return instance ? &instance->transform : nullptr; }
+    /// The id of a triangle's object.
+    std::uint32_t object_id(std::uint32_t triangle) const {
+        const std::vector<std::uint32_t>& objects = object.mesh.triangle_objects;
+        return (instance ? instance->object_id : object.object_id) +
+               (objects.empty() ? 0 : objects[triangle]);
+    }
     /// Corner `k` (0..2) of a triangle, in world space.
     Point3 corner(std::uint32_t triangle, int k) const {
         const Point3 p = object.corner(triangle, k);
