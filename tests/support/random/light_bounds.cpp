@@ -83,7 +83,9 @@ std::optional<std::vector<double>> most_in_scatter(const SceneDesc& scene, const
         const Vector3 to_lamp = position(scene, lamp) - ray.origin;
         const double foot = glm::dot(to_lamp, ray.direction);
         const double distance = glm::length(to_lamp - foot * ray.direction);
-        const double length = (k_pi / 2 + std::atan2(foot, distance)) / distance;
+        // pi/2 + atan(f/h), of which nothing cancels for a ray that leads away from the lamp.
+        const double angle = std::atan2(distance, -foot);
+        const double length = distance > 0 ? angle / distance : foot < 0 ? -1 / foot : k_unknown;
         for (std::size_t band = 0; band < most.size(); ++band) {
             const double b = water.scattering->b[band];
             const double intensity = most_intensity(lamp, band);

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene_desc.h"
+#include "render/renderer.h"
+
+namespace uw::test {
+
+/// Single pixels of a scene by the reference integrator.
+class ReferencePixels {
+  public:
+    explicit ReferencePixels(SceneDesc scene);
+
+    /// The total of all light in a pixel, as images hold it, per band.
+    std::vector<double> at(int x, int y);
+
+  private:
+    std::size_t bands_, first_;  // how many channels hold the total, and the first of them
+    Renderer renderer_;
+};
+
+}  // namespace uw::test
