@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <memory>
 #include <numbers>
 
 #include "core/base/error.h"
@@ -11,14 +13,22 @@
 namespace uw {
 namespace {
 
-/// Adds a phase function of diffuse spheres, by which the uniform water scatters `b`; its
-/// attenuation stays.
+/// Lets the uniform water scatter `b` more, as diffuse spheres do, while its attenuation stays.
+/// What is added and taken away again leaves nothing: both are of one phase function.
 void scatter_more(const Spectrum& b, Medium& medium) {
-    medium.phase_functions.push_back(std::make_shared<LambertSphere>());
-    medium.uniform.scattering.push_back(b);
+    auto& phases = medium.phase_functions;
+    const auto known = std::ranges::find_if(phases, [](const auto& phase) {
+        return dynamic_cast<const LambertSphere*>(phase.get()) != nullptr;
+    });
+    const auto m = static_cast<std::size_t>(known - phases.begin());
+    if (m == phases.size()) {
+        phases.push_back(std::make_shared<LambertSphere>());
+        medium.uniform.scattering.emplace_back();
+        for (Constituent& constituent : medium.constituents)
+            constituent.per_unit.scattering.emplace_back();
+    }
+    medium.uniform.scattering[m] += b;
     medium.uniform.absorption -= b;
-    for (Constituent& constituent : medium.constituents)
-        constituent.per_unit.scattering.emplace_back();
 }
 
 /// Lets `x` absorb what it scattered.
