@@ -252,6 +252,8 @@ void InScatterLattice::fill_pixel(int x, int y, int spacing) {
         // Corners know the depths of all pixels within their reach.
         if (weight > 0) add_node(*from[c], weight, view.distances, view.weights, values);
     }
+    // Parabolas through the light of a lamp that shines behind the surface alone go below zero.
+    for (double& value : values) value = std::max(value, 0.0);
 }
 
 /// Adds `weight` times the weighted mean over the distances of the node's parabolas.

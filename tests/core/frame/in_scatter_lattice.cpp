@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/frame/render_film.h"
+#include "render/scene_loading.h"
 #include "tests/support/planes_scene.h"
 
 namespace uw::test {
@@ -137,6 +138,30 @@ TEST(InScatterLattice, LampsApartAddUpAndTheFirstSlabIsTheSlabs) {
         ASSERT_NEAR(together[i].backscatter[1], mixed[i].backscatter[1],
                     k_tolerance * mixed[i].backscatter[1]);
     }
+}
+
+// Rays from which the water is interpolated go on behind a wall that others see farther away: what
+// they meet there must not make less than nothing of a lamp's light before it.
+TEST(InScatterLattice, NoLampBehindAWallTakesLightAway) {
+    const SceneDesc desc = load_scene_text(
+        "uwvdb: 1\n"
+        "camera:\n"
+        "  {resolution: [6, 9], intrinsics: {fx: 20000}, pose: {position: [0, 0, 0], look_at: [0, "
+        "0, 1]}}\n"
+        "water:\n"
+        "  absorption: [0.1, 0.1, 0.1]\n"
+        "  scattering: {b: [1, 1, 1], phase: {type: hg, g: 0.5}}\n"
+        "geometry: [{type: plane, point: [0, 0, 0.1], normal: [0.5, 0.2, -1]}]\n"
+        "lamps:\n"
+        "  - {position: [0.05, 0, 0], intensity: [7000, 7000, 7000]}\n"
+        "  - {name: behind, position: [0.05, 0.02, 0.12], intensity: [300, 300, 300]}\n",
+        "scene.yaml");
+    constexpr double k_of_images = 4e-3;
+    for (const PixelResult& pixel : MixedImage(desc, {.lamps = true}).render(k_of_images))
+        for (std::size_t b = 0; b < 3; ++b) {
+            ASSERT_GT(pixel.lamps[0][b], 0);
+            ASSERT_GE(pixel.lamps[1][b], 0);
+        }
 }
 
 TEST(InScatterLattice, AWindowHoldsTheSamePixels) {
