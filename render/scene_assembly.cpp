@@ -13,6 +13,7 @@
 #include "core/snow/snow_medium.h"
 #include "core/surfaces/geometry_scene.h"
 #include "media/volumes/grid_field.h"
+#include "media/volumes/voxel_depth.h"
 
 namespace uw {
 
@@ -91,11 +92,17 @@ void take_over_volumes(const std::vector<VolumeDesc>& volumes, AssembledScene& s
     before.field.reset();
 }
 
-void load_volumes(const std::vector<VolumeDesc>& volumes, AssembledScene& scene) {
+/// `interpolates`: columns to lamps are.
+void load_volumes(const std::vector<VolumeDesc>& volumes, bool interpolates,
+                  AssembledScene& scene) {
     for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
         LoadedVolume& volume = scene.volumes[v];
         if (volume.grids.empty()) volume = load_volume(volumes[v], scene.water.loads[v]);
         append(scene.warnings, volume.warnings);
+        for (const VolumeReport& report : volume.reports)
+            if (const auto warning = coarse_voxel_warning(report, scene.water.medium);
+                warning && interpolates)
+                scene.warnings.push_back(*warning);
         scene.volume_reports.insert(scene.volume_reports.end(), volume.reports.begin(),
                                     volume.reports.end());
     }
@@ -166,7 +173,7 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
     take_over_volumes(desc.volumes, scene, before);
     take_over_surfaces(desc, scene, before);
     begin_stage("volumes");
-    load_volumes(desc.volumes, scene);
+    load_volumes(desc.volumes, integrator_kind(desc.render.integrator).needs_deep_shadows, scene);
     begin_stage("geometry");
     if (!scene.surfaces)
         scene.surfaces = build_surfaces(desc.geometry, medium.wavelengths_nm,

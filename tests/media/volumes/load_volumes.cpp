@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "media/volumes/voxel_depth.h"
+#include "tests/support/hg_medium.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_fixtures.h"
@@ -42,6 +44,20 @@ TEST_F(LoadVolumes, TakeWhatIsSane) {
     EXPECT_EQ(load(1e6).reports.at(0).constituents.at(0).max, 5e5);
     fixture_.file_from_index = Affine::scale({0.5, 0.0005, 0.5});  // thin, but voxels
     EXPECT_EQ(load().grids.size(), 1U);
+}
+
+TEST_F(LoadVolumes, TellOfVoxelsOfManyOpticalDepths) {
+    Medium medium = test::hg_medium(0, {0.1, 0.1}, {0.2, 0.2});
+    test::add_particles(medium, {1, 2}, {3, 4});
+    fixture_.file_from_index = Affine::scale({0.05, 0.1, 0.02});
+    // At most 0.5 per unit, 6 1/m per ppm, 0.1 m.
+    const LoadedVolume thin = load(13), dense = load(14);
+    EXPECT_NEAR(voxel_depth(thin.reports.at(0), medium), 0.5 * 13 * 6 * 0.1, 1e-5);
+    EXPECT_FALSE(coarse_voxel_warning(thin.reports[0], medium));
+    EXPECT_EQ(coarse_voxel_warning(dense.reports.at(0), medium)
+                  .value_or("")
+                  .find("cloud.vdb: grid 'density': its densest voxels are 4.2 optical depths"),
+              0U);
 }
 
 TEST_F(LoadVolumes, RefuseValuesThatSumsCannotHold) {

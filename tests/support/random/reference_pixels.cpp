@@ -1,5 +1,7 @@
 #include "tests/support/random/reference_pixels.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "render/scene_rendering.h"
@@ -10,6 +12,18 @@ namespace {
 constexpr auto k_total = "total";
 
 }  // namespace
+
+bool is_at_plane(const Lamp& lamp, const SceneDesc& scene) {
+    constexpr double k_near = 1e-3;  // 1e-5 of 100 m
+    if (lamp.sunlight()) return false;
+    return std::ranges::any_of(scene.geometry, [&](const GeometryDesc& desc) {
+        if (desc.type != GeometryDesc::Type::plane) return false;
+        const Vector3 normal = glm::normalize(desc.world_from_object.apply_to_normal(desc.normal));
+        const Vector3 off = lamp.position() - desc.world_from_object * desc.point;
+        const double distance = std::abs(glm::dot(off, normal));
+        return distance > 0 && distance < k_near;
+    });
+}
 
 ReferencePixels::ReferencePixels(SceneDesc scene) : bands_(scene.water.bands_nm.size()) {
     scene.render.integrator = RenderDesc::Integrator::reference;

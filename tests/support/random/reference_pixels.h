@@ -2,10 +2,16 @@
 
 #include <vector>
 
+#include "core/lamps/lamp.h"
 #include "core/scene/scene_desc.h"
 #include "render/renderer.h"
 
 namespace uw::test {
+
+/// Whether a plane is so near to a lamp that shadow rays of some metres take it for the lamp's own
+/// (Surfaces::occluded): the reference integrator sees light behind it, the fast one, whose rays
+/// begin at the lamp, does not.
+bool is_at_plane(const Lamp& lamp, const SceneDesc& scene);
 
 /// Single pixels of a scene by the reference integrator.
 class ReferencePixels {
