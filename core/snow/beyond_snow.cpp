@@ -44,10 +44,13 @@ void BeyondSnow::add_beyond(const Ray& ray, double begin, std::span<const double
     };
     for (std::size_t i = 0; i < distances.size(); ++i)
         for (std::size_t lamp = 0; lamp < result.lamp_count(); ++lamp)
-            for (const Part& part : parts_)
-                if (part.range < distances[i])
-                    result.at(i, lamp) +=
-                        part.share * (up_to(distances[i], lamp) - up_to(part.range, lamp));
+            for (const Part& part : parts_) {
+                if (part.range >= distances[i]) continue;
+                Spectrum beyond = up_to(distances[i], lamp) - up_to(part.range, lamp);
+                // Of few slabs, the light of a part may be more than that of the whole.
+                for (double& radiance : beyond.values) radiance = std::max(radiance, 0.0);
+                result.at(i, lamp) += part.share * beyond;
+            }
 }
 
 }  // namespace uw
