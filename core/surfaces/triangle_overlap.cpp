@@ -11,7 +11,7 @@ namespace uw {
 namespace {
 
 constexpr std::uint64_t k_most_samples = 1 << 16;
-// Of a cube's face. A lawn of 10^5 blades of grass to a square metre comes to a fifth of it.
+// Of a cube's face. A lawn of 10^5 blades of grass to a square metre comes to a hundredth of it.
 constexpr double k_most_coverage = 4096;
 // From fewer of its triangles, little is known of a cube.
 constexpr std::size_t k_least_samples = 64;
