@@ -79,16 +79,19 @@ TEST_F(LittleMemory, RefusesAVolumeThatDoesNotFit) {
 TEST_F(LittleMemory, RefusesMeshesThatDoNotFit) {
     constexpr std::uint32_t k_triangles = 3'000'000;
     std::string ply =
-        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
-        "property float y\nproperty float z\nelement face " +
+        "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(k_triangles + 2) +
+        "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
         std::to_string(k_triangles) + "\nproperty list uchar uint vertex_indices\nend_header\n";
     const auto append = [&](const auto& value) {
         ply.append(reinterpret_cast<const char*>(&value), sizeof value);
     };
-    for (const float value : {0.F, 0.F, 3.F, 1.F, 0.F, 3.F, 0.F, 1.F, 3.F}) append(value);
+    // A strip.
+    for (std::uint32_t k = 0; k < k_triangles + 2; ++k)
+        for (const double value : {1e-5 * k, static_cast<double>(k % 2), 3.0})
+            append(static_cast<float>(value));
     for (std::uint32_t k = 0; k < k_triangles; ++k) {
         append(std::uint8_t{3});
-        for (const std::uint32_t corner : {0U, 1U, 2U}) append(corner);
+        for (const std::uint32_t corner : {k, k + 1, k + 2}) append(corner);
     }
     write("many.ply", ply);
     std::string scene = k_small_scene;
