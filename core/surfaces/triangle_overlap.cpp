@@ -53,6 +53,7 @@ Sample sample_of(const Corners& corners) {
 /// Of one of `stride` triangles each, not always the same one: objects repeat.
 std::vector<Sample> samples_of(const SceneObjects& objects, std::uint64_t stride) {
     std::vector<Sample> samples;
+    samples.reserve(k_most_samples);
     const auto next = [&] {
         constexpr double k_golden = 0.6180339887498949;
         const double turns = static_cast<double>(samples.size()) * k_golden;

@@ -45,6 +45,10 @@ class LittleMemory : public CliTest {
         EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
         EXPECT_FALSE(exists("out.exr"));
     }
+    static std::string scene_with_mesh(const std::string& file) {
+        std::string scene = k_small_scene;
+        return scene.insert(scene.find("  - {type: plane"), "  - {file: " + file + "}\n");
+    }
 };
 
 TEST_F(LittleMemory, RendersWhatFits) {
@@ -94,9 +98,7 @@ TEST_F(LittleMemory, RefusesMeshesThatDoNotFit) {
         for (const std::uint32_t corner : {k, k + 1, k + 2}) append(corner);
     }
     write("many.ply", ply);
-    std::string scene = k_small_scene;
-    scene.insert(scene.find("  - {type: plane"), "  - {file: many.ply}\n");
-    write("meshes.yaml", scene);
+    write("meshes.yaml", scene_with_mesh("many.ply"));
     expect_refused(500'000'000, {"meshes.yaml"},
                    "to trace 3000012 triangles takes 0.3 GB of memory, but only 0.");
 }
@@ -113,9 +115,7 @@ TEST_F(LittleMemory, RefusesATextureThatDoesNotFit) {
     write("large.mtl", "newmtl large\nmap_Kd large.png\n");
     write("large.obj",
           "mtllib large.mtl\nv 0 0 3\nv 1 0 3\nv 0 1 3\nvt 0 0\nusemtl large\nf 1/1 2/1 3/1\n");
-    std::string scene = k_small_scene;
-    scene.insert(scene.find("  - {type: plane"), "  - {file: large.obj}\n");
-    write("texture.yaml", scene);
+    write("texture.yaml", scene_with_mesh("large.obj"));
     expect_refused(500'000'000, {"texture.yaml"},
                    "large.png: 8000 x 8000 pixels need 0.32 GB of memory, but only 0.");
 }

@@ -8,24 +8,15 @@
 #include "core/base/error.h"
 #include "core/base/stop.h"
 #include "core/surfaces/embree_surfaces.h"
+#include "tests/support/meshes/sheet_object.h"
 
 namespace uw {
 namespace {
 
 /// A flat square of 2 n^2 triangles at z = 1, as traced.
 SceneObjects square(std::uint32_t n) {
-    auto object = std::make_shared<MeshObject>();
-    for (std::uint32_t k = 0; k < (n + 1) * (n + 1); ++k)
-        for (const double value : {double(k % (n + 1)) / n, double(k / (n + 1)) / n, 1.0})
-            object->mesh.positions.push_back(static_cast<float>(value));
-    for (std::uint32_t k = 0; k < n * n; ++k) {
-        const std::uint32_t a = k / n * (n + 1) + k % n;
-        for (const std::uint32_t corner : {a, a + 1, a + n + 2, a, a + n + 2, a + n + 1})
-            object->mesh.triangles.push_back(corner);
-    }
-    object->vertex_count = object->mesh.positions.size() / 3;
-    object->mesh.positions.resize(object->mesh.positions.size() + 4);
-    SceneObjects objects{{object}, {}, {}, {}, {}, {}, ReflectanceBands({620, 540, 450}), {}};
+    SceneObjects objects{{test::sheet_object(n, 1)},        {}, {}, {}, {}, {},
+                         ReflectanceBands({620, 540, 450}), {}};
     objects.bounds.extend(Point3(0, 0, 1));
     objects.bounds.extend(Point3(1, 1, 1));
     return objects;

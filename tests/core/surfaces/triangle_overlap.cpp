@@ -9,30 +9,17 @@
 #include "core/base/error.h"
 #include "core/surfaces/geometry_scene.h"
 #include "tests/support/geometry_descs.h"
+#include "tests/support/meshes/sheet_object.h"
 #include "tests/support/message_of.h"
 #include "tests/support/surface_probes.h"
 
 namespace uw::test {
 namespace {
 
-/// A sheet of 2 n^2 triangles over the unit square.
-std::shared_ptr<MeshObject> sheet(std::uint32_t n) {
-    auto object = std::make_shared<MeshObject>();
-    for (std::uint32_t k = 0; k < (n + 1) * (n + 1); ++k)
-        for (const double value : {double(k % (n + 1)) / n, double(k / (n + 1)) / n, 0.3})
-            object->mesh.positions.push_back(static_cast<float>(value));
-    for (std::uint32_t k = 0; k < n * n; ++k) {
-        const std::uint32_t a = k / n * (n + 1) + k % n;
-        for (const std::uint32_t corner : {a, a + 1, a + n + 2, a, a + n + 2, a + n + 1})
-            object->mesh.triangles.push_back(corner);
-    }
-    object->vertex_count = object->mesh.positions.size() / 3;
-    return object;
-}
-
 /// Sheets as objects of a file show them, `apart` metres from one another.
 SceneObjects sheets(int count, double apart) {
-    SceneObjects objects{{}, {sheet(18)}, {}, {}, {}, {}, ReflectanceBands({620, 540, 450}), {}};
+    SceneObjects objects{{}, {sheet_object(18, 0.3)},           {}, {}, {},
+                         {}, ReflectanceBands({620, 540, 450}), {}};
     for (int i = 0; i < count; ++i) {
         const Vector3 offset = i * apart * Vector3(1, 1, 1);
         objects.instances.push_back({objects.shared_meshes[0].get(),
@@ -57,7 +44,7 @@ TEST(TriangleOverlap, IsFoundWhereThousandsOfSheetsAre) {
 
 TEST(TriangleOverlap, IsFoundBesideMuchElse) {
     SceneObjects objects = sheets(20000, 1e-7);
-    for (int i = 0; i < 10; ++i) objects.meshes.push_back(sheet(300));
+    for (int i = 0; i < 10; ++i) objects.meshes.push_back(sheet_object(300, 0.3));
     EXPECT_TRUE(find_overlap(objects));
 }
 
