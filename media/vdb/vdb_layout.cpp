@@ -56,7 +56,9 @@ class LayoutWalk {
         std::set<Key> tile_keys;
         for (std::uint32_t n = 0; n < tiles; ++n) {
             tile_keys.insert(in_.get<Key>());
-            in_.skip(value_bytes_ + 1);
+            in_.skip(value_bytes_);
+            // Whether it is active: OpenVDB reads the byte into a bool as it is.
+            if (in_.get<std::uint8_t>() > 1) in_.fail_damaged();
         }
         Key last{};
         for (std::uint32_t n = 0; n < children; ++n) {

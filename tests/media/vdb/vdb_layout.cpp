@@ -61,6 +61,26 @@ TEST(VdbLayout, ForgedBlocksAreRefusedBeforeTheyAreRead) {
     EXPECT_GT(refused, 0);
 }
 
+// OpenVDB reads the byte that says whether a tile of the root is active into a bool as it is.
+TEST(VdbLayout, RootTilesAreActiveOrNot) {
+    const TempDir dir;
+    const float value = 0.37F;
+    VdbFixture fixture = single_voxel("density");
+    fixture.boxes = {{{4096, 0, 0}, {8191, 4095, 4095}, value}};
+    test::write_fixture(dir / "a.vdb", {fixture});
+    std::string bytes = file_bytes(dir / "a.vdb");
+    std::string tile(sizeof value, '\0');
+    std::memcpy(tile.data(), &value, sizeof value);
+    const std::size_t at = bytes.find(tile + '\x01');
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_NO_THROW(inspect_vdb(dir / "a.vdb", test::k_where));
+    for (const char active : {'\x02', '\x39', '\xff'}) {
+        bytes[at + sizeof value] = active;
+        write_file_bytes(dir / "forged.vdb", bytes);
+        expect_contains(refusal(dir / "forged.vdb", "density"), "truncated or damaged");
+    }
+}
+
 // A frustum states a second map by its name, before OpenVDB 10 looks whether the file holds one so
 // long, and calls itself where that is a frustum again.
 class VdbFrustum : public testing::Test {
