@@ -11,7 +11,7 @@
 #include "bench/support/process.h"
 #include "bench/support/scenes.h"
 #include "core/base/parallel.h"
-#include "core/base/scratch_folder.h"
+#include "core/files/scratch_folder.h"
 #include "core/frame/render_film.h"
 #include "core/frame/tile_renderer.h"
 #include "core/image/image_writer.h"

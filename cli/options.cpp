@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/input_files.h"
 #include "core/base/text.h"
+#include "core/files/input_files.h"
 
 namespace uw {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/image/output_file.h"
+#include "core/files/output_file.h"
 #include "dataset/sha256.h"
 
 namespace uw {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 
 namespace uw {
 
@@ -98,6 +99,7 @@ std::string sha256_of_file(const std::filesystem::path& file) {
     std::vector<char> part(1 << 16);
     Sha256 sum;
     while (in) {
+        throw_if_stopped();
         in.read(part.data(), static_cast<std::streamsize>(part.size()));
         sum.add(std::string_view(part.data(), static_cast<std::size_t>(in.gcount())));
     }

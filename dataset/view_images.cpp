@@ -31,9 +31,11 @@ void write_new_image(const ViewImages& images, const std::filesystem::path& file
 }  // namespace
 
 bool ViewImages::has_values(Layer layer) const {
-    for (int y = 0; y < height(); ++y)
+    for (int y = 0; y < height(); ++y) {
+        throw_if_stopped();
         for (int x = 0; x < width(); ++x)
             if (std::isfinite(at(layer, x, y).front())) return true;
+    }
     return false;
 }
 
@@ -58,17 +60,16 @@ void write_depth(const ViewImages& images, SetFiles& files, const std::string& r
     depth.values.reserve(depth.row_values() * static_cast<std::size_t>(depth.height));
     const double far = images.definition.depth_far.value_or(HUGE_VAL);
     double nearest = HUGE_VAL, farthest = 0;
-    for (int y = 0; y < images.height(); ++y)
-        for (int x = 0; x < images.width(); ++x) {
-            const double z = images.at(Layer::depth, x, y).front();
-            const bool is_seen = z > 0 && z <= far;
-            if (is_seen) {
-                nearest = std::min(nearest, z);
-                farthest = std::max(farthest, z);
-            }
-            const double value = is_seen ? std::min(std::round(z * scale), k_most) : 0;
-            depth.values.push_back(static_cast<std::uint16_t>(value));
+    images.for_each_pixel([&](int x, int y) {
+        const double z = images.at(Layer::depth, x, y).front();
+        const bool is_seen = z > 0 && z <= far;
+        if (is_seen) {
+            nearest = std::min(nearest, z);
+            farthest = std::max(farthest, z);
         }
+        const double value = is_seen ? std::min(std::round(z * scale), k_most) : 0;
+        depth.values.push_back(static_cast<std::uint16_t>(value));
+    });
     if (std::round(farthest * scale) > k_most || std::round(nearest * scale) < 1)
         throw InputError(fmt::format(
             "{}: depths of {:.4g} to {:.4g} m do not fit into 16 bits at {:g} per metre, which "

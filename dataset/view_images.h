@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/stop.h"
 #include "core/image/digital_image.h"
 #include "core/image/film.h"
 #include "core/image/image_metadata.h"
@@ -44,6 +45,15 @@ struct ViewImages {
     /// A layer's values at a pixel. Precondition: has(layer).
     std::span<const float> at(Layer layer, int x, int y) const {
         return film.pixel(x, y).subspan(static_cast<std::size_t>(plan.first_channel(layer)));
+    }
+
+    /// Calls `visit(x, y)` for every pixel, row by row from the top. Throws Interrupted.
+    template <class Visit>
+    void for_each_pixel(const Visit& visit) const {
+        for (int y = 0; y < height(); ++y) {
+            throw_if_stopped();
+            for (int x = 0; x < width(); ++x) visit(x, y);
+        }
     }
 
     /// Whether any of a layer's values is a number: a frame without a next one has no flow.

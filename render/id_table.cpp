@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 #include <vector>
 
-#include "core/base/atomic_file.h"
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/json/json.h"
 
@@ -66,20 +63,15 @@ void add_id_names(const SurfaceNames& names, ImageMetadata& metadata) {
     metadata["uwvdb/material_names"] = names_by_number(names.materials);
 }
 
-void write_id_table(const std::filesystem::path& file, const SurfaceNames& names) {
-    AtomicFile target(file);
-    std::ofstream out(target.temporary_path());
-    out << "layer,number,name,geometry\n";
+void write_id_table(OutputFile& out, const SurfaceNames& names) {
+    out.write("layer,number,name,geometry\n");
     const auto write = [&](const char* layer, const NameList& list) {
         for (std::size_t k = 0; k < list.size(); ++k)
-            out << layer << ',' << k + 1 << ',' << csv_field(list[k].name) << ',' << list[k].entry
-                << '\n';
+            out.write(
+                fmt::format("{},{},{},{}\n", layer, k + 1, csv_field(list[k].name), list[k].entry));
     };
     write("id", names.objects);
     write("material", names.materials);
-    out.close();
-    if (!out) throw IoError(fmt::format("{}: cannot write; is the disk full?", file.string()));
-    target.commit();
 }
 
 }  // namespace uw

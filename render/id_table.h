@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "core/files/output_file.h"
 #include "core/image/image_metadata.h"
 #include "core/surfaces/surface_names.h"
 
@@ -18,8 +19,8 @@ std::filesystem::path id_table_beside(const std::filesystem::path& image);
 /// `uwvdb/material_names`, JSON objects of names by number.
 void add_id_names(const SurfaceNames& names, ImageMetadata& metadata);
 
-/// Writes the same as a CSV: layer, number, name, and the entry of `geometry` it comes from. Throws
-/// IoError.
-void write_id_table(const std::filesystem::path& file, const SurfaceNames& names);
+/// Writes the same as a CSV: layer, number, name, and the entry of `geometry` it comes from. What
+/// cannot be written is for out.commit() to report.
+void write_id_table(OutputFile& out, const SurfaceNames& names);
 
 }  // namespace uw

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bench/support/value_noise.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/vec.h"
+#include "core/files/atomic_file.h"
 #include "media/vdb/vdb_writer.h"
 
 namespace uw::bench {

@@ -7,7 +7,7 @@
 #include "camera/calibration/formats.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/base/text_file.h"
+#include "core/files/text_file.h"
 #include "core/scene/yaml/yaml_document.h"
 
 namespace uw {

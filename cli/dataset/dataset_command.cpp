@@ -16,11 +16,12 @@
 #include "cli/render/frame_check.h"
 #include "cli/render/stats.h"
 #include "cli/stop_signal.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/folder_lock.h"
 #include "core/base/parallel.h"
+#include "core/base/stop.h"
 #include "core/base/text.h"
+#include "core/files/atomic_file.h"
+#include "core/files/folder_lock.h"
 #include "dataset/formats/format_table.h"
 #include "dataset/set/completion.h"
 #include "dataset/set/data_card.h"
@@ -38,12 +39,15 @@ namespace fs = std::filesystem;
 
 void complete(const fs::path& folder, const DatasetFile& set, bool check, bool quiet) {
     begin_orderly_stop();
-    {
+    try {
+        const StopScope scope(stop_flag());
         Progress progress("completing the set", "", 1, quiet);
         complete_dataset(folder, set, check, [&](double share) {
             progress.update(share);
             return !stop_requested();
         });
+    } catch (const Interrupted&) {
+        throw Interrupted("interrupted; the views are there, --merge completes the set");
     }
     if (!quiet)
         print_message(
@@ -105,6 +109,8 @@ class DatasetRun {
         DatasetDefinition wanted = definition_of(a_, scene_);
         wanted.draws = std::move(draws);
         check(wanted, scene_);
+        begin_orderly_stop();  // or temporary files might stay
+        const StopScope scope(stop_flag());
         begin(wanted);
         if (a_.slurm_tasks)
             submit();
@@ -115,13 +121,21 @@ class DatasetRun {
   private:
     void render_shard(const ShardArgument& shard) {
         const ViewRange range = shard_of(set_.definition, shard.number, shard.count);
-        const std::vector<std::size_t> missing = missing_views(a_, set_.definition, range);
+        const std::vector<std::size_t> missing = look_for_missing(range);
         if (!a_.image.quiet && missing.size() < range.end - range.begin)
             print_message(fmt::format("{} of {} views are there already\n",
                                       range.end - range.begin - missing.size(),
                                       range.end - range.begin));
         render(missing);
         if (shard.count == 1) complete(a_.image.output, set_, false, a_.image.quiet);
+    }
+
+    std::vector<std::size_t> look_for_missing(ViewRange range) const {
+        try {
+            return missing_views(a_, set_.definition, range);
+        } catch (const Interrupted&) {
+            throw Interrupted("interrupted; the same command continues");
+        }
     }
 
     /// Renders the first moments here to learn what the others take, and leaves those to a cluster.
@@ -195,7 +209,6 @@ class DatasetRun {
     void render(const std::vector<std::size_t>& views) {
         if (views.empty()) return;
         ViewRenderer renderer(a_, views.size());
-        begin_orderly_stop();
         try {
             for (const std::size_t index : views) {
                 const View view = set_.definition.view(index);
@@ -205,7 +218,11 @@ class DatasetRun {
             }
             renderer.finish();
         } catch (const Interrupted&) {
-            renderer.finish();
+            try {
+                renderer.finish();
+            } catch (const Interrupted&) {
+                // It was being written, and is not done.
+            }
             throw Interrupted(
                 fmt::format("interrupted; {} of {} views are done; the same command "
                             "continues",

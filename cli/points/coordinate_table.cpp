@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
-#include "core/base/text_file.h"
+#include "core/files/text_file.h"
 #include "core/tables/csv_cells.h"
 
 namespace uw {

@@ -7,15 +7,21 @@
 #include <thread>
 #include <utility>
 
+#include "core/base/stop.h"
+
 namespace uw {
 
 /// Work that is done on a thread of its own, from construction on; by the constructor where the
-/// system grants no thread. The destructor waits for it.
+/// system grants no thread. It is stopped as that of the thread that began it. The destructor waits
+/// for it.
 class BackgroundTask {
   public:
     explicit BackgroundTask(std::function<void()> work) : work_(std::move(work)) {
         try {
-            thread_ = std::thread([this] { run(); });
+            thread_ = std::thread([this, stop = StopScope::of_this_thread()] {
+                const StopScope scope(stop);
+                run();
+            });
         } catch (const std::system_error&) {
             run();
         }

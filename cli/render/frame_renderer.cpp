@@ -53,6 +53,7 @@ struct FrameRenderer::Written {
     std::shared_ptr<const Surfaces> surfaces;
     ImageMetadata metadata;
     RunStats stats;
+    OutputGroup outputs;
     std::string label;  // empty: the only image
     double seconds = 0;
     struct Line {
@@ -60,6 +61,9 @@ struct FrameRenderer::Written {
         std::string text;
     };
     std::vector<Line> lines{};
+    SayCallback keep(bool is_warning) {
+        return [this, is_warning](const std::string& line) { lines.push_back({is_warning, line}); };
+    }
 };
 
 FrameRenderer::FrameRenderer(const RenderArguments& arguments, std::size_t count, std::string noun,
@@ -148,11 +152,11 @@ void FrameRenderer::count_work(RunStats& stats) const {
     if (report.paths.error) stats.measure("error", *report.paths.error);
 }
 
-void FrameRenderer::write_irradiance(const std::filesystem::path& file) {
+void FrameRenderer::write_irradiance(OutputFile& out) {
     const AssembledScene& scene = renderer_.assembled();
     Progress progress(clock_.label("irradiance"), "lamps", static_cast<double>(scene.lamps.size()),
                       arguments_.quiet, clock_.seconds_left());
-    write_irradiance_vdb(file, scene, renderer_.light(), [&](double share) {
+    write_irradiance_vdb(out, scene, renderer_.light(), [&](double share) {
         progress.update(share);
         return !stop_requested();
     });
@@ -194,10 +198,10 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
         say(fmt::format("multiple scattering: standard error {:.2g} % of the image's mean",
                         100 * *report.multiple_error));
     count_work(stats);
+    OutputGroup outputs;
     if (with_irradiance) {
         stats.begin_stage("irradiance");
-        write_irradiance(files.irradiance_vdb);
-        say(fmt::format("wrote {}", files.irradiance_vdb.string()));
+        write_irradiance(outputs.add(files.irradiance_vdb));
     }
     stats.end_stage();
     stats.set_output(files.main().filename().string(), frame.number);
@@ -215,7 +219,8 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
         if (written.channel_names() != film.channel_names())
             film = with_channels(film, written.channel_names(), film.window());
     }
-    begin_writing(frame, std::move(film), std::move(sensor), std::move(metadata), std::move(stats));
+    begin_writing(frame, std::move(film), std::move(sensor), std::move(metadata), std::move(stats),
+                  std::move(outputs));
 }
 
 std::vector<PartNumbers> FrameRenderer::measure(const ResolvedScene& scene, const Film& film,
@@ -250,26 +255,20 @@ std::optional<double> FrameRenderer::exposure_of(const Film& film) {
 }
 
 void FrameRenderer::begin_writing(const Frame& frame, Film film, std::optional<SensorImage> sensor,
-                                  ImageMetadata metadata, RunStats stats) {
+                                  ImageMetadata metadata, RunStats stats, OutputGroup outputs) {
     finish();
     std::string label = clock_.is_sequence() ? clock_.label("done in ") : "";
     written_.reset(new Written{frame, is_first(), std::move(film), std::move(sensor),
                                renderer_.assembled().surfaces, std::move(metadata),
-                               std::move(stats), std::move(label)});
+                               std::move(stats), std::move(outputs), std::move(label)});
     clock_.finish_image();
     const ImageStorage storage{arguments_.exr(), exposure_of(written_->film),
                                arguments_.is_preview_16_bit};
     writing_ = std::make_unique<BackgroundTask>([&written = *written_, storage] {
         const auto begin = std::chrono::steady_clock::now();
-        write_images(
-            written.frame.files, written.film, written.sensor, written.surfaces->names(),
-            std::move(written.metadata), storage,
-            [&](const std::string& line) {
-                written.lines.push_back({false, line});
-            },
-            [&](const std::string& line) {
-                written.lines.push_back({true, line});
-            });
+        write_images(written.frame.files, written.film, written.sensor, written.surfaces->names(),
+                     std::move(written.metadata), storage, written.outputs, written.keep(false),
+                     written.keep(true));
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
         written.seconds = elapsed.count();
     });

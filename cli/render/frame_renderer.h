@@ -40,14 +40,15 @@ class FrameRenderer {
     /// `stats` are continued. Reports on stderr what it does; a warning that recurs in several
     /// frames with only the file's name changed is given once. Throws InputError, also if the image
     /// does not fit into memory; IoError, of this frame or the one before; Interrupted, and then no
-    /// image of this frame is written.
+    /// file of this frame is written.
     void render(const Frame& frame, ResolvedScene scene, RunStats stats);
 
     /// The exposure of all previews from now on, where that is the first image's and that has been
     /// rendered before.
     void keep_exposure(double exposure) { first_exposure_ = exposure; }
 
-    /// Waits until the last frame rendered has been written. Throws IoError if it cannot be.
+    /// Waits until the last frame rendered has been written. Throws IoError if it cannot be, and
+    /// Interrupted if it has been given up.
     void finish();
 
   private:
@@ -58,9 +59,10 @@ class FrameRenderer {
     void begin_stage(const std::string& stage);
     void prepare(const Frame& frame, const RenderOptions& options);
     void count_work(RunStats& stats) const;
-    void write_irradiance(const std::filesystem::path& file);
+    void write_irradiance(OutputFile& out);
+    /// `outputs`: what has been written with the image so far.
     void begin_writing(const Frame& frame, Film film, std::optional<SensorImage> sensor,
-                       ImageMetadata metadata, RunStats stats);
+                       ImageMetadata metadata, RunStats stats, OutputGroup outputs);
     /// Measures the image, lamp by lamp; the renderer's scene is then another.
     std::vector<PartNumbers> measure(const ResolvedScene& scene, const Film& film,
                                      const RenderOptions& options);

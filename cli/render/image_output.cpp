@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/base/folder_lock.h"
+#include "core/base/stop.h"
+#include "core/files/folder_lock.h"
+#include "core/image/png_writer.h"
 #include "core/image/preview.h"
 #include "render/id_table.h"
 
@@ -13,12 +15,19 @@ namespace uw {
 
 namespace {
 
-// A warning of one line if the image is black, or empty in part.
-void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
+std::size_t count_empty(const Film& film) {
     const PixelWindow& window = film.window();
     std::size_t empty = 0;
-    for (int y = window.y0; y < window.y1; ++y)
+    for (int y = window.y0; y < window.y1; ++y) {
+        throw_if_stopped();
         for (int x = window.x0; x < window.x1; ++x) empty += film.pixel(x, y)[k_alpha] == 0 ? 1 : 0;
+    }
+    return empty;
+}
+
+// A warning of one line if the image is black, or empty in part.
+void warn_of_darkness(const PixelWindow& window, std::size_t empty, bool black,
+                      const SayCallback& warn) {
     const std::size_t pixels =
         static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
     if (empty > 0)
@@ -33,8 +42,7 @@ void warn_of_darkness(const Film& film, bool black, const SayCallback& warn) {
             "light travels in this water");
 }
 
-void warn_of_half(const Film& film, const SayCallback& warn) {
-    const HalfLoss loss = half_loss(film);
+void warn_of_half(const HalfLoss& loss, const SayCallback& warn) {
     if (loss.too_large > 0)
         warn(fmt::format(
             "--precision half: {} values are too large for half floats, and infinite in "
@@ -46,37 +54,44 @@ void warn_of_half(const Film& film, const SayCallback& warn) {
             "--precision float");
 }
 
-void write_preview(const std::filesystem::path& file, const Film& film, const ImageStorage& storage,
-                   double exposure, const ImageMetadata& metadata) {
+void write_preview(OutputFile& out, const Film& film, const ImageStorage& storage, double exposure,
+                   const ImageMetadata& metadata) {
     if (storage.is_preview_16_bit)
-        write_png(file, make_preview16(film, exposure), metadata);
+        write_png_file(out, make_preview16(film, exposure), metadata);
     else
-        write_png(file, make_preview(film, exposure), metadata);
+        write_png_file(out, make_preview(film, exposure), metadata);
 }
 
 }  // namespace
 
 void write_images(const OutputFiles& files, const Film& film,
                   const std::optional<SensorImage>& sensor, const SurfaceNames& names,
-                  ImageMetadata metadata, const ImageStorage& storage, const SayCallback& say,
-                  const SayCallback& warn) {
+                  ImageMetadata metadata, const ImageStorage& storage, OutputGroup& outputs,
+                  const SayCallback& say, const SayCallback& warn) {
     const std::optional<double> automatic = automatic_exposure(film);
     const double exposure = storage.exposure.value_or(automatic.value_or(1.0));
     const bool with_exr = !files.image.empty();
-    std::optional<FolderLock> lock;  // or the EXR might be of one run and its preview of another
-    lock.emplace(files.main().parent_path());
     if (with_exr) {
         ImageMetadata with_names = metadata;
         if (!files.ids.empty()) add_id_names(names, with_names);
-        write_exr(files.image, film, with_names, storage.exr);
-        if (!files.ids.empty()) write_id_table(files.ids, names);
+        write_exr(outputs.add(files.image), film, with_names, storage.exr);
+        if (!files.ids.empty()) write_id_table(outputs.add(files.ids), names);
     }
-    if (sensor) write_sensor_image(files.sensor, *sensor, metadata);
+    if (sensor) write_sensor_image(outputs.add(files.sensor), *sensor, metadata);
     metadata["exposure"] = exposure;
-    if (!files.preview.empty()) write_preview(files.preview, film, storage, exposure, metadata);
-    lock.reset();
-    warn_of_darkness(film, !automatic, warn);
-    if (with_exr && storage.exr.precision == ExrOptions::Precision::half) warn_of_half(film, warn);
+    if (!files.preview.empty())
+        write_preview(outputs.add(files.preview), film, storage, exposure, metadata);
+    const std::size_t empty = count_empty(film);
+    std::optional<HalfLoss> loss;
+    if (with_exr && storage.exr.precision == ExrOptions::Precision::half) loss = half_loss(film);
+    {
+        // Or the EXR might be of one run and its preview of another.
+        const FolderLock lock(files.main().parent_path());
+        outputs.commit();
+    }
+    if (!files.irradiance_vdb.empty()) say(fmt::format("wrote {}", files.irradiance_vdb.string()));
+    warn_of_darkness(film.window(), empty, !automatic, warn);
+    if (loss) warn_of_half(*loss, warn);
     if (with_exr) say(fmt::format("wrote {}", files.image.string()));
     if (!files.ids.empty()) say(fmt::format("wrote {} (names of ids)", files.ids.string()));
     if (sensor) say(fmt::format("wrote {} (the camera's image)", files.sensor.string()));

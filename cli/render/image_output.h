@@ -6,6 +6,7 @@
 
 #include "cli/render/output_files.h"
 #include "cli/render/sensor_image.h"
+#include "core/files/output_file.h"
 #include "core/image/film.h"
 #include "core/image/image_writer.h"
 #include "render/renderer.h"
@@ -23,12 +24,12 @@ struct ImageStorage {
 };
 
 /// Writes the EXR, if it has a name, likewise its preview, the camera's image if there is one, and
-/// the table of its ids if there is to be one, each whole or not at all; prints where they are and
-/// the exposure of the preview, and warns of an image that is black or empty in part, or that half
-/// floats cannot hold. Throws IoError.
+/// the table of its ids if there is to be one: with what is in `outputs` already all of them whole,
+/// or none. Prints where they are and the exposure of the preview, and warns of an image that is
+/// black or empty in part, or that half floats cannot hold. Throws IoError and Interrupted.
 void write_images(const OutputFiles& files, const Film& film,
                   const std::optional<SensorImage>& sensor, const SurfaceNames& names,
-                  ImageMetadata metadata, const ImageStorage& storage, const SayCallback& say,
-                  const SayCallback& warn);
+                  ImageMetadata metadata, const ImageStorage& storage, OutputGroup& outputs,
+                  const SayCallback& say, const SayCallback& warn);
 
 }  // namespace uw

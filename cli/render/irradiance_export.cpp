@@ -109,7 +109,7 @@ void check_irradiance_vdb(const AssembledScene& scene) {
     lattice_over(scene);
 }
 
-void write_irradiance_vdb(const std::filesystem::path& file, const AssembledScene& scene,
+void write_irradiance_vdb(OutputFile& out, const AssembledScene& scene,
                           const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
                           const ProgressCallback& progress) {
     const Lattice lattice = lattice_over(scene);
@@ -133,7 +133,7 @@ void write_irradiance_vdb(const std::filesystem::path& file, const AssembledScen
             grids.push_back(std::move(grid));
         }
     }
-    write_vdb(file, grids, {{"creator", "uwvdb " + program_version()}});
+    write_vdb(out, grids, {{"creator", "uwvdb " + program_version()}});
 }
 
 }  // namespace uw

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <vector>
 
+#include "core/files/output_file.h"
 #include "core/frame/render_film.h"
 #include "render/scene_assembly.h"
 
@@ -16,9 +16,9 @@ void check_irradiance_vdb(const AssembledScene& scene);
 /// and attenuation, as float grids "irradiance.<lamp>.<band>nm" on a lattice over the bounds of the
 /// volumes (of all surfaces and lamps if there are no volumes). Voxels are those of the finest
 /// grid, or large enough that the longest side has at most 256 and all grids together at most 2^28
-/// values. World space, y up as in the scene's world. Throws IoError; Interrupted if `progress`,
-/// called from any thread, returns false: then nothing has been written.
-void write_irradiance_vdb(const std::filesystem::path& file, const AssembledScene& scene,
+/// values. World space, y up as in the scene's world. All of a VDB file, for `out` to be committed.
+/// Throws IoError; Interrupted, also if `progress`, called from any thread, returns false.
+void write_irradiance_vdb(OutputFile& out, const AssembledScene& scene,
                           const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
                           const ProgressCallback& progress);
 

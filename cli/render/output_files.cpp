@@ -5,9 +5,9 @@
 #include <system_error>
 #include <vector>
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/files/atomic_file.h"
 #include "render/id_table.h"
 
 namespace uw {

@@ -24,9 +24,10 @@
 #include "cli/render/variation_manifest.h"
 #include "cli/stop_signal.h"
 #include "cli/text_files.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/stop.h"
+#include "core/files/atomic_file.h"
 #include "core/image/contact_sheet.h"
 #include "core/image/image_writer.h"
 
@@ -133,7 +134,12 @@ void write_contact_sheet(const FrameSequence& sequence, bool quiet) {
         if (frame.number == first.number) ++cameras;
     }
     const int row = cameras > 1 ? cameras : first.variation && frames > 1 ? frames : 0;
-    write_png(sequence.contact_sheet, contact_sheet(pictures, row), {});
+    try {
+        const StopScope scope(stop_flag());
+        write_png(sequence.contact_sheet, contact_sheet(pictures, row), {});
+    } catch (const Interrupted&) {
+        throw Interrupted("interrupted; all images are done, but not their contact sheet");
+    }
     if (!quiet) print_message(fmt::format("wrote {}\n", sequence.contact_sheet.string()));
 }
 
@@ -182,8 +188,8 @@ FrameSequence images_of(const RenderArguments& a, RunScenes& scenes, VariationMa
     return sequence;
 }
 
-// Renders all frames; `stats` are those of the first so far. Whatever ends the run, the frames that
-// were rendered are written, and so counted in `done`.
+// Renders all frames; `stats` are those of the first so far. Whatever ends the run but a stop, the
+// frames that were rendered are written, and so counted in `done`; a stop gives up the last one.
 void render_frames(const FrameSequence& sequence, FrameScenes& scenes, FrameRenderer& renderer,
                    RunStats stats, const std::size_t& done) {
     try {
@@ -191,7 +197,11 @@ void render_frames(const FrameSequence& sequence, FrameScenes& scenes, FrameRend
             renderer.render(frame, scenes.take(frame), std::exchange(stats, RunStats()));
         renderer.finish();
     } catch (const Interrupted&) {
-        renderer.finish();
+        try {
+            renderer.finish();
+        } catch (const Interrupted&) {
+            // It was being written, and is not done.
+        }
         if (done == 0) throw;
         throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume continues",
                                       done, sequence.frames.size()));
@@ -252,7 +262,6 @@ void run_render(const RenderArguments& typed) {
     if (exposure) renderer.keep_exposure(*exposure);
     const auto write_stats = [&] {
         write_numbers(a, sequence.numbers, all_stats);
-        if (done > 0) write_contact_sheet(all, a.quiet);
         if (!sequence.stats.empty() && done > 0)
             RunStats::write_json(sequence.stats, a.scene.filename().string(), all_stats);
     };
@@ -263,6 +272,7 @@ void run_render(const RenderArguments& typed) {
         throw;
     }
     write_stats();
+    write_contact_sheet(all, a.quiet);
     if (a.quiet) return;
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     print_message(fmt::format("done in {}, peak memory {:.0f} MB\n",

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "core/image/image_writer.h"
+#include "core/image/jpeg_writer.h"
+#include "core/image/png_writer.h"
 
 namespace uw {
 
@@ -17,12 +18,11 @@ PixelWindow grown(const PixelWindow& window, int margin, const CameraDesc& camer
 
 }  // namespace
 
-void write_sensor_image(const std::filesystem::path& file, const SensorImage& sensor,
-                        const ImageMetadata& metadata) {
+void write_sensor_image(OutputFile& out, const SensorImage& sensor, const ImageMetadata& metadata) {
     if (sensor.desc.format == DevelopmentDesc::Format::jpeg)
-        write_jpeg(file, sensor.image, sensor.desc.quality, metadata);
+        write_jpeg_file(out, sensor.image, sensor.desc.quality, metadata);
     else
-        write_png(file, sensor.image, metadata);
+        write_png_file(out, sensor.image, metadata);
 }
 
 SensorImager::SensorImager(const Frame& frame, const SceneDesc& scene, const RenderOptions& wanted)

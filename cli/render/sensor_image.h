@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "cli/render/frame_sequence.h"
+#include "core/files/output_file.h"
 #include "core/image/digital_image.h"
 #include "core/image/film.h"
 #include "core/image/image_metadata.h"
@@ -18,9 +19,9 @@ struct SensorImage {
     DevelopmentDesc desc;
 };
 
-/// Writes it as PNG or JPEG. Throws IoError.
-void write_sensor_image(const std::filesystem::path& file, const SensorImage& sensor,
-                        const ImageMetadata& metadata);
+/// Writes all of a PNG or JPEG of it. Throws IoError and Interrupted; what cannot be written is for
+/// out.commit() to report.
+void write_sensor_image(OutputFile& out, const SensorImage& sensor, const ImageMetadata& metadata);
 
 /// Makes the camera's image of a frame, if it is to have one, of what is rendered for it.
 class SensorImager {

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "cli/numbers/number_columns.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/version.h"
+#include "core/files/atomic_file.h"
 #include "core/tables/csv_cells.h"
 
 namespace uw {

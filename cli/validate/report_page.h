@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/base/scratch_folder.h"
+#include "core/files/scratch_folder.h"
 #include "core/image/preview.h"
 
 namespace uw {

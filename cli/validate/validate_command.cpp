@@ -15,9 +15,10 @@
 #include "cli/validate/light_report.h"
 #include "cli/validate/validation_report.h"
 #include "cli/validate/validation_suite.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/stop.h"
+#include "core/files/atomic_file.h"
 #include "core/integrators/integrator_table.h"
 #include "render/scene_loading.h"
 
@@ -65,6 +66,7 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out,
     for (auto& [name, desc] : all_light) keep(validate_all_light(std::move(desc), name, options));
     if (!a.report.empty()) {
         begin_orderly_stop();  // or a temporary file might stay
+        const StopScope scope(stop_flag());
         write_validation_report(a.report, results, lights);
         if (!a.quiet) print_message(fmt::format("wrote {}\n", a.report.string()));
     }

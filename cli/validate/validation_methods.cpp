@@ -7,7 +7,7 @@
 #include "camera/image_size.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/base/scratch_folder.h"
+#include "core/files/scratch_folder.h"
 #include "core/frame/pixel_renderer.h"
 #include "core/optics/optical_depth.h"
 #include "media/vdb/vdb_writer.h"

@@ -10,10 +10,10 @@
 #include "cli/validate/image_differences.h"
 #include "cli/validate/light_report.h"
 #include "cli/validate/report_page.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/version.h"
 #include "core/colour/colour.h"
+#include "core/files/atomic_file.h"
 
 namespace uw {
 

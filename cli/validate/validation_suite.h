@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/scratch_folder.h"
+#include "core/files/scratch_folder.h"
 #include "core/scene/scene_desc.h"
 
 namespace uw {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/stop.h"
 #include "core/colour/colour.h"
 #include "core/image/image_reader.h"
 
@@ -36,10 +37,17 @@ Preview scaled_down(const PixelImage& image, int widest) {
     const int height = std::max(
         1, static_cast<int>(std::lround(static_cast<double>(image.height) * width / image.width)));
     std::vector<double> light(image.pixels.size());
-    std::ranges::transform(image.pixels, light.begin(), linear);
+    const auto row_values =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
+    for (std::size_t first = 0; first < light.size(); first += row_values) {
+        throw_if_stopped();
+        std::transform(&image.pixels[first], &image.pixels[first] + row_values, &light[first],
+                       linear);
+    }
     const SrgbBytes& encode = srgb_bytes();
     Preview small(width, height);
-    for (int y = 0; y < height; ++y)
+    for (int y = 0; y < height; ++y) {
+        throw_if_stopped();
         for (int x = 0; x < width; ++x) {
             const Cover across(x, width, image.width), down(y, height, image.height);
             LinearRgb sum{};
@@ -58,6 +66,7 @@ Preview scaled_down(const PixelImage& image, int widest) {
             for (std::size_t c = 0; c < 3; ++c)
                 small.row(y)[static_cast<std::size_t>(x)][c] = encode(sum[c] / area);
         }
+    }
     return small;
 }
 

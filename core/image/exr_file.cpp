@@ -23,13 +23,19 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/stop.h"
 #include "core/image/exr_sizes.h"
 
 namespace uw {
 namespace {
 
+/// Lines that OpenEXR compresses together, on one thread.
+constexpr int k_block_lines = 16;
 /// Lines handed over together, of which those of half floats are converted first.
 constexpr int k_lines_at_once = 128;
+/// Values that one thread compresses in about a tenth of a second. Between two such portions a
+/// stop is noticed.
+constexpr double k_thread_values = 2e6;
 /// More effort than the least, at no measurable cost.
 constexpr int k_zip_level = 2;
 
@@ -70,6 +76,14 @@ class ExrStream : public Imf::OStream {
   private:
     OutputFile& out_;
 };
+
+/// How many lines of so many values are handed over to so many threads: whole blocks, as many for
+/// each.
+int lines_at_once(double line_values, int threads) {
+    const int round = k_block_lines * threads;
+    const double rounds = k_thread_values / (k_block_lines * line_values);
+    return round * std::clamp(static_cast<int>(rounds), 1, std::max(k_lines_at_once / round, 1));
+}
 
 /// The lines of a film as OpenEXR takes them: floats where they are, half floats converted.
 class ExrLines {
@@ -160,8 +174,11 @@ void write_exr_file(OutputFile& out, const Film& film, const ExrHeader& header) 
         Imf::OutputFile file(stream, openexr_header(header));
         ExrLines lines(film, header.channels);
         const PixelWindow& window = film.window();
-        for (int begin = window.y0; begin < window.y1; begin += k_lines_at_once) {
-            const int end = std::min(begin + k_lines_at_once, window.y1);
+        const int lines_of_portion = lines_at_once(
+            1.0 * window.width() * static_cast<double>(header.channels.size()), threads);
+        for (int begin = window.y0; begin < window.y1; begin += lines_of_portion) {
+            throw_if_stopped();
+            const int end = std::min(begin + lines_of_portion, window.y1);
             file.setFrameBuffer(lines.from(begin, end));
             file.writePixels(end - begin);
         }

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "core/files/output_file.h"
 #include "core/image/exr_options.h"
 #include "core/image/film.h"
 #include "core/image/image_metadata.h"
-#include "core/image/output_file.h"
 
 namespace uw {
 
@@ -22,7 +22,7 @@ struct ExrHeader {
 
 /// Writes all of an EXR with the film's pixels, on all permitted threads, of whose number its bytes
 /// are independent. The film has each channel of `header`, and its window. Throws IoError if
-/// OpenEXR refuses; what cannot be written is for out.commit() to report.
+/// OpenEXR refuses, and Interrupted; what cannot be written is for out.commit() to report.
 void write_exr_file(OutputFile& out, const Film& film, const ExrHeader& header);
 
 /// The header of a file; empty if it cannot be read or is not one that `write_exr_file` could have

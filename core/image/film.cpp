@@ -9,6 +9,7 @@
 
 #include "core/base/available_memory.h"
 #include "core/base/error.h"
+#include "core/base/stop.h"
 
 namespace uw {
 
@@ -45,9 +46,11 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
 
 Film cropped(const Film& film, const PixelWindow& window) {
     Film part(film.width(), film.height(), window, film.channel_names());
-    for (int y = window.y0; y < window.y1; ++y)
+    for (int y = window.y0; y < window.y1; ++y) {
+        throw_if_stopped();
         for (int x = window.x0; x < window.x1; ++x)
             std::ranges::copy(film.pixel(x, y), part.pixel(x, y).begin());
+    }
     return part;
 }
 
@@ -58,12 +61,14 @@ Film with_channels(const Film& film, const std::vector<std::string>& channel_nam
         sources.push_back(static_cast<std::size_t>(std::ranges::find(film.channel_names(), name) -
                                                    film.channel_names().begin()));
     Film part(film.width(), film.height(), window, channel_names);
-    for (int y = window.y0; y < window.y1; ++y)
+    for (int y = window.y0; y < window.y1; ++y) {
+        throw_if_stopped();
         for (int x = window.x0; x < window.x1; ++x) {
             const std::span<const float> from = film.pixel(x, y);
             const std::span<float> to = part.pixel(x, y);
             for (std::size_t i = 0; i < sources.size(); ++i) to[i] = from[sources[i]];
         }
+    }
     return part;
 }
 

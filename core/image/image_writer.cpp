@@ -1,21 +1,25 @@
 #include "core/image/image_writer.h"
 
 #include "core/base/text.h"
+#include "core/files/output_file.h"
 #include "core/image/exr_file.h"
-#include "core/image/jpeg_writer.h"
-#include "core/image/output_file.h"
 #include "core/image/png_writer.h"
 
 namespace uw {
 
 void write_exr(const std::filesystem::path& file, const Film& film, const ImageMetadata& metadata,
                const ExrOptions& options) {
+    OutputFile out(file);
+    write_exr(out, film, metadata, options);
+    out.commit();
+}
+
+void write_exr(OutputFile& out, const Film& film, const ImageMetadata& metadata,
+               const ExrOptions& options) {
     const ExrHeader header{film.width(),        film.height(),
                            film.window(),       exr_channels(film, options.precision),
                            options.compression, metadata};
-    OutputFile out(file);
     write_exr_file(out, film, header);
-    out.commit();
 }
 
 double as_stated_in_png(double value) {
@@ -42,13 +46,6 @@ void write_png(const std::filesystem::path& file, const DigitalImage& image,
                const ImageMetadata& metadata) {
     OutputFile out(file);
     write_png_file(out, image, metadata);
-    out.commit();
-}
-
-void write_jpeg(const std::filesystem::path& file, const DigitalImage& image, int quality,
-                const ImageMetadata& metadata) {
-    OutputFile out(file);
-    write_jpeg_file(out, image, quality, metadata);
     out.commit();
 }
 

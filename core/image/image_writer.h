@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "core/files/output_file.h"
 #include "core/image/digital_image.h"
 #include "core/image/exr_options.h"
 #include "core/image/film.h"
@@ -12,22 +13,24 @@ namespace uw {
 
 /// Writes the film as one OpenEXR part, by scanlines. The film's window is the data window, the
 /// whole image the display window. The file appears under its name only once it is complete; the
-/// same film, metadata and options give the same bytes, so no date is stored. Throws IoError.
+/// same film, metadata and options give the same bytes, so no date is stored. Throws IoError;
+/// Interrupted, as everything here does that writes many pixels, and then there is no new file.
 void write_exr(const std::filesystem::path& file, const Film& film, const ImageMetadata& metadata,
+               const ExrOptions& options = {});
+/// All of that file, for `out` to be committed.
+void write_exr(OutputFile& out, const Film& film, const ImageMetadata& metadata,
                const ExrOptions& options = {});
 
 /// Writes an sRGB PNG of 8 or 16 bits; metadata as text chunks. The file appears under its name
-/// only once it is complete. Throws IoError.
+/// only once it is complete. Throws IoError. `write_png_file` writes to an OutputFile.
 void write_png(const std::filesystem::path& file, const Preview& image,
                const ImageMetadata& metadata);
 void write_png(const std::filesystem::path& file, const Preview16& image,
                const ImageMetadata& metadata);
 
-/// The same of a camera's image, as PNG or as JPEG of a quality of 1..100, which needs 8 bits.
+/// The same of a camera's image.
 void write_png(const std::filesystem::path& file, const DigitalImage& image,
                const ImageMetadata& metadata);
-void write_jpeg(const std::filesystem::path& file, const DigitalImage& image, int quality,
-                const ImageMetadata& metadata);
 
 /// A number of the metadata as a PNG states it: rounded to 6 digits.
 double as_stated_in_png(double value);

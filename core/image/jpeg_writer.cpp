@@ -12,6 +12,7 @@
 #include <jpeglib.h>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "core/image/png_writer.h"
 
 namespace uw {
@@ -53,6 +54,7 @@ class JpegEncoder {
             jpeg_write_marker(&jpeg_, JPEG_COM, reinterpret_cast<const JOCTET*>(comment.c_str()),
                               static_cast<unsigned>(comment.size()));
         while (jpeg_.next_scanline < jpeg_.image_height) {
+            throw_if_stopped();  // not from within libjpeg
             JSAMPROW row = samples + jpeg_.next_scanline * image.row_values();
             jpeg_write_scanlines(&jpeg_, &row, 1);
         }

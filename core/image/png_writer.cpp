@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 
 namespace uw {
 namespace {
@@ -60,8 +61,10 @@ class PngEncoder {
         png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
         png_write_info(png_, info_);
         if (layout.bits == 16) png_set_swap(png_);  // stored with the higher byte first
-        for (int y = 0; y < layout.height; ++y)
+        for (int y = 0; y < layout.height; ++y) {
+            throw_if_stopped();  // not from within libpng
             png_write_row(png_, reinterpret_cast<png_const_bytep>(row(y)));
+        }
         png_write_end(png_, nullptr);
         return true;
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/base/stop.h"
 #include "core/colour/colour.h"
 
 namespace uw {
@@ -55,7 +56,13 @@ std::optional<double> automatic_exposure(const Film& film) {
     const auto last = static_cast<double>(luminances.size() - 1);
     const auto middle =
         luminances.begin() + static_cast<std::ptrdiff_t>(std::floor(k_percentile * last));
-    std::nth_element(luminances.begin(), middle, luminances.end());
+    std::size_t compared = 0;
+    const auto is_darker = [&](float a, float b) {
+        constexpr std::size_t k_between_stops = 1 << 16;
+        if (++compared % k_between_stops == 0) throw_if_stopped();
+        return a < b;
+    };
+    std::nth_element(luminances.begin(), middle, luminances.end(), is_darker);
     double bright = *middle;
     if (!(bright > 0)) bright = *std::max_element(middle, luminances.end());
     const double exposure = k_luminance_of_percentile / bright;

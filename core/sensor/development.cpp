@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/base/parallel.h"
+#include "core/base/stop.h"
 #include "core/sensor/sensor_readout.h"
 
 namespace uw {
@@ -71,11 +72,13 @@ DigitalImage Development::raw(const Numbers& numbers, const PixelWindow& window)
                        {}};
     const int shift = image.bits - desc_.bit_depth;
     image.values.reserve(image.row_values() * static_cast<std::size_t>(window.height()));
-    for (int y = window.y0; y < window.y1; ++y)
+    for (int y = window.y0; y < window.y1; ++y) {
+        throw_if_stopped();
         for (int x = window.x0; x < window.x1; ++x)
             for (const float number : numbers.at(x, y))
                 image.values.push_back(
                     static_cast<std::uint16_t>(static_cast<unsigned>(number) << shift));
+    }
     return image;
 }
 
@@ -84,7 +87,8 @@ std::array<double, 3> Development::gains(const Numbers& numbers, const PixelWind
         return *gains;
     // What is saturated has lost its colour.
     std::array<double, 3> sums{}, counts{};
-    for (int y = window.y0; y < window.y1; ++y)
+    for (int y = window.y0; y < window.y1; ++y) {
+        throw_if_stopped();
         for (int x = window.x0; x < window.x1; ++x)
             for (std::size_t i = 0; i < numbers.count(); ++i) {
                 const double number = static_cast<double>(numbers.at(x, y)[i]);
@@ -92,6 +96,7 @@ std::array<double, 3> Development::gains(const Numbers& numbers, const PixelWind
                 sums[numbers.colour_of(x, y, i)] += number - desc_.black_level;
                 counts[numbers.colour_of(x, y, i)] += 1;
             }
+    }
     std::array<double, 3> result{1, 1, 1};
     for (std::size_t c = 0; c < 3; ++c)
         if (sums[c] > 0 && sums[1] > 0) result[c] = (sums[1] / counts[1]) / (sums[c] / counts[c]);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 #include "core/meshes/mesh_file.h"
 #include "core/scene/geometry_desc.h"
 #include "core/surfaces/scene_objects.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/spectrum.h"
+#include "core/base/stop.h"
 #include "core/colour/colour_response.h"
 
 namespace uw {
@@ -13,7 +14,8 @@ Film clean_film(const Film& film, const LayerPlan& plan, const ColourDesc& colou
     const auto first = static_cast<std::size_t>(plan.first_channel(Layer::clean));
     Film clean(film.width(), film.height(), film.window(), {"R", "G", "B", "A"});
     Spectrum radiance{};
-    for (int y = 0; y < film.height(); ++y)
+    for (int y = 0; y < film.height(); ++y) {
+        throw_if_stopped();
         for (int x = 0; x < film.width(); ++x) {
             const std::span<const float> pixel = film.pixel(x, y);
             std::ranges::copy(pixel.subspan(first, bands_nm.size()), radiance.begin());
@@ -22,6 +24,7 @@ Film clean_film(const Film& film, const LayerPlan& plan, const ColourDesc& colou
                                    [](double v) { return static_cast<float>(v); });
             out[k_alpha] = pixel[k_alpha];
         }
+    }
     return clean;
 }
 

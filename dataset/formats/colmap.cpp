@@ -10,7 +10,7 @@
 #include "camera/calibration/colmap_models.h"
 #include "camera/camera.h"
 #include "core/base/error.h"
-#include "core/image/output_file.h"
+#include "core/files/output_file.h"
 #include "dataset/formats/formats.h"
 #include "dataset/formats/observations.h"
 #include "dataset/formats/poses.h"

@@ -27,15 +27,14 @@ std::string kitti_file(const DatasetDefinition& definition, const View& view,
 /// The disparity as KITTI encodes it: times 256 in 16 bits, 0 where there is none.
 DigitalImage encoded_disparity(const ViewImages& images, bool only_visible) {
     DigitalImage image{images.width(), images.height(), 1, 16, false, {}};
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            const double value = std::round(256.0 * images.at(Layer::disparity, x, y).front());
-            const bool is_known = value >= 1 && value <= 65535;
-            const bool is_hidden =
-                only_visible && images.at(Layer::disparity_occluded, x, y).front() != 0;
-            image.values.push_back(is_known && !is_hidden ? static_cast<std::uint16_t>(value)
-                                                          : std::uint16_t{0});
-        }
+    images.for_each_pixel([&](int x, int y) {
+        const double value = std::round(256.0 * images.at(Layer::disparity, x, y).front());
+        const bool is_known = value >= 1 && value <= 65535;
+        const bool is_hidden =
+            only_visible && images.at(Layer::disparity_occluded, x, y).front() != 0;
+        image.values.push_back(is_known && !is_hidden ? static_cast<std::uint16_t>(value)
+                                                      : std::uint16_t{0});
+    });
     return image;
 }
 
@@ -43,19 +42,17 @@ DigitalImage encoded_disparity(const ViewImages& images, bool only_visible) {
 /// bits, 1 in the third where it is known.
 DigitalImage encoded_flow(const ViewImages& images, bool only_visible) {
     DigitalImage image{images.width(), images.height(), 3, 16, false, {}};
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            const std::span<const float> flow = images.at(Layer::flow, x, y);
-            const double u = std::round(64.0 * flow[0]) + 32768;
-            const double v = std::round(64.0 * flow[1]) + 32768;
-            const bool is_hidden =
-                only_visible && images.at(Layer::flow_occluded, x, y).front() != 0;
-            const bool is_known =
-                u >= 0 && u <= 65535 && v >= 0 && v <= 65535 && !is_hidden;  // false for NaN
-            image.values.push_back(is_known ? static_cast<std::uint16_t>(u) : std::uint16_t{0});
-            image.values.push_back(is_known ? static_cast<std::uint16_t>(v) : std::uint16_t{0});
-            image.values.push_back(is_known ? 1 : 0);
-        }
+    images.for_each_pixel([&](int x, int y) {
+        const std::span<const float> flow = images.at(Layer::flow, x, y);
+        const double u = std::round(64.0 * flow[0]) + 32768;
+        const double v = std::round(64.0 * flow[1]) + 32768;
+        const bool is_hidden = only_visible && images.at(Layer::flow_occluded, x, y).front() != 0;
+        const bool is_known =
+            u >= 0 && u <= 65535 && v >= 0 && v <= 65535 && !is_hidden;  // false for NaN
+        image.values.push_back(is_known ? static_cast<std::uint16_t>(u) : std::uint16_t{0});
+        image.values.push_back(is_known ? static_cast<std::uint16_t>(v) : std::uint16_t{0});
+        image.values.push_back(is_known ? 1 : 0);
+    });
     return image;
 }
 

@@ -14,9 +14,8 @@ template <class Value>
 DigitalImage grey_image(const ViewImages& images, int bits, const Value& value) {
     DigitalImage image{images.width(), images.height(), 1, bits, false, {}};
     image.values.reserve(image.row_values() * static_cast<std::size_t>(image.height));
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-            image.values.push_back(static_cast<std::uint16_t>(value(x, y)));
+    images.for_each_pixel(
+        [&](int x, int y) { image.values.push_back(static_cast<std::uint16_t>(value(x, y))); });
     return image;
 }
 
@@ -43,7 +42,11 @@ void write_ids(const ViewImages& images, SetFiles& files) {
               [&](const auto& file) { write_png(file, ids, metadata); });
     if (images.view.frame == 0 && images.view.camera == 0)
         files.add("id_names", images.definition.folder(images.view.draw) + "ids/names.csv",
-                  [&](const auto& file) { write_id_table(file, names); });
+                  [&](const auto& file) {
+                      OutputFile out(file);
+                      write_id_table(out, names);
+                      out.commit();
+                  });
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ std::string flo_text(const ViewImages& images, Layer layer) {
     text.reserve(text.size() +
                  std::span(row).size_bytes() * static_cast<std::size_t>(images.height()));
     for (int y = 0; y < images.height(); ++y) {
+        throw_if_stopped();
         auto out = row.begin();
         for (int x = 0; x < images.width(); ++x)
             for (const float value : images.at(layer, x, y).first(2))
@@ -43,12 +44,10 @@ std::string flo_text(const ViewImages& images, Layer layer) {
 /// rows from the bottom, infinite where nothing is known.
 std::string pfm_text(const ViewImages& images, Layer layer) {
     std::string text = fmt::format("Pf\n{} {}\n-1.0\n", images.width(), images.height());
-    for (int y = images.height() - 1; y >= 0; --y)
-        for (int x = 0; x < images.width(); ++x) {
-            const float value = images.at(layer, x, y).front();
-            append_bytes(text,
-                         std::isfinite(value) ? value : std::numeric_limits<float>::infinity());
-        }
+    images.for_each_pixel([&](int x, int y) {
+        const float value = images.at(layer, x, images.height() - 1 - y).front();
+        append_bytes(text, std::isfinite(value) ? value : std::numeric_limits<float>::infinity());
+    });
     return text;
 }
 
@@ -56,9 +55,9 @@ std::string pfm_text(const ViewImages& images, Layer layer) {
 void write_occluded(const ViewImages& images, SetFiles& files, Layer layer,
                     const std::string& role) {
     DigitalImage image{images.width(), images.height(), 1, 8, false, {}};
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-            image.values.push_back(images.at(layer, x, y).front() == 0 ? 0 : 255);
+    images.for_each_pixel([&](int x, int y) {
+        image.values.push_back(images.at(layer, x, y).front() == 0 ? 0 : 255);
+    });
     files.add(role, images.definition.file(images.view, role, ".png"),
               [&](const auto& file) { write_png(file, image, {}); });
 }

@@ -29,9 +29,9 @@ std::string numpy_header(int height, int width, std::size_t channels) {
 
 std::string numpy_text(const ViewImages& images, std::size_t first, std::size_t channels) {
     std::string text = numpy_header(images.height(), images.width(), channels);
-    for (int y = 0; y < images.height(); ++y)
-        for (int x = 0; x < images.width(); ++x)
-            append_floats(text, images.film.pixel(x, y).subspan(first, channels));
+    images.for_each_pixel([&](int x, int y) {
+        append_floats(text, images.film.pixel(x, y).subspan(first, channels));
+    });
     return text;
 }
 

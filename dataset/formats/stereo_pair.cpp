@@ -51,15 +51,14 @@ void check_rectified(const DatasetDefinition& definition, const SceneDesc& scene
 void check_disparity(const ViewImages& images) {
     // 1e-3 px is what disparity is exact to.
     constexpr double k_along_rows = 1e-3;
-    for (int y = 0; y < images.height(); ++y)
-        for (int x = 0; x < images.width(); ++x) {
-            const float across = images.at(Layer::disparity, x, y)[1];
-            if (std::isfinite(across) && std::abs(across) > k_along_rows)
-                throw InputError(fmt::format(
-                    "--format disparity: it is {:.3g} px across the rows at pixel {}, {}: the "
-                    "cameras are not rectified in this frame; use --format npy --layers disparity",
-                    across, x, y));
-        }
+    images.for_each_pixel([&](int x, int y) {
+        const float across = images.at(Layer::disparity, x, y)[1];
+        if (std::isfinite(across) && std::abs(across) > k_along_rows)
+            throw InputError(fmt::format(
+                "--format disparity: it is {:.3g} px across the rows at pixel {}, {}: the "
+                "cameras are not rectified in this frame; use --format npy --layers disparity",
+                across, x, y));
+    });
 }
 
 }  // namespace uw

@@ -8,9 +8,9 @@
 #include <system_error>
 #include <vector>
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/files/atomic_file.h"
 #include "core/image/contact_sheet.h"
 #include "core/image/image_writer.h"
 #include "dataset/formats/format_table.h"
@@ -54,8 +54,7 @@ class Completion {
 
   private:
     void tell(double share) const {
-        if (!progress_(share))
-            throw Interrupted("interrupted; the views are there, --merge completes the set");
+        if (!progress_(share)) throw Interrupted();
     }
 
     /// All views' files by content.

@@ -9,11 +9,11 @@
 #include <system_error>
 #include <utility>
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/input_files.h"
 #include "core/base/text.h"
-#include "core/base/text_file.h"
+#include "core/files/atomic_file.h"
+#include "core/files/input_files.h"
+#include "core/files/text_file.h"
 #include "core/scene/yaml/yaml_document.h"
 
 namespace uw {

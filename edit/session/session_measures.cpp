@@ -11,8 +11,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/base/scratch_folder.h"
-#include "core/base/text_file.h"
+#include "core/files/scratch_folder.h"
+#include "core/files/text_file.h"
 #include "core/image/image_writer.h"
 #include "core/image/preview.h"
 #include "edit/session/conflict_error.h"

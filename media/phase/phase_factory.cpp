@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/base/text_file.h"
+#include "core/files/text_file.h"
 #include "media/phase/fournier_forand.h"
 #include "media/phase/henyey_greenstein.h"
 #include "media/phase/molecular_phase.h"

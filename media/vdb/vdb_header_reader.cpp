@@ -6,7 +6,7 @@
 #include <array>
 #include <map>
 
-#include "core/base/pointer_file.h"
+#include "core/files/pointer_file.h"
 #include "media/vdb/byte_reader.h"
 #include "media/vdb/nvdb_header.h"
 

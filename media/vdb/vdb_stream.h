@@ -12,6 +12,7 @@
 #include "core/base/affine.h"
 #include "core/base/error.h"
 #include "core/base/stop.h"
+#include "core/base/text.h"
 #include "media/vdb/openvdb_grids.h"
 #include "media/vdb/vdb_header.h"
 
@@ -91,7 +92,8 @@ auto read_guarded(const std::string& prefix, const Read& read) {
     } catch (const std::bad_alloc&) {
         throw InputError(prefix + "it needs more memory than is available");
     } catch (const std::exception& error) {
-        throw InputError(prefix + "cannot be read: " + error.what());
+        constexpr std::size_t k_longest = 200;  // it may quote the file
+        throw InputError(prefix + "cannot be read: " + printable(error.what(), k_longest));
     }
 }
 

@@ -4,12 +4,16 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <ostream>
+#include <streambuf>
+#include <string>
+#include <string_view>
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "media/vdb/openvdb_grids.h"
-#include "media/vdb/vdb_header_reader.h"
 
 namespace uw {
 namespace {
@@ -17,6 +21,7 @@ namespace {
 /// One block of 8^3 values, or nothing if all are 0 or outside the grid.
 std::unique_ptr<openvdb::FloatTree::LeafNodeType> make_block(const VdbOutputGrid& grid,
                                                              const openvdb::Coord& origin) {
+    throw_if_stopped();
     auto leaf = std::make_unique<openvdb::FloatTree::LeafNodeType>(origin, 0.0F);
     const auto end = [&](int axis) {
         return std::min(origin[axis] + k_leaf_edge, grid.size[static_cast<std::size_t>(axis)]);
@@ -48,28 +53,77 @@ openvdb::FloatGrid::Ptr make_grid(const VdbOutputGrid& source) {
     return grid;
 }
 
+/// OpenVDB's way to an OutputFile, which keeps errors until it is committed. Once the calling
+/// thread's work is to stop it throws Interrupted.
+class StoppableOutput : public std::streambuf {
+  public:
+    explicit StoppableOutput(OutputFile& out) : out_(out) {}
+
+  protected:
+    std::streamsize xsputn(const char* bytes, std::streamsize count) override {
+        throw_if_stopped();
+        out_.write(std::string_view(bytes, static_cast<std::size_t>(count)));
+        return count;
+    }
+    int_type overflow(int_type character) override {
+        const char byte = traits_type::to_char_type(character);
+        xsputn(&byte, 1);
+        return character;
+    }
+    pos_type seekoff(off_type offset, std::ios::seekdir from, std::ios::openmode mode) override {
+        const auto here = static_cast<off_type>(out_.position());
+        if (from == std::ios::end) return off_type{-1};
+        return seekpos(from == std::ios::cur ? here + offset : offset, mode);
+    }
+    pos_type seekpos(pos_type position, std::ios::openmode) override {
+        out_.seek(static_cast<std::uint64_t>(off_type{position}));
+        return position;
+    }
+
+  private:
+    OutputFile& out_;
+};
+
+/// What openvdb::io::File writes, to any stream.
+class VdbArchive : public openvdb::io::Archive {
+  public:
+    VdbArchive() = default;
+    using Archive::write;
+};
+
 }  // namespace
 
-void write_vdb(const std::filesystem::path& file, const std::vector<VdbOutputGrid>& grids,
+void write_vdb(OutputFile& out, const std::vector<VdbOutputGrid>& grids,
                const std::vector<std::pair<std::string, std::string>>& metadata) {
     initialize_openvdb();
-    AtomicFile target(file);
+    const auto fail = [&](const std::string& why) {
+        throw IoError(fmt::format("{}: cannot write: {}", out.path().string(), why));
+    };
     try {
         openvdb::GridPtrVec output;
         for (const VdbOutputGrid& grid : grids) output.push_back(make_grid(grid));
         openvdb::MetaMap map;
         for (const auto& [key, value] : metadata)
             map.insertMeta(key, openvdb::StringMetadata(value));
-        openvdb::io::File(target.temporary_path().string()).write(output, map);
-        // OpenVDB does not notice a full disk; reading the header back does.
-        read_vdb_header(target.temporary_path(), "written file");
+        StoppableOutput buffer(out);
+        std::ostream stream(&buffer);
+        stream.exceptions(std::ios::badbit);  // passes on what the buffer throws
+        constexpr bool k_seekable = true;
+        VdbArchive().write(stream, output, k_seekable, map);
+    } catch (const Interrupted&) {
+        throw;
     } catch (const std::bad_alloc&) {
-        throw IoError(fmt::format("{}: cannot write: not enough memory", file.string()));
+        fail("not enough memory");
     } catch (const std::exception& error) {
-        throw IoError(
-            fmt::format("{}: cannot write: {}; is the disk full?", file.string(), error.what()));
+        fail(error.what());
     }
-    target.commit();
+}
+
+void write_vdb(const std::filesystem::path& file, const std::vector<VdbOutputGrid>& grids,
+               const std::vector<std::pair<std::string, std::string>>& metadata) {
+    OutputFile out(file);
+    write_vdb(out, grids, metadata);
+    out.commit();
 }
 
 }  // namespace uw

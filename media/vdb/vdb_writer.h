@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/vec.h"
+#include "core/files/output_file.h"
 
 namespace uw {
 
@@ -23,8 +24,12 @@ struct VdbOutputGrid {
     std::vector<std::pair<std::string, std::string>> metadata;
 };
 
-/// Writes the grids, compressed, with `metadata` for the whole file (other programs display its
-/// "creator"). The file appears under its name only once it is complete. Throws IoError.
+/// Writes all of a file with the grids, compressed, and `metadata` for the whole of it (other
+/// programs display its "creator"). Throws IoError if OpenVDB refuses, and Interrupted; what cannot
+/// be written is for out.commit() to report.
+void write_vdb(OutputFile& out, const std::vector<VdbOutputGrid>& grids,
+               const std::vector<std::pair<std::string, std::string>>& metadata);
+/// The same as a file, which appears under its name only once it is complete.
 void write_vdb(const std::filesystem::path& file, const std::vector<VdbOutputGrid>& grids,
                const std::vector<std::pair<std::string, std::string>>& metadata);
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string>
 
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 
 namespace uw {
 namespace {

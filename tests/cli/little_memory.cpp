@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/files/output_file.h"
 #include "core/image/digital_image.h"
-#include "core/image/output_file.h"
 #include "core/image/png_writer.h"
 #include "tests/support/cli_test.h"
 #include "tests/support/vdb/vdb_fixtures.h"

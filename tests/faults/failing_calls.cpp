@@ -1,9 +1,10 @@
 // Preloaded into the program by tests/cli/faults: fails one call to the system, the one that the
 // environment variable UWVDB_FAIL names, "write:3" for the third of its kind, and then creates the
 // file UWVDB_FAIL_DONE. Kinds: open (to write), write, rename, fsync, allocate (1 MiB or more),
-// map, thread. "space:1000000" is a disk with so many bytes free, "quota:1000000" one on which the
-// user may write as many: what is beyond is not written, and nothing from then on. Neither writes
-// to anything but files are counted nor what libraries do as they are loaded.
+// map, thread. "stop:3" is Ctrl-C as the third write begins, which does not fail. "space:1000000"
+// is a disk with so many bytes free, "quota:1000000" one on which the user may write as many: what
+// is beyond is not written, and nothing from then on. Neither writes to anything but files are
+// counted nor what libraries do as they are loaded.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 #include <cstddef>
 #include <cstdlib>
@@ -60,6 +62,7 @@ bool is_due(const char* kind) {
 
 /// How many of `bytes` are written; -1, with errno, if none are.
 ssize_t room_for(std::size_t bytes) {
+    if (is_due("stop")) ::raise(SIGINT);
     if (is_due("write")) {
         errno = ENOSPC;
         return -1;

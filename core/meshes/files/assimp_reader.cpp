@@ -12,7 +12,7 @@
 
 #include "core/base/affine.h"
 #include "core/base/error.h"
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 #include "core/meshes/polygon.h"
 
 namespace uw {

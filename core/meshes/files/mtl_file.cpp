@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/base/text_file.h"
+#include "core/files/text_file.h"
 #include "core/meshes/files/text_line.h"
 
 namespace uw {

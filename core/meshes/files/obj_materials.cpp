@@ -10,8 +10,8 @@
 #include <unordered_map>
 
 #include "core/base/error.h"
-#include "core/base/input_files.h"
 #include "core/base/text.h"
+#include "core/files/input_files.h"
 #include "core/image/image_reader.h"
 #include "core/meshes/files/mtl_file.h"
 #include "core/meshes/files/obj_file.h"

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 #include "core/meshes/files/ply_header.h"
 #include "core/meshes/files/ply_source.h"
 #include "core/meshes/polygon.h"

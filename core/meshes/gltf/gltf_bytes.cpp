@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 #include "core/meshes/gltf/gltf_uri.h"
 
 namespace uw {

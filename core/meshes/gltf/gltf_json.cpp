@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 
 namespace uw {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 #include "core/image/image_reader.h"
 #include "core/meshes/gltf/gltf_uri.h"
 

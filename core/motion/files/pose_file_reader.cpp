@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/base/text_file.h"
+#include "core/files/text_file.h"
 #include "core/motion/files/nerfstudio.h"
 #include "core/motion/files/pose_tables.h"
 #include "core/scene/yaml/config_node.h"

@@ -5,8 +5,8 @@
 #include <system_error>
 
 #include "core/base/frame_pattern.h"
-#include "core/base/pointer_file.h"
 #include "core/base/text.h"
+#include "core/files/pointer_file.h"
 
 namespace uw {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/base/text_file.h"
+#include "core/files/text_file.h"
 #include "core/scene/yaml/camera_reader.h"
 #include "core/scene/yaml/config_map.h"
 #include "core/scene/yaml/geometry_reader.h"

@@ -27,6 +27,14 @@ TEST_F(FailingCalls, NothingIsLostWhereRenamingFails) {
     EXPECT_EQ(fail_each(k_render, "rename", {4}), 5);
 }
 
+TEST_F(FailingCalls, AStopLeavesAllFilesOrNone) {
+    FaultyRun with_light = k_render;
+    with_light.command.insert(with_light.command.end(), {"--irradiance-vdb", "light.vdb"});
+    with_light.outputs.push_back("light.vdb");
+    with_light.times.push_back("light.vdb");
+    EXPECT_GE(fail_each(with_light, "stop", {0, 130}), 10);
+}
+
 // Of files that replace others, before they do.
 TEST_F(FailingCalls, NothingIsLostWhereTheDiskFails) {
     EXPECT_EQ(fail_each(k_render, "fsync", {4}), 5);

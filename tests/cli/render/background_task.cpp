@@ -3,8 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
+#include <optional>
 #include <stdexcept>
+
+#include "core/base/error.h"
+#include "core/base/stop.h"
 
 namespace uw {
 namespace {
@@ -26,6 +31,18 @@ TEST(BackgroundTask, RunsBesideItsCaller) {
 TEST(BackgroundTask, HandsItsFaultToTheCaller) {
     BackgroundTask task([] { throw std::runtime_error("fault"); });
     EXPECT_THROW(task.finish(), std::runtime_error);
+}
+
+TEST(BackgroundTask, IsStoppedAsItsCaller) {
+    const std::atomic<bool> stop = true;
+    std::optional<BackgroundTask> task;
+    {
+        const StopScope scope(stop);
+        task.emplace(throw_if_stopped);
+    }
+    EXPECT_THROW(task->finish(), Interrupted);
+    BackgroundTask unstopped(throw_if_stopped);
+    EXPECT_NO_THROW(unstopped.finish());
 }
 
 TEST(BackgroundTask, IsWaitedForWithoutAWord) {

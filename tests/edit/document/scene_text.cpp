@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/text_file.h"
+#include "core/files/text_file.h"
 #include "core/scene/yaml/scene_reader.h"
 #include "tests/support/edited_scenes.h"
 #include "tests/support/scene_folder.h"

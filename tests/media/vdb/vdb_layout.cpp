@@ -81,6 +81,20 @@ TEST(VdbLayout, RootTilesAreActiveOrNot) {
     }
 }
 
+// What OpenVDB says of a map that it does not know quotes the file.
+TEST(VdbLayout, MapsWithUnprintableNamesAreRefusedInOneLine) {
+    const TempDir dir;
+    test::write_fixture(dir / "a.vdb", {single_voxel("density")});
+    std::string bytes = file_bytes(dir / "a.vdb");
+    const std::size_t at = bytes.find("ScaleMap");
+    ASSERT_NE(at, std::string::npos);
+    for (const char character : {'\n', '\x1b', '\0'}) {
+        bytes[at] = character;
+        write_file_bytes(dir / "forged.vdb", bytes);
+        expect_contains(refusal(dir / "forged.vdb", "density"), "cannot be read");
+    }
+}
+
 // A frustum states a second map by its name, before OpenVDB 10 looks whether the file holds one so
 // long, and calls itself where that is a frustum again.
 class VdbFrustum : public testing::Test {

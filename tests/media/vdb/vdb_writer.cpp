@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "media/vdb/vdb_file.h"
 #include "media/vdb/vdb_header_reader.h"
+#include "tests/support/faults/stop_at_size.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"
 
@@ -63,6 +66,29 @@ TEST(VdbWriter, AFullDiskLeavesTheOldFile) {
             << room << " of " << size;
     EXPECT_EQ(std::filesystem::file_size(dir / "out.vdb"), 3U);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 2);
+}
+
+TEST(VdbWriter, StopsWithinABlock) {
+    const TempDir dir;
+    VdbOutputGrid noise;
+    noise.name = "noise";
+    noise.size = {64, 64, 64};  // 1 MB
+    noise.value = [](int i, int j, int k) {
+        return static_cast<float>((i * 7919 + j * 104729 + k * 1299709) % 1009) + 0.1F;
+    };
+    OutputFile out(dir / "out.vdb");
+    constexpr std::uint64_t k_until = 100'000, k_block = 512 * sizeof(float);
+    // What streams hold back.
+    constexpr std::uint64_t k_buffers = 64 << 10;
+    const auto write = [&] { write_vdb(out, {noise}, {}); };
+    EXPECT_THROW(test::stopped_at_size(k_until, write), Interrupted);
+    EXPECT_GE(out.position(), k_until);
+    EXPECT_LE(out.position(), k_until + k_block + k_buffers);
+    OutputFile next(dir / "next.vdb");
+    const std::atomic<bool> stop = true;
+    const StopScope scope(stop);
+    EXPECT_THROW(write_vdb(next, {noise}, {}), Interrupted);
+    EXPECT_EQ(next.position(), 0U);
 }
 
 }  // namespace

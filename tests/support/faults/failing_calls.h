@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
+#include "cli/exit_code.h"
 #include "tests/support/cli_test.h"
 
 namespace uw::test {
@@ -40,7 +42,8 @@ class FailingCallsTest : public CliTest {
     /// Fails the n-th call of a kind, for every n that the run comes to (beyond 40 for some), and
     /// returns how many there are, up to 40 exactly. Each time the program has to end with one of
     /// `exit_codes`, 0 silently and the others with one line, and to leave the files that were
-    /// there before or, whole, those of a run without faults, and nothing else.
+    /// there before or, whole, those of a run without faults, and nothing else: all new ones where
+    /// it says 0, none where it was interrupted.
     int fail_each(const FaultyRun& faulty, const std::string& kind,
                   const std::vector<int>& exit_codes) const {
         put_precious_files(faulty);
@@ -61,10 +64,36 @@ class FailingCallsTest : public CliTest {
             EXPECT_EQ(line_count(without_notices(result.err)), result.exit_code == 0 ? 0 : 1)
                 << result.err;
             EXPECT_EQ(file_count(), files);
-            expect_precious_or_whole(faulty, whole);
+            const std::size_t replaced = expect_precious_or_whole(faulty, whole);
+            if (result.exit_code == 0) {
+                EXPECT_EQ(replaced, faulty.outputs.size());
+            } else if (result.exit_code == k_exit_interrupted) {
+                EXPECT_EQ(replaced, 0U);
+            }
         }
         ADD_FAILURE() << "more than " << k_most << " calls";
         return k_most;
+    }
+
+    std::map<std::string, std::string> files_in(const std::string& folder) const {
+        namespace fs = std::filesystem;
+        std::map<std::string, std::string> files;
+        for (const auto& entry : fs::recursive_directory_iterator(folder_ / folder))
+            if (entry.is_regular_file()) {
+                const std::string name = fs::relative(entry.path(), folder_.path()).string();
+                files[name.substr(folder.size() + 1)] = read(name);
+            }
+        return files;
+    }
+    /// How many files are in the folder `part`, if it is there: each has to be one of `whole`.
+    std::size_t expect_whole(const std::string& part, const std::string& whole) const {
+        if (!exists(part)) return 0;
+        const auto all = files_in(whole), there = files_in(part);
+        for (const auto& [name, content] : there) {
+            const auto expected = all.find(name);
+            EXPECT_TRUE(expected != all.end() && content == expected->second) << name;
+        }
+        return there.size();
     }
 
   private:
@@ -80,17 +109,21 @@ class FailingCallsTest : public CliTest {
     void put_precious_files(const FaultyRun& faulty) const {
         for (const std::string& name : faulty.outputs) write(name, k_precious);
     }
-    void expect_precious_or_whole(const FaultyRun& faulty,
-                                  const std::map<std::string, std::string>& whole) const {
+    /// How many files are new.
+    std::size_t expect_precious_or_whole(const FaultyRun& faulty,
+                                         const std::map<std::string, std::string>& whole) const {
+        std::size_t replaced = 0;
         for (const std::string& name : faulty.outputs) {
             const std::string now = read(name);
             if (now == k_precious) continue;
+            ++replaced;
             if (std::ranges::find(faulty.times, name) == faulty.times.end())
                 EXPECT_TRUE(now == whole.at(name)) << name;
             else
                 EXPECT_TRUE(now.ends_with(whole.at(name).substr(whole.at(name).size() - 2)))
                     << name;
         }
+        return replaced;
     }
 };
 

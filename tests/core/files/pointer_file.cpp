@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/base/pointer_file.h"
+#include "core/files/pointer_file.h"
 
 #include <gtest/gtest.h>
 

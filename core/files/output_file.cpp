@@ -1,4 +1,4 @@
-#include "core/image/output_file.h"
+#include "core/files/output_file.h"
 
 #include <fmt/format.h>
 
@@ -20,12 +20,26 @@ void OutputFile::seek(std::uint64_t position) {
     position_ = position;
 }
 
-void OutputFile::commit() {
-    stream_.close();
+void OutputFile::complete() {
+    if (stream_.is_open()) stream_.close();
     if (!stream_)
         throw IoError(fmt::format(
             "{}: cannot write: some of the data was rejected; is the disk full?", file_.string()));
+}
+
+void OutputFile::commit() {
+    complete();
     atomic_.commit();
+}
+
+OutputFile& OutputGroup::add(const std::filesystem::path& file) {
+    return *files_.emplace_back(std::make_unique<OutputFile>(file));
+}
+
+void OutputGroup::commit() {
+    for (const auto& file : files_) file->complete();
+    for (const auto& file : files_) file->commit();
+    files_.clear();
 }
 
 }  // namespace uw

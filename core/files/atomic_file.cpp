@@ -1,4 +1,4 @@
-#include "core/base/atomic_file.h"
+#include "core/files/atomic_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 
 namespace uw {
 namespace {

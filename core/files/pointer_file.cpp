@@ -1,4 +1,4 @@
-#include "core/base/pointer_file.h"
+#include "core/files/pointer_file.h"
 
 #include <fstream>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "core/base/text_file.h"
+#include "core/files/text_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 
 namespace uw {
 

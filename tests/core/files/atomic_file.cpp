@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/base/atomic_file.h"
+#include "core/files/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
-#include "core/base/atomic_file.h"
+#include "core/files/atomic_file.h"
 
 namespace uw {
 
@@ -26,6 +28,8 @@ class OutputFile {
 
     const std::filesystem::path& path() const { return file_; }
 
+    /// Throws IoError unless the file is complete; it bears its name once it is committed.
+    void complete();
     /// Throws IoError unless the file is complete and bears its name.
     void commit();
 
@@ -34,6 +38,19 @@ class OutputFile {
     AtomicFile atomic_;
     std::ofstream stream_;
     std::uint64_t position_ = 0;
+};
+
+/// Files that belong together: none appears under its name before all of them are complete.
+class OutputGroup {
+  public:
+    /// A file of the group, as long as that lives. Throws as AtomicFile's constructor.
+    OutputFile& add(const std::filesystem::path& file);
+
+    /// Throws IoError unless all files are complete and bear their names.
+    void commit();
+
+  private:
+    std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
 }  // namespace uw

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/base/text_file.h"
+#include "core/files/text_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

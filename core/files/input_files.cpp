@@ -1,4 +1,4 @@
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/base/input_files.h"
+#include "core/files/input_files.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <fstream>
 #include <vector>
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/files/atomic_file.h"
+#include "core/files/text_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace uw {

@@ -1,4 +1,4 @@
-#include "core/base/scratch_folder.h"
+#include "core/files/scratch_folder.h"
 
 #include <stdlib.h>
 

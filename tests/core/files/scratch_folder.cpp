@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/base/scratch_folder.h"
+#include "core/files/scratch_folder.h"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
