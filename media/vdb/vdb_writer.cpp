@@ -72,6 +72,7 @@ class StoppableOutput : public std::streambuf {
     }
     pos_type seekoff(off_type offset, std::ios::seekdir from, std::ios::openmode mode) override {
         const auto here = static_cast<off_type>(out_.position());
+        if (from == std::ios::cur && offset == 0) return here;
         if (from == std::ios::end) return off_type{-1};
         return seekpos(from == std::ios::cur ? here + offset : offset, mode);
     }
