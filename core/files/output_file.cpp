@@ -32,6 +32,10 @@ void OutputFile::commit() {
     atomic_.commit();
 }
 
+OutputGroup::~OutputGroup() {
+    while (!files_.empty()) files_.pop_back();
+}
+
 OutputFile& OutputGroup::add(const std::filesystem::path& file) {
     return *files_.emplace_back(std::make_unique<OutputFile>(file));
 }

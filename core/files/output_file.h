@@ -43,6 +43,14 @@ class OutputFile {
 /// Files that belong together: none appears under its name before all of them are complete.
 class OutputGroup {
   public:
+    OutputGroup() = default;
+    /// Folders that were made for files that are not committed are removed with the first of them.
+    ~OutputGroup();
+    OutputGroup(const OutputGroup&) = delete;
+    OutputGroup& operator=(const OutputGroup&) = delete;
+    OutputGroup(OutputGroup&&) = default;
+    OutputGroup& operator=(OutputGroup&&) = default;
+
     /// A file of the group, as long as that lives. Throws as AtomicFile's constructor.
     OutputFile& add(const std::filesystem::path& file);
 

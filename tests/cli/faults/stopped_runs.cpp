@@ -45,6 +45,7 @@ class StoppedRuns : public FailingCallsTest {
                 EXPECT_NE(result.err.find("interrupted; "), std::string::npos) << result.err;
                 if (result.err.find("nothing was written") != std::string::npos) {
                     EXPECT_EQ(there, 0U);
+                    EXPECT_FALSE(exists("part"));
                 }
                 EXPECT_EQ(run(continuing).exit_code, 0);
             }

@@ -124,6 +124,13 @@ TEST_F(StoppedWriting, FilesOfAGroupAppearTogether) {
     };
     EXPECT_THROW(test::limited(5000, write_large), IoError);
     EXPECT_EQ(file_count(), 2);
+    {
+        OutputGroup elsewhere;
+        elsewhere.add(folder_ / "new/folder/e");
+        elsewhere.add(folder_ / "new/folder/f");
+        EXPECT_TRUE(std::filesystem::exists(folder_ / "new/folder"));
+    }
+    EXPECT_EQ(file_count(), 2);  // not even the folders
 }
 
 }  // namespace
