@@ -12,6 +12,7 @@
 #include "core/image/preview.h"
 #include "python/bindings.h"
 #include "python/image_object.h"
+#include "python/signals.h"
 
 namespace py = pybind11;
 
@@ -81,7 +82,6 @@ py::dict report(const ImageObject& image) {
 
 void save_image(const ImageObject& image, const std::filesystem::path& file,
                 std::optional<double> exposure, const std::string& precision) {
-    const py::gil_scoped_release release;
     ExrOptions options;
     const auto* const found = std::ranges::find(k_precision_names, precision,
                                                 [](const auto& word) { return word.first; });
@@ -89,7 +89,8 @@ void save_image(const ImageObject& image, const std::filesystem::path& file,
         throw UsageError(fmt::format("save: precision: unknown '{}'; use {}", printable(precision),
                                      alternatives(words_of(k_precision_names))));
     options.precision = found->second;
-    save(image, file, exposure, options);
+    WatchedTask task;
+    run_interruptible(task, [&] { save(image, file, exposure, options); });
 }
 
 py::tuple window(const ImageObject& image) {

@@ -14,6 +14,7 @@
 #include "python/bindings.h"
 #include "python/image_object.h"
 #include "python/scene_object.h"
+#include "python/signals.h"
 #include "python/watched_task.h"
 #include "render/id_table.h"
 #include "render/image_derivative.h"
@@ -146,8 +147,8 @@ class RendererObject {
     }
 
     static void watch(const std::vector<WatchedTask::News>& news, const py::object& progress) {
+        check_signals();
         const py::gil_scoped_acquire acquire;
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (progress.is_none()) return;
         for (const auto& [stage, fraction] : news)
             if (progress(stage, fraction).is(py::bool_(false)))

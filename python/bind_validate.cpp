@@ -3,7 +3,7 @@
 #include "cli/validate/validation.h"
 #include "python/bindings.h"
 #include "python/scene_object.h"
-#include "python/watched_task.h"
+#include "python/signals.h"
 #include "render/resolved_scene.h"
 
 namespace py = pybind11;
@@ -34,18 +34,10 @@ py::list validate(const SceneObject& scene, double tolerance, std::size_t camera
     options.tolerance = tolerance;
     options.proceed = [&task] { return task.tell("validation", 0); };
     SceneValidation validation;
-    {
-        const py::gil_scoped_release release;
-        task.run(
-            [&] {
-                validation = validate_scene(scene_of_image(desc, {frame, camera}),
-                                            desc.file.filename().string(), options);
-            },
-            [](const std::vector<WatchedTask::News>& /*news*/) {
-                const py::gil_scoped_acquire acquire;
-                if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-            });
-    }
+    run_interruptible(task, [&] {
+        validation = validate_scene(scene_of_image(desc, {frame, camera}),
+                                    desc.file.filename().string(), options);
+    });
     py::list checks;
     for (const Check& check : validation.checks)
         checks.append(check_of(check, validation.bands_nm));

@@ -129,7 +129,7 @@ class Image(Mapping[str, "NDArray[np.float32]"]):
              precision: str = "auto") -> None:
         """Writes the OpenEXR that `uwvdb render` writes, or, to a name that ends in .png, the
         picture. `precision` of an EXR's light: auto, half or float. Raises IoError and
-        UsageError; the file is whole or not there."""
+        UsageError; the file is whole or not there, also after Ctrl-C, which ends it at once."""
         self._image.save(os.fspath(file), exposure, precision)
 
     def __repr__(self) -> str:

@@ -4,6 +4,7 @@
 import multiprocessing
 import os
 import pickle
+import resource
 import signal
 import threading
 import time
@@ -39,6 +40,33 @@ def test_ctrl_c_stops_at_once_and_leaves_the_renderer_usable(scene, renderer):
     # The next look at signals, every 20 ms, sees it, or the one after that.
     assert len(later) <= 1 and all(fraction < 0.5 for _, fraction in later)
     assert np.array_equal(renderer.render(scene).pixels, expected)
+
+
+def test_a_signal_stops_saving_and_leaves_nothing(scene, renderer, tmp_path):
+    image = renderer.render(scene, size=(1600, 1200), quality="draft")
+    image.pixels[...] = np.random.default_rng(1).random(image.pixels.shape)
+    file = tmp_path / "image.exr"
+
+    class Signalled(Exception):
+        pass
+
+    def interrupt(number, frame):
+        signal.signal(number, signal.SIG_IGN)  # of the writes that follow
+        raise Signalled
+
+    # The write that makes the file larger than this, a fiftieth of all, sends the signal.
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, interrupt)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, limits[1]))
+    try:
+        with pytest.raises(Signalled):
+            image.save(file, precision="float")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, handler)
+    assert list(tmp_path.iterdir()) == []
+    image.save(file, precision="float")
+    assert file.stat().st_size > 20_000_000
 
 
 def test_progress_is_told_in_the_thread_that_renders(scene, renderer):
