@@ -14,6 +14,7 @@
 #include <jerror.h>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "core/image/image_limits.h"
 
 namespace uw {
@@ -52,6 +53,7 @@ class JpegDecoder {
         jpeg_start_decompress(&jpeg_);
         const std::size_t row_bytes = jpeg_.output_width * static_cast<std::size_t>(channels());
         while (jpeg_.output_scanline < jpeg_.output_height) {
+            throw_if_stopped();  // not from within libjpeg
             JSAMPROW row = values + jpeg_.output_scanline * row_bytes;
             jpeg_read_scanlines(&jpeg_, &row, 1);
         }

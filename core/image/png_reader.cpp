@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "core/image/image_limits.h"
 
 namespace uw {
@@ -41,13 +42,18 @@ class PngDecoder {
         png_read_info(png_, info_);
         png_set_expand(png_);
         png_set_swap(png_);  // 16 bits are stored with the higher byte first
-        png_set_interlace_handling(png_);
+        passes_ = png_set_interlace_handling(png_);
         png_read_update_info(png_, info_);
         return true;
     }
     bool read_rows(png_bytepp rows) {
         if (setjmp(png_jmpbuf(png_)) != 0) return false;
-        png_read_image(png_, rows);
+        const std::int64_t count = height();
+        for (int pass = 0; pass < passes_; ++pass)
+            for (std::int64_t y = 0; y < count; ++y) {
+                throw_if_stopped();  // not from within libpng
+                png_read_row(png_, rows[y], nullptr);
+            }
         png_read_end(png_, nullptr);
         return true;
     }
@@ -86,6 +92,7 @@ class PngDecoder {
     char error_[128] = {};
     png_structp png_;
     png_infop info_;
+    int passes_ = 1;  // of an interlaced image
 };
 
 }  // namespace
@@ -108,7 +115,9 @@ PixelImage read_png(std::span<const std::byte> encoded, const std::string& name)
     if (!decoder.read_rows(rows.data())) throw fail();
 
     image.pixels.resize(values.size() / (decoder.is_16_bit() ? 2 : 1));
+    const std::size_t row_values = image.pixels.size() / height;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        if (i % row_values == 0) throw_if_stopped();
         if (decoder.is_16_bit()) {
             std::uint16_t value = 0;
             std::memcpy(&value, values.data() + 2 * i, 2);

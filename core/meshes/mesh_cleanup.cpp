@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/base/stop.h"
 #include "core/base/vec.h"
 
 namespace uw {
@@ -51,6 +52,7 @@ void drop_bad_triangles(TriangleMesh& mesh, DroppedTriangles& dropped) {
     std::size_t kept = 0;
     const std::size_t count = mesh.triangle_count();
     for (std::size_t triangle = 0; triangle < count; ++triangle) {
+        throw_if_stopped();
         if (std::uint64_t* fault = fault_of(mesh, triangle, dropped)) {
             ++*fault;
             continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/stop.h"
 #include "core/image/image_reader.h"
 
 namespace uw {
@@ -30,6 +31,7 @@ Texture::Texture(const PixelImage& image, TextureEncoding encoding, bool keep_al
     const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     rgb_.resize(3 * count);
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
+        throw_if_stopped();
         for (std::size_t color = 0; color < 3; ++color) {
             const float encoded = image.pixels[pixel * channels + (channels < 3 ? 0 : color)];
             rgb_[3 * pixel + color] = encoding == TextureEncoding::linear

@@ -12,6 +12,7 @@
 
 #include "core/base/affine.h"
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "core/files/input_files.h"
 #include "core/meshes/polygon.h"
 
@@ -106,6 +107,7 @@ class MeshJoiner {
     void append_positions(const Placement& placement) {
         const aiMesh& mesh = *placement.mesh;
         for (const aiVector3D& v : std::span(mesh.mVertices, mesh.mNumVertices)) {
+            throw_if_stopped();
             const Point3 p = placement.file_from_mesh * Point3{v.x, v.y, v.z};
             for (const double x : {p.x, p.y, p.z}) mesh_.positions.push_back(static_cast<float>(x));
         }
@@ -115,6 +117,7 @@ class MeshJoiner {
         constexpr std::uint32_t missing = std::numeric_limits<std::uint32_t>::max();
         std::vector<std::uint32_t> corners;
         for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+            throw_if_stopped();
             if (face.mNumIndices < 3) continue;  // points and lines
             corners.clear();
             for (const unsigned corner : std::span(face.mIndices, face.mNumIndices)) {

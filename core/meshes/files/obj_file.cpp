@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "core/base/text.h"
 #include "core/files/input_files.h"
 #include "core/meshes/files/text_line.h"
@@ -41,6 +42,7 @@ class ObjText {
     ObjFile read(std::istream& in) {
         std::string text;
         while (std::getline(in, text)) {
+            throw_if_stopped();
             ++line_;
             // A backslash at the end joins the next line.
             while (is_continued(text)) {
@@ -200,6 +202,7 @@ std::vector<std::string> libraries_of_obj(const std::filesystem::path& file) {
     if (!std::filesystem::is_regular_file(file, status)) return libraries;
     std::ifstream in(file, std::ios::binary);
     for (std::string text; std::getline(in, text);) {
+        throw_if_stopped();
         if (text.find("mtllib") == std::string::npos) continue;
         TextLine line(text);
         if (line.word() == "mtllib") libraries.push_back(line.rest());

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "core/base/vec.h"
 #include "core/meshes/files/obj_file.h"
 #include "core/meshes/files/obj_materials.h"
@@ -48,6 +49,7 @@ class ObjMesh {
         std::span<const ObjCorner> left(source_.corners);
         std::vector<std::uint32_t> corners;
         for (const ObjFile::Face& face : source_.faces) {
+            throw_if_stopped();
             corners.clear();
             const std::span<const ObjCorner> own = left.first(face.corners);
             left = left.subspan(face.corners);

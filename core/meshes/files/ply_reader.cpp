@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "core/files/input_files.h"
 #include "core/meshes/files/ply_header.h"
 #include "core/meshes/files/ply_source.h"
@@ -133,6 +134,7 @@ void read_vertices(const PlyElement& element, PlySource& source, const std::stri
     if (layout.has_normals) mesh.normals.reserve(3 * element.count);
     if (layout.has_colors) mesh.materials[0].base_color = {1, 1, 1};  // the colours alone
     for (std::uint64_t vertex = 0; vertex < element.count; ++vertex) {
+        throw_if_stopped();
         std::array<float, 9> values{};
         for (std::size_t k = 0; k < element.properties.size(); ++k) {
             const PlyProperty& property = element.properties[k];
@@ -169,6 +171,7 @@ void read_faces(const PlyElement& element, PlySource& source, const std::string&
     mesh.triangles.reserve(3 * element.count);
     std::vector<std::uint32_t> corners;
     for (std::uint64_t face = 0; face < element.count; ++face) {
+        throw_if_stopped();
         for (const PlyProperty& property : element.properties) {
             const bool wanted = property.is_list && (property.name == "vertex_indices" ||
                                                      property.name == "vertex_index");
@@ -210,7 +213,10 @@ TriangleMesh read_ply(const std::filesystem::path& file, std::vector<std::string
             if (has_colors(element)) warnings.push_back(name + ": ignored: colours of faces");
             read_faces(element, source, name, mesh);
         } else {
-            for (std::uint64_t k = 0; k < element.count; ++k) skip_entry(element, source, name);
+            for (std::uint64_t k = 0; k < element.count; ++k) {
+                throw_if_stopped();
+                skip_entry(element, source, name);
+            }
         }
     }
     return mesh;

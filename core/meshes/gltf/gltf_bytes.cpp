@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "core/files/input_files.h"
 #include "core/meshes/gltf/gltf_uri.h"
 
@@ -191,6 +192,7 @@ std::vector<float> GltfBytes::floats(const Json& accessor, std::size_t width) {
     const double divisor = normalized ? largest(type) : 1;
     std::vector<float> values(count * width, 0.0F);
     const auto put = [&](std::size_t at, const std::byte* source) {
+        throw_if_stopped();
         for (std::size_t k = 0; k < components; ++k) {
             const double value = stored(source + k * gltf_component_size(type), type) / divisor;
             values[at * width + k] = static_cast<float>(normalized ? std::max(value, -1.0) : value);
@@ -231,6 +233,7 @@ std::vector<std::uint32_t> GltfBytes::indices(const Json& accessor) {
         view(accessor, "bufferView").subspan(document_.whole_number(accessor, "byteOffset", 0));
     const std::size_t size = gltf_component_size(type);
     for (std::size_t i = 0; i < count; ++i) {
+        throw_if_stopped();
         values[i] = static_cast<std::uint32_t>(stored(bytes.data() + i * size, type));
     }
     return values;

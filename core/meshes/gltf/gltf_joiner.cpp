@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "core/base/stop.h"
+
 namespace uw {
 namespace {
 
@@ -113,6 +115,7 @@ class JoinedMesh {
     void append_positions(const GltfPlacement& placement) {
         const std::vector<float> values = bytes_.floats(*attribute(placement, "POSITION"), 3);
         for (std::size_t at = 0; at < values.size(); at += 3) {
+            throw_if_stopped();
             const Point3 p =
                 placement.file_from_mesh * Point3{values[at], values[at + 1], values[at + 2]};
             for (int axis = 0; axis < 3; ++axis) {
@@ -125,6 +128,7 @@ class JoinedMesh {
     static void append_directions(const std::vector<float>& values, std::size_t width,
                                   const Matrix3& map, std::vector<float>& to) {
         for (std::size_t at = 0; at < values.size(); at += width) {
+            throw_if_stopped();
             Vector3 v = map * Vector3(values[at], values[at + 1], values[at + 2]);
             const double length = glm::length(v);
             v = length > 0 ? v / length : Vector3(0.0);
@@ -212,6 +216,7 @@ class JoinedMesh {
         // A mirroring transform reverses the corner order (glTF 2.0, 3.7.4).
         const bool is_mirrored = placement.file_from_mesh.determinant() < 0;
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+            throw_if_stopped();
             if (is_mirrored) std::swap(b, c);
             for (const std::size_t k : {a, b, c}) mesh_.triangles.push_back(corners[k]);
         };
