@@ -6,20 +6,34 @@
 
 namespace uw::test {
 
+/// As long as it lives, every write beyond `bytes` into a file fails, and calls `on_excess` on the
+/// thread that writes.
+class FileSizeLimit {
+  public:
+    FileSizeLimit(rlim_t bytes, void (*on_excess)(int))
+        : handler_(std::signal(SIGXFSZ, on_excess)) {
+        ::getrlimit(RLIMIT_FSIZE, &limit_);
+        const rlimit full{bytes, limit_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &full);
+    }
+    ~FileSizeLimit() {
+        ::setrlimit(RLIMIT_FSIZE, &limit_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+    FileSizeLimit(FileSizeLimit&&) = delete;
+    FileSizeLimit& operator=(FileSizeLimit&&) = delete;
+
+  private:
+    rlimit limit_{};
+    void (*handler_)(int);
+};
+
 /// Runs `work` while every write beyond `bytes` into a file fails, as on a full disk.
 template <typename Work>
 void limited(rlim_t bytes, const Work& work) {
-    struct Restore {
-        rlimit limit{};
-        void (*handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
-        Restore() { ::getrlimit(RLIMIT_FSIZE, &limit); }
-        ~Restore() {
-            ::setrlimit(RLIMIT_FSIZE, &limit);
-            std::signal(SIGXFSZ, handler);
-        }
-    } const restore;
-    const rlimit full{bytes, restore.limit.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &full);
+    const FileSizeLimit limit(bytes, SIG_IGN);
     work();
 }
 

@@ -5,6 +5,8 @@
 
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "core/image/image_writer.h"
@@ -28,6 +30,26 @@ TEST(ImageReader, ReadsAPngFromMemoryTopRowFirst) {
     const std::vector<float> expected = {1, 0, 0, 0,           1,           0,
                                          0, 0, 1, 128 / 255.F, 128 / 255.F, 128 / 255.F};
     for (std::size_t k = 0; k < 12; ++k) EXPECT_NEAR(image.pixels[k], expected[k], 1e-6);
+}
+
+/// 5 x 5 grey pixels of 29 x + 40 y modulo 256 in the seven passes of Adam7, as hexadecimal digits.
+constexpr std::string_view k_interlaced_png =
+    "89504e470d0a1a0a0000000d4948445200000005000000050800000001df0349af0000002d494441"
+    "5478da63606028615820c260c5708b21a0eb08836c3843ee7286bddf19345c93eae730544cdd74fe"
+    "0d00b0b50c7bd499d7620000000049454e44ae426082";
+
+TEST(ImageReader, ReadsInterlacedPngs) {
+    std::string bytes;
+    for (std::size_t at = 0; at < k_interlaced_png.size(); at += 2)
+        bytes +=
+            static_cast<char>(std::stoi(std::string(k_interlaced_png.substr(at, 2)), nullptr, 16));
+    const PixelImage image = read_image(encoded_bytes(bytes), "interlaced.png");
+    ASSERT_EQ(image.pixels.size(), 25U);
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 5; ++x)
+            EXPECT_NEAR(image.pixels[static_cast<std::size_t>(5 * y + x)],
+                        ((29 * x + 40 * y) % 256) / 255.0, 1e-6)
+                << x << ", " << y;
 }
 
 TEST(ImageReader, RefusesBrokenImages) {

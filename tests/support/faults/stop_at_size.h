@@ -1,11 +1,9 @@
 #pragma once
 
-#include <sys/resource.h>
-
 #include <atomic>
-#include <csignal>
 
 #include "core/base/stop.h"
+#include "tests/support/full_disk.h"
 
 namespace uw::test {
 
@@ -16,17 +14,7 @@ template <typename Work>
 void stopped_at_size(rlim_t bytes, const Work& work) {
     static std::atomic<bool> stop;
     stop = false;
-    struct Restore {
-        rlimit limit{};
-        void (*handler)(int) = std::signal(SIGXFSZ, [](int) { stop = true; });
-        Restore() { ::getrlimit(RLIMIT_FSIZE, &limit); }
-        ~Restore() {
-            ::setrlimit(RLIMIT_FSIZE, &limit);
-            std::signal(SIGXFSZ, handler);
-        }
-    } const restore;
-    const rlimit full{bytes, restore.limit.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &full);
+    const FileSizeLimit limit(bytes, [](int) { stop = true; });
     const StopScope scope(stop);
     work();
 }
