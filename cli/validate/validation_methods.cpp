@@ -77,7 +77,7 @@ Bounds reach_of(const TrialScene& trial) {
 void append_hard_beam_edges(const Ray& ray, const Lamp& lamp, std::vector<double>& edges) {
     constexpr double k_step = 1e-6;
     std::vector<double> breaks;
-    lamp.append_profile_breaks(ray, breaks);
+    lamp.append_profile_breaks(ray, {0, k_far}, breaks);
     for (const double s : breaks) {
         const Point3 x = ray.at(s * (1 - k_step)), y = ray.at(s * (1 + k_step));
         const double before = lamp.relative_intensity(x - lamp.origin(x));

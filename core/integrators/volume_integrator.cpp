@@ -207,7 +207,7 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     w.breaks.reset(interval);
     for (const double distance : distances) w.breaks.add_edge(distance);
     w.marks.clear();
-    (*scene_.emitters)[lamp].append_profile_breaks(ray, w.marks);
+    (*scene_.emitters)[lamp].append_profile_breaks(ray, interval, w.marks);
     for (const double s : w.marks) w.breaks.add_edge(s);
     if (!passage.parallel && passage.distance < k_lamp_radius) {
         const double half =

@@ -26,12 +26,14 @@ class CosineProfile {
     bool has_even_core() const { return false; }
     /// All directions: a half-space is too wide to be worth restricting the search.
     DirectionCone cone() const { return {axis_, -1}; }
-    void append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const;
+    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                       std::vector<double>& s) const;
 
   private:
     Vector3 axis_;
-    double exponent_;            // m
-    std::vector<double> cones_;  // cosines of the cones at which the profile has breaks
+    double exponent_;  // m
+    // Ratios of the cosines at which it has breaks along a ray to the greatest one on it.
+    std::vector<double> break_ratios_;
 };
 
 inline CosineProfile make_profile(const CosineProfileDesc& desc, const LampPlacement& placement,

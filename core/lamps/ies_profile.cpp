@@ -75,7 +75,8 @@ double IesProfile::relative_intensity(const Vector3& v) const {
     return web_->candelas(polar, azimuth) / web_->peak();
 }
 
-void IesProfile::append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const {
+void IesProfile::append_breaks(const Ray& ray, const Interval& /*stretch*/, const Point3& apex,
+                               std::vector<double>& s) const {
     for (const double cosine : cones_) append_cone_crossings(ray, apex, axis_, cosine, s);
     if (breaks_at_equator_) append_plane_crossing(ray, apex, axis_, s);
     append_nearest_to_axis(ray, apex, axis_, s);

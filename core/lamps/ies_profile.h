@@ -34,7 +34,8 @@ class IesProfile {
     std::optional<double> peak_candelas() const { return web_->peak(); }
     bool has_even_core() const { return false; }
     DirectionCone cone() const { return {axis_, cos_dark_}; }
-    void append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const;
+    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                       std::vector<double>& s) const;
 
   private:
     std::shared_ptr<const PhotometricWeb> web_;

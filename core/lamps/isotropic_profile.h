@@ -23,7 +23,7 @@ class IsotropicProfile {
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return true; }
     DirectionCone cone() const { return {}; }
-    void append_breaks(const Ray& /*ray*/, const Point3& /*apex*/,
+    void append_breaks(const Ray& /*ray*/, const Interval& /*stretch*/, const Point3& /*apex*/,
                        std::vector<double>& /*s*/) const {}
 };
 

@@ -91,13 +91,15 @@ Interval Lamp::below_surface(const Ray& ray, const Interval& stretch) const {
     return below.length() > 0 ? below : dark;
 }
 
-void Lamp::append_profile_breaks(const Ray& ray, std::vector<double>& s) const {
+void Lamp::append_profile_breaks(const Ray& ray, const Interval& stretch,
+                                 std::vector<double>& s) const {
     if (sunlight_) {
         const double slope = sunlight_->slope(ray.direction);
         if (slope != 0) s.push_back(-sunlight_->length_to(ray.origin) / slope);
         return;
     }
-    std::visit([&](const auto& profile) { profile.append_breaks(ray, position_, s); }, profile_);
+    std::visit([&](const auto& profile) { profile.append_breaks(ray, stretch, position_, s); },
+               profile_);
 }
 
 }  // namespace uw

@@ -80,10 +80,10 @@ class Lamp {
     /// 0 where it misses the beam. It may still contain dark parts.
     Interval beam(const Ray& ray, const Interval& stretch) const;
 
-    /// Appends the distances along `ray` where the profile is not smooth or changes considerably:
-    /// the edges of its beam and the cones of equal intensity inside; for a sun, the water's
-    /// surface.
-    void append_profile_breaks(const Ray& ray, std::vector<double>& s) const;
+    /// Appends distances along `ray` between which, within `stretch`, the profile is smooth and
+    /// changes little (IsALampProfile); for a sun, the water's surface.
+    void append_profile_breaks(const Ray& ray, const Interval& stretch,
+                               std::vector<double>& s) const;
 
   private:
     Interval below_surface(const Ray& ray, const Interval& stretch) const;

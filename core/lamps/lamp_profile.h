@@ -39,19 +39,20 @@ LampProfile make_lamp_profile(const LampProfileDesc& desc, const LampPlacement& 
 /// - has_even_core(): whether a relative intensity of 1 at a point implies 1 around it, up to a
 ///   break.
 /// - cone(): a cone outside which it is dark.
-/// - append_breaks(ray, apex, s): appends the distances along `ray` where the profile of a lamp at
-///   `apex` is not smooth or changes considerably: the edges of its beam and the cones of equal
-///   intensity inside.
+/// - append_breaks(ray, stretch, apex, s): appends distances along `ray` so that between those in
+///   `stretch` the profile of a lamp at `apex` is smooth and changes little, as compared with where
+///   it is brightest in that interval: the edges of its beam and cones of equal intensity inside.
 template <class P>
 concept IsALampProfile = requires(const P& profile, const Vector3& v, const Ray& ray,
-                                  const Point3& apex, std::vector<double>& s) {
+                                  const Interval& stretch, const Point3& apex,
+                                  std::vector<double>& s) {
     { P::k_name } -> std::convertible_to<std::string_view>;
     { profile.relative_intensity(v) } -> std::same_as<double>;
     { profile.solid_angle() } -> std::same_as<double>;
     { profile.peak_candelas() } -> std::same_as<std::optional<double>>;
     { profile.has_even_core() } -> std::same_as<bool>;
     { profile.cone() } -> std::same_as<DirectionCone>;
-    profile.append_breaks(ray, apex, s);
+    profile.append_breaks(ray, stretch, apex, s);
 };
 
 }  // namespace uw

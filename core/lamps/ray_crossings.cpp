@@ -4,6 +4,19 @@
 
 namespace uw {
 
+namespace {
+
+// Where on the line of `ray` the angle to `axis` has its extremum; may be infinite or NaN.
+double extremal_angle(const Ray& ray, const Point3& apex, const Vector3& axis) {
+    const Vector3 o = ray.origin - apex;
+    const double da = glm::dot(ray.direction, axis), oa = glm::dot(o, axis);
+    const double od = glm::dot(o, ray.direction);
+    // d/ds (x.a / |x|) = 0 with x = o + s d: linear in s.
+    return (da * glm::dot(o, o) - oa * od) / (oa - da * od);
+}
+
+}  // namespace
+
 void append_cone_crossings(const Ray& ray, const Point3& apex, const Vector3& axis,
                            double cos_angle, std::vector<double>& s) {
     const Vector3 o = ray.origin - apex;
@@ -39,13 +52,21 @@ void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector
         s.push_back(root);
 }
 
+AxisApproach approach_to_axis(const Ray& ray, const Interval& stretch, const Point3& apex,
+                              const Vector3& axis) {
+    AxisApproach nearest{stretch.begin, -1};
+    for (const double s : {stretch.begin, stretch.end, extremal_angle(ray, apex, axis)}) {
+        if (!(s >= stretch.begin && s <= stretch.end)) continue;
+        const Vector3 x = ray.at(s) - apex;
+        const double cosine = glm::dot(x, axis) / glm::length(x);
+        if (cosine > nearest.cosine) nearest = {s, cosine};  // not at the apex itself: NaN
+    }
+    return nearest;
+}
+
 void append_nearest_to_axis(const Ray& ray, const Point3& apex, const Vector3& axis,
                             std::vector<double>& s) {
-    const Vector3 o = ray.origin - apex;
-    const double da = glm::dot(ray.direction, axis), oa = glm::dot(o, axis);
-    const double od = glm::dot(o, ray.direction);
-    // d/ds (x.a / |x|) = 0 with x = o + s d: linear in s.
-    const double root = (da * glm::dot(o, o) - oa * od) / (oa - da * od);
+    const double root = extremal_angle(ray, apex, axis);
     if (std::isfinite(root) && root > 0) s.push_back(root);
 }
 

@@ -21,6 +21,16 @@ void append_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& no
 void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& side,
                                 const Vector3& normal, std::vector<double>& s);
 
+/// Where on a stretch of a ray the angle to a beam's axis is least.
+struct AxisApproach {
+    double s = 0;        // distance along the ray
+    double cosine = -1;  // of the angle, seen from the beam's apex
+};
+
+/// That of `stretch` to `axis` (unit), seen from `apex`.
+AxisApproach approach_to_axis(const Ray& ray, const Interval& stretch, const Point3& apex,
+                              const Vector3& axis);
+
 /// Where the angle to `axis` (unit), seen from `apex`, is least or greatest: the azimuth changes
 /// fastest there, and a profile peaked on its axis has a kink.
 void append_nearest_to_axis(const Ray& ray, const Point3& apex, const Vector3& axis,

@@ -49,14 +49,10 @@ SpotProfile::SpotProfile(const SpotProfileDesc& desc, const LampPlacement& place
         cos_full_ = cos_dark_ + (1 - cos_dark_) * blend;
         full_angle_ = std::acos(std::min(1.0, cos_full_));
     }
-    cones_.push_back(cos_full_);
-    // Also within the edge: a ray that grazes the beam sees only a narrow peak.
-    if (cos_dark_ != cos_full_)
-        for (const double part : {0.25, 0.5, 0.75, 1.0})
-            cones_.push_back(std::cos(full_angle_ + part * (dark_angle_ - full_angle_)));
+    core_cones_.push_back(cos_full_);
     if (falloff_ != Falloff::blender_3_4) return;
     for (const double level : {0.95, 0.75, 0.5, 0.25, 0.1})  // within the core it is a cosine
-        if (level > cos_full_) cones_.push_back(level);
+        if (level > cos_full_) core_cones_.push_back(level);
 }
 
 double SpotProfile::relative_intensity(const Vector3& v) const {
@@ -89,8 +85,20 @@ double SpotProfile::solid_angle() const {
     return full + edge_solid_angle(full_angle_, dark_angle_);
 }
 
-void SpotProfile::append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const {
-    for (const double cosine : cones_) append_cone_crossings(ray, apex, axis_, cosine, s);
+void SpotProfile::append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                                std::vector<double>& s) const {
+    for (const double cosine : core_cones_) append_cone_crossings(ray, apex, axis_, cosine, s);
+    if (cos_dark_ == cos_full_) return;
+    const AxisApproach nearest = approach_to_axis(ray, stretch, apex, axis_);
+    if (nearest.cosine <= cos_dark_) return;
+    // Of the edge, what the ray comes to: one that grazes the beam sees only a narrow peak.
+    double begin = full_angle_;
+    if (nearest.cosine < cos_full_) {
+        begin = std::acos(nearest.cosine);
+        s.push_back(nearest.s);
+    }
+    for (const double part : {0.25, 0.5, 0.75, 1.0})
+        append_cone_crossings(ray, apex, axis_, std::cos(begin + part * (dark_angle_ - begin)), s);
 }
 
 }  // namespace uw

@@ -25,14 +25,15 @@ class SpotProfile {
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return falloff_ != SpotProfileDesc::Falloff::blender_3_4; }
     DirectionCone cone() const { return {axis_, cos_dark_}; }
-    void append_breaks(const Ray& ray, const Point3& apex, std::vector<double>& s) const;
+    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                       std::vector<double>& s) const;
 
   private:
     Vector3 axis_;
     SpotProfileDesc::Falloff falloff_;
-    double dark_angle_, cos_dark_;  // the spot is dark outside this angle [rad]
-    double full_angle_, cos_full_;  // and shines fully inside this one
-    std::vector<double> cones_;     // cosines of the cones at which the profile has breaks
+    double dark_angle_, cos_dark_;    // the spot is dark outside this angle [rad]
+    double full_angle_, cos_full_;    // and shines fully inside this one
+    std::vector<double> core_cones_;  // cosines at which the core has breaks, its edge included
 };
 
 inline SpotProfile make_profile(const SpotProfileDesc& desc, const LampPlacement& placement,

@@ -57,7 +57,7 @@ void expect_lamp_profile_laws(const P& profile) {
 
         const Ray ray{{offset(rng), offset(rng), offset(rng)}, v};
         std::vector<double> s{0, 10};
-        profile.append_breaks(ray, {0, 0, 0}, s);
+        profile.append_breaks(ray, {0, 10}, {0, 0, 0}, s);
         std::sort(s.begin(), s.end());
         EXPECT_GE(s.front(), 0);
         for (std::size_t i = 0; profile.has_even_core() && i + 1 < s.size(); ++i) {

@@ -99,5 +99,44 @@ TEST(RayCrossings, NearestToTheAxisHasTheExtremeAngle) {
     EXPECT_GT(found, 50);
 }
 
+TEST(RayCrossings, ApproachToTheAxisIsTheLeastAngleOnAStretch) {
+    std::mt19937 rng(5);
+    std::uniform_real_distribution<double> distance(0, 4);
+    const Point3 apex{0.1, -0.2, 0.3};
+    int within = 0;
+    for (int n = 0; n < 1000; ++n) {
+        const Ray ray = random_ray(rng);
+        const Vector3 axis = random_direction(rng);
+        const auto cosine = [&](double at) {
+            const Vector3 v = ray.at(at) - apex;
+            return glm::dot(v, axis) / glm::length(v);
+        };
+        const double begin = distance(rng), length = distance(rng);
+        const AxisApproach nearest = approach_to_axis(ray, {begin, begin + length}, apex, axis);
+        EXPECT_GE(nearest.s, begin);
+        EXPECT_LE(nearest.s, begin + length);
+        EXPECT_NEAR(nearest.cosine, cosine(nearest.s), 1e-12);
+        double greatest = -1;
+        for (int i = 0; i <= 1000; ++i)
+            greatest = std::max(greatest, cosine(begin + 1e-3 * i * length));
+        // Between steps it is greater by no more than a parabola's height over one.
+        EXPECT_GE(nearest.cosine, greatest);
+        EXPECT_LE(nearest.cosine, greatest + 1e-3) << n;
+        within += nearest.s > begin && nearest.s < begin + length;
+    }
+    EXPECT_GT(within, 40);
+}
+
+// A ray through the apex has one angle before it and another behind it.
+TEST(RayCrossings, ApproachToTheAxisOfARayThroughTheApex) {
+    const Ray ray{{0, 0, -1}, {0, 0, 1}};
+    const Vector3 axis = glm::normalize(Vector3(0, 1, 2));
+    for (const Interval stretch : {Interval{0, 3}, Interval{1, 3}}) {
+        const AxisApproach nearest = approach_to_axis(ray, stretch, {0, 0, 0}, axis);
+        EXPECT_EQ(nearest.s, 3);
+        EXPECT_NEAR(nearest.cosine, axis.z, 1e-12);
+    }
+}
+
 }  // namespace
 }  // namespace uw::test

@@ -115,7 +115,7 @@ TEST(SpotProfile, BreaksAtBothEndsOfItsEdge) {
     const SpotProfile spot({60, 20}, {});
     // Across the beam, 1 m before it: at tan 20 and tan 40 degrees to both sides.
     std::vector<double> s;
-    spot.append_breaks({{-2, 0, 1}, {1, 0, 0}}, {0, 0, 0}, s);
+    spot.append_breaks({{-2, 0, 1}, {1, 0, 0}}, {0, 10}, {0, 0, 0}, s);
     for (const double degrees : {-40, -20, 20, 40})
         EXPECT_TRUE(std::ranges::any_of(s, [&](double at) {
             return std::abs(at - (2 + std::tan(radians(degrees)))) < 1e-9;
