@@ -9,10 +9,10 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/meshes/files/assimp_reader.h"
 #include "core/meshes/files/obj_materials.h"
 #include "core/meshes/files/obj_reader.h"
 #include "core/meshes/files/ply_reader.h"
+#include "core/meshes/files/stl_reader.h"
 #include "core/meshes/gltf/gltf_files.h"
 #include "core/meshes/gltf/gltf_reader.h"
 #include "core/meshes/mesh_cleanup.h"

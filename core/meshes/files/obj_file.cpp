@@ -6,13 +6,13 @@
 #include <array>
 #include <charconv>
 #include <fstream>
-#include <limits>
 #include <unordered_map>
 
 #include "core/base/error.h"
 #include "core/base/stop.h"
 #include "core/base/text.h"
 #include "core/files/input_files.h"
+#include "core/meshes/files/mesh_number.h"
 #include "core/meshes/files/text_line.h"
 
 namespace uw {
@@ -72,18 +72,9 @@ class ObjText {
     }
 
     float number(std::string_view word) const {
-        double value = 0;
-        switch (parse_number(word, value)) {
-            case NumberText::number:
-                return static_cast<float>(value);
-            case NumberText::not_finite:
-                return std::numeric_limits<float>::quiet_NaN();
-            case NumberText::out_of_range:
-                return 0;  // too small, or so large that nothing is lost with it
-            case NumberText::no_number:
-                break;
-        }
-        fail(word, "a number");
+        const std::optional<float> value = mesh_number(word);
+        if (!value) fail(word, "a number");
+        return *value;
     }
 
     void read(TextLine line) {

@@ -14,9 +14,6 @@ namespace uw {
 /// vertices and faces, without one. Corners past the last vertex are kept for
 /// drop_bad_triangles to count. Throws IoError, InputError (also for a header that promises more
 /// than the file holds).
-///
-/// Assimp reads PLY as well, but version 5.2 hangs or crashes on about one in ten files with a few
-/// corrupted bytes, which this reader must not.
 TriangleMesh read_ply(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace uw

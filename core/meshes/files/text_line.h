@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -12,7 +13,9 @@ class TextLine {
 
     bool is_at_end() const { return left_.empty(); }
     /// The next word, empty at the end.
-    std::string_view next() const { return left_.substr(0, left_.find_first_of(k_space)); }
+    std::string_view next() const {
+        return {left_.begin(), std::find_if(left_.begin(), left_.end(), is_space)};
+    }
     /// The same, which is then taken off the line.
     std::string_view word() {
         const std::string_view taken = next();
@@ -24,13 +27,11 @@ class TextLine {
     std::string rest() const { return std::string(left_); }
 
   private:
-    static constexpr std::string_view k_space = " \t\r\n\v\f";
+    static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
     void trim() {
-        const auto begin = left_.find_first_not_of(k_space);
-        left_ = begin == std::string_view::npos
-                    ? std::string_view()
-                    : left_.substr(begin, left_.find_last_not_of(k_space) - begin + 1);
+        while (!left_.empty() && is_space(left_.front())) left_.remove_prefix(1);
+        while (!left_.empty() && is_space(left_.back())) left_.remove_suffix(1);
     }
 
     std::string_view left_;

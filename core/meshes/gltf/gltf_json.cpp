@@ -11,7 +11,7 @@
 namespace uw {
 namespace {
 
-constexpr int k_max_nesting = 100;          // Assimp's JSON parser recurses
+constexpr int k_max_nesting = 100;          // more than any exporter writes
 constexpr std::uint64_t k_glb_header = 20;  // magic, version, length, chunk length, chunk type
 
 std::string read_bytes(std::ifstream& in, std::uint64_t count) {

@@ -196,7 +196,7 @@ TEST_F(MeshReaderGltf, ManyNodesAreNamedInShort) {
         << warnings_[0];
 }
 
-TEST_F(MeshReaderGltf, RefusesGltfThatWouldMisleadAssimp) {
+TEST_F(MeshReaderGltf, RefusesGltfThatContradictsItself) {
     const auto refused = [&](const std::map<std::string, std::string>& changes) {
         return error_of("bad.gltf", gltf_text(changes));
     };
