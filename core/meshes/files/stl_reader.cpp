@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -71,6 +70,12 @@ struct Beginning {
     }
 };
 
+/// The next three vertices.
+void append_triangle(TriangleMesh& mesh) {
+    const auto first = static_cast<std::uint32_t>(mesh.triangles.size());
+    mesh.triangles.insert(mesh.triangles.end(), {first, first + 1, first + 2});
+}
+
 TriangleMesh read_binary(std::istream& in, const Beginning& beginning, const std::string& name) {
     const std::uint64_t count = beginning.promised_triangles();
     // Nothing is allocated for a forged count. What follows the triangles is not read.
@@ -82,16 +87,19 @@ TriangleMesh read_binary(std::istream& in, const Beginning& beginning, const std
     if (count > k_most_triangles) refuse_size(name);
     TriangleMesh mesh;
     mesh.positions.reserve(9 * count + k_padding);
-    mesh.positions.resize(9 * count);
+    mesh.triangles.reserve(3 * count);
     std::vector<char> bytes(k_triangle_bytes * std::min(count, k_triangles_per_read));
     for (std::uint64_t first = 0; first < count; first += k_triangles_per_read) {
         throw_if_stopped();
         const std::uint64_t triangles = std::min(count - first, k_triangles_per_read);
         if (!in.read(bytes.data(), static_cast<std::streamsize>(k_triangle_bytes * triangles)))
             throw IoError(name + ": cannot be read");
-        for (std::uint64_t t = 0; t < triangles; ++t)
+        mesh.positions.resize(9 * (first + triangles));
+        for (std::uint64_t t = 0; t < triangles; ++t) {
             std::memcpy(&mesh.positions[9 * (first + t)],
                         &bytes[k_triangle_bytes * t + k_normal_bytes], k_vertices_bytes);
+            append_triangle(mesh);
+        }
     }
     return mesh;
 }
@@ -154,6 +162,7 @@ class StlText {
                             "the mesh again",
                             name_, line_, corners_));
         corners_ = 0;
+        append_triangle(mesh_);
         if (mesh_.positions.size() > 9 * k_most_triangles) refuse_size(name_);
     }
 
@@ -182,10 +191,7 @@ TriangleMesh read_stl(const std::filesystem::path& file) {
     } else {
         throw InputError(name + ": is neither a text nor a binary STL file; export the mesh again");
     }
-    const std::size_t vertices = mesh.vertex_count();
-    mesh.positions.reserve(3 * vertices + k_padding);
-    mesh.triangles.resize(vertices);
-    std::iota(mesh.triangles.begin(), mesh.triangles.end(), 0U);
+    mesh.positions.reserve(mesh.positions.size() + k_padding);
     return mesh;
 }
 
