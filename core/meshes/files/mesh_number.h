@@ -8,7 +8,8 @@
 
 namespace uw {
 
-/// A coordinate as text formats write it: NaN if it is not finite; none if `word` is no number.
+/// A coordinate as text formats write it: NaN if it is not finite or too large, so that what has it
+/// is dropped and counted; 0 if it is too small. None if `word` is no number.
 inline std::optional<float> mesh_number(std::string_view word) {
     double value = 0;
     switch (parse_number(word, value)) {
@@ -17,7 +18,10 @@ inline std::optional<float> mesh_number(std::string_view word) {
         case NumberText::not_finite:
             return std::numeric_limits<float>::quiet_NaN();
         case NumberText::out_of_range:
-            return 0.0F;  // too small, or so large that nothing is lost with it
+            return word.find("e-") != std::string_view::npos ||
+                           word.find("E-") != std::string_view::npos
+                       ? 0.0F
+                       : std::numeric_limits<float>::quiet_NaN();
         case NumberText::no_number:
             break;
     }

@@ -117,6 +117,24 @@ TEST_F(ObjReader, IndicesOutOfRangeAreKeptForTheirCount) {
               std::string::npos);
 }
 
+// Beyond what a double holds, as well as beyond single precision.
+TEST_F(ObjReader, CoordinatesThatAreTooLargeAreCountedAndTooSmallOnesAreZero) {
+    const TriangleMesh mesh = read(std::string(k_corners) +
+                                   "v 1e400 0 0\nv -1E+400 0 0\nv 1e39 0 0\nv 5 1e-400 -1E-400\n"
+                                   "f 1 2 4\nf 1 2 5\nf 1 2 6\nf 1 7 3\n")
+                                  .mesh;
+    EXPECT_EQ(mesh.triangle_count(), 4U);
+    std::vector<std::string> warnings;
+    const MeshFile kept = read_mesh(folder_.path("m.obj"), warnings);
+    EXPECT_EQ(kept.mesh.triangle_count(), 1U);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("3 triangles have corners"), std::string::npos) << warnings[0];
+    const std::vector<float> corners = test::corner_positions(kept.mesh);
+    ASSERT_EQ(corners.size(), 9U);
+    EXPECT_EQ(std::vector<float>(corners.begin() + 3, corners.begin() + 6),
+              (std::vector<float>{5, 0, 0}));
+}
+
 TEST_F(ObjReader, BrokenNumbersAreNamedWithTheirLine) {
     const std::string name = folder_.path("m.obj").string();
     EXPECT_TRUE(error_of("v 0 0 0\nv 1 zero 0\n").starts_with(name + ":2: 'zero'"));

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/stop.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/meshes/mesh_reading.h"
 #include "tests/support/message_of.h"
@@ -98,6 +100,16 @@ TEST_F(StlReader, KeepsWhatIsNotFinite) {
     EXPECT_EQ(mesh.positions[0], infinity);
     EXPECT_TRUE(std::isnan(
         read("text.stl", text("vertex inf 0 0\nvertex 2 0 0\nvertex 0 2 0\n")).positions[0]));
+}
+
+// Other work on a mesh asks as well: this is the reader's own.
+TEST_F(StlReader, IsStoppedWithinBothKinds) {
+    for (const std::string& bytes : {binary(1, {k_half_square}), text(k_vertices)}) {
+        const std::filesystem::path file = folder_.write("a.stl", bytes);
+        const std::atomic<bool> stop = true;
+        const StopScope scope(stop);
+        EXPECT_THROW(read_stl(file), Interrupted);
+    }
 }
 
 TEST_F(StlReader, RefusesInOneLineWhatIsNoMesh) {
