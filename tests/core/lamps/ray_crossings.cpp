@@ -17,6 +17,12 @@ Ray random_ray(std::mt19937& rng) {
     return {{offset(rng), offset(rng), offset(rng)}, random_direction(rng)};
 }
 
+/// Of the angle to `axis` under which `x` is seen from `apex`.
+double cosine_at(const Point3& x, const Point3& apex, const Vector3& axis) {
+    const Vector3 v = x - apex;
+    return glm::dot(v, axis) / glm::length(v);
+}
+
 // Between two crossings the sign of what is crossed stays, at each it changes: a search along the
 // ray in small steps finds no more and no fewer.
 template <class Side, class Append>
@@ -85,10 +91,7 @@ TEST(RayCrossings, NearestToTheAxisHasTheExtremeAngle) {
     for (int n = 0; n < 200; ++n) {
         const Ray ray = random_ray(rng);
         const Vector3 axis = random_direction(rng);
-        const auto cosine = [&](double at) {
-            const Vector3 v = ray.at(at) - apex;
-            return glm::dot(v, axis) / glm::length(v);
-        };
+        const auto cosine = [&](double at) { return cosine_at(ray.at(at), apex, axis); };
         std::vector<double> s;
         append_nearest_to_axis(ray, apex, axis, s);
         if (s.empty() || s[0] > 100) continue;
@@ -107,10 +110,7 @@ TEST(RayCrossings, ApproachToTheAxisIsTheLeastAngleOnAStretch) {
     for (int n = 0; n < 1000; ++n) {
         const Ray ray = random_ray(rng);
         const Vector3 axis = random_direction(rng);
-        const auto cosine = [&](double at) {
-            const Vector3 v = ray.at(at) - apex;
-            return glm::dot(v, axis) / glm::length(v);
-        };
+        const auto cosine = [&](double at) { return cosine_at(ray.at(at), apex, axis); };
         const double begin = distance(rng), length = distance(rng);
         const AxisApproach nearest = approach_to_axis(ray, {begin, begin + length}, apex, axis);
         EXPECT_GE(nearest.s, begin);
