@@ -100,4 +100,10 @@ struct CameraDesc {
     SourceLocation where;
 };
 
+/// One camera of a rig.
+struct RigCameraDesc {
+    std::string name;  ///< of its files; unique in the rig
+    CameraDesc camera;
+};
+
 }  // namespace uw

@@ -21,12 +21,6 @@
 /// value per band. `where` is the location in the file, for messages.
 namespace uw {
 
-/// One camera of a rig.
-struct RigCameraDesc {
-    std::string name;  ///< of its files; unique in the rig
-    CameraDesc camera;
-};
-
 /// Which of the images that a scene describes to render.
 struct ImageChoice {
     std::optional<int> frame;  // none: files are named as they are, the time is the first

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/scene/scene_desc.h"
+#include "core/scene/camera_desc.h"
 #include "core/scene/yaml/config_value.h"
 #include "core/scene/yaml/scene_context.h"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -14,7 +15,6 @@
 #include "core/scene/yaml/render_reader.h"
 #include "core/scene/yaml/scene_context.h"
 #include "core/scene/yaml/scene_override.h"
-#include "core/scene/yaml/sensor_reader.h"
 #include "core/scene/yaml/volume_reader.h"
 #include "core/scene/yaml/water_reader.h"
 #include "core/scene/yaml/yaml_document.h"
@@ -106,6 +106,66 @@ void check_lenses(const SceneDesc& desc) {
         throw InputError(desc.render.output_where +
                          ": needs the camera's lens; give camera.lens: {f_number: 2.8, "
                          "focal_length: 0.0085}, or write output: radiance");
+}
+
+/// What a sensor's pitch and the lens may differ by unnoticed: data sheets round both.
+constexpr double k_pitch_tolerance = 0.05;
+
+void check_sensor(const SceneDesc& scene, const CameraDesc& camera) {
+    const SensorDesc& sensor = *camera.sensor;
+    const auto fail = [&](std::string_view what) {
+        throw InputError(fmt::format("{}: {}", sensor.where, what));
+    };
+    if (!camera.lens)
+        fail("needs the camera's lens; give camera.lens: {f_number: 2.8, focal_length: 0.0085}");
+    if (scene.render.output != RenderDesc::Output::radiance)
+        fail(
+            "turns radiance into irradiance itself; write render.output: radiance, or leave it "
+            "out");
+    using Response = ColourDesc::Response;
+    const Response response = scene.render.colour.response;
+    if (scene.water.bands_nm.size() == 3 && response != Response::automatic &&
+        response != Response::bands)
+        fail(
+            "needs the light per band, but R, G and B of the image are a colour here; leave out "
+            "render.response, or use more than three bands");
+    if (is_bayer(sensor.mosaic) && !camera.calibration && std::min(camera.width, camera.height) < 2)
+        fail(
+            "a Bayer mosaic has at least two rows and columns; give a larger resolution, or "
+            "mosaic: mono");
+    if (!sensor.exposure)
+        fail(
+            "'exposure' is missing; give the exposure time in seconds, such as 0.01, here or as "
+            "render.shutter");
+}
+
+void warn_of_pitch(const CameraDesc& camera, std::vector<std::string>& warnings) {
+    if (!camera.sensor->pixel_pitch || camera.calibration || !camera.has_intrinsics) return;
+    const double focal_length = std::sqrt(camera.intrinsics.fx * camera.intrinsics.fy);
+    const double of_lens = camera.lens->focal_length / focal_length;
+    if (std::abs(of_lens / *camera.sensor->pixel_pitch - 1) <= k_pitch_tolerance) return;
+    warnings.push_back(fmt::format(
+        "{}: pixels of {:.3g} um do not fit a focal length of {:.4g} mm, {:.5g} pixels, which "
+        "makes them {:.3g} um: the view is that of the intrinsics, the light that of these pixels",
+        camera.sensor->where, 1e6 * *camera.sensor->pixel_pitch, 1e3 * camera.lens->focal_length,
+        focal_length, 1e6 * of_lens));
+}
+
+/// Checks the sensors of all cameras against the rest of the scene, and gives those without an
+/// exposure time that of render.shutter. Throws InputError; adds warnings.
+void complete_sensors(SceneDesc& scene) {
+    const auto complete = [&](CameraDesc& camera) {
+        if (!camera.sensor) return;
+        std::optional<double>& exposure = camera.sensor->exposure;
+        if (!exposure && scene.render.shutter > 0) exposure = scene.render.shutter;
+        check_sensor(scene, camera);
+        warn_of_pitch(camera, scene.warnings);
+    };
+    for (RigCameraDesc& entry : scene.cameras) complete(entry.camera);
+    if (scene.cameras.empty())
+        complete(scene.camera);
+    else
+        scene.camera = scene.cameras.front().camera;
 }
 
 /// Blur is the mean over more rays than edges need.
