@@ -1,4 +1,4 @@
-#include "core/forward/forward_scatter.h"
+#include "core/passes/forward_scatter.h"
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>

@@ -10,12 +10,11 @@
 #include "bench/support/measure.h"
 #include "bench/support/process.h"
 #include "bench/support/scenes.h"
+#include "core/base/output_files.h"
 #include "core/base/parallel.h"
-#include "core/files/scratch_folder.h"
-#include "core/frame/render_film.h"
-#include "core/frame/tile_renderer.h"
-#include "core/image/image_writer.h"
-#include "core/surfaces/geometry_scene.h"
+#include "core/geometry/geometry_scene.h"
+#include "core/image/image_file.h"
+#include "core/passes/render_film.h"
 #include "render/renderer.h"
 
 namespace uw::bench {

@@ -1,4 +1,4 @@
-#include "core/surfaces/surfaces.h"
+#include "core/geometry/surfaces.h"
 
 #include <benchmark/benchmark.h>
 
@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/surfaces/embree_surfaces.h"
+#include "core/geometry/embree_surfaces.h"
 
 namespace uw {
 namespace {

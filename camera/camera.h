@@ -1,15 +1,114 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
-#include "camera/camera_motion.h"
-#include "camera/lens/lens_model.h"
-#include "camera/port/port.h"
-#include "camera/thin_lens.h"
-#include "core/base/ray_source.h"
+#include "camera/lens_model.h"
+#include "camera/port.h"
+#include "core/base/ray.h"
+#include "core/base/vector_math.h"
+#include "core/scene/scene_desc.h"
 
 namespace uw {
+
+/// Changes the camera's resolution but not its view: the intrinsics [pixels] are scaled with it,
+/// and the time from row to row, so that all rows take as long as before.
+/// `width`, `height` >= 1.
+inline void resize_image(CameraDesc& camera, int width, int height) {
+    const double sx = static_cast<double>(width) / camera.width;
+    const double sy = static_cast<double>(height) / camera.height;
+    const IntrinsicsDesc& k = camera.intrinsics;
+    camera.intrinsics = {k.fx * sx, k.fy * sy, k.cx * sx, k.cy * sy};
+    camera.line_time /= sy;
+    camera.width = width;
+    camera.height = height;
+}
+
+/// The same for every camera of a scene.
+inline void resize_images(SceneDesc& scene, int width, int height) {
+    resize_image(scene.camera, width, height);
+    for (RigCameraDesc& entry : scene.cameras) resize_image(entry.camera, width, height);
+}
+
+/// A span of time, relative to that of a frame [s].
+struct TimeSpan {
+    double begin = 0, end = 0;
+
+    double middle() const { return 0.5 * (begin + end); }
+    double length() const { return end - begin; }
+};
+
+/// When the rows of an image are exposed. With a rolling shutter one row follows the other; the
+/// middle of the image's height is exposed around the frame's time.
+struct RowExposure {
+    double shutter = 0;    ///< exposure time of a row [s]
+    double line_time = 0;  ///< from row to row [s]
+    int height = 0;        ///< rows
+    /// Only what is exposed within this counts: a part of the exposure. Rows that are not exposed
+    /// then have its nearest end.
+    TimeSpan part{-k_always, k_always};
+
+    /// The middle of the exposure at image row `y` [pixels], all of it.
+    double middle(double y) const { return (y - 0.5 * height) * line_time; }
+    /// Of a row, within the part.
+    TimeSpan at(double y) const {
+        const double t = middle(y);
+        return {std::clamp(t - 0.5 * shutter, part.begin, part.end),
+                std::clamp(t + 0.5 * shutter, part.begin, part.end)};
+    }
+    /// That of the whole image, whatever the part.
+    TimeSpan all() const { return {middle(0) - 0.5 * shutter, middle(height) + 0.5 * shutter}; }
+    /// The share of the exposure of pixel row `row` that lies within the part.
+    double share(int row) const {
+        const double t = middle(row + 0.5);
+        if (shutter > 0) return at(row + 0.5).length() / shutter;
+        return t >= part.begin && t < part.end ? 1 : 0;
+    }
+
+  private:
+    static constexpr double k_always = 1e30;
+};
+
+/// How a camera moves around the time of its frame.
+class CameraMotion {
+  public:
+    /// `world_from_camera`: poses at equal intervals over `span`, both ends included, two or more;
+    /// between them positions and axes are interpolated linearly.
+    CameraMotion(std::vector<Affine> world_from_camera, const TimeSpan& span)
+        : poses_(std::move(world_from_camera)), span_(span) {}
+
+    /// The pose at a time relative to the frame's; outside of the span, that of its nearest end.
+    Affine at(double time) const;
+
+  private:
+    std::vector<Affine> poses_;
+    TimeSpan span_;
+};
+
+/// A thin lens with its aperture at the camera's centre, focused at a plane across the optical axis
+/// (docs/camera-image.md). In the housing's air all rays of an image position pass through one
+/// point of a plane; through a port they meet where the water's refraction lets them.
+class ThinLens {
+  public:
+    /// Precondition: the camera has a lens with a focus distance. Throws InputError if that lies
+    /// before the water, and if the aperture does not fit into the dome.
+    ThinLens(const CameraDesc& desc, const std::optional<Port>& port);
+
+    /// The ray in the housing (camera frame) that leaves a point of the aperture, for the image
+    /// position whose ray through the aperture's centre has `direction`, direction.z > 0.
+    Ray ray(const Vector3& direction, const AperturePoint& point) const;
+
+    /// 1 / distance of the plane in air where the rays of an image position meet [1/m]. Behind a
+    /// port it is such that rays near the axis meet at the focus distance in the water.
+    double vergence() const { return vergence_; }
+
+  private:
+    double radius_;  // of the aperture: focal length / (2 f-number) [m]
+    double vergence_ = 0;
+};
 
 /// A position in the image [pixels]; the image corner is (0, 0), the first pixel's centre (0.5,
 /// 0.5).

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/optics/optical_depth.h"
+#include "core/light/medium.h"
 
 namespace uw {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/optics/medium.h"
+#include "core/light/medium.h"
 #include "media/volumes/load_volumes.h"
 
 namespace uw {

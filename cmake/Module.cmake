@@ -1,6 +1,6 @@
 # uwvdb_add_module(FOLDER [USES MODULE...] [LIBRARIES TARGET...] [GENERATED SOURCE...]):
 # makes a library of the sources in FOLDER (not of those in its subfolders), named after it:
-# core/scene/yaml is uwvdb_core_scene_yaml. USES lists the modules that it may include, and is what
+# core/scene is uwvdb_core_scene. USES lists the modules that it may include, and is what
 # scripts/check-layers reads; LIBRARIES are third-party ones that only its sources see.
 #
 # The linker checks the list as well: the target uwvdb_modules_alone links each module's objects

@@ -2,7 +2,7 @@
 find_package(Threads REQUIRED)
 find_package(TBB REQUIRED)
 include(Glm)
-# The same preference as in core/surfaces/embree_api.h.
+# The same preference as in core/geometry/embree_api.h.
 find_package(embree 4 QUIET)
 if(NOT embree_FOUND)
     find_package(embree 3 REQUIRED)

@@ -1,6 +1,6 @@
 #include "dataset/camera_json.h"
 
-#include "core/motion/pose.h"
+#include "core/scene/trajectory.h"
 
 namespace uw {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/json/json.h"
+#include "core/base/json.h"
 #include "core/scene/camera_desc.h"
 
 namespace uw {

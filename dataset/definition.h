@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json/json.h"
+#include "core/base/json.h"
 
 namespace uw {
 
@@ -83,5 +83,27 @@ DatasetDefinition definition_from_json(const Json& json, const std::string& subj
 /// What differs between two, for a message: "its frames are 0-48 there, 0-20 here"; empty: nothing
 /// but, perhaps, the spelling of the command.
 std::string difference(const DatasetDefinition& there, const DatasetDefinition& here);
+
+/// What the file `dataset.json` says, by which every process that works on a set has the same.
+struct DatasetFile {
+    DatasetDefinition definition;
+    Exposures exposures;
+    Json facts;  // about water, lamps and cameras, for the data card
+
+    friend bool operator==(const DatasetFile&, const DatasetFile&) = default;
+};
+
+inline constexpr const char* k_dataset_file = "dataset.json";
+
+std::string dataset_text(const DatasetFile& file);
+
+/// That of the set in a folder; none if the folder does not exist or has nothing in it. Throws
+/// UsageError for a folder with other files and no set; InputError for one that is damaged.
+std::optional<DatasetFile> read_dataset_file(const std::filesystem::path& folder);
+
+/// Throws UsageError of one line, what differs and how to mend it, unless `there` is the set that
+/// is wanted.
+void check_same_set(const std::filesystem::path& folder, const DatasetDefinition& there,
+                    const DatasetDefinition& wanted);
 
 }  // namespace uw

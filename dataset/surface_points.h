@@ -1,11 +1,15 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/geometry/surfaces.h"
+#include "core/scene/scene_desc.h"
 #include "dataset/definition.h"
-#include "dataset/view_images.h"
+#include "dataset/view.h"
 
 namespace uw {
 
@@ -15,5 +19,32 @@ std::string points_file(const DatasetDefinition& definition, std::size_t draw);
 std::string points_csv(const std::vector<SurfacePoint>& points);
 /// Throws IoError, and InputError for anything but points_csv's.
 std::vector<SurfacePoint> read_points(const std::filesystem::path& file);
+
+/// How many surface points a draw has at most.
+inline constexpr std::size_t k_most_points = 4096;
+
+/// Points on the surfaces that never move, evenly over the images of up to 64 views of a draw, as
+/// they are seen past the surfaces of its first frame. `scene`: the draw's, as it was read;
+/// `surfaces`: of its first frame.
+std::vector<SurfacePoint> point_seeds(const DatasetDefinition& definition, std::size_t draw,
+                                      const SceneDesc& scene, const Surfaces& surfaces);
+
+/// The image of a view in the scene of its draw.
+ImageChoice choice_of(const DatasetDefinition& definition, const SceneDesc& scene,
+                      const View& view);
+
+/// Where a view sees one of its set's surface points.
+struct Observation {
+    std::uint32_t point = 0;  // its place in the list of points
+    double x = 0, y = 0;      // [pixels]
+    std::array<int, 3> rgb{};
+};
+
+/// The points that the view sees: through lens and port, within the image and not hidden.
+std::vector<Observation> observations(const ViewImages& images);
+
+std::string observations_csv(const std::vector<Observation>& observations);
+/// Throws IoError, and InputError for anything but observations_csv's.
+std::vector<Observation> read_observations(const std::filesystem::path& file);
 
 }  // namespace uw

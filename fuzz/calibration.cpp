@@ -1,4 +1,4 @@
-#include "camera/calibration/calibration.h"
+#include "camera/calibration.h"
 #include "fuzz/fuzzing.h"
 
 // Calibrations; the content decides which of the formats it is. What can be read can be written.

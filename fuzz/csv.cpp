@@ -1,4 +1,4 @@
-#include "core/tables/csv_table.h"
+#include "core/base/csv_table.h"
 #include "fuzz/fuzzing.h"
 
 // Tables of any columns: each is read as numbers, and as a curve over the first.

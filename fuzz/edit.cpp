@@ -1,5 +1,5 @@
 #include "edit/document/scene_text.h"
-#include "edit/server/http_message.h"
+#include "edit/server/http_server.h"
 #include "fuzz/fuzzing.h"
 
 // What windows of the editor send: a request's head; and changes of a scene's text, lines

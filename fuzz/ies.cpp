@@ -1,4 +1,4 @@
-#include "core/lamps/ies_file.h"
+#include "core/light/photometric_files.h"
 #include "fuzz/fuzzing.h"
 
 UWVDB_FUZZ(data, size) {

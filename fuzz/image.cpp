@@ -1,6 +1,6 @@
 #include <span>
 
-#include "core/image/image_reader.h"
+#include "core/image/image_file.h"
 #include "core/image/pixel_image.h"
 #include "fuzz/fuzzing.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/meshes/files/mesh_reader.h"
-#include "core/meshes/mesh_file.h"
+#include "core/geometry/mesh.h"
+#include "core/geometry/mesh_reader.h"
 #include "fuzz/fuzzing.h"
 
 namespace uw::fuzz {

@@ -1,5 +1,5 @@
+#include "core/scene/scene_desc.h"
 #include "core/scene/scene_limits.h"
-#include "core/scene/yaml/scene_reader.h"
 #include "fuzz/fuzzing.h"
 
 // The scene file, and the limits that its values are held to.

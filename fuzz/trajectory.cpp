@@ -1,4 +1,4 @@
-#include "core/motion/files/pose_file_reader.h"
+#include "core/scene/pose_file.h"
 #include "fuzz/fuzzing.h"
 
 // Files of poses, each as one of every format, since none has a mark of its own.

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "fuzz/fuzzing.h"
-#include "media/vdb/vdb_file.h"
-#include "media/vdb/vdb_header_reader.h"
-#include "media/vdb/vdb_inspect.h"
+#include "media/volumes/vdb_file.h"
+#include "media/volumes/vdb_header.h"
+#include "media/volumes/vdb_inspect.h"
 
 namespace uw::fuzz {
 

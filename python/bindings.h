@@ -2,8 +2,9 @@
 
 #include <pybind11/pybind11.h>
 
-/// The parts of the compiled module, each in a file of its name.
 namespace uw {
+
+/// The parts of the compiled module, each in a file of its name.
 
 void bind_errors(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);

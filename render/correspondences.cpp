@@ -4,13 +4,12 @@
 
 #include <algorithm>
 
-#include "camera/image_size.h"
+#include "camera/camera.h"
 #include "core/base/error.h"
-#include "core/surfaces/geometry_scene.h"
+#include "core/geometry/geometry_scene.h"
 #include "render/exposure.h"
-#include "render/object_motion.h"
 #include "render/resolved_scene.h"
-#include "render/scene_motion.h"
+#include "render/view_matcher.h"
 
 namespace uw {
 

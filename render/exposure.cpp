@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "core/integrators/integrator_table.h"
-#include "render/object_motion.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/light/integrator_table.h"
+#include "core/passes/pixel_layers.h"
 #include "render/resolved_scene.h"
-#include "render/scene_motion.h"
+#include "render/view_matcher.h"
 
 namespace uw {
 
@@ -15,7 +17,7 @@ namespace {
 
 // Poses that a camera's motion is interpolated from, smoothly and then linearly. Where it turns by
 // a right angle, the second is off by 1e-5 rad.
-constexpr int k_poses = 33, k_steps = 257;
+constexpr int k_poses = 33, k_table_size = 257;
 // Moments between which things are taken to move straight on, to tell how far.
 constexpr int k_moments = 9;
 // Image positions whose points are followed, in a row; in a column as many.
@@ -69,17 +71,17 @@ class Track {
 };
 
 /// A point that the camera sees, or may see.
-struct SeenPoint {
+struct TrackedPoint {
     Point3 position;
     std::uint32_t object = 0;  // whose surface it is on; 0: it is in the water
 };
 
 // What the image shows: surfaces, or water at an optical depth of one.
-std::vector<SeenPoint> seen_points(const AssembledScene& scene) {
+std::vector<TrackedPoint> seen_points(const AssembledScene& scene) {
     const Camera& camera = *scene.camera;
     const Medium& medium = scene.water.medium;
     const double attenuation = medium.uniform.attenuation().greatest(medium.wavelengths_nm.size());
-    std::vector<SeenPoint> points;
+    std::vector<TrackedPoint> points;
     for (int j = 0; j < k_positions; ++j)
         for (int i = 0; i < k_positions; ++i) {
             const auto ray = camera.refracted_ray((i + 0.5) / k_positions * camera.width(),
@@ -94,8 +96,8 @@ std::vector<SeenPoint> seen_points(const AssembledScene& scene) {
 }
 
 // An object smaller than the distance of these points is seen by its origin.
-std::vector<SeenPoint> origins(const SceneDesc& scene, const SurfaceNames& names) {
-    std::vector<SeenPoint> points;
+std::vector<TrackedPoint> origins(const SceneDesc& scene, const SurfaceNames& names) {
+    std::vector<TrackedPoint> points;
     for (std::size_t i = 0; i < names.objects.size(); ++i) {
         const GeometryDesc& entry = scene.geometry[names.objects[i].entry];
         if (entry.type == GeometryDesc::Type::plane) continue;
@@ -122,8 +124,9 @@ std::shared_ptr<const CameraMotion> camera_motion(const SceneDesc& scene, const 
     if (!moves) return nullptr;
     const Trajectory trajectory(poses, Interpolation::smooth);
     std::vector<Affine> table;
-    for (int i = 0; i < k_steps; ++i)
-        table.push_back(trajectory.at(span.begin + span.length() * i / (k_steps - 1)).affine());
+    for (int i = 0; i < k_table_size; ++i)
+        table.push_back(
+            trajectory.at(span.begin + span.length() * i / (k_table_size - 1)).affine());
     return std::make_shared<CameraMotion>(std::move(table), span);
 }
 
@@ -157,7 +160,7 @@ Exposure::Exposure(const AssembledScene& scene) : scene_(scene) {
 void Exposure::measure(const std::vector<SceneDesc>& moments) {
     const SceneDesc& now = scene_.desc;
     const SurfaceNames& names = scene_.surfaces->names();
-    std::vector<SeenPoint> points = seen_points(scene_);
+    std::vector<TrackedPoint> points = seen_points(scene_);
     std::vector<ObjectMotions> motions;
     std::vector<Camera> cameras;
     std::vector<std::string> no_warnings;  // files of an exposure are one
@@ -167,9 +170,9 @@ void Exposure::measure(const std::vector<SceneDesc>& moments) {
         moves_surfaces_ = moves_surfaces_ || then.geometry != now.geometry;
     }
     if (moves_surfaces_)
-        for (const SeenPoint& origin : origins(now, names)) points.push_back(origin);
+        for (const TrackedPoint& origin : origins(now, names)) points.push_back(origin);
     const Camera& still = *scene_.camera;
-    for (const SeenPoint& point : points) {
+    for (const TrackedPoint& point : points) {
         Track view, surface;
         std::vector<Track> light(now.lamps.size());
         for (std::size_t m = 0; m < moments.size(); ++m) {
@@ -248,6 +251,117 @@ AssembledScene Exposure::part(int part) const {
     scene.total_samples = parts_ * samples_of_part_;
     scene.first_sample = part * samples_of_part_;
     return scene;
+}
+
+namespace {
+
+/// The rows of `window` that have a share of a part; all of them for forward scatter, whose light
+/// comes from everywhere.
+PixelWindow rows_of_part(const Exposure& exposure, int part, bool needs_all,
+                         const PixelWindow& window) {
+    if (needs_all) return window;
+    PixelWindow rows = window;
+    while (rows.y0 < rows.y1 && exposure.share(part, rows.y0) == 0) ++rows.y0;
+    while (rows.y1 > rows.y0 && exposure.share(part, rows.y1 - 1) == 0) --rows.y1;
+    return rows;
+}
+
+void find_truth(const AssembledScene& scene, const Camera& camera, const LightTransport& transport,
+                const PointMatchers& matchers, const LayerPlan& plan, Film& film,
+                const std::function<bool(int row)>& is_wanted) {
+    const PixelRenderer pixels(camera, scene.lit(), transport, {}, {}, SensorModel(scene.desc), {},
+                               matchers);
+    const PixelWindow& window = film.window();
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        thread_local PixelResult result;
+        const int y = window.y0 + static_cast<int>(line);
+        for (int x = window.x0; x < window.x1 && is_wanted(y); ++x) {
+            pixels.find_truth(x, y, result);
+            store_truth(result, plan, film.pixel(x, y));
+        }
+    });
+}
+
+/// Tells what the parts have reached as if they were one image.
+class ReachedByParts {
+  public:
+    ReachedByParts(const ImageCallbacks& reached, int parts) : reached_(reached), parts_(parts) {}
+
+    ImageCallbacks of_part() {
+        return {[this](const PathAccuracy& part) { paths_ = part; },
+                [this](double error) { multiple_ = std::max(multiple_, error); },
+                [this](std::size_t count) { snow_ = std::max(snow_, count); }};
+    }
+    /// The errors of the parts' light paths are independent.
+    void finish_part() {
+        samples_ += paths_.samples;
+        if (paths_.error) squares_ += *paths_.error * *paths_.error;
+    }
+    void finish(int samples_of_pixel) const {
+        if (samples_ > 0 && reached_.paths) {
+            PathAccuracy all{samples_of_pixel, {}};
+            if (squares_ > 0) all.error = std::sqrt(squares_) / parts_;
+            reached_.paths(all);
+        }
+        if (multiple_ > 0 && reached_.multiple) reached_.multiple(multiple_);
+        if (snow_ > 0 && reached_.particles) reached_.particles(snow_);
+    }
+
+  private:
+    const ImageCallbacks& reached_;
+    int parts_;
+    PathAccuracy paths_;
+    int samples_ = 0;
+    double squares_ = 0, multiple_ = 0;
+    std::size_t snow_ = 0;  // particles of the part with the most
+};
+
+}  // namespace
+
+void render_exposure(const Exposure& exposure, const AssembledScene& scene,
+                     const LightTransport& transport, const LightOfPart& light_of_part,
+                     const LayerPlan& plan, const BandColour& colour, Film& film,
+                     const RenderProgress& progress, const ImageCallbacks& reached,
+                     const PointMatchers& matchers) {
+    const SceneDesc& desc = scene.desc;
+    if (desc.water.snow && desc.water.snow->in_ground_truth)
+        throw InputError(
+            "water.snow.ground_truth: held is for images in which nothing but the snow moves while "
+            "the shutter is open; give --set water.snow.ground_truth=ignored");
+    const bool scatters_forward = desc.water.forward_scatter.K > 0;
+    const LightTerms terms{scatters_forward,
+                           scattering_of(desc.render) == RenderDesc::Scattering::multiple,
+                           desc.water.snow.has_value()};
+    const int parts = exposure.part_count();
+    ReachedByParts reached_by_parts(reached, parts);
+    ExposureMean mean(plan, terms, colour, film);
+    const Camera truth_camera = camera_of_truth(desc);
+    const bool truth_differs = exposure.is_rolling() && exposure.moves_surfaces();
+    for (int k = 0; k < parts; ++k) {
+        const auto tell = [&](const std::string& stage, double fraction) {
+            const double done = stage == "render" ? fraction : stage == "forward scatter" ? 1 : 0;
+            return progress("render", (k + done) / parts);
+        };
+        if (!tell("", 0)) throw Interrupted();
+        const AssembledScene part = exposure.part(k);
+        const DeepShadows light = light_of_part(part);
+        const LightTransport part_transport = make_light_transport(part, light);
+        const PixelWindow rows = rows_of_part(exposure, k, scatters_forward, film.window());
+        if (rows.y0 < rows.y1) {
+            Film image(film.width(), film.height(), rows, film.channel_names());
+            render_scene(part, light, part_transport, plan, colour, image, tell,
+                         {.samples = exposure.samples_of_part()}, reached_by_parts.of_part());
+            reached_by_parts.finish_part();
+            mean.add(image, [&](int row) { return exposure.share(k, row); });
+        }
+        if (truth_differs)
+            find_truth(part, truth_camera, part_transport, matchers, plan, film,
+                       [&](int row) { return exposure.has_middle(k, row); });
+    }
+    mean.finish();
+    if (!truth_differs)
+        find_truth(scene, truth_camera, transport, matchers, plan, film, [](int) { return true; });
+    reached_by_parts.finish(samples_of(desc.render));
 }
 
 }  // namespace uw

@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/integrators/integrator_table.h"
-#include "media/water/particle_derivative.h"
+#include "core/light/integrator_table.h"
+#include "media/water/water_model.h"
 #include "render/exposure.h"
 
 namespace uw {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/base/available_memory.h"
-#include "core/optics/optical_depth.h"
+#include "core/light/medium.h"
 
 namespace uw {
 

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/colour/colour_response.h"
-#include "core/integrators/integrator_table.h"
-#include "render/exposed_image.h"
-#include "render/far_lamps.h"
+#include "core/image/colour.h"
+#include "core/light/integrator_table.h"
+#include "render/exposure.h"
+#include "render/scene_assembly.h"
 
 namespace uw {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/sensor/camera_sensor.h"
+#include "core/image/camera_sensor.h"
 #include "render/correspondences.h"
 #include "render/light_splatter.h"
 #include "render/resolved_scene.h"

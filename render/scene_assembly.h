@@ -7,15 +7,14 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "core/integrators/deep_shadow.h"
-#include "core/integrators/light_transport.h"
-#include "core/integrators/lit_scene.h"
-#include "core/integrators/slabs.h"
+#include "core/geometry/geometry_scene.h"
+#include "core/light/integrator.h"
+#include "core/light/integrator_kind.h"
+#include "core/light/slabs.h"
 #include "core/scene/scene_desc.h"
-#include "core/surfaces/mesh_store.h"
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
-#include "render/snow/snow_model.h"
+#include "render/marine_snow.h"
 
 namespace uw {
 
@@ -78,5 +77,15 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
 /// the result; and with light weighted by its path.
 LightTransport make_single_scattering(const AssembledScene& scene, const DeepShadows& deep_shadows,
                                       const Medium& medium, const PathWeight& path_weight);
+
+/// The optical depth, in the clearest band, that the light of the nearest lamp passes to where
+/// light paths from the camera begin: the camera, or a surface in view that the lamp lights. With
+/// columns of the volumes. None without lamps.
+std::optional<double> depth_of_nearest_lamp(const AssembledScene& scene);
+
+/// One line about lamps too far away for the fast form of multiple scattering: its paths begin at
+/// the camera and seldom come near such lamps, so that few of them carry nearly all the light. None
+/// where it is not what the scene is rendered by.
+std::optional<std::string> far_lamp_warning(const AssembledScene& scene);
 
 }  // namespace uw

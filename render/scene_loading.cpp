@@ -1,11 +1,23 @@
 #include "render/scene_loading.h"
 
-#include "camera/calibration/calibration.h"
-#include "core/meshes/gltf/gltf_time_range.h"
-#include "core/motion/files/trajectory_loading.h"
-#include "core/scene/variations/variations_reader.h"
-#include "core/scene/yaml/config_node.h"
-#include "core/scene/yaml/scene_reader.h"
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "camera/calibration.h"
+#include "camera/camera.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/geometry/gltf_reader.h"
+#include "core/geometry/mesh_reader.h"
+#include "core/light/integrator_table.h"
+#include "core/scene/key_path.h"
+#include "core/scene/pose_file.h"
+#include "core/scene/scene_desc.h"
+#include "core/scene/variations.h"
+#include "core/scene/yaml_document.h"
 
 namespace uw {
 
@@ -74,6 +86,184 @@ SceneDesc load_scene_text(std::string_view text, const std::filesystem::path& fi
     const ConfigNode tree = scene_tree(text, file);
     read_variations(tree, file);
     return load_scene_tree(tree, file);
+}
+
+namespace {
+
+constexpr std::size_t k_longest_value = 80;    // in messages
+constexpr std::size_t k_longest_values = 300;  // likewise, of all of them
+
+/// Where a drawn value comes from, as the place of faults in it.
+std::string origin_of(const DrawnValue& value, int variation) {
+    return fmt::format("{}: variation {}: {}", value.where, variation,
+                       printable(value.override_text(), k_longest_value));
+}
+
+void refuse_overrides_of_drawn(const ConfigNode& tree, const VariationsDesc& desc,
+                               const std::vector<std::string>& overrides) {
+    for (const std::string& text : overrides)
+        for (const std::string& key : drawn_keys(desc))
+            if (is_part_of(tree, text.substr(0, text.find('=')), key))
+                throw UsageError(fmt::format(
+                    "--set {}: the variations draw {}, so this would have no effect; leave it out, "
+                    "or take the key out of variations",
+                    printable(text, k_longest_value), printable(key)));
+}
+
+}  // namespace
+
+SceneVariations::SceneVariations(const std::filesystem::path& file,
+                                 const std::vector<std::string>& overrides)
+    : file_(file), tree_(read_scene_tree(file, overrides)), desc_(read_variations(tree_, file)) {
+    if (desc_) refuse_overrides_of_drawn(tree_, *desc_, overrides);
+}
+
+SceneVariations::SceneVariations(ConfigNode tree, std::filesystem::path file)
+    : file_(std::move(file)), tree_(std::move(tree)), desc_(read_variations(tree_, file_)) {}
+
+VariedScene SceneVariations::varied(int variation, const SceneArrays* arrays) const {
+    ConfigNode tree = tree_;
+    const std::vector<DrawnValue> drawn = values(variation);
+    try {
+        for (const DrawnValue& value : drawn) {
+            const std::string place = origin_of(value, variation);
+            set_value(tree, value.key, parse_yaml_value(value.text, place), place);
+        }
+        SceneDesc desc = load_scene_tree(tree, file_, arrays);
+        return {std::move(tree), std::move(desc)};
+    } catch (const InputError& fault) {
+        // What lies in one of the values says so itself.
+        const std::string_view what = fault.what();
+        for (const DrawnValue& value : drawn)
+            if (what.starts_with(origin_of(value, variation))) throw;
+        throw InputError(fmt::format("{} (variation {}: {})", what, variation,
+                                     printable(values_text(drawn), k_longest_values)));
+    } catch (const IoError& fault) {
+        throw IoError(fmt::format("{} (variation {}: {})", fault.what(), variation,
+                                  printable(values_text(drawn), k_longest_values)));
+    }
+}
+
+namespace {
+
+RenderDesc::Integrator integrator_named(const std::string& name) {
+    for (const auto& [known, integrator] : k_integrator_names)
+        if (name == known) return integrator;
+    throw UsageError(fmt::format("--integrator: unknown '{}'; use {}", printable(name),
+                                 alternatives(words_of(k_integrator_names))));
+}
+
+RenderDesc::Quality quality_named(const std::string& name) {
+    for (const auto& [known, quality] : k_quality_names)
+        if (name == known) return quality;
+    throw UsageError(
+        fmt::format("--quality: unknown '{}'; use draft, final or exact", printable(name)));
+}
+
+}  // namespace
+
+void apply_request(const ImageRequest& request, SceneDesc& scene) {
+    RenderDesc& render = scene.render;
+    if (!request.quality.empty()) render.quality = quality_named(request.quality);
+    if (!request.integrator.empty()) render.integrator = integrator_named(request.integrator);
+    const IntegratorKind& kind = integrator_kind(render.integrator);
+    if (render.quality == RenderDesc::Quality::draft) render.samples = kind.draft_samples;
+    if (request.samples && request.error)
+        throw UsageError("--samples and --error: each says how long to go on; give one of them");
+    if (request.samples) render.samples = *request.samples;
+    const int most = kind.traces_paths ? k_most_paths : k_most_samples;
+    if (samples_of(render) > most)
+        throw UsageError(fmt::format(
+            "{}: expected 1 to {}, found {}; only integrator path takes more",
+            request.samples ? "--samples" : "render.samples", most, samples_of(render)));
+    if (request.size) resize_images(scene, (*request.size)[0], (*request.size)[1]);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Walks through a scene description and collects the files that it names.
+class InputCollection {
+  public:
+    explicit InputCollection(MeshSideFiles& known) : known_(known) {}
+
+    void add(const SceneDesc& scene) {
+        add(scene.file, "the scene", true);
+        add(scene.camera);
+        for (const RigCameraDesc& entry : scene.cameras) add(entry.camera);
+        add(scene.rig_trajectory);
+        if (scene.water.scattering) add(scene.water.scattering->phase);
+        for (const VolumeDesc& volume : scene.volumes) add(volume);
+        for (const GeometryDesc& geometry : scene.geometry) add(geometry);
+        for (const LampDesc& lamp : scene.lamps) {
+            add_named(lamp.profile, "a lamp profile of the scene");
+            if (lamp.spectrum) add(*lamp.spectrum, "a lamp spectrum of the scene");
+            add(lamp.trajectory);
+        }
+        const ColourDesc& colour = scene.render.colour;
+        add(colour.file, "the response of the scene");
+        if (colour.white) add(*colour.white, "the white light of the scene");
+    }
+    std::vector<InputFile> take() && { return std::move(files_); }
+
+  private:
+    void add(const fs::path& file, const char* what, bool is_hashed = false) {
+        if (!file.empty()) files_.push_back({file, what, is_hashed});
+    }
+    void add(const CameraDesc& camera) {
+        if (camera.calibration) add(camera.calibration->file, "a calibration of the scene", true);
+        add(camera.trajectory);
+        if (!camera.sensor) return;
+        add(camera.sensor->quantum_efficiency.file, "the quantum efficiency of a sensor");
+        add(camera.sensor->image.response.file, "the response curve of a camera");
+    }
+    void add(const std::optional<TrajectoryDesc>& trajectory) {
+        if (trajectory) add(trajectory->file, "a trajectory of the scene", true);
+    }
+    // The file of those alternatives of a variant that have one.
+    void add_named(const auto& variant, const char* what) {
+        std::visit(
+            [&](const auto& desc) {
+                if constexpr (requires { desc.file; }) add(desc.file, what);
+            },
+            variant);
+    }
+    void add(const PhaseDesc& phase) { add_named(phase.function, "a phase function of the scene"); }
+    void add(const LampSpectrumDesc& spectrum, const char* what) {
+        if (spectrum.type == LampSpectrumDesc::Type::file) add(spectrum.file, what);
+    }
+    void add(const VolumeDesc& volume) {
+        add(volume.file, "a volume of the scene");
+        if (volume.motion) add(volume.motion->file, "a velocity file of the scene");
+        for (const GridMappingDesc& grid : volume.grids)
+            if (grid.optics && grid.optics->phase) add(*grid.optics->phase);
+    }
+    void add(const GeometryDesc& geometry) {
+        add(geometry.trajectory);
+        if (geometry.type != GeometryDesc::Type::file) return;
+        add(geometry.file, "a mesh of the scene");
+        const auto [found, is_new] = known_.try_emplace(geometry.file);
+        if (is_new) found->second = files_named_by_mesh(geometry.file);
+        for (const fs::path& file : found->second)
+            add(file, "a texture, buffer or material library of a mesh");
+    }
+
+    MeshSideFiles& known_;
+    std::vector<InputFile> files_;
+};
+
+}  // namespace
+
+std::vector<InputFile> input_files(const SceneDesc& scene, MeshSideFiles& known) {
+    InputCollection collection(known);
+    collection.add(scene);
+    return std::move(collection).take();
+}
+
+std::vector<InputFile> input_files(const SceneDesc& scene) {
+    MeshSideFiles known;
+    return input_files(scene, known);
 }
 
 }  // namespace uw

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/frame/multiple_light.h"
-#include "core/frame/render_film.h"
-#include "core/integrators/integrator_table.h"
-#include "core/integrators/sensor.h"
-#include "core/snow/snow_layer.h"
-#include "render/snow/snow_placing.h"
+#include "core/image/image_quantity.h"
+#include "core/light/integrator_table.h"
+#include "core/passes/multiple_light.h"
+#include "core/passes/render_film.h"
+#include "core/passes/snow_image.h"
+#include "render/marine_snow.h"
 
 namespace uw {
 

@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "core/colour/colour.h"
-#include "core/forward/forward_pass.h"
-#include "core/frame/path_film.h"
+#include "core/image/colour.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
+#include "core/passes/forward_pass.h"
+#include "core/passes/path_film.h"
 #include "media/light/deep_shadow_map.h"
 #include "render/scene_assembly.h"
 

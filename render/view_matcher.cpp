@@ -1,8 +1,29 @@
 #include "render/view_matcher.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "core/geometry/gltf_reader.h"
+
 namespace uw {
+
+bool is_in_image(const ImagePoint& pixel, const Camera& camera) {
+    return pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.width() && pixel.y <= camera.height();
+}
+
+SeenPoint seen_point(const Point3& world, const Camera& camera, const Surfaces& surfaces) {
+    if (std::isnan(world.x + world.y + world.z)) return {};
+    const std::optional<ImagePoint> pixel = camera.project(world);
+    if (!pixel) return {};
+    const std::optional<Ray> ray = camera.refracted_ray(pixel->x, pixel->y);
+    if (!ray) return {};
+    SeenPoint seen{*pixel, distance(ray->origin, world), is_in_image(*pixel, camera)};
+    seen.visible = seen.in_image && !surfaces.occluded(ray->origin, world);
+    return seen;
+}
 
 ViewMatcher::ViewMatcher(Camera camera, ObjectMotions motions,
                          std::shared_ptr<const Surfaces> surfaces)
@@ -42,6 +63,56 @@ void ViewMatcher::match(std::span<const SurfaceHit* const> hits,
     blocked.resize(within.size());
     surfaces_->occluded_many(from, to, blocked);
     for (std::size_t i = 0; i < within.size(); ++i) within[i]->is_occluded = blocked[i] != 0;
+}
+
+namespace {
+
+std::optional<Affine> inverse_of(const Affine& map) {
+    const double determinant = map.determinant();
+    if (determinant == 0 || !std::isfinite(determinant)) return std::nullopt;
+    return map.inverse();
+}
+
+/// Of the `count` objects of one entry of `geometry`.
+ObjectMotions motions_of(const GeometryDesc& now, const GeometryDesc& then, std::size_t count,
+                         std::vector<std::string>& warnings) {
+    if (now.file != then.file) {
+        warnings.push_back(fmt::format(
+            "{}: no flow: its files are one for each frame, and do not say which points of one "
+            "are which of the next; animate one glTF file instead",
+            now.where));
+        return ObjectMotions(count, std::nullopt);
+    }
+    const Affine object_from_world = now.world_from_object.inverse();
+    if (!now.animation)
+        return ObjectMotions(count, now.world_from_object == then.world_from_object
+                                        ? Affine()
+                                        : then.world_from_object * object_from_world);
+    const std::vector<Affine> before = gltf_placements(now.file, now.time.value_or(0));
+    const std::vector<Affine> after = gltf_placements(then.file, then.time.value_or(0));
+    ObjectMotions motions(count);
+    for (std::size_t i = 0; i < std::min({count, before.size(), after.size()}); ++i) {
+        // A node that is scaled to nothing shows no points.
+        if (const auto node_from_file = inverse_of(before[i]))
+            motions[i] = then.world_from_object * after[i] * *node_from_file * object_from_world;
+    }
+    return motions;
+}
+
+}  // namespace
+
+ObjectMotions object_motions(const SceneDesc& now, const SceneDesc& then, const SurfaceNames& names,
+                             std::vector<std::string>& warnings) {
+    if (now.geometry == then.geometry) return {};
+    std::vector<std::size_t> counts(now.geometry.size(), 0);
+    for (const SurfaceName& object : names.objects) ++counts.at(object.entry);
+    ObjectMotions motions;
+    for (std::size_t entry = 0; entry < now.geometry.size(); ++entry) {
+        const ObjectMotions own =
+            motions_of(now.geometry[entry], then.geometry[entry], counts[entry], warnings);
+        motions.insert(motions.end(), own.begin(), own.end());
+    }
+    return motions;
 }
 
 }  // namespace uw

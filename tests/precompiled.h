@@ -24,7 +24,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/affine.h"
 #include "core/base/error.h"
-#include "core/base/vec.h"
+#include "core/base/vector_math.h"
 #include "core/scene/scene_desc.h"

@@ -11,9 +11,9 @@
 
 #include "bench/support/value_noise.h"
 #include "core/base/error.h"
-#include "core/base/vec.h"
-#include "core/files/atomic_file.h"
-#include "media/vdb/vdb_writer.h"
+#include "core/base/output_files.h"
+#include "core/base/vector_math.h"
+#include "media/volumes/vdb_writer.h"
 
 namespace uw::bench {
 namespace {

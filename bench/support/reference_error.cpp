@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/integrators/reference_integrator.h"
+#include "core/light/reference_integrator.h"
 
 namespace uw::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/support/generated_files.h"
-#include "core/files/scratch_folder.h"
+#include "core/base/output_files.h"
 #include "core/scene/scene_desc.h"
 
 namespace uw::bench {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/base/vec.h"
+#include "core/base/vector_math.h"
 
 namespace uw::bench {
 

@@ -1,10 +1,80 @@
 #pragma once
 
-#include "cli/info/draft_contrast.h"
-#include "cli/info/scene_proposal.h"
+#include <string>
+#include <vector>
+
+#include "core/base/ray.h"
+#include "core/image/film.h"
 #include "core/scene/volume_desc.h"
+#include "render/scene_assembly.h"
 
 namespace uw {
+
+/// How clearly the volumes of a scene are seen, from two pictures of it. Light is that of the
+/// picture's R, G and B as luminance, so water and backscatter before the volumes count.
+struct DraftContrast {
+    /// Of a pixel: |with - without| / max(without, mean of the picture without). Here the 99th
+    /// percentile of the pixels that see the volumes.
+    double contrast = 0;
+    /// Fraction of the image whose rays pass through the volumes before any surface.
+    double seen = 0;
+    /// Median luminance of these pixels, relative to the 99th percentile of the whole picture,
+    /// which previews show as 0.8.
+    double brightness = 0;
+    /// 90th percentile of the optical depth of the volumes along these rays, in the middle band.
+    double depth = 0;
+};
+
+/// Compares a picture of `scene` with one of the same scene without its volumes: same camera, same
+/// size.
+DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, const Film& without);
+
+/// Makes `desc` that of a small, quickly rendered picture of the same view: light scattered once,
+/// draft quality, at most `width` pixels wide.
+void make_draft(SceneDesc& desc, int width);
+
+/// The width of drafts, and of those of volumes too small to be seen in these.
+inline constexpr int k_draft_width = 128, k_fine_draft_width = 512;
+/// Of the image: volumes that cover less need the finer draft.
+inline constexpr double k_least_seen = 0.002;
+
+/// A plume that changes the picture by less than this will hardly be noticed; at the second it is
+/// plain to see.
+inline constexpr double k_hardly_seen = 0.05, k_plain_to_see = 0.3;
+
+/// A lamp with a beam just wide enough for what it is aimed at.
+struct ProposedLamp {
+    std::string name;
+    Point3 position;       // world [m]
+    Vector3 direction;     // world, unit
+    double beam = 0;       // full angle [degrees]
+    double intensity = 0;  // on the axis [W/sr], the same in all bands
+};
+
+/// A view of what lies within a box: camera, lamps, a floor under it and the water.
+struct SceneProposal {
+    Point3 eye, target;
+    std::vector<ProposedLamp> lamps;
+    double floor = 0;   // world y [m]
+    std::string water;  // preset
+    double size = 0;    // of the box, by which lengths are rounded when written [m]
+};
+
+/// The camera that proposals have [pixels, degrees].
+inline constexpr int k_proposed_width = 960, k_proposed_height = 540;
+inline constexpr double k_proposed_fov = 60;
+
+/// From the side on which the box is broad, a little above, so near that it just fits into nine
+/// tenths of the picture. One lamp beside the camera and one behind the box, both out of the
+/// picture, so that they light the box and little of the water before it.
+SceneProposal propose_scene(const Bounds& bounds);
+
+/// The scene file without its volumes: `uwvdb: 1`, camera, water, geometry and lamps.
+std::string proposal_yaml(const SceneProposal& proposal);
+
+/// A length, or three, as text: to a thousandth of `size`, however far from the origin.
+std::string length_text(double length, double size);
+std::string point_text(const Point3& point, double size);
 
 /// A proposed scene and how well it shows its volume.
 struct PlumeView {

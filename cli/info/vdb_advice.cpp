@@ -1,19 +1,500 @@
 #include "cli/info/vdb_advice.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 
-#include "cli/info/grid_choice.h"
-#include "cli/info/placement_advice.h"
-#include "cli/info/vdb_concentration.h"
+#include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/text.h"
+#include "core/light/medium.h"
 #include "media/volumes/adaptive_domain.h"
+#include "media/volumes/grid_field.h"
+#include "media/volumes/load_volumes.h"
+#include "media/volumes/vdb_header.h"
+#include "media/water/water_model.h"
 
 namespace uw {
+
+namespace {
+
+bool contains_any(const std::string& text, std::initializer_list<const char*> parts) {
+    return std::ranges::any_of(
+        parts, [&](const char* part) { return text.find(part) != std::string::npos; });
+}
+
+/// Distances to a surface, in grids whose class does not say so.
+bool is_level_set_in_disguise(const GridInspection& grid) {
+    return grid.values && grid.summary.grid_class != "fog volume" &&
+           grid.values->background_value > 0 && grid.values->negative > 0;
+}
+
+std::string list(const std::vector<std::string>& names) {
+    return fmt::format("'{}'", fmt::join(names, "', '"));
+}
+
+void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
+    const GridInspection* const chosen = likeliest_grid(inspection);
+    if (chosen == nullptr) {
+        advice.lines.push_back("Nothing to map: no grid of this file is a concentration.");
+        return;
+    }
+    for (const GridInspection& grid : inspection.grids)
+        if (grid.summary.base_name == chosen->summary.base_name && can_be_mapped(grid)) {
+            advice.map.push_back(grid.summary.name);
+            advice.bounds.extend(grid.world_bounds);
+        }
+    const int best = concentration_likelihood(chosen->summary.base_name);
+    const char* const why = best == 4   ? "the name says density"
+                            : best == 3 ? "by its name a concentration"
+                            : best == 2 ? "the only likely one; its name says nothing"
+                                        : "no density in this file, and this is the closest to it: "
+                                          "check that it is what you mean";
+    if (advice.map.size() == 1)
+        advice.lines.push_back(fmt::format("Map {}: {}.", list(advice.map), why));
+    else
+        advice.lines.push_back(
+            fmt::format("{} grids are called '{}': address them as {}. Map those you mean.",
+                        advice.map.size(), chosen->summary.base_name, list(advice.map)));
+}
+
+/// Grids with valid values that hold something other than a concentration.
+void say_what_to_leave(const VdbInspection& inspection, VdbAdvice& advice) {
+    std::vector<std::string> others;
+    for (const GridInspection& grid : inspection.grids) {
+        const bool mapped = std::ranges::count(advice.map, grid.summary.name) > 0;
+        if (mapped || !can_be_mapped(grid)) continue;
+        if (concentration_likelihood(grid.summary.base_name) < 2)
+            others.push_back(grid.summary.name);
+    }
+    if (!others.empty())
+        advice.lines.push_back(fmt::format("Not a concentration by name: {}.", list(others)));
+}
+
+void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
+    const std::string name = fmt::format("Grid '{}' ", grid.summary.name);
+    const auto say = [&](const std::string& text) { advice.lines.push_back(name + text + "."); };
+    if (!grid.unusable.empty()) say(grid.unusable);
+    if (grid.unusable.empty() && is_level_set_in_disguise(grid))
+        say("is a level set, though its class does not say so (its background is above 0, its "
+            "inside negative), not a concentration; export a fog volume");
+    if (grid.unusable.empty() && !grid.unread.empty()) say("cannot be read: " + grid.unread);
+    if (grid.active_voxels == 0) say("is empty: it has no active voxels");
+    if (!grid.values || grid.values->active == 0 || !grid.unusable.empty()) return;
+    const ValueSummary& v = *grid.values;
+    if (v.nan > 0)
+        say(fmt::format("has {} NaN among its {} values: they count as 0", v.nan, v.active));
+    if (v.infinite > 0) say(fmt::format("has {} infinite values: they count as 0", v.infinite));
+    if (v.negative > 0 && v.negative < v.finite && !is_level_set_in_disguise(grid))
+        say(fmt::format("has {} negative values: they count as 0", v.negative));
+    if (v.finite > 0 && v.max <= 0)
+        say(fmt::format("has no value above 0 (from {:g} to {:g}): it would be invisible", v.min,
+                        v.max));
+    if (v.background_value != 0 && !is_level_set_in_disguise(grid))
+        say("has a background of " + v.background + ": it counts as 0 outside the active voxels");
+}
+
+}  // namespace
+
+std::string lower_case(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+bool can_be_mapped(const GridInspection& grid) {
+    return grid.unusable.empty() && grid.unread.empty() && grid.values && grid.values->max > 0 &&
+           !is_level_set_in_disguise(grid);
+}
+
+int concentration_likelihood(const std::string& name) {
+    const std::string text = lower_case(name);
+    if (contains_any(text, {"shadow", "vel", "phi_", "pressure", "divergence", "curl", "color",
+                            "flags", "sdf", "surface", "distance", "normal", "particle_id",
+                            "gradient", "collision", "mask"}) ||
+        text == "cd" || text == "v" || text == "id" || text == "rest")
+        return 0;
+    if (contains_any(text, {"temp", "heat", "flame", "fire", "fuel", "react", "burn", "emission"}))
+        return 1;
+    if (text.find("density") != std::string::npos) return 4;
+    if (contains_any(text, {"smoke", "fog", "cloud", "dust", "plume", "concentration", "sediment",
+                            "soot", "dye", "tracer", "ppm", "silt"}))
+        return 3;
+    return 2;
+}
+
+const GridInspection* likeliest_grid(const VdbInspection& inspection) {
+    int best = 0;
+    const GridInspection* chosen = nullptr;
+    for (const GridInspection& grid : inspection.grids) {
+        if (!can_be_mapped(grid)) continue;
+        const int likelihood = concentration_likelihood(grid.summary.base_name);
+        if (likelihood <= best) continue;
+        best = likelihood;
+        chosen = &grid;
+    }
+    return chosen;
+}
+
+void choose_grids(const VdbInspection& inspection, VdbAdvice& advice) {
+    say_what_to_map(inspection, advice);
+    say_what_to_leave(inspection, advice);
+}
+
+void say_what_is_wrong(const VdbInspection& inspection, VdbAdvice& advice) {
+    for (const GridInspection& grid : inspection.grids) say_what_is_wrong(grid, advice);
+}
+
+namespace {
+
+constexpr std::size_t k_most_sampled = 6;
+constexpr std::size_t k_most_faults = 3;
+
+/// Whether a grid of the file may hold a concentration, as far as its header tells.
+bool may_hold_something(const VdbHeader& header) {
+    return std::ranges::any_of(header.grids, [](const GridSummary& grid) {
+        return unusable_because(grid).empty() && concentration_likelihood(grid.base_name) > 0 &&
+               grid.active_voxels.value_or(1) > 0;
+    });
+}
+
+}  // namespace
+
+FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vector<int>& frames) {
+    FrameSurvey survey;
+    const auto guarded = [&](int frame, const auto& look) {
+        const std::filesystem::path file = file_of_frame(pattern, frame);
+        try {
+            look(file, printable(file.filename().string(), 300));
+        } catch (const std::runtime_error& error) {
+            if (survey.faults.size() < k_most_faults) survey.faults.emplace_back(error.what());
+        }
+    };
+    std::vector<int> candidates;
+    for (const int frame : frames)
+        guarded(frame, [&](const std::filesystem::path& file, const std::string& name) {
+            const bool holds = may_hold_something(read_vdb_header(file, name));
+            (holds ? candidates : survey.empty).push_back(frame);
+        });
+    const std::size_t count = std::min(candidates.size(), k_most_sampled);
+    for (std::size_t n = 0; n < count; ++n) {
+        const int frame = candidates[count == 1 ? 0 : n * (candidates.size() - 1) / (count - 1)];
+        guarded(frame, [&](const std::filesystem::path& file, const std::string& name) {
+            SampledFrame sampled{frame, inspect_vdb(file, name)};
+            if (likeliest_grid(sampled.inspection) != nullptr)
+                survey.sampled.push_back(std::move(sampled));
+            else
+                survey.empty.push_back(frame);
+        });
+    }
+    std::ranges::sort(survey.empty);
+    return survey;
+}
+
+std::vector<double> largest_values(const FrameSurvey& survey) {
+    std::vector<double> values;
+    for (const SampledFrame& frame : survey.sampled)
+        values.push_back(likeliest_grid(frame.inspection)->values->max);
+    return values;
+}
+
+namespace {
+
+// Larger than lamps can light under water; too small to be the intended size [m].
+constexpr double k_too_large = 12, k_too_small = 0.05;
+constexpr double k_convenient = 2;  // what is brought to scale becomes this large
+
+double longest_side(const Bounds& b) {
+    return std::max({b.max.x - b.min.x, b.max.y - b.min.y, b.max.z - b.min.z});
+}
+
+// Farther from the origin than a scene is wide [m].
+constexpr double k_far = 1000;
+
+bool lacks(const VdbInspection& inspection, const std::string& part) {
+    return std::ranges::none_of(inspection.grids, [&](const GridInspection& grid) {
+        return lower_case(grid.summary.base_name).find(part) != std::string::npos;
+    });
+}
+
+/// Whether the grid leaves at most a margin of its domain free on every side but above and below,
+/// as frames of an adaptive domain do.
+bool fills_its_domain(const GridInspection& grid) {
+    constexpr int k_margin = 8;  // Blender's own is 4 voxels, and what a step moves
+    const auto& domain = grid.summary.base_resolution;
+    if (!domain || !grid.box) return false;
+    for (const std::size_t axis : {0U, 1U})
+        if (grid.box->min[axis] > k_margin || (*domain)[axis] - 1 - grid.box->max[axis] > k_margin)
+            return false;
+    return true;
+}
+
+void say_adaptive_domain(const VdbInspection& inspection, VdbAdvice& advice) {
+    if (const auto domain = find_adaptive_domain(inspection.header)) {
+        advice.lines.push_back("The voxel size is wrong: " + domain->description() + ".");
+        if (domain->voxel) return;
+        const double step = std::pow(10, std::floor(std::log10(domain->largest_voxel())) - 3);
+        advice.voxel_size = std::floor(domain->largest_voxel() / step + 1e-6) * step;
+        return;
+    }
+    for (const GridInspection& grid : inspection.grids)
+        if (grid.summary.name == advice.map.front() && fills_its_domain(grid) &&
+            !read_fluid_config(inspection.header.file))
+            advice.lines.emplace_back(
+                "It fills its domain. If 'Adaptive Domain' (Physics > Fluid > Settings) was on in "
+                "Blender, the file's voxels are too large: give voxel_size, the domain's longest "
+                "side divided by its Resolution Divisions.");
+}
+
+void say_axes(const VdbInspection& inspection, VdbAdvice& advice) {
+    const VdbHeader& header = inspection.header;
+    if (header.from_blender_fluid()) {
+        advice.lines.emplace_back(
+            "Up is z, values sit in the middle of cells: a cache of Blender's fluid solver, "
+            "recognised by its grids. Index (0, 0, 0) is the domain's corner; the file does not "
+            "record where that is: translate it there, (x, y, z) in Blender is [x, z, -y] here.");
+        say_adaptive_domain(inspection, advice);
+        return;
+    }
+    if (header.from_embergen()) {
+        advice.lines.push_back(fmt::format(
+            "Up is z, values sit at nodes (index i at i times the voxel): written by EmberGen, "
+            "recognised by its metadata or its grid 'flames'.{}",
+            lacks(inspection, "density")
+                ? " It has no density: tick that channel in the export node, if the smoke is meant."
+                : ""));
+        return;
+    }
+    const bool houdini = header.from_houdini();
+    advice.lines.push_back(fmt::format(
+        "Up is y, values sit at nodes (index i at i times the voxel): {}.{}",
+        houdini ? fmt::format("written by Houdini, as its creator '{}' says", header.creator)
+                : "nothing in the file says otherwise",
+        houdini ? ""
+                : " If it lies on its side, write up: z; if half a voxel off, centering: cell."));
+}
+
+/// Decides `translate`.
+void say_place(VdbAdvice& advice) {
+    const Vector3 centre = advice.scale * from_origin(advice.bounds.center());
+    if (!(glm::length(centre) > k_far) || !std::isfinite(glm::length(centre))) return;
+    advice.translate = -glm::round(centre);
+    advice.lines.push_back(fmt::format(
+        "It lies {:.3g} m from the origin, as if in the coordinates of a map: the block brings it "
+        "to the origin; give cameras, lamps and surfaces the same translation.",
+        glm::length(centre)));
+}
+
+std::string size_of(const VdbAdvice& advice) {
+    return fmt::format("{:.3g} m", longest_side(advice.bounds));
+}
+
+/// Decides `scale`.
+void say_size(const VdbInspection& inspection, VdbAdvice& advice) {
+    const double side = longest_side(advice.bounds);
+    if (!(side > 0) || !std::isfinite(side)) return;
+    bool unit_voxels = false;
+    for (const GridInspection& grid : inspection.grids)
+        if (grid.summary.name == advice.map.front())
+            unit_voxels = grid.voxel_size == Vector3(1.0, 1.0, 1.0);
+    const double power = std::pow(10, std::floor(std::log10(k_convenient / side)));
+    const double fitting = power * std::floor(k_convenient / side / power);
+    const auto plausible = [&](double scale) {
+        return side * scale >= 0.2 && side * scale <= 0.5 * k_too_large;
+    };
+    if (unit_voxels) {
+        advice.scale = fitting;
+        advice.lines.push_back(fmt::format(
+            "Units look wrong: a voxel is exactly 1 m, as if no size was set, and the whole {}. "
+            "Give its true size with transform.scale; {:g} makes it {:.3g} m.",
+            size_of(advice), fitting, fitting * side));
+    } else if (side > k_too_large) {
+        advice.scale = plausible(0.01) ? 0.01 : fitting;
+        advice.lines.push_back(
+            fmt::format("Units look wrong: {} is more than lamps can light under water; {} scale "
+                        "{:g} makes it {:.3g} m.",
+                        size_of(advice), plausible(0.01) ? "if these are centimetres," : "",
+                        advice.scale, advice.scale * side));
+    } else if (side < k_too_small) {
+        advice.scale = plausible(100) ? 100 : fitting;
+        advice.lines.push_back(fmt::format(
+            "Units look wrong: {} is very small; {} scale {:g} makes it {:.3g} m.", size_of(advice),
+            plausible(100) ? "if it was scaled by 1/100 on export," : "", advice.scale,
+            advice.scale * side));
+    } else {
+        advice.lines.push_back(
+            fmt::format("Units are plausible: {} along its longest side.", size_of(advice)));
+    }
+}
+
+}  // namespace
+
+void say_motion(const VdbInspection& inspection, VdbAdvice& advice) {
+    const auto has = [&](const std::string& name) {
+        return std::ranges::any_of(inspection.grids, [&](const GridInspection& grid) {
+            return grid.summary.name == name && grid.unread.empty() && grid.active_voxels != 0;
+        });
+    };
+    // velocity_previous, vel_before and the like are those of another moment.
+    std::string grid;
+    for (const GridInspection& candidate : inspection.grids)
+        if (candidate.summary.value_type == "vec3s" && has(candidate.summary.name) &&
+            lower_case(candidate.summary.base_name).starts_with("vel") &&
+            (grid.empty() || candidate.summary.name.size() < grid.size()))
+            grid = candidate.summary.name;
+    if (grid.empty() && has("vel.x") && has("vel.y") && has("vel.z"))
+        grid = "[vel.x, vel.y, vel.z]";
+    if (grid.empty()) return;
+    advice.lines.push_back(
+        fmt::format("It moves: for motion blur add velocity: {{grid: {}}} to the volume, and the "
+                    "exposure time in "
+                    "seconds as render: {{shutter: 0.02}}.{}",
+                    grid,
+                    inspection.header.from_blender_fluid()
+                        ? " Its unit is 2.5 voxels a second, as in Blender's solver."
+                        : " Its unit is taken to be m/s."));
+}
+
+void say_placement(const VdbInspection& inspection, VdbAdvice& advice) {
+    say_axes(inspection, advice);
+}
+
+void say_units(const VdbInspection& inspection, VdbAdvice& advice) {
+    say_size(inspection, advice);
+    say_place(advice);
+}
+
+namespace {
+
+constexpr double k_wanted_depth = 1.5;
+constexpr double k_large_per_small = 5;
+constexpr std::size_t k_wanted_band = 1;  // of the default bands: 540 nm
+constexpr int k_lines = 24;               // across each side
+
+double round_to_two_digits(double value) {
+    const double power = std::pow(10, std::floor(std::log10(value)) - 1);
+    return std::round(value / power) * power;
+}
+
+Affine placing(const VdbAdvice& advice) {
+    return Affine::translation(advice.translate) * Affine::scale(Vector3(advice.scale));
+}
+
+VolumeDesc describe(const VdbInspection& inspection, const VdbAdvice& advice) {
+    VolumeDesc desc;
+    desc.file = inspection.header.file;
+    desc.where = desc.file.filename().string();
+    desc.world_from_upright = placing(advice);
+    desc.voxel_size = advice.voxel_size;
+    for (const std::string& name : advice.map) {
+        GridMappingDesc mapping;
+        mapping.grid = name;
+        mapping.where = desc.where;
+        mapping.small_ppm = 1;
+        mapping.large_ppm = k_large_per_small;
+        desc.grids.push_back(mapping);
+    }
+    return desc;
+}
+
+/// The optical depth per band across the densest voxel, which lines may miss in a sparse grid.
+std::vector<double> across_voxel(const LoadedVolume& volume, const Medium& medium) {
+    const AttenuationTable attenuation(medium);
+    std::vector<double> depth(static_cast<std::size_t>(medium.band_count()));
+    for (const VolumeReport& report : volume.reports) {
+        const Vector3& h = report.metres_per_voxel;
+        std::vector<double> columns(static_cast<std::size_t>(medium.constituent_count()));
+        for (const ConstituentReport& part : report.constituents)
+            columns[static_cast<std::size_t>(part.constituent)] +=
+                part.max * std::min({h.x, h.y, h.z});
+        for (int band = 0; band < medium.band_count(); ++band) {
+            double& most = depth[static_cast<std::size_t>(band)];
+            most = std::max(most, attenuation.optical_depth(band, 0, columns));
+        }
+    }
+    return depth;
+}
+
+/// The largest optical depth per band of `depth` and of the lines along `axis`, which are spaced
+/// evenly over the bounds.
+std::vector<double> deepest(const GridField& field, const Medium& medium, const Bounds& bounds,
+                            int axis, std::vector<double> depth) {
+    AttenuationTable attenuation(medium);
+    attenuation.uniform = {};
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    std::vector<double> columns(static_cast<std::size_t>(medium.constituent_count()));
+    for (int i = 0; i < k_lines; ++i)
+        for (int j = 0; j < k_lines; ++j) {
+            Point3 a = bounds.min, b = bounds.max;
+            a[u] = b[u] = bounds.min[u] + (i + 0.5) / k_lines * (bounds.max[u] - bounds.min[u]);
+            a[v] = b[v] = bounds.min[v] + (j + 0.5) / k_lines * (bounds.max[v] - bounds.min[v]);
+            field.column(a, b, columns);
+            for (int band = 0; band < medium.band_count(); ++band) {
+                const auto n = static_cast<std::size_t>(band);
+                depth[n] = std::max(depth[n], attenuation.optical_depth(band, 0, columns));
+            }
+        }
+    return depth;
+}
+
+}  // namespace
+
+void start_concentrations(const VdbInspection& inspection, VdbAdvice& advice) {
+    const VolumeDesc desc = describe(inspection, advice);
+    const WaterDesc water;
+    const WaterModel model = build_water_model(water, {desc});
+    LoadedVolume volume = load_volume(desc, model.loads[0]);
+    const std::vector<double> least = across_voxel(volume, model.medium);
+    const GridField field(std::move(volume.grids), model.medium.constituent_count());
+    advice.bounds = Bounds();
+    for (const GridVolume& grid : field.volumes()) advice.bounds.extend(grid.voxel_bounds());
+    std::array<std::vector<double>, 3> depths;
+    for (int axis = 0; axis < 3; ++axis)
+        depths[static_cast<std::size_t>(axis)] =
+            deepest(field, model.medium, advice.bounds, axis, least);
+    std::ranges::sort(depths, {}, [](const std::vector<double>& d) { return d[k_wanted_band]; });
+
+    advice.small_ppm = round_to_two_digits(k_wanted_depth / depths[1][k_wanted_band]);
+    advice.large_ppm = k_large_per_small * advice.small_ppm;
+    advice.bands_nm = water.bands_nm;
+    advice.optical_depth.clear();
+    for (const double depth : depths[1]) advice.optical_depth.push_back(depth * advice.small_ppm);
+}
+
+void choose_concentrations(const VdbInspection& inspection, const Bounds& others,
+                           VdbAdvice& advice) {
+    start_concentrations(inspection, advice);
+    const Affine world_from_upright = placing(advice);
+    if (!others.empty())
+        for (const Point3& corner : {others.min, others.max})
+            advice.bounds.extend(world_from_upright * corner);
+    VolumeDesc desc = describe(inspection, advice);
+    for (GridMappingDesc& mapping : desc.grids) {
+        mapping.small_ppm = advice.small_ppm;
+        mapping.large_ppm = advice.large_ppm;
+    }
+    advice.view = view_plume(desc, advice.bounds);
+    const double small_ppm = round_to_two_digits(advice.view.factor * advice.small_ppm);
+    for (double& depth : advice.optical_depth) depth *= small_ppm / advice.small_ppm;
+    advice.small_ppm = small_ppm;
+    advice.large_ppm = k_large_per_small * small_ppm;
+    const double contrast = advice.view.draft.contrast;
+    advice.lines.push_back(fmt::format(
+        "small: {:g} and large: {:g} ppm per unit give an optical depth of about {:.2g} at {:g} nm "
+        "through the densest part, and a contrast of {:.0f} % in a draft of the scene that --scene "
+        "prints (in {}): {}. Your own plume's concentration may differ.",
+        advice.small_ppm, advice.large_ppm, advice.optical_depth[k_wanted_band],
+        advice.bands_nm[k_wanted_band], 100 * contrast, advice.view.proposal.water,
+        contrast >= k_plain_to_see ? "neither invisible nor black"
+                                   : "it will hardly be seen; a smaller transform.scale brings "
+                                     "camera and lamps nearer"));
+}
 
 namespace {
 

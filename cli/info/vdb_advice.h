@@ -1,13 +1,99 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "cli/info/advice.h"
-#include "cli/info/frame_survey.h"
-#include "media/vdb/vdb_inspect.h"
+#include "cli/info/plume_view.h"
+#include "core/base/ray.h"
+#include "media/volumes/vdb_inspect.h"
 
 namespace uw {
+
+/// How to use a file's grids, in words and as part of a scene.
+struct VdbAdvice {
+    std::vector<std::string> lines;  // one sentence or two each
+    std::vector<std::string> map;    // the grids to map, as scenes address them; empty: none is fit
+    std::optional<double> voxel_size;  // to give, where the file's is known to be wrong [m]
+    double scale = 1;                  // to apply, 1 where the file's size is plausible
+    Vector3 translate{0};  // to apply: 0, or what brings a faraway volume to the origin [m]
+    double small_ppm = 0, large_ppm = 0;  // per unit of grid value
+    std::vector<double> bands_nm;
+    /// Of the mapped grids alone, with these concentrations, per band: through their densest part,
+    /// along the world axis with the median value of this.
+    std::vector<double> optical_depth;
+    /// YAML, ready to paste into a scene; empty where nothing can be mapped.
+    std::string volumes;
+    Bounds bounds;  // of the mapped grids in the world, as placed by the block [m]
+    /// Camera, lamps, floor and water that show the volume, and how clearly.
+    PlumeView view;
+    std::string scene;  // YAML, a whole scene of these and the volume; empty as `volumes` is
+};
+
+/// ASCII letters in lower case, for names in which case means nothing.
+std::string lower_case(std::string text);
+
+/// How likely a grid of this name holds a concentration: 0 certainly not, 1 something else from
+/// which a concentration can be guessed (heat, flames), 2 unknown, 3 likely, 4 a density.
+int concentration_likelihood(const std::string& name);
+
+/// Whether a grid's values can be concentrations, whatever its name.
+bool can_be_mapped(const GridInspection& grid);
+
+/// The likeliest concentration of those that can be mapped; nullptr if there is none.
+const GridInspection* likeliest_grid(const VdbInspection& inspection);
+
+/// Decides `advice.map`, sets `advice.bounds` to what these grids hold, and says why and what else
+/// there is.
+void choose_grids(const VdbInspection& inspection, VdbAdvice& advice);
+
+/// Says what is wrong with each grid's values.
+void say_what_is_wrong(const VdbInspection& inspection, VdbAdvice& advice);
+
+/// One frame of a sequence, with what is in it.
+struct SampledFrame {
+    int frame = 0;
+    VdbInspection inspection;
+};
+
+/// What the frames of a sequence hold.
+struct FrameSurvey {
+    std::vector<int> empty;             // by their headers hold nothing that could be mapped
+    std::vector<SampledFrame> sampled;  // some of the others, spread evenly from first to last
+    std::vector<std::string> faults;    // of frames that cannot be read, one line each
+
+    /// The first of the sampled frames; nullptr if none holds anything.
+    const SampledFrame* first() const { return sampled.empty() ? nullptr : &sampled.front(); }
+};
+
+/// Reads the headers of all `frames` that exist of the sequence, and all of a few of them.
+FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vector<int>& frames);
+
+/// The largest value of the grid likeliest to be a concentration, per sampled frame.
+std::vector<double> largest_values(const FrameSurvey& survey);
+
+/// Says which way is up and where values lie, by the program that wrote the file, and decides
+/// `advice.voxel_size`. Precondition of all three: `advice.map` is decided.
+void say_placement(const VdbInspection& inspection, VdbAdvice& advice);
+
+/// Says whether the size is plausible, by `advice.bounds`, and decides `advice.scale` and
+/// `advice.translate`.
+void say_units(const VdbInspection& inspection, VdbAdvice& advice);
+
+/// Says how to blur it by its motion, if the file has velocities.
+void say_motion(const VdbInspection& inspection, VdbAdvice& advice);
+
+/// Chooses `small_ppm` and `large_ppm` of the grids in `advice.map`, at `advice.scale`, such that
+/// the optical depth is 1.5 at 540 nm, with small and large particles each contributing about half
+/// of it. Fills in `optical_depth` and `bounds`. Throws InputError if the grids cannot be loaded.
+void start_concentrations(const VdbInspection& inspection, VdbAdvice& advice);
+
+/// Begins with these and goes on, by drafts, to what makes the plume plain to see; decides
+/// `advice.view`, extends `bounds` by those of `others`, which are in the file's size and place,
+/// and adds a line about it.
+void choose_concentrations(const VdbInspection& inspection, const Bounds& others,
+                           VdbAdvice& advice);
 
 /// Advice on one file; reads the grids to map once more and renders drafts of them. `file`: its
 /// name to write into the scene.

@@ -26,4 +26,15 @@ struct VdbReport {
     VdbAdvice advice;
 };
 
+/// A report for people: grids, advice, and the block to paste.
+std::string vdb_text(const VdbReport& report);
+
+/// "none", "zip", "blosc, active values only" and so on.
+std::string compression_of(const GridSummary& grid);
+/// How many bits its numbers have in the file: "half", "float", "fp8" and so on.
+std::string precision_of(const GridSummary& grid);
+
+/// A report as one JSON object (docs/command-line.md).
+std::string vdb_json(const VdbReport& report);
+
 }  // namespace uw

@@ -7,13 +7,12 @@
 
 #include "cli/console.h"
 #include "cli/grid_summary.h"
+#include "cli/process.h"
 #include "cli/render/image_output.h"
-#include "cli/render/irradiance_export.h"
-#include "cli/stop_signal.h"
 #include "core/base/available_memory.h"
-#include "core/base/stop.h"
-#include "core/image/preview.h"
-#include "core/integrators/integrator_table.h"
+#include "core/base/error.h"
+#include "core/image/pixel_image.h"
+#include "core/light/integrator_table.h"
 #include "render/image_header.h"
 
 namespace uw {

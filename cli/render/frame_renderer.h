@@ -8,14 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "cli/progress.h"
-#include "cli/render/background_task.h"
+#include "cli/console.h"
 #include "cli/render/frame_sequence.h"
+#include "cli/render/image_output.h"
 #include "cli/render/render_arguments.h"
-#include "cli/render/sensor_image.h"
-#include "cli/render/sequence_clock.h"
-#include "cli/render/stats.h"
-#include "core/image/image_metadata.h"
+#include "cli/render/run_stats.h"
+#include "core/image/pixel_image.h"
 #include "render/renderer.h"
 
 namespace uw {

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/numbers/picture_parts.h"
-#include "core/image/exr_options.h"
-#include "render/image_request.h"
+#include "cli/command.h"
+#include "cli/render/picture_numbers.h"
+#include "core/image/exr_file.h"
+#include "render/scene_loading.h"
 #include "render/scene_rendering.h"
 
 namespace uw {
@@ -62,5 +63,11 @@ struct RenderArguments {
     ImageRequest image() const { return {quality, integrator, samples, error, size}; }
     PathRequest paths() const { return {.error = error, .orders = orders.value_or(0)}; }
 };
+
+/// What `uwvdb render --help` ends with.
+extern const char* const k_render_examples;
+
+/// The options of `uwvdb render`, written to `arguments`.
+Options render_options(RenderArguments& arguments);
 
 }  // namespace uw

@@ -5,11 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "cli/validate/direct_sum.h"
-#include "cli/validate/image_differences.h"
+#include "cli/validate/validation_methods.h"
 #include "core/base/error.h"
-#include "core/integrators/quadrature_integrator.h"
-#include "core/integrators/reference_integrator.h"
+#include "core/light/reference_integrator.h"
 
 namespace uw {
 

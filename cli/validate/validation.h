@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/validate/plane_sums.h"
 #include "cli/validate/validation_methods.h"
 
 namespace uw {

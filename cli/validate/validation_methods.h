@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/base/spectrum.h"
 #include "render/renderer.h"
 
 namespace uw {
@@ -63,5 +65,62 @@ void render_forward_scatter(TrialScene& trial, const LightTransport& transport, 
 /// Pixels whose water ray meets no shadow edge and no hard edge of a lamp's beam, row by row: where
 /// a sum over slabs converges with the square of their thickness.
 std::vector<char> smooth_pixels(const TrialScene& trial);
+
+/// Pixels darker than this fraction of the mean are compared with that, where nothing else is said.
+inline constexpr double k_dark = 0.01;
+
+/// The mean of one band.
+double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band);
+
+/// The largest difference of `a` relative to `b` over the pixels that `counted` marks; those darker
+/// than the fraction `dark` of b's mean count as that bright.
+double largest_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
+                          const std::vector<char>& counted, std::size_t band, double dark);
+
+/// The RMS of the differences, relative to b's mean.
+double rms_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
+                      std::size_t band);
+
+/// One sum over slabs, compared with the limit of many.
+struct PlanesStep {
+    int count = 0;
+    double error = 0;  // largest relative difference to the limit over smooth pixels and bands
+    double order = 0;  // log2 of how much smaller it is than with half the slabs; 0 for the first
+};
+
+/// McGlamery's sums of backscatter over ever more slabs of uniform water.
+struct PlaneSums {
+    MethodImage limit;            // of infinitely many slabs
+    MethodImage finest, coarser;  // the sum over the most slabs, and that over half as many
+    std::vector<PlanesStep> steps;
+};
+
+struct PlaneSumOptions {
+    double tolerance;  // sums are refined while they change by more [relative]
+    int most_planes;   // slabs of the finest sum, and more where it is still rough
+    std::function<bool()> proceed;
+    std::function<void(const std::string&)> say;  // gets the name of each sum
+};
+
+/// Doubles the number of slabs until the largest change over the pixels that `smooth` marks is
+/// within the tolerance, and at least up to `most_planes`; beyond that not for more than some 20
+/// seconds. The midpoint rule's error falls with the square of the thickness, so the limit is
+/// (4 fine - coarse) / 3 (Richardson); where a shadow's edge crosses the ray it falls with the
+/// thickness only, and the limit may be off by as much as the last two sums differ.
+PlaneSums sum_planes_to_limit(const TrialScene& uniform, const std::vector<char>& smooth,
+                              const PlaneSumOptions& options);
+
+/// The name of the sum over `count` slabs.
+std::string planes_name(int count);
+
+/// Forward scatter of the light of surfaces (physics section 6; the paper's equations 14 and 16) in
+/// uniform water, written out as a sum over all pairs of pixels: every pixel's light times the
+/// closed form of its own kernel over every other pixel and its mirror images at the borders. No
+/// transforms, no interpolated kernel widths, no float: shares nothing with ForwardPass but the
+/// focal lengths in the water. Surfaces are lit by `lighting`. Cost: pixels^2. Throws Interrupted
+/// if `proceed` returns false.
+std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial,
+                                            const SurfaceLighting& lighting,
+                                            const std::function<bool()>& proceed);
 
 }  // namespace uw

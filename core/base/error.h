@@ -1,11 +1,16 @@
 #pragma once
 
+#include <atomic>
 #include <exception>
 #include <new>
 #include <stdexcept>
 #include <string>
 
 namespace uw {
+
+/// The location of an entry in the scene file, for messages: "plume.yaml:14:7: volumes[0].file".
+/// For an entry that is not in a file, its key path alone, or empty.
+using SourceLocation = std::string;
 
 /// A user's file (scene, VDB, mesh) is wrong. `what()` is one line: where, what, how to fix it. The
 /// program ends with exit code 3.
@@ -36,5 +41,31 @@ inline const char* line_of(const std::exception& error) {
     return "out of memory; render a smaller --size or --crop, fewer --layers or a --quality draft, "
            "or use smaller volumes, meshes and textures";
 }
+
+/// As long as it lives, what its thread does, and what it runs by parallel_for, ends with
+/// Interrupted once `stop` is set: at the next throw_if_stopped(). One within another replaces it
+/// for the time being.
+class StopScope {
+  public:
+    explicit StopScope(const std::atomic<bool>& stop) : StopScope(&stop) {}
+    /// Null: nothing stops the work.
+    explicit StopScope(const std::atomic<bool>* stop);
+    ~StopScope();
+    StopScope(const StopScope&) = delete;
+    StopScope& operator=(const StopScope&) = delete;
+    StopScope(StopScope&&) = delete;
+    StopScope& operator=(StopScope&&) = delete;
+
+    /// That of the calling thread; null if there is none.
+    static const std::atomic<bool>* of_this_thread();
+
+  private:
+    const std::atomic<bool>* previous_;
+};
+
+/// Throws Interrupted where the calling thread's work is to stop. It costs some nanoseconds: work
+/// is to ask before each ray, path or step that it takes, and never to do more than some
+/// milliseconds' worth without asking. Not to be called from within Embree.
+void throw_if_stopped();
 
 }  // namespace uw

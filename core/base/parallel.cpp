@@ -7,7 +7,7 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_scheduler_observer.h>
 
-#include "core/base/stop.h"
+#include "core/base/error.h"
 
 namespace uw {
 

@@ -47,4 +47,8 @@ enum class NumberText : std::uint8_t { number, not_finite, out_of_range, no_numb
 /// Parses all of `text` as a decimal number, regardless of the locale.
 NumberText parse_number(std::string_view text, double& value);
 
+/// The offset of the first byte that is not part of UTF-8 text (RFC 3629), or is a control
+/// character other than tab, line feed and carriage return; the size of `bytes` if there is none.
+std::size_t first_non_text(std::string_view bytes);
+
 }  // namespace uw

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/base/stop.h"
-#include "core/colour/colour.h"
-#include "core/image/image_reader.h"
+#include "core/base/error.h"
+#include "core/image/colour.h"
+#include "core/image/image_file.h"
 
 namespace uw {
 namespace {

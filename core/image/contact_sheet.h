@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <span>
 
-#include "core/image/preview.h"
+#include "core/image/pixel_image.h"
 
 namespace uw {
 

@@ -1,15 +1,70 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "core/files/output_file.h"
-#include "core/image/exr_options.h"
+#include "core/base/output_files.h"
 #include "core/image/film.h"
-#include "core/image/image_metadata.h"
+#include "core/image/pixel_image.h"
 
 namespace uw {
+
+/// How the lines of an EXR are compressed, all without loss: not at all, by deflate each line by
+/// itself, or in blocks of 16.
+enum class ExrCompression : std::uint8_t { none, zips, zip };
+
+struct ExrChannel {
+    std::string name;
+    bool is_half = false;  // else a 32-bit float
+};
+
+/// How an image is stored as an EXR.
+struct ExrOptions {
+    /// Of the channels of light (is_light); all others are 32-bit floats. Automatic: half floats,
+    /// whose 11 bits are finer than the image is exact, where R G B A and `total` are its only
+    /// light and half floats can hold it (half_loss); else 32-bit floats, whose layers add up.
+    enum class Precision { automatic, half, single };
+    Precision precision = Precision::automatic;
+    ExrCompression compression = ExrCompression::zip;
+};
+
+/// Their words on the command line.
+inline constexpr std::array<std::pair<std::string_view, ExrOptions::Precision>, 3>
+    k_precision_names{{{"auto", ExrOptions::Precision::automatic},
+                       {"half", ExrOptions::Precision::half},
+                       {"float", ExrOptions::Precision::single}}};
+inline constexpr std::array<std::pair<std::string_view, ExrCompression>, 3> k_compression_names{
+    {{"zip", ExrCompression::zip}, {"zips", ExrCompression::zips}, {"none", ExrCompression::none}}};
+
+/// What half floats cannot hold of the light of an image.
+struct HalfLoss {
+    std::size_t too_large = 0;  // finite values that would become infinite
+    /// Whether the mean of a channel is so small, and not 0, that the rounding of small values to
+    /// multiples of 2^-24 is more than 1e-4 of it.
+    bool too_dark = false;
+
+    bool is_none() const { return too_large == 0 && !too_dark; }
+};
+HalfLoss half_loss(const Film& film);
+
+/// The channels of `film`, sorted by name, as they are to be stored.
+std::vector<ExrChannel> exr_channels(const Film& film, ExrOptions::Precision precision);
+
+/// Whether an image with these channels may have been stored with this precision.
+bool is_stored_with(ExrOptions::Precision precision, std::span<const ExrChannel> channels);
+
+/// Whether each attribute in the headers of an EXR file is as long as it says: OpenEXR makes room
+/// for an attribute, and fills it with zeros, before it looks whether the file holds as much. What
+/// else may be wrong is left to OpenEXR. False if the file cannot be read.
+bool exr_attributes_fit(const std::filesystem::path& file);
 
 /// The header of an OpenEXR file of one part, stored by scanlines from the top.
 struct ExrHeader {

@@ -9,7 +9,6 @@
 
 #include "core/base/available_memory.h"
 #include "core/base/error.h"
-#include "core/base/stop.h"
 
 namespace uw {
 

@@ -11,7 +11,7 @@ namespace uw {
 
 /// The layers of an image (docs: image layers) besides the colour R G B A, in the order in which
 /// their channels are stored. Each has a line in k_layers, and one in k_pixel_layers
-/// (core/frame/pixel_layers.h), which defines how it is filled from a pixel.
+/// (core/passes/pixel_layers.h), which defines how it is filled from a pixel.
 enum class Layer {
     total,
     direct,

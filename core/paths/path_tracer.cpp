@@ -4,21 +4,324 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/fast_exp.h"
-#include "core/integrators/integrator.h"
-#include "core/integrators/ray_panels.h"
-#include "core/paths/choice.h"
-#include "core/paths/path_tables.h"
-#include "core/paths/path_walk.h"
+#include "core/base/numerics.h"
+#include "core/light/integrator.h"
+#include "core/light/ray_panels.h"
+#include "core/paths/scattering_tables.h"
 
 namespace uw {
+
+namespace {
+
+// The indices of each lamp's first emitter, and of the one after the last.
+std::vector<std::size_t> first_emitters(const std::vector<Lamp>& emitters) {
+    std::vector<std::size_t> first;
+    for (std::size_t i = 0; i < emitters.size(); ++i)
+        if (emitters[i].index() == first.size()) first.push_back(i);
+    first.push_back(emitters.size());
+    return first;
+}
+
+}  // namespace
+
+std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters) {
+    const std::vector<std::size_t> first = first_emitters(emitters);
+    std::size_t most = 1;
+    for (std::size_t j = 0; j + 1 < first.size(); ++j)
+        most = std::max(most, first[j + 1] - first[j]);
+    std::vector<LampView> views(most);
+    for (std::size_t j = 0; j + 1 < first.size(); ++j) {
+        const std::size_t count = first[j + 1] - first[j];
+        for (std::size_t e = 0; e < count; ++e) {
+            // Evenly among the views, each emitter as bright as it is in few of them.
+            const std::size_t begin = e * most / count, end = (e + 1) * most / count;
+            const double weight = static_cast<double>(most) / static_cast<double>(end - begin);
+            const Lamp& emitter = emitters[first[j] + e];
+            for (std::size_t view = begin; view < end; ++view) {
+                views[view].lamps.push_back(count == 1 ? emitter : emitter.brightened(weight));
+                views[view].emitters.push_back(first[j] + e);
+            }
+        }
+    }
+    return views;
+}
+
+namespace {
+
+// The probability to go on for what may still arrive, relative to the light of the path's pixel,
+// and its limits: below, spared paths would outweigh the rest.
+constexpr double k_thoroughness = 3;
+constexpr double k_least_survival = 0.25, k_least_lobe_survival = 0.2, k_most_survival = 0.97;
+// Where much more may arrive than the light of the path's pixel, as in front of a surface close to
+// a lamp, a path splits: into these many branches relative to it, each with its share of the light.
+// In all it has no more than the limit, or the paths of a black pixel might never end.
+constexpr double k_splitting = 0.3, k_most_branches = 16;
+// Of a surface, as far as paths head for it.
+constexpr double k_least_reflectance = 0.1;
+// How far rays begin above the surface they leave, relative to the coordinates and to the last
+// segment: above the rounding of single precision, in which surfaces are found.
+constexpr double k_offset = 4e-7;
+
+Point3 above(const SurfaceHit& hit) {
+    const double scale = std::max({std::abs(hit.position.x), std::abs(hit.position.y),
+                                   std::abs(hit.position.z), hit.distance});
+    return hit.position + (k_offset * scale) * hit.geometric_normal;
+}
+
+}  // namespace
+
+/// A direction in which a path may go on from a vertex.
+struct PathWalk::Continuation {
+    Spectrum response;                   // PathVertex::respond
+    double own_density = 0;              // of PathVertex::draw
+    std::vector<double> lobe_densities;  // by lamp, of PathVertex::draw_lobe
+    double density = 0;                  // the sum of them
+    double value = 0;  // what may still arrive at the camera from there [W m^-2 sr^-1]
+};
+
+/// Per thread: paths do not allocate.
+struct PathWalk::Workspace {
+    /// A branch of a path that has yet to be followed.
+    struct Pending {
+        PathState state;
+        Ray ray;
+    };
+
+    WaterSegment segment, lobe_segment;
+    WaterPoint point;
+    Spectrum transmittance;
+    std::vector<double> c, shares, cumulative;
+    PathVertex vertex;
+    Continuation along_own, along_lobe;
+    std::vector<double> chosen_lamp;  // a weight for each
+    std::vector<Pending> pending;
+};
+
+PathWalk::Workspace& PathWalk::workspace_of_thread() {
+    thread_local Workspace workspace;
+    return workspace;
+}
+
+void PathWalk::from_water(const WaterSegment& segment, const WaterPoint& point) {
+    PathVertex& vertex = workspace_of_thread().vertex;
+    const Point3 x = segment.ray.at(point.distance);
+    vertex.scatter(tables_.vertices, x, segment.ray.direction, point, state_.throughput);
+    ++state_.scatterings;
+    follow(leave(x));
+}
+
+void PathWalk::from_surface(const WaterSegment& segment) {
+    PathVertex& vertex = workspace_of_thread().vertex;
+    vertex.reflect(tables_.vertices, segment, state_.throughput);
+    ++state_.reflections;
+    follow(leave(above(segment.hit)));
+}
+
+void PathWalk::mirror(const WaterSegment& segment) {
+    PathVertex& vertex = workspace_of_thread().vertex;
+    vertex.reflect(tables_.vertices, segment, state_.throughput);
+    ++state_.reflections;
+    leave(above(segment.hit), true);
+}
+
+// Gathers along a direction of the vertex's own and along one around a lamp, weighted against each
+// other by the balance heuristic (Veach and Guibas 1995). The path may go on along both, each with
+// a probability in proportion to what may still arrive from there: drawing one of them each time
+// would let throughputs grow from vertex to vertex, and taking none of the second kind would miss
+// the paths that head for the bright water at a lamp.
+bool PathWalk::leave(const Point3& origin, bool is_last) {
+    Workspace& w = workspace_of_thread();
+    const PathVertex& vertex = w.vertex;
+    const std::size_t bands = tables_.optics.bands();
+    const std::optional<DrawnLobe> lobe = vertex.draw_lobe(random_);
+    const std::optional<DrawnDirection> own = vertex.draw(random_);
+    const double of_lobe = random_.next(), of_own = random_.next();
+    if (lobe) continuation(lobe->direction, w.along_lobe);
+    if (own) continuation(own->direction, w.along_own);
+    // The probabilities to go on. Less than one branch does on average, or paths might never end.
+    double by_lobe = lobe && !is_last ? survival(w.along_lobe, k_least_lobe_survival) : 0;
+    double by_own = own && !is_last ? survival(w.along_own, k_least_survival) : 0;
+    const double excess = (by_lobe + by_own) / k_most_survival;
+    if (excess > 1) {
+        by_lobe /= excess;
+        by_own /= excess;
+    }
+    if (lobe) {
+        gather_along(*lobe, w.along_lobe, origin);
+        if (of_lobe < by_lobe)
+            w.pending.push_back({continued(w.along_lobe, by_lobe), {origin, lobe->direction}});
+    }
+    if (!own) return false;
+    PathState state = state_;
+    for (std::size_t b = 0; b < bands; ++b)
+        state.throughput[b] *= w.along_own.response[b] / own->density;
+    for (double& weight : w.along_own.lobe_densities)
+        weight = own->density / (own->density + weight);
+    trace({origin, own->direction});
+    tables_.lamps.gather_from_water(w.segment, w.along_own.lobe_densities, state, random_, terms_);
+    double seen = 0;
+    if (w.segment.has_hit)
+        seen =
+            tables_.lamps.gather_from_surface(w.segment, w.transmittance, state, random_, terms_);
+    if (by_own > 0) by_own = branches(w.along_own.value + seen, by_own, by_lobe);
+    if (of_own >= by_own) return false;
+    state_ = continued(w.along_own, by_own);
+    state_.branches *= std::max(1.0, by_own);
+    for (double n = of_own + 1; n < by_own; ++n)
+        w.pending.push_back({state_, {origin, own->direction}});
+    return true;
+}
+
+// The single-scattered light of a lamp around which a direction was drawn.
+void PathWalk::gather_along(const DrawnLobe& lobe, const Continuation& along,
+                            const Point3& origin) {
+    Workspace& w = workspace_of_thread();
+    PathState state = state_;
+    const double density = lobe.density + along.own_density;
+    for (std::size_t b = 0; b < tables_.optics.bands(); ++b)
+        state.throughput[b] *= along.response[b] / density;
+    w.chosen_lamp.assign(along.lobe_densities.size(), 0.0);
+    w.chosen_lamp[lobe.lamp] = 1;
+    tables_.optics.trace_briefly({origin, lobe.direction}, w.lobe_segment);
+    tables_.lamps.gather_from_water(w.lobe_segment, w.chosen_lamp, state, random_, terms_);
+}
+
+void PathWalk::continuation(const Vector3& direction, Continuation& along) const {
+    const PathVertex& vertex = workspace_of_thread().vertex;
+    vertex.lobe_densities(direction, along.lobe_densities);
+    vertex.respond(direction, along.response);
+    along.own_density = along.density = vertex.density(direction);
+    for (const double of_lamp : along.lobe_densities) along.density += of_lamp;
+    along.value = 0;
+    double responds = 0, all = 0;
+    for (std::size_t b = 0; b < tables_.optics.bands(); ++b) {
+        responds += state_.throughput[b] * along.response[b];
+        all += state_.throughput[b];
+    }
+    if (!(along.density > 0) || !(responds > 0)) return;
+    const double light = vertex.expected_light(direction) / all + light_.ambient;
+    along.value = responds / along.density * light / static_cast<double>(tables_.optics.bands());
+}
+
+// Russian roulette by what may still arrive, relative to the light of the path's pixel.
+double PathWalk::survival(const Continuation& along, double least) const {
+    if (!(along.value > 0)) return 0;
+    return std::clamp(k_thoroughness * along.value / light_.own, least, k_most_survival);
+}
+
+// How many branches go on, on average, along its own direction, now that the surface at its end has
+// been seen: a bright one means more light beside it. `by_own` did before.
+double PathWalk::branches(double value, double by_own, double by_lobe) const {
+    const double relative = value / light_.own;
+    const double split = std::min(k_splitting * relative, k_most_branches / state_.branches);
+    if (split > 1) return split;
+    return std::max(by_own, std::min(k_thoroughness * relative, k_most_survival - by_lobe));
+}
+
+PathState PathWalk::continued(const Continuation& along, double survival) const {
+    PathState state = state_;
+    for (std::size_t b = 0; b < tables_.optics.bands(); ++b)
+        state.throughput[b] *= along.response[b] / (along.density * survival);
+    return state;
+}
+
+void PathWalk::trace(const Ray& ray) {
+    Workspace& w = workspace_of_thread();
+    const WaterOptics& optics = tables_.optics;
+    optics.trace(ray, w.segment);
+    if (!w.segment.has_hit) {
+        std::ranges::fill(w.transmittance.first(optics.bands()), 0.0);  // none returns from k_far
+        return;
+    }
+    optics.look_up(w.segment, w.segment.length, w.point);
+    optics.transmittances(w.segment.length, w.point.column, w.transmittance);
+}
+
+void PathWalk::follow(bool goes_on) {
+    Workspace& w = workspace_of_thread();
+    while (goes_on) goes_on = advance();
+    while (!w.pending.empty()) {
+        const Workspace::Pending pending = w.pending.back();
+        w.pending.pop_back();
+        state_ = pending.state;
+        trace(pending.ray);
+        do {
+            goes_on = advance();
+        } while (goes_on);
+    }
+}
+
+bool PathWalk::advance() {
+    Workspace& w = workspace_of_thread();
+    const std::size_t bands = tables_.optics.bands();
+    const double u = random_.next();
+    // Each band has a share in a density that serves all of them.
+    w.shares.resize(bands);
+    double in_water = 0, at_surface = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        const double share = state_.throughput[b] * tables_.light[b];
+        w.shares[b] = share * tables_.albedo[b];
+        in_water += w.shares[b] * (1 - w.transmittance[b]);
+        if (w.segment.has_hit)
+            at_surface += share * w.transmittance[b] *
+                          std::max(k_least_reflectance, w.segment.hit.reflectance[b]);
+    }
+    const double all = in_water + at_surface;
+    if (!(all > 0)) return false;
+    for (double& share : w.shares) share /= all;
+    const double to_surface = at_surface / all;
+    if (u < to_surface) return reflect_at_end(to_surface);
+    return scatter_on_the_way((u - to_surface) / (1 - to_surface));
+}
+
+bool PathWalk::reflect_at_end(double probability) {
+    Workspace& w = workspace_of_thread();
+    const SurfaceHit& hit = w.segment.hit;
+    Spectrum& throughput = state_.throughput;
+    const std::size_t bands = tables_.optics.bands();
+    for (std::size_t b = 0; b < bands; ++b) throughput[b] *= w.transmittance[b] / probability;
+    w.vertex.reflect(tables_.vertices, w.segment, throughput);
+    ++state_.reflections;
+    return leave(above(hit));
+}
+
+bool PathWalk::scatter_on_the_way(double u) {
+    Workspace& w = workspace_of_thread();
+    const WaterOptics& optics = tables_.optics;
+    Spectrum& throughput = state_.throughput;
+    const std::size_t bands = optics.bands();
+    w.cumulative.resize(bands);
+    double total = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        total += w.shares[b] * (1 - w.transmittance[b]);
+        w.cumulative[b] = total;
+    }
+    if (!(total > 0)) return false;
+    const std::size_t band = choose(w.cumulative, u).index;
+    const double depth = -std::log1p(-u * (1 - w.transmittance[band]));
+    const double s = optics.distance_at_depth(w.segment, band, depth);
+    if (!(s < w.segment.length)) return false;  // beyond k_far, or by rounding
+    optics.look_up(w.segment, s, w.point);
+    optics.find_scattering(w.point);
+    w.c.resize(bands);
+    optics.attenuations(w.point, w.c);
+    optics.transmittances(s, w.point.column, w.transmittance);
+    double density = 0;
+    for (std::size_t b = 0; b < bands; ++b) density += w.shares[b] * w.c[b] * w.transmittance[b];
+    if (!(density > 0)) return false;
+    for (std::size_t b = 0; b < bands; ++b) throughput[b] *= w.transmittance[b] / density;
+    const Point3 x = w.segment.ray.at(s);
+    w.vertex.scatter(tables_.vertices, x, w.segment.ray.direction, w.point, throughput);
+    ++state_.scatterings;
+    return leave(x);
+}
 
 namespace {
 
 // Paths are not followed beyond this optical depth of the camera ray: e^-20 = 2e-9.
 constexpr double k_reach = 20;
 // Intervals of uniform water in which the first scattering is uniform; most of them in a plume.
-constexpr int k_intervals = 8;
+constexpr int k_views_of_ray = 8;
 constexpr double k_far_begin = 1.5, k_far_step = 0.5;
 constexpr std::size_t k_most_knots = 64;
 constexpr std::size_t k_most_guiding_bands = 4;
@@ -111,8 +414,8 @@ void PathTracer::place_intervals(CameraSegment& segment) const {
     // At equal steps of the transmittance, but at most half an optical depth apart: the light of an
     // interval is judged by its middle.
     const double depth = c * reach, lost = std::expm1(-depth);
-    for (int i = 1; i < k_intervals; ++i) {
-        const double share = static_cast<double>(i) / k_intervals;
+    for (int i = 1; i < k_views_of_ray; ++i) {
+        const double share = static_cast<double>(i) / k_views_of_ray;
         s.push_back(c > 0 ? -std::log1p(share * lost) / c : share * reach);
     }
     for (double tau = k_far_begin; tau < depth; tau += k_far_step) s.push_back(tau / c);

@@ -5,15 +5,18 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
-#include "core/base/affine.h"
-#include "core/base/vec.h"
+#include "core/base/error.h"
+#include "core/base/vector_math.h"
+#include "core/scene/config_value.h"
+#include "core/scene/scene_context.h"
 #include "core/scene/sensor_desc.h"
-#include "core/scene/source_location.h"
-#include "core/scene/trajectory_desc.h"
+#include "core/scene/trajectory.h"
+
+namespace uw {
 
 /// The camera of a scene as inert data (docs/scene-file.md). Lengths in metres, angles in degrees.
-namespace uw {
 
 /// A camera matrix [pixels]; the image's corner is (0, 0).
 struct IntrinsicsDesc {
@@ -87,12 +90,13 @@ struct CameraDesc {
     std::optional<LensDesc> lens;
     std::optional<SensorDesc> sensor;
     Affine world_from_camera;  ///< rigid; x right, y down, z forward
-    /// How it moves; then world_from_camera is that of the scene's moment (render/scene_motion.h).
+    /// How it moves; then world_from_camera is that of the scene's moment
+    /// (render/resolved_scene.h).
     std::optional<TrajectoryDesc> trajectory;
     /// A rolling shutter: from the exposure of one row to that of the next [s]; 0: all at once.
     double line_time = 0;
     /// The source of resolution, intrinsics, distortion and port, if they are not in the scene
-    /// (camera/calibration/calibration.h).
+    /// (camera/calibration.h).
     std::optional<CalibrationDesc> calibration;
     /// Whether they are given by the scene file itself or by a calibration; else they are those of
     /// a glTF camera, once import_gltf has run.
@@ -105,5 +109,32 @@ struct RigCameraDesc {
     std::string name;  ///< of its files; unique in the rig
     CameraDesc camera;
 };
+
+/// Readers for what calibration files know of a camera, too: its resolution and its port. All throw
+/// InputError at the value.
+
+/// Sets the resolution [pixels]; `both` is the location of the pair, for messages.
+void read_resolution(const ConfigValue& both, const ConfigValue& width, const ConfigValue& height,
+                     CameraDesc& camera);
+
+/// `port` of a camera.
+PortDesc read_port(const ConfigValue& value, const SceneContext& context);
+
+/// A refractive index.
+double read_refractive_index(const ConfigValue& value);
+
+/// Checks that the glass lies in front of the camera; `normal` is unit.
+void check_port_normal(const ConfigValue& at, const Vector3& normal);
+
+/// Checks that the camera is inside its dome.
+void check_dome(const ConfigValue& at, const DomePortDesc& dome);
+
+/// `camera`, or one of `cameras` without its name.
+CameraDesc read_camera(const ConfigValue& value, const SceneContext& context);
+
+/// `cameras` and `rig`; also sets the frames that lamps of a rig are fixed to, and how it moves.
+std::vector<RigCameraDesc> read_cameras(const ConfigValue& value,
+                                        const std::optional<ConfigValue>& rig,
+                                        SceneContext& context);
 
 }  // namespace uw

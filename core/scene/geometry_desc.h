@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "core/base/affine.h"
-#include "core/base/vec.h"
-#include "core/scene/per_band.h"
-#include "core/scene/source_location.h"
-#include "core/scene/trajectory_desc.h"
+#include "core/base/error.h"
+#include "core/base/vector_math.h"
+#include "core/scene/config_value.h"
+#include "core/scene/scene_context.h"
+#include "core/scene/trajectory.h"
 
 namespace uw {
 
-struct TriangleMesh;  // core/meshes/mesh.h
+struct TriangleMesh;  // core/geometry/mesh.h
 
 /// The unit of a glTF file's light intensities (Blender's exporter offers these three).
 enum class LightUnits {
@@ -23,7 +23,7 @@ enum class LightUnits {
     raw,       ///< W in all directions
 };
 
-/// What to take from a glTF file besides its meshes (core/meshes/gltf/gltf_import.h).
+/// What to take from a glTF file besides its meshes (core/geometry/gltf_import.h).
 struct GltfImportDesc {
     bool camera = false;
     std::string camera_name;  ///< empty: the file's only one
@@ -72,5 +72,8 @@ struct GeometryDesc {
 
     friend bool operator==(const GeometryDesc&, const GeometryDesc&) = default;
 };
+
+/// `geometry`.
+std::vector<GeometryDesc> read_geometry(const ConfigValue& value, const SceneContext& context);
 
 }  // namespace uw

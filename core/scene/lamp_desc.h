@@ -3,19 +3,100 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "core/base/affine.h"
-#include "core/base/vec.h"
-#include "core/scene/lamp_extent_desc.h"
-#include "core/scene/lamp_profile_desc.h"
-#include "core/scene/lamp_spectrum_desc.h"
-#include "core/scene/per_band.h"
-#include "core/scene/source_location.h"
-#include "core/scene/sun_desc.h"
-#include "core/scene/trajectory_desc.h"
+#include "core/base/error.h"
+#include "core/base/vector_math.h"
+#include "core/scene/config_value.h"
+#include "core/scene/scene_context.h"
+#include "core/scene/trajectory.h"
 
 namespace uw {
+
+/// A lamp's relative spectral distribution.
+struct LampSpectrumDesc {
+    enum class Type { flat, d65, blackbody, led, file };
+    Type type = Type::flat;
+    double temperature = 0;      ///< of a blackbody [K], 500..100000
+    std::string name;            ///< of an LED among the CIE's illuminants, "LED-B3"
+    std::filesystem::path file;  ///< CSV with a column wavelength_nm and
+    std::string column;          ///< this one; empty: the only other one
+    SourceLocation where;
+};
+
+/// The luminous surface of a lamp that is not a point: flat, perpendicular to the lamp's direction,
+/// with its centre at the lamp's position. Every point of it has the lamp's profile.
+struct LampExtentDesc {
+    enum class Shape { rectangle, disk };
+
+    Shape shape = Shape::rectangle;
+    double width = 0, height = 0;  ///< of a rectangle [m]
+    /// Rotation of a rectangle about the lamp's direction [degrees], -360..360. At 0 its width lies
+    /// along LampPlacement::across.
+    double rotate = 0;
+    double radius = 0;  ///< of a disk [m]
+    int samples = 32;   ///< how many points stand for it, 1..1024
+
+    friend bool operator==(const LampExtentDesc&, const LampExtentDesc&) = default;
+};
+
+/// Equally bright in all directions.
+struct IsotropicProfileDesc {
+    /// Whether the profile also determines the lamp's brightness, so that it need not be given.
+    static constexpr bool k_is_absolute = false;
+};
+
+/// Constant within a cone, falling to zero across its edge.
+struct SpotProfileDesc {
+    static constexpr bool k_is_absolute = false;
+    /// The falloff across the edge, from beam/2 - edge/2 to beam/2 + edge/2 of the axis:
+    ///
+    /// - smooth: a smoothstep of the angle.
+    /// - gltf: the square of the linear ramp in the cosine (KHR_lights_punctual).
+    /// - blender: as Cycles shades Blender's spots since 3.5, a smoothstep of the cosine. With
+    ///   Blender's Size and Blend, beam/2 + edge/2 = Size/2 = h and edge = h Blend; the ramp begins
+    ///   at the cosine cos h + (1 - cos h) Blend. h <= 90 degrees.
+    /// - blender_3_4: as it did up to 3.4, times the cosine of the angle to the axis.
+    enum class Falloff { smooth, gltf, blender, blender_3_4 };
+
+    double beam = 0;  ///< full angle at half intensity if smooth [degrees], 0 < beam <= 180
+    double edge = 0;  ///< angle over which it falls from full to zero [degrees], 0..beam
+    Falloff falloff = Falloff::smooth;
+};
+
+/// A power of the cosine of the angle from the axis, dark behind the lamp.
+struct CosineProfileDesc {
+    static constexpr bool k_is_absolute = false;
+
+    double fwhm = 0;  ///< full angle at half intensity [degrees], 0 < fwhm < 180
+};
+
+/// The photometry of a luminaire, from an IES file (LM-63).
+struct IesProfileDesc {
+    static constexpr bool k_is_absolute = true;  // in candelas
+
+    std::filesystem::path file;
+    double rotate = 0;  ///< rotation about the lamp's direction [degrees], -360..360
+    double tilt = 0;    ///< then tilt towards the luminaire's azimuth 0 [degrees], -180..180
+    SourceLocation where = "profile";
+};
+
+/// How a lamp's radiant intensity depends on direction. core/light/lamp_profile.h constructs the
+/// profiles, core/scene/lamp_desc.h reads the descriptions; neither compiles unless it
+/// handles all of them.
+using LampProfileDesc =
+    std::variant<IsotropicProfileDesc, SpotProfileDesc, CosineProfileDesc, IesProfileDesc>;
+
+/// What makes a lamp a sun: its light is parallel, or comes from a disc in the sky, and enters the
+/// water through its surface.
+struct SunDesc {
+    double angle = 0;          ///< angular diameter of the disc, in the water [degrees], 0..90
+    int samples = 32;          ///< how many directions stand for it unless the angle is 0, 1..1024
+    WaterSurfaceDesc surface;  ///< the scene's (WaterDesc::surface)
+
+    friend bool operator==(const SunDesc&, const SunDesc&) = default;
+};
 
 /// A lamp: a point, one with an extent, or a sun.
 struct LampDesc {
@@ -45,5 +126,11 @@ struct LampDesc {
         return fixed_to_camera ? world_from_camera : world_from_mount;
     }
 };
+
+/// `spectrum` of a lamp, or `white` of `render`, the light displayed as white.
+LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& context);
+
+/// `lamps`.
+std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context);
 
 }  // namespace uw

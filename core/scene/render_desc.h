@@ -6,8 +6,10 @@
 #include <string_view>
 #include <utility>
 
-#include "core/scene/lamp_spectrum_desc.h"
-#include "core/scene/source_location.h"
+#include "core/base/error.h"
+#include "core/scene/config_value.h"
+#include "core/scene/lamp_desc.h"
+#include "core/scene/scene_context.h"
 
 namespace uw {
 
@@ -15,7 +17,7 @@ namespace uw {
 /// is the layer `backscatter_first`.
 struct PlanesDesc {
     int count = 64;  ///< of slabs, 1..65536
-    /// Camera z [m]; if omitted, derived from what the image sees (core/integrators/slabs.h).
+    /// Camera z [m]; if omitted, derived from what the image sees (core/light/slabs.h).
     std::optional<double> near, far;
     SourceLocation where;
 };
@@ -83,5 +85,8 @@ inline constexpr std::array<std::pair<std::string_view, RenderDesc::Integrator>,
 inline constexpr std::array<std::pair<std::string_view, RenderDesc::Scattering>, 2>
     k_scattering_names{{{"single", RenderDesc::Scattering::single},
                         {"multiple", RenderDesc::Scattering::multiple}}};
+
+/// `render`.
+RenderDesc read_render(const ConfigValue& value, const SceneContext& context);
 
 }  // namespace uw

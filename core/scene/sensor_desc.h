@@ -9,11 +9,13 @@
 #include <utility>
 #include <variant>
 
-#include "core/scene/per_band.h"
-#include "core/scene/source_location.h"
+#include "core/base/error.h"
+#include "core/scene/config_value.h"
+#include "core/scene/scene_context.h"
+
+namespace uw {
 
 /// A camera's sensor as inert data, by the terms of EMVA standard 1288 (docs/camera-image.md).
-namespace uw {
 
 /// Which colours the pixels of a sensor see: all of them all light (mono), each one of three by the
 /// pattern of a Bayer filter, named by its first two rows, or each all three.
@@ -105,5 +107,8 @@ struct SensorDesc {
         return gain ? *gain : (white_level() - black_level) / full_well.value();
     }
 };
+
+/// `sensor` of a camera.
+SensorDesc read_sensor(const ConfigValue& value, const SceneContext& context);
 
 }  // namespace uw

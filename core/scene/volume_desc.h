@@ -6,14 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "core/base/affine.h"
-#include "core/scene/per_band.h"
-#include "core/scene/phase_desc.h"
-#include "core/scene/source_location.h"
+#include "core/base/error.h"
+#include "core/base/vector_math.h"
+#include "core/scene/config_value.h"
+#include "core/scene/scene_context.h"
+#include "core/scene/water_desc.h"
 
 namespace uw {
 
-struct LoadedGrid;  // media/vdb/loaded_grid.h
+struct LoadedGrid;  // media/volumes/loaded_grid.h
 
 /// The meaning of one unit of a grid's value: particles in ppm by volume, or its own optical
 /// properties.
@@ -46,7 +47,7 @@ struct MotionDesc {
 };
 
 /// Whether a grid's values lie at its voxels' centres or at their corners. Automatic is decided
-/// from the file (media/vdb/placement.h).
+/// from the file (media/volumes/loaded_grid.h).
 enum class Centering { automatic, cell, node };
 
 /// Which of a file's axes points up; automatic as for Centering.
@@ -67,5 +68,8 @@ struct VolumeDesc {
 
     friend bool operator==(const VolumeDesc&, const VolumeDesc&) = default;
 };
+
+/// `volumes`. Their exposure time is not part of this section and stays 0.
+std::vector<VolumeDesc> read_volumes(const ConfigValue& value, const SceneContext& context);
 
 }  // namespace uw

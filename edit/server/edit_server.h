@@ -2,14 +2,24 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
-#include "edit/server/http_listener.h"
-#include "edit/server/http_protocol.h"
+#include "edit/server/http_server.h"
 #include "edit/session/edit_session.h"
 #include "edit/session/session_measures.h"
 
 namespace uw {
+
+/// @name Parameters of an address, "?min=3"
+/// Each is `otherwise` where there is none, and throws UsageError where it is of another kind.
+/// @{
+std::int64_t integer_parameter(const HttpRequest& request, const std::string& name,
+                               std::int64_t otherwise);
+double number_parameter(const HttpRequest& request, const std::string& name, double otherwise);
+/// x0, y0, x1, y1, ratio and curves.
+NumbersRequest numbers_request(const HttpRequest& request);
+/// @}
 
 /// Serves the page of the lamp editor, and the session behind it as docs/edit-api.md says, on
 /// 127.0.0.1. Whoever does not know the address's token, and any page of another origin, is

@@ -1,19 +1,123 @@
 #include "edit/session/edit_session.h"
 
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cstdint>
 #include <exception>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
 #include "core/base/error.h"
-#include "edit/session/conflict_error.h"
-#include "edit/session/located_message.h"
+#include "edit/session/edited_scene.h"
 #include "edit/session/request_members.h"
-#include "edit/session/scene_changes.h"
 
 namespace uw {
+
+namespace {
+
+// Every event can be fetched again as part of the state: a window that falls further behind than
+// this misses nothing that lasts.
+constexpr std::size_t k_most_events = 256;
+
+}  // namespace
+
+void EventLog::publish(std::string name, std::string data) {
+    const std::lock_guard lock(mutex_);
+    events_.push_back({++last_, std::move(name), std::move(data)});
+    if (events_.size() > k_most_events) events_.pop_front();
+    changed_.notify_all();
+}
+
+std::uint64_t EventLog::last() const {
+    const std::lock_guard lock(mutex_);
+    return last_;
+}
+
+std::vector<Event> EventLog::wait(std::uint64_t after, double seconds) const {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::duration<double>(seconds),
+                      [&] { return is_closed_ || last_ > after; });
+    std::vector<Event> found;
+    if (is_closed_) return found;
+    for (const Event& event : events_)
+        if (event.number > after) found.push_back(event);
+    return found;
+}
+
+void EventLog::close() {
+    const std::lock_guard lock(mutex_);
+    is_closed_ = true;
+    changed_.notify_all();
+}
+
+bool EventLog::is_closed() const {
+    const std::lock_guard lock(mutex_);
+    return is_closed_;
+}
+
+namespace {
+
+// A file is written in several steps: it is looked at once nothing has happened for so long [ms].
+constexpr int k_settle = 50;
+
+}  // namespace
+
+FileWatch::FileWatch(const std::filesystem::path& folder, std::function<void()> changed)
+    : changed_(std::move(changed)),
+      notified_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)),
+      stop_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+    // Where there are no watches left, files are compared when they are saved, all the same.
+    inotify_add_watch(notified_, folder.c_str(),
+                      IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE);
+    thread_ = std::thread([this] { run(); });
+}
+
+FileWatch::~FileWatch() {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t written = write(stop_, &one, sizeof one);
+    thread_.join();
+    if (notified_ >= 0) close(notified_);
+    close(stop_);
+}
+
+void FileWatch::run() const {
+    std::array<pollfd, 2> polled{{{stop_, POLLIN, 0}, {notified_, POLLIN, 0}}};
+    std::array<char, 4096> ignored{};
+    bool is_news = false;
+    for (;;) {
+        const int count = poll(polled.data(), polled.size(), is_news ? k_settle : -1);
+        if (polled[0].revents != 0) return;
+        if (count == 0 && std::exchange(is_news, false)) changed_();
+        while (read(notified_, ignored.data(), ignored.size()) > 0) is_news = true;
+    }
+}
+
+Json located_message(const std::string& message, const std::string& file_name) {
+    Json located = {{"message", message}, {"line", nullptr}, {"column", nullptr}};
+    const std::string begin = file_name + ":";
+    const std::size_t at = message.find(begin);
+    if (at == std::string::npos) return located;
+    const char* const end = message.data() + message.size();
+    const char* next = message.data() + at + begin.size();
+    for (const char* key : {"line", "column"}) {
+        int number = 0;
+        const auto [rest, error] = std::from_chars(next, end, number);
+        if (error != std::errc() || rest == end || *rest != ':') break;
+        located[key] = number;
+        next = rest + 1;
+    }
+    return located;
+}
 
 namespace {
 

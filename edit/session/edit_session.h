@@ -1,25 +1,86 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
-#include "core/json/json.h"
+#include "core/base/json.h"
 #include "edit/document/scene_document.h"
 #include "edit/session/edited_scene.h"
-#include "edit/session/event_log.h"
-#include "edit/session/file_watch.h"
 #include "edit/session/picture_renderer.h"
 #include "edit/session/state_json.h"
 
 namespace uw {
+
+/// A request that was right, but not for the scene as it has become. One line.
+class ConflictError : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Something that windows are to be told of.
+struct Event {
+    std::uint64_t number = 0;  // from 1
+    std::string name;
+    std::string data;  // JSON, one line
+};
+
+/// The latest events, for any number of windows to follow at their own pace. Thread safe.
+class EventLog {
+  public:
+    void publish(std::string name, std::string data);
+
+    /// The number of the last event; 0 before the first.
+    std::uint64_t last() const;
+    /// The events after number `after` that are still kept, in their order; waits up to `seconds`
+    /// for one. Empty if none has come, or the log is closed.
+    std::vector<Event> wait(std::uint64_t after, double seconds) const;
+
+    /// Ends all waiting.
+    void close();
+    bool is_closed() const;
+
+  private:
+    mutable std::mutex mutex_;
+    mutable std::condition_variable changed_;
+    std::deque<Event> events_;
+    std::uint64_t last_ = 0;
+    bool is_closed_ = false;
+};
+
+/// Calls back, on a thread of its own, shortly after a file of a folder was written, replaced or
+/// removed. Costs nothing meanwhile.
+class FileWatch {
+  public:
+    FileWatch(const std::filesystem::path& folder, std::function<void()> changed);
+    ~FileWatch();
+    FileWatch(const FileWatch&) = delete;
+    FileWatch& operator=(const FileWatch&) = delete;
+    FileWatch(FileWatch&&) = delete;
+    FileWatch& operator=(FileWatch&&) = delete;
+
+  private:
+    void run() const;
+
+    std::function<void()> changed_;
+    int notified_ = -1, stop_ = -1;
+    std::thread thread_;
+};
+
+/// A message about a scene file as {"message", "line", "column"}, the last two null where it does
+/// not say "scene.yaml:14:7: ...".
+Json located_message(const std::string& message, const std::string& file_name);
 
 /// A scene that is being edited, by any number of windows: its document, its pictures, and what the
 /// windows are told. Thread safe; changes are made one after the other.

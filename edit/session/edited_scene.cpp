@@ -7,8 +7,13 @@
 #include <span>
 #include <utility>
 
-#include "core/colour/colour_response.h"
-#include "core/lamps/lamp_factory.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/image/colour.h"
+#include "core/light/lamp_factory.h"
+#include "edit/session/request_members.h"
+#include "edit/session/suggest.h"
+#include "edit/session/view_geometry.h"
 #include "render/scene_loading.h"
 
 namespace uw {
@@ -103,6 +108,226 @@ std::shared_ptr<const EditedScene> make_edited_scene(std::string_view text, cons
         edited->lamps.back().on = std::ranges::find(off, desc.lamps[i].name) == off.end();
     }
     return edited;
+}
+
+namespace {
+
+// Positions that were dragged are written to 0.1 mm, directions to 1e-4: below a tenth of a pixel.
+constexpr NumberStyle k_dragged{.decimals = 4};
+
+bool names_a_file(std::string_view key) {
+    return key == "file" || key == "calibration";
+}
+
+// A page may not have the program open files elsewhere than where the scene is.
+void check_file(const std::string& name) {
+    const std::filesystem::path path = name;
+    if (path.is_absolute() || std::ranges::find(path, "..") != path.end())
+        throw UsageError(fmt::format("{}: choose a file of the scene's folder", printable(name)));
+}
+
+void check_files(const Json& value, bool is_file) {
+    if (value.is_string() && is_file) check_file(value.get<std::string>());
+    if (value.is_array())
+        for (const Json& item : value) check_files(item, is_file);
+    if (value.is_object())
+        for (const auto& [key, item] : value.items()) check_files(item, names_a_file(key));
+}
+
+// "left" for "right" and so on; else the name itself.
+std::string mirrored_name(const std::string& name) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 4> k_sides{
+        {{"left", "right"}, {"right", "left"}, {"port", "starboard"}, {"starboard", "port"}}};
+    for (const auto& [side, other] : k_sides) {
+        const std::size_t at = name.find(side);
+        if (at != std::string::npos)
+            return name.substr(0, at) + std::string(other) + name.substr(at + side.size());
+    }
+    return name;
+}
+
+}  // namespace
+
+SceneChanges::SceneChanges(SceneText text, std::filesystem::path file,
+                           std::shared_ptr<const EditedScene> scene, std::vector<std::string> off)
+    : text_(std::move(text)),
+      file_(std::move(file)),
+      scene_(std::move(scene)),
+      off_(std::move(off)) {}
+
+void SceneChanges::apply(const Json& change) {
+    using Apply = void (SceneChanges::*)(const Json&);
+    static constexpr std::array<std::pair<std::string_view, Apply>, 9> k_changes{
+        {{"set", &SceneChanges::set},
+         {"add_lamp", &SceneChanges::add_lamp},
+         {"remove_lamp", &SceneChanges::remove_lamp},
+         {"duplicate_lamp", &SceneChanges::duplicate_lamp},
+         {"mirror_lamp", &SceneChanges::mirror_lamp},
+         {"rename_lamp", &SceneChanges::rename_lamp},
+         {"move_lamp", &SceneChanges::move_lamp},
+         {"aim_lamp", &SceneChanges::aim_lamp},
+         {"lamp_on", &SceneChanges::turn_lamp_on}}};
+    if (!change.is_object()) throw UsageError("changes: expected {\"op\": ...}");
+    const std::string op = text_member(change, "op");
+    const auto found =
+        std::ranges::find(k_changes, op, [](const auto& entry) { return entry.first; });
+    if (found == k_changes.end())
+        throw UsageError(fmt::format("op: unknown '{}'; {}", printable(op),
+                                     suggestion(op, words_of(k_changes))));
+    (this->*found->second)(change);
+    read_again();
+}
+
+void SceneChanges::read_again() {
+    scene_ = make_edited_scene(text_.text(), text_.tree(), file_, off_, scene_->revision);
+}
+
+std::size_t SceneChanges::lamp_of(const Json& change) const {
+    const std::string name = text_member(change, "lamp");
+    const auto lamp = scene_->find_lamp(name);
+    if (!lamp) throw UsageError(fmt::format("there is no lamp '{}'", printable(name)));
+    return *lamp;
+}
+
+std::string SceneChanges::entry_of(std::size_t lamp) const {
+    const auto entry = scene_->lamps[lamp].entry;
+    if (!entry)
+        throw UsageError(
+            fmt::format("'{}' comes from a glTF file, which is not written here; change it there",
+                        this->lamp(lamp).name));
+    if (this->lamp(lamp).sun)
+        throw UsageError(
+            fmt::format("'{}' is a sun, which has no place; change it in the scene file",
+                        this->lamp(lamp).name));
+    return fmt::format("lamps[{}]", *entry);
+}
+
+std::string SceneChanges::free_name(const std::string& like) const {
+    if (!scene_->find_lamp(like)) return like;
+    std::string stem = like;
+    while (!stem.empty() && stem.back() >= '0' && stem.back() <= '9') stem.pop_back();
+    for (int number = 2;; ++number) {
+        std::string name = stem + std::to_string(number);
+        if (!scene_->find_lamp(name)) return name;
+    }
+}
+
+void SceneChanges::set_vector(const std::string& path, const Vector3& value) {
+    text_.set(path, numbers_text(std::array{value.x, value.y, value.z}, k_dragged), k_dragged);
+}
+
+void SceneChanges::place(std::size_t index, const Point3& world) {
+    const Affine frame_from_world =
+        lamp(index).world_from_frame(scene_->scene.desc().camera.world_from_camera).inverse();
+    set_vector(entry_of(index) + ".position", from_origin(frame_from_world * world));
+}
+
+void SceneChanges::set(const Json& change) {
+    const std::string path = text_member(change, "path");
+    const Json& value = member(change, "value");
+    const std::string key = path.substr(path.rfind('.') + 1);
+    check_files(value, names_a_file(key));
+    touched_.insert(path);
+    if (value.is_null())
+        text_.remove(path);
+    else
+        text_.set(path, value.dump());
+}
+
+void SceneChanges::add_lamp(const Json& change) {
+    Json lamp = member(change, "lamp");
+    if (!lamp.is_object()) throw UsageError("lamp: expected {\"name\": ...}");
+    check_files(lamp, false);
+    std::string like;
+    if (change.contains("like")) {
+        const auto other = scene_->find_lamp(text_member(change, "like"));
+        if (other && scene_->lamps[*other].entry) like = entry_of(*other);
+    }
+    lamp["name"] = free_name(lamp.contains("name") ? text_member(lamp, "name") : "lamp");
+    touched_.insert("lamps." + lamp["name"].get<std::string>());
+    text_.append("lamps", lamp.dump(), like);
+}
+
+void SceneChanges::remove_lamp(const Json& change) {
+    const std::size_t index = lamp_of(change);
+    touched_.insert("lamps." + lamp(index).name);
+    text_.remove(entry_of(index));
+    std::erase(off_, lamp(index).name);
+}
+
+void SceneChanges::duplicate_lamp(const Json& change) {
+    const std::size_t index = lamp_of(change);
+    const std::string name =
+        free_name(change.contains("name") ? text_member(change, "name") : lamp(index).name);
+    touched_.insert("lamps." + name);
+    text_.duplicate(entry_of(index), name);
+}
+
+void SceneChanges::mirror_lamp(const Json& change) {
+    std::size_t index = lamp_of(change);
+    const LampDesc mirrored =
+        mirrored_lamp(lamp(index), scene_->scene.desc().camera.world_from_camera);
+    if (flag_member(change, "copy", false)) {
+        const std::string name = free_name(mirrored_name(lamp(index).name));
+        text_.duplicate(entry_of(index), name);
+        read_again();
+        index = *scene_->find_lamp(name);
+    }
+    touched_.insert("lamps." + lamp(index).name);
+    set_vector(entry_of(index) + ".position", from_origin(mirrored.position));
+    set_vector(entry_of(index) + ".direction", mirrored.direction);
+}
+
+void SceneChanges::rename_lamp(const Json& change) {
+    const std::size_t index = lamp_of(change);
+    const std::string before = lamp(index).name, name = text_member(change, "name");
+    touched_.insert("lamps." + before);
+    text_.rename(entry_of(index), name);
+    std::ranges::replace(off_, before, name);
+}
+
+void SceneChanges::move_lamp(const Json& change) {
+    const std::size_t index = lamp_of(change);
+    touched_.insert("lamps." + lamp(index).name + ".position");
+    const Camera& camera = *scene_->camera;
+    const Point3 from = placed_lamp(lamp(index), scene_->scene.desc().camera).position;
+    if (change.contains("pixel")) {
+        const std::string keeps = optional_text_member(change, "keep");
+        if (!keeps.empty() && keeps != "distance" && keeps != "z")
+            throw UsageError("keep: expected distance or z");
+        place(index, dragged_point(camera, pixel_member(change, "pixel"), from,
+                                   keeps == "z" ? DragKeeps::depth : DragKeeps::distance));
+    } else if (change.contains("distance")) {
+        place(index, point_at_distance(camera, from, number_member(change, "distance")));
+    } else {
+        place(index, at_origin_plus(vector_member(change, "world")));
+    }
+}
+
+void SceneChanges::aim_lamp(const Json& change) {
+    const std::size_t index = lamp_of(change);
+    touched_.insert("lamps." + lamp(index).name + ".direction");
+    const CameraDesc& camera = scene_->scene.desc().camera;
+    const PlacedLamp placed = placed_lamp(lamp(index), camera);
+    Vector3 direction;
+    if (change.contains("pixel")) {
+        direction = aimed_direction(*scene_->camera, pixel_member(change, "pixel"), placed);
+    } else {
+        direction = at_origin_plus(vector_member(change, "world")) - placed.position;
+        if (!(glm::length(direction) > 0)) throw UsageError("world: the lamp itself is there");
+    }
+    const Affine frame_from_world =
+        lamp(index).world_from_frame(camera.world_from_camera).inverse();
+    set_vector(entry_of(index) + ".direction",
+               glm::normalize(frame_from_world.apply_to_vector(direction)));
+}
+
+void SceneChanges::turn_lamp_on(const Json& change) {
+    const std::string& name = lamp(lamp_of(change)).name;
+    const bool on = flag_member(change, "on", true);
+    touched_.insert("lamps." + name + ".on");
+    std::erase(off_, name);
+    if (!on) off_.push_back(name);
 }
 
 }  // namespace uw

@@ -8,9 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/json.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
 #include "edit/session/edited_scene.h"
+#include "render/measures/picture_numbers.h"
+#include "render/measures/target_probe.h"
 
 namespace uw {
 
@@ -46,5 +49,16 @@ enum class SampleType { f16, f32 };
 
 /// The planes of a picture as bytes for the page, docs/edit-api.md.
 std::string picture_bytes(const Picture& picture, SampleType type);
+
+/// Whether a picture of one scene serves the other: they differ in names and brightness at most.
+bool is_same_picture(const EditedScene& a, const EditedScene& b);
+
+/// The layers of a picture with its lamps as bright as they are in `now`, off where they are off.
+/// Refers to the picture. Precondition: is_same_picture(*picture.scene, now).
+PictureLayers mixed_layers(const Picture& picture, const EditedScene& now);
+
+/// {"signal", "backscatter", ...}, docs/edit-api.md.
+Json numbers_json(const PictureNumbers& numbers);
+Json target_numbers_json(const TargetNumbers& numbers);
 
 }  // namespace uw

@@ -5,11 +5,11 @@
 #include <exception>
 #include <utility>
 
-#include "camera/image_size.h"
+#include "camera/camera.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/integrators/integrator_table.h"
-#include "edit/session/picture_mix.h"
+#include "core/light/integrator_table.h"
+#include "edit/session/picture.h"
 
 namespace uw {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "camera/camera.h"
-#include "core/base/vec.h"
-#include "core/json/json.h"
+#include "core/base/json.h"
+#include "core/base/vector_math.h"
 
 namespace uw {
 

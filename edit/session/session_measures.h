@@ -7,13 +7,25 @@
 #include <string>
 #include <thread>
 
+#include "core/base/json.h"
 #include "core/base/ray.h"
-#include "core/json/json.h"
-#include "edit/measures/suggest.h"
 #include "edit/session/edit_session.h"
+#include "edit/session/suggest.h"
 #include "render/measures/target_probe.h"
+#include "render/resolved_scene.h"
 
 namespace uw {
+
+/// What a window asks of the search for a lamp's place (docs/edit-api.md). Throws UsageError where
+/// the request is not one, or names lamps that are not in `scene`.
+SuggestRequest suggest_request(const Json& request, const ResolvedScene& scene);
+
+/// What the search found: the map of the objective, the places before and best, and the lamps
+/// there.
+Json suggestion_json(const Suggestion& found);
+
+/// A place that was tried: where, what it is worth, and its numbers.
+Json suggest_point_json(const SuggestPoint& point);
 
 /// What a window asks of the numbers of the picture.
 struct NumbersRequest {

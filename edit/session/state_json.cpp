@@ -4,17 +4,348 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <exception>
 #include <filesystem>
+#include <map>
+#include <numbers>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <tuple>
+#include <unordered_map>
 #include <utility>
+#include <variant>
 
-#include "edit/session/config_json.h"
-#include "edit/session/lamp_json.h"
+#include "core/base/text.h"
+#include "core/geometry/mesh_reader.h"
 #include "edit/session/view_geometry.h"
-#include "media/water/jerlov.h"
+#include "media/water/water_types.h"
 
 namespace uw {
+
+namespace {
+
+constexpr double k_crease_cosine = 0.8660254037844386;  // of 30 degrees
+constexpr int k_circle_sides = 48;
+
+std::array<float, 3> floats_of(const Point3& p) {
+    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
+Point3 point_of(const std::array<float, 3>& p) {
+    return {p[0], p[1], p[2]};
+}
+
+double length_of(const OutlineSegment& segment) {
+    return std::hypot(segment.to[0] - segment.from[0], segment.to[1] - segment.from[1],
+                      segment.to[2] - segment.from[2]);
+}
+
+/// Collects the segments of one scene.
+class Outlines {
+  public:
+    void add(const GeometryDesc& desc) {
+        switch (desc.type) {
+            case GeometryDesc::Type::file:
+                add_mesh(desc);
+                break;
+            case GeometryDesc::Type::box:
+                add_box(desc);
+                break;
+            case GeometryDesc::Type::sphere:
+                add_sphere(desc);
+                break;
+            case GeometryDesc::Type::plane:
+                break;
+        }
+    }
+    std::vector<OutlineSegment> release() { return std::move(segments_); }
+
+  private:
+    // An edge of a mesh while its faces are met.
+    struct Edge {
+        std::uint32_t a = 0, b = 0;  // vertices
+        Vector3 normal{0};           // of the first face
+        int faces = 0;
+        bool is_crease = false;
+    };
+
+    void add_line(const Affine& world_from_line, const Point3& a, const Point3& b) {
+        segments_.push_back({floats_of(world_from_line * a), floats_of(world_from_line * b)});
+    }
+
+    void add_box(const GeometryDesc& desc) {
+        const auto corner = [&](int bits) {
+            Point3 p;
+            for (int axis = 0; axis < 3; ++axis)
+                p[axis] = ((bits >> axis) & 1) != 0 ? desc.max[axis] : desc.min[axis];
+            return p;
+        };
+        for (int bits = 0; bits < 8; ++bits)
+            for (int axis = 0; axis < 3; ++axis)
+                if (((bits >> axis) & 1) == 0)
+                    add_line(desc.world_from_object, corner(bits), corner(bits | 1 << axis));
+    }
+
+    void add_sphere(const GeometryDesc& desc) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto at = [&](int i) {
+                const double turn = 2 * std::numbers::pi * i / k_circle_sides;
+                Vector3 offset(0);
+                offset[(axis + 1) % 3] = desc.radius * std::cos(turn);
+                offset[(axis + 2) % 3] = desc.radius * std::sin(turn);
+                return desc.center + offset;
+            };
+            for (int i = 0; i < k_circle_sides; ++i)
+                add_line(desc.world_from_object, at(i), at(i + 1));
+        }
+    }
+
+    void add_mesh(const GeometryDesc& desc) {
+        MeshFile file;
+        try {
+            std::vector<std::string> ignored;
+            file = read_mesh(desc.file, ignored, {.camera_or_lamps = true});
+        } catch (const std::exception&) {
+            return;
+        }
+        add_triangles(desc.world_from_object, file.mesh);
+        for (const SharedMesh& shared : file.shared) {
+            const std::size_t first = segments_.size();
+            add_triangles(Affine(), shared.mesh);
+            const std::vector<OutlineSegment> outline(
+                segments_.begin() + static_cast<std::ptrdiff_t>(first), segments_.end());
+            segments_.resize(first);
+            for (const SharedMesh::Placement& placement : shared.placements) {
+                const Affine map = desc.world_from_object * placement.file_from_mesh;
+                for (const OutlineSegment& line : outline)
+                    add_line(map, point_of(line.from), point_of(line.to));
+            }
+        }
+    }
+
+    void add_triangles(const Affine& world_from_mesh, const TriangleMesh& mesh) {
+        const auto vertex = [&](std::uint32_t v) {
+            const float* p = &mesh.positions[3 * std::size_t{v}];
+            return Point3{p[0], p[1], p[2]};
+        };
+        const std::vector<std::uint32_t> joined = joined_vertices(mesh);
+        std::unordered_map<std::uint64_t, Edge> edges;
+        for (std::size_t at = 0; at + 2 < mesh.triangles.size(); at += 3) {
+            const std::uint32_t* corner = &mesh.triangles[at];
+            const Vector3 normal = glm::cross(vertex(corner[1]) - vertex(corner[0]),
+                                              vertex(corner[2]) - vertex(corner[0]));
+            if (!(glm::length(normal) > 0)) continue;
+            for (int k = 0; k < 3; ++k)
+                meet(edges, joined[corner[k]], joined[corner[(k + 1) % 3]], glm::normalize(normal));
+        }
+        for (const auto& [key, edge] : edges)
+            if (edge.faces == 1 || edge.is_crease)
+                add_line(world_from_mesh, vertex(edge.a), vertex(edge.b));
+    }
+
+    static void meet(std::unordered_map<std::uint64_t, Edge>& edges, std::uint32_t a,
+                     std::uint32_t b, const Vector3& normal) {
+        if (a > b) std::swap(a, b);
+        Edge& edge = edges[std::uint64_t{a} << 32 | b];
+        if (edge.faces++ == 0) {
+            edge.a = a;
+            edge.b = b;
+            edge.normal = normal;
+        } else if (glm::dot(edge.normal, normal) < k_crease_cosine) {
+            edge.is_crease = true;
+        }
+    }
+
+    // For each vertex the first one at its place: files repeat vertices where normals or textures
+    // differ.
+    static std::vector<std::uint32_t> joined_vertices(const TriangleMesh& mesh) {
+        std::map<std::array<float, 3>, std::uint32_t> first;
+        std::vector<std::uint32_t> joined;
+        joined.reserve(mesh.vertex_count());
+        for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+            const float* p = &mesh.positions[3 * std::size_t{v}];
+            joined.push_back(first.try_emplace({p[0], p[1], p[2]}, v).first->second);
+        }
+        return joined;
+    }
+
+    std::vector<OutlineSegment> segments_;
+};
+
+}  // namespace
+
+std::vector<OutlineSegment> scene_outlines(const std::vector<GeometryDesc>& geometry,
+                                           std::size_t most) {
+    Outlines outlines;
+    for (const GeometryDesc& desc : geometry) outlines.add(desc);
+    std::vector<OutlineSegment> segments = outlines.release();
+    const auto is_before = [](const OutlineSegment& a, const OutlineSegment& b) {
+        const double x = length_of(a), y = length_of(b);
+        return x != y ? x > y : std::tie(a.from, a.to) < std::tie(b.from, b.to);
+    };
+    std::ranges::sort(segments, is_before);
+    if (segments.size() > most) segments.resize(most);
+    return segments;
+}
+
+namespace {
+
+Json scalar_json(const ConfigNode& node) {
+    if (node.quoted) return node.scalar;
+    if (node.scalar == "true") return true;
+    if (node.scalar == "false") return false;
+    double number = 0;
+    if (parse_number(node.scalar, number) == NumberText::number) return number;
+    return node.scalar;
+}
+
+}  // namespace
+
+Json config_json(const ConfigNode& node) {
+    switch (node.kind) {
+        case ConfigNode::Kind::scalar:
+            return scalar_json(node);
+        case ConfigNode::Kind::sequence: {
+            Json list = Json::array();
+            for (const ConfigNode& item : node.items) list.push_back(config_json(item));
+            return list;
+        }
+        case ConfigNode::Kind::map: {
+            Json map = Json::object();
+            for (const ConfigNode::Entry& entry : node.entries)
+                map[entry.key] = config_json(entry.value);
+            return map;
+        }
+        case ConfigNode::Kind::null:
+            break;
+    }
+    return nullptr;
+}
+
+namespace {
+
+Json pixel_json(const ImagePoint& pixel) {
+    return Json::array({number_json(pixel.x), number_json(pixel.y)});
+}
+
+Json handle_json(const Camera& camera, const Point3& world) {
+    const ViewHandle handle = view_handle(camera, world);
+    return {{"point", point_json(world)},
+            {"pixel", handle.pixel ? pixel_json(*handle.pixel) : Json(nullptr)},
+            {"inside", handle.inside},
+            {"rim", pixel_json(handle.rim)}};
+}
+
+struct ProfileJson {
+    Json operator()(const IsotropicProfileDesc& /*profile*/) const {
+        return {{"type", "isotropic"}};
+    }
+    Json operator()(const SpotProfileDesc& profile) const {
+        return {{"type", "spot"}, {"beam", profile.beam}, {"edge", profile.edge}};
+    }
+    Json operator()(const CosineProfileDesc& profile) const {
+        return {{"type", "cosine"}, {"fwhm", profile.fwhm}};
+    }
+    Json operator()(const IesProfileDesc& profile) const {
+        return {{"type", "ies"},
+                {"file", profile.file.lexically_relative(folder).generic_string()},
+                {"rotate", profile.rotate},
+                {"tilt", profile.tilt}};
+    }
+    std::filesystem::path folder;
+};
+
+Json brightness_json(const LampDesc& lamp, const ConfigNode* entry) {
+    Json brightness;
+    if (lamp.sun && lamp.intensity)
+        brightness = {
+            {"kind", "irradiance"}, {"unit", "W/m2"}, {"value", list_json(*lamp.intensity)}};
+    else if (lamp.sun)
+        brightness = {{"kind", "lux"}, {"unit", "lx"}, {"value", *lamp.lumens}};
+    else if (lamp.intensity)
+        brightness = {
+            {"kind", "intensity"}, {"unit", "W/sr"}, {"value", list_json(*lamp.intensity)}};
+    else if (lamp.power)
+        brightness = {{"kind", "power"}, {"unit", "W"}, {"value", list_json(*lamp.power)}};
+    else if (lamp.lumens)
+        brightness = {{"kind", "lumens"}, {"unit", "lm"}, {"value", *lamp.lumens}};
+    else
+        brightness = {{"kind", "profile"}, {"unit", nullptr}, {"value", nullptr}};
+    // With a spectrum there is one number for all bands.
+    if (lamp.spectrum && brightness["value"].is_array())
+        brightness["value"] = brightness["value"][0];
+    const ConfigNode* spectrum = entry ? entry->find("spectrum") : nullptr;
+    brightness["spectrum"] = spectrum ? config_json(*spectrum) : Json(nullptr);
+    return brightness;
+}
+
+// Why the editor does not change a lamp; empty if it does.
+std::string reason_to_lock(const LampDesc& lamp, const ConfigNode* entry) {
+    if (!entry) return "it comes from a glTF file, which is not written here";
+    if (lamp.sun) return "it is a sun, which has no place; change it in the scene file";
+    return "";
+}
+
+std::string_view frame_of(const SceneDesc& desc, const LampDesc& lamp, const ConfigNode* entry) {
+    const ConfigNode* frame = entry ? entry->find("frame") : nullptr;
+    if (frame && frame->scalar == "world") return "world";
+    if (frame && frame->scalar == "rig") return "rig";
+    if (lamp.sun) return "world";
+    if (lamp.trajectory) return "trajectory";
+    if (lamp.fixed_to_camera) return "camera";
+    if (!entry) return "world";
+    return frame || desc.cameras.empty() ? "camera" : "rig";
+}
+
+}  // namespace
+
+Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& tree) {
+    const SceneDesc& desc = edited.scene.desc();
+    const LampDesc& lamp = desc.lamps[index];
+    const EditedLamp& known = edited.lamps[index];
+    const ConfigNode* entries = tree.find("lamps");
+    const ConfigNode* entry = known.entry && entries ? &entries->items[*known.entry] : nullptr;
+    const PlacedLamp placed = placed_lamp(lamp, desc.camera);
+    Json cone = Json::array();
+    for (const ImagePoint& point : beam_outline(*edited.camera, lamp, placed))
+        cone.push_back(pixel_json(point));
+    const auto half_angle = beam_half_angle(lamp.profile);
+    const std::string why_not = reason_to_lock(lamp, entry);
+    return {{"index", index},
+            {"name", lamp.name},
+            {"path", entry ? Json(fmt::format("lamps[{}]", *known.entry)) : Json(nullptr)},
+            {"editable", why_not.empty()},
+            {"why_not", why_not.empty() ? Json(nullptr) : Json(why_not)},
+            {"on", known.on},
+            {"frame", frame_of(desc, lamp, entry)},
+            {"position", point_json(lamp.position)},
+            {"direction", vector_json(lamp.direction)},
+            {"world_position", point_json(placed.position)},
+            {"world_direction", vector_json(placed.direction)},
+            {"profile", lamp.sun ? Json{{"type", "sun"}}
+                                 : std::visit(ProfileJson{desc.file.parent_path()}, lamp.profile)},
+            {"half_angle", half_angle ? Json(*half_angle) : Json(nullptr)},
+            {"brightness", brightness_json(lamp, entry)},
+            {"band_intensity", list_json(known.brightness.first(edited.bands()))},
+            {"rgb_scale", list_json(edited.colour_scale(known.brightness))},
+            {"handle", handle_json(*edited.camera, placed.position)},
+            {"axis_handle", handle_json(*edited.camera, axis_point(placed))},
+            {"cone", std::move(cone)}};
+}
+
+Json lamp_spectrum_names_json() {
+    Json names = Json::array(
+        {{{"type", "flat"}}, {{"type", "d65"}}, {{"type", "blackbody"}, {"temperature", 3200}}});
+    // The LEDs among the CIE's illuminants (CIE 15:2018).
+    for (const std::string_view led : {"LED-B1", "LED-B2", "LED-B3", "LED-B4", "LED-B5", "LED-BH1",
+                                       "LED-RGB1", "LED-V1", "LED-V2"})
+        names.push_back({{"type", "led"}, {"name", led}});
+    return names;
+}
 
 namespace {
 

@@ -3,12 +3,90 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/integrators/ray_panels.h"
-#include "media/light/lit_edges.h"
+#include "core/light/ray_panels.h"
+#include "media/light/light_projection.h"
 
 namespace uw {
+
+namespace {
+
+constexpr double k_unbounded = std::numeric_limits<double>::infinity();
+
+constexpr float k_nothing = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+DepthPyramid::DepthPyramid(const Grid2D<float>& samples) {
+    levels_.push_back(cell_ranges(samples));
+    while (levels_.back().width() > 1) levels_.push_back(halved(levels_.back()));
+}
+
+// Four samples bound the depths of a plane between them: from a point 1 / depth is linear over it,
+// along parallel rays depth is.
+DepthPyramid::Level DepthPyramid::cell_ranges(const Grid2D<float>& samples) {
+    const int n = samples.width() - 1;
+    Level level(n, n);
+    for (int v = 0; v < n; ++v) {
+        const float* const above = samples.row(v).data();
+        const float* const below = samples.row(v + 1).data();
+        DepthRange* const cells = level.row(v).data();
+        for (int u = 0; u < n; ++u) {
+            const float nearest = std::min({above[u], above[u + 1], below[u], below[u + 1]});
+            // Cells outside the beam have no bounds.
+            cells[u] = nearest == k_untraced
+                           ? DepthRange{k_nothing, 0}
+                           : DepthRange{nearest,
+                                        std::max({above[u], above[u + 1], below[u], below[u + 1]})};
+        }
+    }
+    return level;
+}
+
+DepthPyramid::Level DepthPyramid::halved(const Level& fine) {
+    const int size = (fine.width() + 1) / 2, last = fine.width() - 1;
+    Level coarse(size, size);
+    for (int v = 0; v < size; ++v) {
+        const DepthRange* const above = fine.row(2 * v).data();
+        const DepthRange* const below = fine.row(std::min(2 * v + 1, last)).data();
+        DepthRange* const cells = coarse.row(v).data();
+        for (int u = 0; u < size; ++u) {
+            const int left = 2 * u, right = std::min(2 * u + 1, last);
+            cells[u] = {std::min({above[left].nearest, above[right].nearest, below[left].nearest,
+                                  below[right].nearest}),
+                        std::max({above[left].farthest, above[right].farthest, below[left].farthest,
+                                  below[right].farthest})};
+        }
+    }
+    return coarse;
+}
+
+DepthRange DepthPyramid::bound(int u0, int v0, int u1, int v1) const {
+    std::size_t level = 0;
+    while (u1 - u0 > 1 || v1 - v0 > 1) {
+        u0 /= 2, u1 /= 2, v0 /= 2, v1 /= 2;
+        ++level;
+    }
+    const Level& cells = levels_[level];
+    DepthRange range{k_nothing, 0};
+    for (int v = v0; v <= v1; ++v) {
+        for (int u = u0; u <= u1; ++u) {
+            const DepthRange& cell = cells(u, v);
+            range.nearest = std::min(range.nearest, cell.nearest);
+            range.farthest = std::max(range.farthest, cell.farthest);
+        }
+    }
+    return range;
+}
+
+std::size_t DepthPyramid::bytes() const {
+    std::size_t total = 0;
+    for (const Level& level : levels_) total += level.size() * sizeof(DepthRange);
+    return total;
+}
 
 namespace {
 
@@ -177,6 +255,200 @@ void ShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
     search.run({stretch.begin, core.begin});
     search.append(core);
     search.run({core.end, stretch.end});
+}
+
+namespace {
+
+// A surface between the corners of a cell may lie this many texels before or behind them before
+// exact shadow rays decide.
+constexpr double k_sun_margin_texels = 0.25;
+constexpr double k_float_rounding = 1e-6;  // of a depth
+// A shadow's edge is located to this fraction of a ray's stretch, with an average error of half of
+// it. A stretch is at most 15 attenuation lengths (VolumeIntegrator): 2e-4 of the light on it.
+constexpr double k_sun_edge_width = 3e-5;
+// Outside the squares: how finely shadows are looked for. The shadow of a single plane has one edge
+// on a ray, which is found whatever this number.
+constexpr int k_open_pieces = 16;
+
+constexpr int k_most_squares = 4;
+constexpr double k_narrower = 4;
+// Half the width of the smallest square, at most twice that [m].
+constexpr double k_least_half = 4;
+// A square follows the camera in steps of this fraction of its half width.
+constexpr double k_square_step = 0.25;
+
+}  // namespace
+
+SunShadowMap::SunShadowMap(const Surfaces& surfaces, const Sunlight& sun,
+                           std::span<const LightSquare> squares, int resolution)
+    : surfaces_(&surfaces), frame_(sun), resolution_(resolution) {
+    if (surfaces.empty()) return;
+    for (const LightSquare& square : squares) trace(square);
+}
+
+std::vector<LightSquare> SunShadowMap::squares_around(const Point3& centre, double reach,
+                                                      const Bounds& surfaces, const Sunlight& sun) {
+    if (surfaces.empty()) return {};
+    const LightFrame frame(sun);
+    const LightPoint middle = frame.point(centre);
+    double u_min = k_unbounded, u_max = -k_unbounded, v_min = k_unbounded, v_max = -k_unbounded;
+    for (const Point3& corner : corners(surfaces)) {
+        const LightPoint p = frame.point(corner);
+        u_min = std::min(u_min, p.u), u_max = std::max(u_max, p.u);
+        v_min = std::min(v_min, p.v), v_max = std::max(v_max, p.v);
+    }
+    LightSquare all{0.5 * (u_min + u_max), 0.5 * (v_min + v_max),
+                    0.5 * std::max(u_max - u_min, v_max - v_min)};
+    const auto around_centre = [&](double half) {
+        const double step = k_square_step * half;
+        return LightSquare{step * std::round(middle.u / step), step * std::round(middle.v / step),
+                           half};
+    };
+    if (all.half > reach) all = around_centre((1 + k_square_step) * reach);
+    all.half *= 1 + 1e-3;  // with what a rounding leaves outside
+    std::vector<LightSquare> squares{all};
+    for (double half = all.half / k_narrower;
+         half >= k_least_half && squares.size() < k_most_squares; half /= k_narrower)
+        squares.push_back(around_centre(half));
+    std::reverse(squares.begin(), squares.end());
+    return squares;
+}
+
+void SunShadowMap::trace(const LightSquare& square) {
+    const int n = resolution_;
+    Level level{square, 0, {}};
+    double first = k_unbounded;
+    for (const double u : {-square.half, square.half})
+        for (const double v : {-square.half, square.half})
+            first = std::min(first, frame_.entry_depth(square.u + u, square.v + v));
+    level.first_depth = first;
+    Grid2D<float> samples(n + 1, n + 1);
+    parallel_for(static_cast<std::size_t>(n + 1), [&](std::size_t row) {
+        const double v = square.v + square.half * (2.0 * static_cast<double>(row) / n - 1);
+        const std::span<float> depths = samples.row(static_cast<int>(row));
+        for (int column = 0; column <= n; ++column) {
+            throw_if_stopped();
+            const double u = square.u + square.half * (2.0 * column / n - 1);
+            const double entry = frame_.entry_depth(u, v);
+            const Ray ray{frame_.world({u, v, entry}), frame_.sun().direction};
+            depths[static_cast<std::size_t>(column)] =
+                static_cast<float>(entry + surfaces_->hit_distance(ray) - first);
+        }
+    });
+    rays_traced_ += samples.size();
+    level.depths = DepthPyramid(samples);
+    levels_.push_back(std::move(level));
+}
+
+std::size_t SunShadowMap::bytes() const {
+    std::size_t total = 0;
+    for (const Level& level : levels_) total += level.depths.bytes();
+    return total;
+}
+
+/// The search along one ray: bisects intervals until a pyramid decides or a texel is reached.
+class SunShadowMap::Search {
+  public:
+    Search(const SunShadowMap& map, const Ray& ray, const Interval& whole,
+           std::vector<Interval>& lit)
+        : map_(map),
+          whole_(whole),
+          begin_(map.frame_.point(ray.origin)),
+          rates_(map.frame_.rates(ray.direction)),
+          edges_(*map.surfaces_, {map.frame_.sun()}, ray, lit),
+          edge_width_(k_sun_edge_width * whole.length()) {
+        edges_.set_stretch(whole);
+    }
+
+    // By the squares from this one on.
+    void run(std::size_t square, const Interval& stretch) {
+        if (!(stretch.length() > 0)) return;
+        if (square == map_.levels_.size()) {
+            look_for_edges(stretch);
+            return;
+        }
+        const Level& level = map_.levels_[square];
+        const Interval part = inside(begin_, rates_, stretch, {level.square.u, level.square.v, 0},
+                                     level.square.half, level.square.half);
+        if (!(part.length() > 0)) {
+            run(square + 1, stretch);
+            return;
+        }
+        run(square + 1, {stretch.begin, part.begin});
+        level_ = &level;
+        descend(project(part.begin), project(part.end));
+        run(square + 1, {part.end, stretch.end});
+    }
+
+  private:
+    struct FromSurface {
+        const Sunlight& sun;
+        Point3 operator()(const Point3& x) const { return sun.entry(x); }
+    };
+    struct MapPoint {
+        double s;      // along the ray
+        double depth;  // from the level's first
+        double u, v;   // in texels
+    };
+
+    MapPoint project(double s) const {
+        const LightSquare& square = level_->square;
+        const double texels = 0.5 * map_.resolution_ / square.half;  // per metre
+        return {s, begin_.depth + s * rates_.depth - level_->first_depth,
+                (begin_.u + s * rates_.u - square.u + square.half) * texels,
+                (begin_.v + s * rates_.v - square.v + square.half) * texels};
+    }
+
+    void descend(const MapPoint& a, const MapPoint& b) {
+        const auto cell = [&](double t) {
+            return std::clamp(static_cast<int>(std::floor(t)), 0, map_.resolution_ - 1);
+        };
+        const DepthRange range =
+            level_->depths.bound(cell(std::min(a.u, b.u)), cell(std::min(a.v, b.v)),
+                                 cell(std::max(a.u, b.u)), cell(std::max(a.v, b.v)));
+        const double least = std::min(a.depth, b.depth), most = std::max(a.depth, b.depth);
+        const double margin = k_sun_margin_texels * 2 * level_->square.half / map_.resolution_ +
+                              k_float_rounding * most;
+        if (most + margin < range.nearest) {
+            edges_.append({a.s, b.s});
+        } else if (least - margin > range.farthest) {
+            return;
+        } else if (std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) <= 1) {
+            edges_.resolve(a.s, b.s, edge_width_);
+        } else {
+            const MapPoint middle = project(0.5 * (a.s + b.s));
+            descend(a, middle);
+            descend(middle, b);
+        }
+    }
+
+    void look_for_edges(const Interval& stretch) {
+        const double least = whole_.length() / k_open_pieces;
+        const auto pieces = static_cast<int>(std::ceil(stretch.length() / least));
+        const double length = stretch.length() / pieces;
+        for (int i = 0; i < pieces; ++i)
+            edges_.resolve(stretch.begin + i * length,
+                           i + 1 < pieces ? stretch.begin + (i + 1) * length : stretch.end,
+                           edge_width_);
+    }
+
+    const SunShadowMap& map_;
+    Interval whole_;
+    LightPoint begin_, rates_;
+    LitEdges<FromSurface> edges_;
+    double edge_width_;  // [m]
+    const Level* level_ = nullptr;
+};
+
+void SunShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
+                                 std::vector<Interval>& lit) const {
+    lit.clear();
+    if (!(stretch.length() > 0)) return;
+    if (surfaces_->empty()) {
+        lit.push_back(stretch);
+        return;
+    }
+    Search(*this, ray, stretch, lit).run(0, stretch);
 }
 
 }  // namespace uw

@@ -5,9 +5,145 @@
 #include <limits>
 #include <utility>
 
-#include "media/volumes/profile_refinement.h"
-
 namespace uw {
+
+namespace {
+
+/// World bounds of a lattice box; an affine map takes its corners to those of its image.
+Bounds bounds_of_image(const Affine& map, const Bounds& box, double shrink) {
+    Bounds image;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        Point3 p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = (corner >> axis & 1U) != 0 ? box.max[axis] - shrink : box.min[axis] + shrink;
+        image.extend(map * p);
+    }
+    return image;
+}
+
+}  // namespace
+
+GridVolume::GridVolume(std::vector<NanoGrid> bricks, const Affine& world_from_index,
+                       Centering centering, std::vector<GridLoad> loads)
+    : bricks_(std::move(bricks)), loads_(std::move(loads)) {
+    const double shift = centering == Centering::cell ? 0.5 : 0.0;
+    const Affine world_from_lattice = world_from_index * Affine::translation(Vector3(shift));
+    lattice_from_world_ = world_from_lattice.inverse();
+    const Matrix3& linear = world_from_lattice.linear();
+    voxel_size_ = {glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])};
+    for (const NanoGrid& brick : bricks_) {
+        bounds_.extend(bounds_of_image(world_from_lattice, brick.support(), 0.0));
+        voxel_bounds_.extend(bounds_of_image(world_from_lattice, brick.support(), 0.5));
+    }
+}
+
+GridVolume GridVolume::scaled(double factor) const {
+    GridVolume other = *this;
+    for (GridLoad& load : other.loads_) load.per_unit *= factor;
+    return other;
+}
+
+double GridVolume::value(const Point3& x) const {
+    const Point3 p = lattice_from_world_ * x;
+    double sum = 0;
+    for (const NanoGrid& brick : bricks_) sum += brick.sample(p);
+    return sum;
+}
+
+double GridVolume::column(const Point3& a, const Point3& b) const {
+    const LatticeLine line = lattice_line(a, b - a);
+    double sum = 0;
+    for (const NanoGrid& brick : bricks_) sum += brick.integrate(line);
+    return sum * distance(a, b);
+}
+
+namespace {
+
+// An interval is split if its halves are not much shorter than the least length.
+constexpr double k_splittable = 1.25;
+
+}  // namespace
+
+void ProfileRefinement::run(const DepthTolerance& tolerance, const Sample& sample,
+                            std::vector<double>& least, ConcentrationProfile& profile) {
+    profile.integrate();
+    open_.clear();
+    for (std::size_t i = 0; i + 1 < profile.s.size(); ++i)
+        open_.push_back(profile.s[i + 1] - profile.s[i] > k_splittable * least[i] ? 1 : 0);
+    while (true) {
+        middles_.clear();
+        for (std::size_t i = 0; i < open_.size(); ++i)
+            if (open_[i] != 0) middles_.push_back(0.5 * (profile.s[i] + profile.s[i + 1]));
+        if (middles_.empty()) return;
+        sample(middles_, values_);
+        merge(tolerance, least, profile);
+    }
+}
+
+// Adds the samples halfway as knots, and decides which intervals between them stay open. A sheet of
+// one voxel can pass two samples as a straight line, but then it is seen from the next interval.
+void ProfileRefinement::merge(const DepthTolerance& tolerance, std::vector<double>& least,
+                              ConcentrationProfile& profile) {
+    std::swap(profile, before_);
+    std::swap(least, least_before_);
+    std::swap(open_, open_before_);
+    const auto count = static_cast<std::size_t>(before_.constituent_count);
+    find_refused(tolerance);
+    profile.constituent_count = before_.constituent_count;
+    profile.s.clear();
+    profile.concentration.clear();
+    least.clear();
+    open_.clear();
+    std::size_t middle = 0;
+    const auto add_knot = [&](double s, const double* concentration) {
+        profile.s.push_back(s);
+        profile.concentration.insert(profile.concentration.end(), concentration,
+                                     concentration + count);
+    };
+    for (std::size_t i = 0; i < open_before_.size(); ++i) {
+        add_knot(before_.s[i], &before_.concentration[i * count]);
+        least.push_back(least_before_[i]);
+        open_.push_back(0);
+        if (open_before_[i] == 0) continue;
+        const double half = middles_[middle] - before_.s[i];
+        // refused_[i + 1] is the interval's own.
+        const bool refused = refused_[i] != 0 || refused_[i + 1] != 0 || refused_[i + 2] != 0;
+        const bool split = refused && half > k_splittable * least_before_[i];
+        open_.back() = split ? 1 : 0;
+        add_knot(middles_[middle], &values_[middle * count]);
+        ++middle;
+        least.push_back(least_before_[i]);
+        open_.push_back(split ? 1 : 0);
+    }
+    add_knot(before_.s.back(), &before_.concentration[open_before_.size() * count]);
+    profile.integrate();
+}
+
+// Finds the open intervals whose sample halfway refuses the interpolation; with one interval more
+// at either end.
+void ProfileRefinement::find_refused(const DepthTolerance& tolerance) {
+    const auto count = static_cast<std::size_t>(before_.constituent_count);
+    refused_.assign(open_before_.size() + 2, 0);
+    std::size_t middle = 0;
+    for (std::size_t i = 0; i < open_before_.size(); ++i) {
+        if (open_before_[i] == 0) continue;
+        if (!confirmed(tolerance, i, &values_[middle * count])) refused_[i + 1] = 1;
+        ++middle;
+    }
+}
+
+bool ProfileRefinement::confirmed(const DepthTolerance& tolerance, std::size_t interval,
+                                  const double* middle) {
+    const auto count = static_cast<std::size_t>(before_.constituent_count);
+    const double* const begin = &before_.concentration[interval * count];
+    const double length = before_.s[interval + 1] - before_.s[interval];
+    error_.resize(count);
+    for (std::size_t k = 0; k < count; ++k)
+        error_[k] = length * (middle[k] - 0.5 * (begin[k] + begin[count + k]));
+    return tolerance.allows(error_, before_.s[interval],
+                            std::span(before_.column).subspan(interval * count, count));
+}
+
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();

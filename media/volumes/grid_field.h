@@ -1,12 +1,79 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
-#include "core/optics/concentration_field.h"
-#include "media/volumes/grid_volume.h"
+#include "core/light/medium.h"
+#include "media/volumes/loaded_grid.h"
 
 namespace uw {
+
+/// One grid in the world: its values, their placement and their meaning.
+class GridVolume {
+  public:
+    GridVolume(std::vector<NanoGrid> bricks, const Affine& world_from_index, Centering centering,
+               std::vector<GridLoad> loads);
+
+    /// The same grid, its values shared, with `factor` times the concentrations.
+    GridVolume scaled(double factor) const;
+
+    const std::vector<NanoGrid>& bricks() const { return bricks_; }
+    const std::vector<GridLoad>& loads() const { return loads_; }
+    /// World bounding box outside which the interpolated value is zero; empty for a grid without
+    /// values.
+    const Bounds& bounds() const { return bounds_; }
+    /// World bounding box of the nonzero voxels, each a cell around its value's position.
+    const Bounds& voxel_bounds() const { return voxel_bounds_; }
+    /// Lengths of a voxel's edges along index i, j, k [m].
+    const Vector3& voxel_size() const { return voxel_size_; }
+
+    /// The line `origin + t * direction` (world, t in the caller's unit) in lattice space.
+    LatticeLine lattice_line(const Point3& origin, const Vector3& direction) const {
+        return {lattice_from_world_ * origin, lattice_from_world_.apply_to_vector(direction)};
+    }
+    /// The interpolated value at `x` (world).
+    double value(const Point3& x) const;
+    /// The exact integral of the interpolated value from `a` to `b` (world) [value m].
+    double column(const Point3& a, const Point3& b) const;
+
+  private:
+    std::vector<NanoGrid> bricks_;
+    std::vector<GridLoad> loads_;
+    Affine lattice_from_world_;
+    Bounds bounds_, voxel_bounds_;
+    Vector3 voxel_size_{0};
+};
+
+/// Makes a coarse profile as fine as a tolerance requires: intervals are halved where a sample
+/// halfway, or halfway through the next interval, differs from linear interpolation by more than
+/// the tolerance. The sample stays, so that the error left is about a quarter of the one allowed
+/// where concentrations are smooth. Sheets as thin as half an interval are not missed. Reused
+/// between rays.
+class ProfileRefinement {
+  public:
+    /// Writes the concentrations at the distances `s`, one per constituent each.
+    using Sample = std::function<void(std::span<const double> s, std::vector<double>& values)>;
+
+    /// Refines `profile`, whose knots and concentrations are given, and computes its columns.
+    /// `least[i]`: interval i is not split into any shorter than about this [m]; infinite where
+    /// nothing varies.
+    void run(const DepthTolerance& tolerance, const Sample& sample, std::vector<double>& least,
+             ConcentrationProfile& profile);
+
+  private:
+    void merge(const DepthTolerance& tolerance, std::vector<double>& least,
+               ConcentrationProfile& profile);
+    void find_refused(const DepthTolerance& tolerance);
+    bool confirmed(const DepthTolerance& tolerance, std::size_t interval, const double* middle);
+
+    std::vector<char> open_, open_before_;  // intervals that a sample halfway must confirm
+    std::vector<char> refused_;             // by interval, one more at either end
+    std::vector<double> middles_, values_;  // their midpoints, and the concentrations there
+    std::vector<double> error_;
+    ConcentrationProfile before_;
+    std::vector<double> least_before_;
+};
 
 /// Concentrations from any number of grids; overlapping ones add up. sample() is the exact
 /// trilinear sum, column() its exact integral; profile() has knots every quarter voxel of the

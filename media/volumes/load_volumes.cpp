@@ -10,13 +10,13 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/scene_limits.h"
-#include "media/vdb/moving_grid.h"
-#include "media/vdb/vdb_header_reader.h"
 #include "media/volumes/adaptive_domain.h"
 #include "media/volumes/grid_field.h"
-#include "media/volumes/voxel_size.h"
+#include "media/volumes/vdb_file.h"
+#include "media/volumes/vdb_header.h"
 
 namespace uw {
+
 namespace {
 
 // Of grids: a value, and what it means in ppm, or in units of its own coefficients.
@@ -141,6 +141,83 @@ std::unique_ptr<ConcentrationField> load_volumes(
         warnings.insert(warnings.end(), volume.warnings.begin(), volume.warnings.end());
     }
     return std::make_unique<GridField>(std::move(grids), constituent_count);
+}
+
+namespace {
+
+// Programs may round the transforms of individual frames differently [voxels].
+constexpr double k_tolerance = 1e-4;
+
+bool same_place(const Affine& a, const Affine& b) {
+    const double voxel = std::cbrt(std::abs(a.determinant()));
+    double difference = glm::length(a.offset() - b.offset());
+    for (int axis = 0; axis < 3; ++axis)
+        difference = std::max(difference, glm::length(a.linear()[axis] - b.linear()[axis]));
+    return difference <= k_tolerance * voxel;
+}
+
+std::string describe(const Affine& file_from_index) {
+    const Matrix3& m = file_from_index.linear();
+    const Vector3& origin = file_from_index.offset();
+    return fmt::format("voxels of {:.6g} x {:.6g} x {:.6g} from ({:.6g}, {:.6g}, {:.6g})",
+                       glm::length(m[0]), glm::length(m[1]), glm::length(m[2]), origin.x, origin.y,
+                       origin.z);
+}
+
+}  // namespace
+
+void VolumeSequenceCheck::take(const VolumeDesc& frame) {
+    const VdbHeader header = read_vdb_header(frame.file, frame.where);
+    // Frames of an adaptive domain may lie at different places: each is moved to its own.
+    std::optional<AdaptiveDomain> domain = find_adaptive_domain(header);
+    if (domain) domain->first = Vector3(0);
+    std::vector<Affine> transforms;
+    for (const GridMappingDesc& mapping : frame.grids)
+        transforms.push_back(with_voxel_size(
+            read_file_from_index(header, mapping.grid, mapping.where), frame, domain));
+    if (transforms_.empty()) {
+        first_ = frame;
+        transforms_ = std::move(transforms);
+        return;
+    }
+    for (std::size_t g = 0; g < transforms.size(); ++g) {
+        if (same_place(transforms_.at(g), transforms[g])) continue;
+        if (domain)
+            throw InputError(fmt::format("{}: '{}': {}", frame.grids[g].where, frame.file.string(),
+                                         domain->description()));
+        throw InputError(
+            fmt::format("{}: grid '{}' of '{}' has {}, but that of '{}' has {}; export all frames "
+                        "with one transform, or render them in separate runs",
+                        frame.grids[g].where, frame.grids[g].grid, frame.file.string(),
+                        describe(transforms[g]), first_.file.string(), describe(transforms_[g])));
+    }
+}
+
+namespace {
+
+constexpr double k_most_depth = 4;
+
+}  // namespace
+
+double voxel_depth(const VolumeReport& report, const Medium& medium) {
+    Spectrum attenuation;
+    for (const ConstituentReport& of : report.constituents)
+        attenuation +=
+            of.max *
+            medium.constituents[static_cast<std::size_t>(of.constituent)].per_unit.attenuation();
+    const Vector3& edges = report.metres_per_voxel;
+    return attenuation.greatest(static_cast<std::size_t>(medium.band_count())) *
+           std::max({edges.x, edges.y, edges.z});
+}
+
+std::optional<std::string> coarse_voxel_warning(const VolumeReport& report, const Medium& medium) {
+    const double depth = voxel_depth(report, medium);
+    if (!(depth > k_most_depth)) return std::nullopt;
+    return fmt::format(
+        "{}: grid '{}': its densest voxels are {:.2g} optical depths across: the light on the "
+        "outside of such clouds may be 2 to 10 % off; give a finer grid or fewer particles, or "
+        "compare with --integrator reference",
+        report.file.filename().string(), report.grid, depth);
 }
 
 }  // namespace uw

@@ -4,14 +4,16 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/optics/concentration_field.h"
-#include "media/vdb/grid_statistics.h"
-#include "media/vdb/placement.h"
-#include "media/vdb/vdb_file.h"
-#include "media/volumes/grid_volume.h"
+#include "core/base/vector_math.h"
+#include "core/light/medium.h"
+#include "core/scene/volume_desc.h"
+#include "media/volumes/grid_field.h"
+#include "media/volumes/loaded_grid.h"
+#include "media/volumes/vdb_file.h"
 
 namespace uw {
 
@@ -55,5 +57,27 @@ std::unique_ptr<ConcentrationField> load_volumes(
     const std::vector<std::vector<std::vector<GridLoad>>>& loads, int constituent_count,
     std::vector<VolumeReport>& reports, std::vector<std::string>& warnings,
     std::size_t slab_bytes = k_default_slab_bytes);
+
+/// Checks, from the files' headers alone, whether the frames of a volume are consistent.
+class VolumeSequenceCheck {
+  public:
+    /// Takes the next frame. Throws InputError with the file's name if a grid that the scene uses
+    /// is missing or cannot be used (select_grid), or if its transform differs from that of the
+    /// first frame: the same voxel would then lie elsewhere; IoError.
+    void take(const VolumeDesc& frame);
+
+  private:
+    VolumeDesc first_;
+    std::vector<Affine> transforms_;  // of the first frame's grids
+};
+
+/// The optical depth of the longest edge of a grid's voxels where it is densest, in the band that
+/// it attenuates most.
+double voxel_depth(const VolumeReport& report, const Medium& medium);
+
+/// One line about a grid of voxels so dense that lamps' light changes within them more than what is
+/// interpolated between rays half a voxel apart; none for others. Beyond 4 optical depths light is
+/// 2 % off where it enters such a cloud, beyond 15 5 %, beyond 40 8 %.
+std::optional<std::string> coarse_voxel_warning(const VolumeReport& report, const Medium& medium);
 
 }  // namespace uw

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "core/optics/grid_load.h"
-#include "core/optics/medium.h"
+#include "core/light/medium.h"
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
 
@@ -35,5 +36,24 @@ struct WaterModel {
 /// pure water's table (300 to 900 nm) without explicit absorption, coefficients without a phase
 /// function in water that does not scatter, and whatever make_phase_function rejects.
 WaterModel build_water_model(const WaterDesc& water, const std::vector<VolumeDesc>& volumes);
+
+/// The water's own particles (WaterDesc::small_ppm, large_ppm).
+enum class WaterParticles : std::uint8_t { small, large };
+
+/// What more of the water's own particles changes.
+struct ParticleDerivative {
+    /// Those of the water's medium, and the particles' own.
+    std::vector<std::shared_ptr<const PhaseFunction>> phase_functions;
+    /// Of the uniform coefficients, by concentration [1/m per ppm]: scattering by phase function.
+    OpticalCoefficients per_ppm;
+};
+
+/// The derivative of build_water_model's uniform coefficients, which are linear, by the
+/// concentration of these particles: upwards, where mineral absorption begins at the preset's own.
+/// InputError, as build_water_model; UsageError if the water's scattering is given, so that
+/// it has no particles, or if a grid scatters like the water, whose phase function they change.
+ParticleDerivative particle_derivative(const WaterDesc& water,
+                                       const std::vector<VolumeDesc>& volumes,
+                                       WaterParticles particles);
 
 }  // namespace uw

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/optics/phase_function.h"
+#include "core/light/medium.h"
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
 
@@ -68,5 +68,12 @@ double backscatter_fraction(const PhaseFunction& phase);
 
 /// 2 pi int p(psi) cos(psi) sin(psi) dpsi over [0, 180] degrees.
 double mean_cosine(const PhaseFunction& phase);
+
+/// The sources of the water's coefficients, one line each: "absorption: ...", "scattering: ...",
+/// and one line per grid that adds to them. `small_ppm` and `large_ppm` are the background
+/// particles determined by build_water_model.
+std::vector<std::string> water_sources(const WaterDesc& water,
+                                       const std::vector<VolumeDesc>& volumes, double small_ppm,
+                                       double large_ppm);
 
 }  // namespace uw

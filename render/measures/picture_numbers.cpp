@@ -3,10 +3,56 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
-#include "render/measures/pixel_values.h"
+#include "core/light/integrator_table.h"
 
 namespace uw {
+
+std::vector<PicturePlane> layer_planes(const Film& film, const LayerPlan& plan,
+                                       std::initializer_list<Layer> layers, double gain) {
+    const std::size_t bands = plan.band_count();
+    std::vector<PicturePlane> planes;
+    for (const Layer layer : layers)
+        if (plan.has(layer))
+            planes.push_back(
+                {film.values().subspan(static_cast<std::size_t>(plan.first_channel(layer))),
+                 film.channel_names().size(),
+                 per_band(bands, [gain](std::size_t) { return gain; })});
+    return planes;
+}
+
+double mean_of(std::span<const double> values) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+
+double mean_between(std::span<double> values, double low, double high) {
+    const auto count = static_cast<double>(values.size());
+    const auto begin = static_cast<std::ptrdiff_t>(std::ceil(low * count));
+    const auto end = static_cast<std::ptrdiff_t>(std::floor(high * count));
+    if (begin >= end) {
+        const auto middle = std::min(static_cast<std::ptrdiff_t>(0.5 * (low + high) * count),
+                                     static_cast<std::ptrdiff_t>(values.size()) - 1);
+        std::nth_element(values.begin(), values.begin() + middle, values.end());
+        return values[static_cast<std::size_t>(middle)];
+    }
+    std::nth_element(values.begin(), values.begin() + begin, values.end());
+    std::nth_element(values.begin() + begin, values.begin() + end, values.end());
+    return mean_of({values.begin() + begin, values.begin() + end});
+}
+
+double percentile(std::span<double> values, double share) {
+    const double place = share * static_cast<double>(values.size() - 1);
+    const auto below = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(values.begin(), below, values.end());
+    const double low = *below;
+    if (below + 1 == values.end()) return low;
+    return std::lerp(low, *std::min_element(below + 1, values.end()), place - std::floor(place));
+}
+
 namespace {
 
 double ratio_of(double signal, double backscatter) {
@@ -135,6 +181,89 @@ std::optional<PixelWindow> patterned_part(const PictureLayers& picture, int side
             best = PixelWindow{x, y, x + side, y + side};
         }
     return best;
+}
+
+namespace {
+
+std::vector<PicturePlane> planes_of(const MeasuredImage& image,
+                                    std::initializer_list<Layer> layers) {
+    std::vector<PicturePlane> planes = layer_planes(image.film, image.plan, layers);
+    if (image.emitted == nullptr) return planes;
+    for (PicturePlane& plane : layer_planes(*image.emitted, image.plan, layers, -1))
+        planes.push_back(plane);
+    return planes;
+}
+
+Distribution distribution_of(const MeasuredImage& image, std::initializer_list<Layer> layers,
+                             std::span<const std::size_t> pixels) {
+    const std::vector<PicturePlane> planes = planes_of(image, layers);
+    const GreyLayers light(planes, image.plan.band_count());
+    std::vector<double> values;
+    values.reserve(pixels.size());
+    for (const std::size_t pixel : pixels) values.push_back(light.at(pixel));
+    return {mean_of(values), percentile(values, 0.05), percentile(values, 0.5),
+            percentile(values, 0.95)};
+}
+
+}  // namespace
+
+std::string layers_to_measure(const SceneDesc& scene) {
+    std::string layers = k_picture_layers;
+    if (scattering_of(scene.render) == RenderDesc::Scattering::multiple)
+        layers += ",multiple.volume,multiple.surface";
+    return layers;
+}
+
+LightNumbers light_numbers(const MeasuredImage& image, std::span<const std::size_t> pixels) {
+    LightNumbers numbers;
+    numbers.pixels = pixels.size();
+    numbers.direct = distribution_of(image, {Layer::direct}, pixels);
+    numbers.forward = distribution_of(image, {Layer::forward}, pixels);
+    numbers.backscatter = distribution_of(image, {Layer::backscatter}, pixels);
+    if (image.plan.has(Layer::multiple_volume))
+        numbers.multiple =
+            distribution_of(image, {Layer::multiple_volume, Layer::multiple_surface}, pixels);
+    PictureLayers picture = picture_layers(image.film, image.plan);
+    picture.signal = planes_of(image, {Layer::direct, Layer::forward, Layer::multiple_surface});
+    picture.backscatter = planes_of(image, {Layer::backscatter, Layer::multiple_volume});
+    picture.clean = planes_of(image, {Layer::clean});
+    numbers.picture = measure_picture(picture, pixels);
+    return numbers;
+}
+
+std::vector<PartNumbers> part_numbers(const MeasuredImage& image,
+                                      const std::vector<PicturePart>& parts,
+                                      const std::string& lamp) {
+    std::vector<PartNumbers> numbers;
+    for (const PicturePart& part : parts)
+        numbers.push_back({part.name, lamp, light_numbers(image, part.pixels)});
+    return numbers;
+}
+
+std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ResolvedScene& scene,
+                                      const RenderOptions& options,
+                                      const std::vector<PicturePart>& parts,
+                                      const std::function<void(std::size_t image)>& begin) {
+    RenderOptions measured = options;
+    measured.layers = layers_to_measure(scene.desc());
+    const auto render = [&](std::vector<LampDesc> lamps, std::size_t image) {
+        if (begin) begin(image);
+        ResolvedScene part = scene;
+        part.edit().lamps = std::move(lamps);
+        renderer.set_scene(std::move(part));
+        renderer.render(measured);
+        return renderer.release_film();
+    };
+    const Film emitted = render({}, 0);
+    std::vector<PartNumbers> numbers;
+    std::size_t image = 0;
+    for (const LampDesc& lamp : scene.desc().lamps) {
+        const Film film = render({lamp}, ++image);
+        const LayerPlan plan = layer_plan(renderer.scene(), measured.layers, measured.paths);
+        for (PartNumbers& of_part : part_numbers({film, plan, &emitted}, parts, lamp.name))
+            numbers.push_back(std::move(of_part));
+    }
+    return numbers;
 }
 
 }  // namespace uw

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "core/base/error.h"
-#include "core/lamps/lamp_factory.h"
+#include "core/light/lamp_factory.h"
 
 namespace uw {
 namespace {

@@ -1,9 +1,7 @@
 // ctest labels: unit metamorphic
-#include "camera/image_size.h"
+#include "camera/camera.h"
 
 #include <gtest/gtest.h>
-
-#include "camera/camera.h"
 
 namespace uw {
 namespace {

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "camera/thin_lens.h"
+#include "camera/camera.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera/camera.h"
 #include "core/base/error.h"
 
 namespace uw {

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/command_line.h"
+#include "cli/command.h"
 
 #include <gtest/gtest.h>
 

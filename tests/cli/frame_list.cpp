@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/frame_list.h"
+#include "cli/image_choice.h"
 
 #include <gtest/gtest.h>
 

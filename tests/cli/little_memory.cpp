@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/files/output_file.h"
-#include "core/image/digital_image.h"
-#include "core/image/png_writer.h"
+#include "core/base/output_files.h"
+#include "core/image/pixel_image.h"
+#include "core/image/png_file.h"
 #include "tests/support/cli_test.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 

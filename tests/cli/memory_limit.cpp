@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/memory_limit.h"
+#include "cli/process.h"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>

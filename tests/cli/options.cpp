@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/options.h"
+#include "cli/command.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/progress.h"
+#include "cli/console.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/stop_signal.h"
+#include "cli/process.h"
 
 #include <gtest/gtest.h>
 

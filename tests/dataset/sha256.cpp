@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "dataset/sha256.h"
+#include "dataset/set_files.h"
 
 #include <gtest/gtest.h>
 

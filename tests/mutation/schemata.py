@@ -8,11 +8,13 @@ import sys
 from sites import Finder, draw
 
 AREAS = {
-    "core/integrators": ["core/integrators/*.*"],
-    "core/forward": ["core/forward/*.*"],
-    "camera": ["camera/*.*", "camera/*/*.*"],
+    "core/light": ["core/light/*integrator*.*", "core/light/ray_panels.*", "core/light/slabs.*",
+                   "core/light/surface_lighting.*"],
+    "forward scatter": ["core/passes/forward*.*", "core/passes/water_scatter.*",
+                        "core/passes/mirrored_blur.*", "core/passes/spline_grid.*"],
+    "camera": ["camera/*.*"],
     "media/light": ["media/light/*.*"],
-    "phase functions": ["media/phase/*.*", "core/optics/phase_*.*"],
+    "phase functions": ["media/water/phase_functions.*", "core/light/medium.*"],
 }
 LAYERS = ["core", "media", "camera", "render", "edit", "dataset", "cli"]
 HEADER = "tests/mutation/mutant.h"

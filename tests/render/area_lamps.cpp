@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/integrators/surface_lighting.h"
+#include "core/light/surface_lighting.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {

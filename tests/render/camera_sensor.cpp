@@ -1,6 +1,6 @@
 // ctest labels: analytic metamorphic statistical
 // What a camera's sensor makes of an image (docs/camera-image.md).
-#include "core/sensor/camera_sensor.h"
+#include "core/image/camera_sensor.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/colour/colour.h"
+#include "core/image/colour.h"
 #include "tests/support/ies_files.h"
 #include "tests/support/test_scene.h"
 

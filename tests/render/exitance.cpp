@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "core/scene/yaml/scene_reader.h"
+#include "core/scene/scene_desc.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {

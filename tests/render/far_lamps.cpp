@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "render/far_lamps.h"
+#include "render/scene_assembly.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-#include "core/lamps/lamp_factory.h"
+#include "core/light/lamp_factory.h"
 #include "tests/support/ies_files.h"
 #include "tests/support/scene_folder.h"
 #include "tests/support/test_scene.h"

@@ -1,12 +1,11 @@
 // ctest labels: unit
-#include "render/input_files.h"
+#include "render/scene_loading.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "render/resolved_scene.h"
-#include "render/scene_loading.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/scene_folder.h"
 

@@ -1,11 +1,11 @@
 // ctest labels: unit
-#include "render/object_motion.h"
+#include "render/view_matcher.h"
 
 #include <gtest/gtest.h>
 
 #include "render/renderer.h"
+#include "render/resolved_scene.h"
 #include "render/scene_loading.h"
-#include "render/scene_motion.h"
 #include "tests/support/meshes/vehicle_gltf.h"
 #include "tests/support/scene_folder.h"
 

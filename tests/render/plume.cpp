@@ -3,7 +3,7 @@
 // against the reference integrator.
 #include <gtest/gtest.h>
 
-#include "camera/image_size.h"
+#include "camera/camera.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_scene.h"
 #include "tests/support/vdb/vdb_fixtures.h"

@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "core/base/error.h"
-#include "core/integrators/reference_integrator.h"
+#include "core/light/reference_integrator.h"
 #include "tests/support/field_maker.h"
 #include "tests/support/test_scene.h"
 

@@ -1,10 +1,9 @@
 // ctest labels: unit analytic
-#include "render/scene_motion.h"
+#include "render/resolved_scene.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "render/input_files.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
 #include "tests/support/meshes/mesh_fixtures.h"

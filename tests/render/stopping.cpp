@@ -6,8 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/base/stop.h"
-#include "core/colour/colour_response.h"
+#include "core/image/colour.h"
 #include "render/light_splatter.h"
 #include "render/scene_rendering.h"
 #include "tests/support/test_scene.h"

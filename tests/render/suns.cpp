@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/integrators/surface_lighting.h"
+#include "core/light/surface_lighting.h"
 #include "core/paths/path_tracer.h"
 #include "tests/support/field_maker.h"
 #include "tests/support/paths/ray_batches.h"

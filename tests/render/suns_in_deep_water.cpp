@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/integrators/integrator.h"
+#include "core/light/integrator.h"
 #include "tests/support/suns.h"
 #include "tests/support/test_scene.h"
 

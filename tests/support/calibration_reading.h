@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "camera/calibration/calibration.h"
+#include "camera/calibration.h"
 #include "core/base/error.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/optics/concentration_field.h"
+#include "core/light/medium.h"
 
 namespace uw::test {
 

@@ -5,8 +5,8 @@
 #include <initializer_list>
 #include <memory>
 
-#include "core/optics/medium.h"
-#include "media/phase/henyey_greenstein.h"
+#include "core/light/medium.h"
+#include "media/water/phase_functions.h"
 
 namespace uw::test {
 

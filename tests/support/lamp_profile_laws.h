@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/lamps/lamp_profile.h"
+#include "core/light/lamp_profile.h"
 #include "tests/support/random_direction.h"
 
 /// The laws that every lamp profile obeys, so that each class is tested in one line.

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/optics/phase_function.h"
+#include "core/light/medium.h"
 
 /// The laws that every PhaseFunction obeys, so that each class is tested in one line.
 namespace uw::test {

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <string>
 
-#include "core/optics/phase_function.h"
-#include "core/tables/csv_table.h"
+#include "core/base/csv_table.h"
+#include "core/light/medium.h"
 
 /// Published values of phase functions, tabulated in tests/data.
 namespace uw::test {

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/base/vec.h"
+#include "core/base/vector_math.h"
 
 namespace uw::test {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/scene/yaml/scene_reader.h"
+#include "core/scene/scene_desc.h"
 #include "tests/support/scene_folder.h"
 
 namespace uw::test {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/surfaces/surfaces.h"
+#include "core/geometry/surfaces.h"
 
 namespace uw::test {
 

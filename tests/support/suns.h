@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/lamps/lamp.h"
+#include "core/light/lamp.h"
 #include "core/scene/scene_desc.h"
 
 /// Suns over the scenes of tests, in whose world y points down: the water begins at y = -3.

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/surfaces/geometry_scene.h"
-#include "core/surfaces/surfaces.h"
+#include "core/geometry/geometry_scene.h"
+#include "core/geometry/surfaces.h"
 
 namespace uw::test {
 

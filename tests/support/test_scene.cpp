@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/integrators/integrator_table.h"
+#include "core/light/integrator_table.h"
 
 namespace uw::test {
 

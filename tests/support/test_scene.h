@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/frame/pixel_renderer.h"
+#include "core/passes/pixel_renderer.h"
 #include "render/renderer.h"
 #include "tests/support/geometry_descs.h"
 

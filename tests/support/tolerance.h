@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/optics/depth_tolerance.h"
+#include "core/light/medium.h"
 
 namespace uw::test {
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/scene/phase_desc.h"
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
 #include "media/water/water_model.h"

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/base/stop.h"
 
 // core/base/parallel.h for the thread sanitizer (UWVDB_STD_THREADS), in place of parallel.cpp: each
 // loop runs on threads of the standard library that it starts and joins. The sanitizer sees both;

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json/json.h"
+#include "core/base/json.h"
 #include "tests/support/edit_scene.h"
 #include "tests/support/run_program.h"
 #include "tests/support/scene_folder.h"

@@ -3,7 +3,7 @@
 // The contrast that `uwvdb info SCENE` states, against a closed form: a slab that only absorbs, in
 // water that does nothing, before an evenly lit wall. It leaves e^-tau of the light, so its
 // contrast is 1 - e^-tau.
-#include "cli/info/draft_contrast.h"
+#include "cli/info/plume_view.h"
 
 #include <gtest/gtest.h>
 

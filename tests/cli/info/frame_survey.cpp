@@ -1,7 +1,7 @@
 // ctest labels: unit
 //
 // Advice on sequences: what is empty, how it changes, and that it is the same for every frame.
-#include "cli/info/frame_survey.h"
+#include "cli/info/vdb_advice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/info/grid_choice.h"
+#include "cli/info/vdb_advice.h"
 
 #include <gtest/gtest.h>
 

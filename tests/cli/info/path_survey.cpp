@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "cli/info/path_survey.h"
+#include "cli/info/camera_path.h"
 
 #include <gtest/gtest.h>
 

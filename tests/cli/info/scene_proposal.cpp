@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "cli/info/scene_proposal.h"
+#include "cli/info/plume_view.h"
 
 #include <gtest/gtest.h>
 

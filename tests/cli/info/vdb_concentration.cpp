@@ -1,9 +1,9 @@
 // ctest labels: unit analytic
-#include "cli/info/vdb_concentration.h"
+#include "cli/info/vdb_advice.h"
 
 #include <gtest/gtest.h>
 
-#include "media/water/kopelevich.h"
+#include "media/water/water_types.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 

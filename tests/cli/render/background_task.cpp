@@ -1,5 +1,5 @@
 // ctest labels: unit threads
-#include "cli/render/background_task.h"
+#include "cli/render/image_output.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "core/base/stop.h"
 
 namespace uw {
 namespace {

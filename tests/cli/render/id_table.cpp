@@ -1,11 +1,11 @@
 // ctest labels: unit
-#include "render/id_table.h"
+#include "render/image_header.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "core/tables/csv_table.h"
+#include "core/base/csv_table.h"
 #include "tests/support/cli_test.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 

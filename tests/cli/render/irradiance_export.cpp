@@ -1,12 +1,12 @@
 // ctest labels: analytic
-#include "cli/render/irradiance_export.h"
+#include "cli/render/image_output.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/base/vec.h"
+#include "core/base/vector_math.h"
 #include "tests/support/cli_test.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 #include "tests/support/vdb/vdb_values.h"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/tables/csv_table.h"
+#include "core/base/csv_table.h"
 #include "tests/support/cli_test.h"
 
 namespace uw {

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/render/output_files.h"
+#include "cli/render/frame_sequence.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "core/scene/yaml/scene_reader.h"
+#include "core/scene/scene_desc.h"
 #include "tests/support/film_rendering.h"
 #include "tests/support/test_scene.h"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/image/image_reader.h"
+#include "core/image/image_file.h"
 #include "tests/support/cli_test.h"
 
 namespace uw {

@@ -2,7 +2,7 @@
 // The image of a camera with a sensor, as `uwvdb render` writes it.
 #include <gtest/gtest.h>
 
-#include "core/image/image_reader.h"
+#include "core/image/image_file.h"
 #include "tests/support/cli_test.h"
 
 namespace uw {

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/render/sequence_clock.h"
+#include "cli/render/run_stats.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/render/stats.h"
+#include "cli/render/run_stats.h"
 
 #include <gtest/gtest.h>
 

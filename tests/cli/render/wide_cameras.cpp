@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "camera/camera.h"
-#include "core/scene/yaml/scene_reader.h"
+#include "core/scene/scene_desc.h"
 #include "tests/support/cli_test.h"
 
 namespace uw {

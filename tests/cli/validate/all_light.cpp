@@ -1,12 +1,11 @@
 // ctest labels: statistical
-#include "cli/validate/all_light.h"
+#include "cli/validate/light_validation.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <iterator>
 
-#include "cli/validate/light_report.h"
 #include "cli/validate/validation_report.h"
 #include "core/paths/path_tracer.h"
 #include "tests/support/temp_dir.h"

@@ -1,11 +1,11 @@
 // ctest labels: statistical
-#include "cli/validate/lamp_table.h"
+#include "cli/validate/light_validation.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "cli/validate/light_report.h"
+#include "cli/validate/validation_report.h"
 
 namespace uw::test {
 namespace {

@@ -1,12 +1,10 @@
 // ctest labels: unit
-#include "cli/validate/light_check.h"
+#include "cli/validate/light_validation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-
-#include "cli/validate/light_mean.h"
 
 namespace uw::test {
 namespace {

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/base/affine.h"
+#include "core/base/vector_math.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/base/fast_exp.h"
+#include "core/base/numerics.h"
 
 #include <gtest/gtest.h>
 

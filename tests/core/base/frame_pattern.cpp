@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/base/frame_pattern.h"
+#include "core/base/input_files.h"
 
 #include <gtest/gtest.h>
 

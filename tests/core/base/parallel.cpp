@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/stop.h"
 
 namespace uw {
 namespace {

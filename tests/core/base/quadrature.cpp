@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/base/quadrature.h"
+#include "core/base/numerics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/base/utf8.h"
+#include "core/base/text.h"
 
 #include <gtest/gtest.h>
 

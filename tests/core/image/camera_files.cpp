@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/image/image_writer.h"
-#include "core/image/jpeg_writer.h"
+#include "core/image/image_file.h"
+#include "core/image/jpeg_file.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"

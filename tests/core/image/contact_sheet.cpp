@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/image/image_writer.h"
+#include "core/image/image_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace uw {

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/image/exr_options.h"
+#include "core/image/exr_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/image/exr_sizes.h"
+#include "core/image/exr_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,7 +8,6 @@
 #include <fstream>
 #include <string>
 
-#include "core/image/exr_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace uw {

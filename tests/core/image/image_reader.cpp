@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/image/image_reader.h"
+#include "core/image/image_file.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/image/image_writer.h"
 #include "tests/support/image_file.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/message_of.h"

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/image/image_writer.h"
+#include "core/image/image_file.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "core/image/preview.h"
+#include "core/image/pixel_image.h"
 
 #include <gtest/gtest.h>
 

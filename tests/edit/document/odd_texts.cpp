@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/scene/yaml/scene_override.h"
-#include "core/scene/yaml/yaml_document.h"
+#include "core/scene/key_path.h"
+#include "core/scene/yaml_document.h"
 #include "edit/document/scene_text.h"
 #include "tests/support/edited_scenes.h"
 

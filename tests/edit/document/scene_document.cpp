@@ -6,8 +6,8 @@
 #include <chrono>
 
 #include "core/base/error.h"
-#include "core/files/atomic_file.h"
-#include "core/files/input_files.h"
+#include "core/base/input_files.h"
+#include "core/base/output_files.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/message_of.h"
 #include "tests/support/scene_folder.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/scene/yaml/scene_reader.h"
+#include "core/scene/scene_desc.h"
 #include "tests/support/edited_scenes.h"
 #include "tests/support/message_of.h"
 #include "tests/support/scene_folder.h"

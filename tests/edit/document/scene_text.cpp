@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/files/text_file.h"
-#include "core/scene/yaml/scene_reader.h"
+#include "core/base/input_files.h"
+#include "core/scene/scene_desc.h"
 #include "tests/support/edited_scenes.h"
 #include "tests/support/scene_folder.h"
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "edit/document/text_history.h"
+#include "edit/document/scene_document.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/json/json.h"
+#include "core/base/json.h"
 #include "tests/support/edit_scene.h"
 #include "tests/support/scene_folder.h"
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "edit/server/http_message.h"
+#include "edit/server/http_server.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "edit/session/conflict_error.h"
 #include "render/scene_loading.h"
 #include "tests/support/edit_scene.h"
 #include "tests/support/run_program.h"

@@ -1,5 +1,5 @@
 // ctest labels: unit threads
-#include "edit/session/event_log.h"
+#include "edit/session/edit_session.h"
 
 #include <gtest/gtest.h>
 

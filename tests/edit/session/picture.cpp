@@ -10,9 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/json/json.h"
-#include "core/scene/yaml/yaml_document.h"
-#include "edit/session/picture_mix.h"
+#include "core/base/json.h"
+#include "core/scene/yaml_document.h"
 #include "edit/session/picture_renderer.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"

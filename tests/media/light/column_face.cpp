@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "media/light/column_face.h"
+#include "media/light/column_map.h"
 
 #include <gtest/gtest.h>
 

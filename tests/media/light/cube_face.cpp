@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "media/light/cube_face.h"
+#include "media/light/light_projection.h"
 
 #include <gtest/gtest.h>
 

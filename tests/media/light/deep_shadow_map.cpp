@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "core/lamps/lamp.h"
+#include "core/light/lamp.h"
 #include "tests/support/gaussian_field.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/sphere_surface.h"

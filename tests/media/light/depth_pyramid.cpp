@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "media/light/depth_pyramid.h"
+#include "media/light/shadow_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "media/light/face_rectangle.h"
+#include "media/light/light_projection.h"
 
 #include <gtest/gtest.h>
 

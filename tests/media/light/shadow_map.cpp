@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "core/lamps/lamp_factory.h"
+#include "core/light/lamp_factory.h"
 #include "tests/support/random_direction.h"
 #include "tests/support/sphere_surface.h"
 #include "tests/support/test_scene.h"

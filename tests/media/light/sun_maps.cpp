@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "media/light/bounds_corners.h"
 #include "media/light/deep_shadow_map.h"
+#include "media/light/light_projection.h"
 #include "tests/support/column_errors.h"
 #include "tests/support/gaussian_field.h"
 #include "tests/support/random_direction.h"

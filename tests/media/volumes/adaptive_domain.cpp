@@ -9,7 +9,6 @@
 
 #include "core/base/error.h"
 #include "media/volumes/load_volumes.h"
-#include "media/volumes/volume_sequence.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/fluid_configs.h"

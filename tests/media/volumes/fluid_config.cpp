@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "media/volumes/fluid_config.h"
+#include "media/volumes/adaptive_domain.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "media/vdb/vdb_header_reader.h"
+#include "media/volumes/vdb_header.h"
 #include "tests/support/field_maker.h"
 
 namespace uw {

@@ -1,5 +1,5 @@
 // ctest labels: unit metamorphic
-#include "media/volumes/grid_volume.h"
+#include "media/volumes/grid_field.h"
 
 #include <gtest/gtest.h>
 

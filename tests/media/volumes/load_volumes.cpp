@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "media/volumes/voxel_depth.h"
 #include "tests/support/hg_medium.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"

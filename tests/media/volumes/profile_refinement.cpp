@@ -1,5 +1,5 @@
 // ctest labels: analytic metamorphic
-#include "media/volumes/profile_refinement.h"
+#include "media/volumes/grid_field.h"
 
 #include <gtest/gtest.h>
 

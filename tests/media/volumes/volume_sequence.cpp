@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "media/volumes/volume_sequence.h"
+#include "media/volumes/load_volumes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "media/water/jerlov.h"
+#include "media/water/water_types.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/csv_table.h"
 #include "core/base/error.h"
-#include "core/tables/csv_table.h"
-#include "media/water/kopelevich.h"
 
 namespace uw {
 namespace {

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "media/water/kopelevich.h"
+#include "media/water/water_types.h"
 
 #include <gtest/gtest.h>
 

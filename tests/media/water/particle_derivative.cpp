@@ -1,11 +1,10 @@
 // ctest labels: unit
 // What more of the water's own particles changes, against water that has more.
-#include "media/water/particle_derivative.h"
+#include "media/water/water_model.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "media/water/water_model.h"
 
 namespace uw::test {
 namespace {

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "media/water/pure_water.h"
+#include "media/water/water_types.h"
 
 #include <gtest/gtest.h>
 

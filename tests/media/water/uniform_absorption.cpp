@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "media/water/uniform_absorption.h"
+#include "media/water/water_types.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "media/water/jerlov.h"
-#include "media/water/pure_water.h"
+#include "media/water/water_types.h"
 #include "tests/support/water_descs.h"
 
 namespace uw {

@@ -6,12 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/tables/csv_table.h"
-#include "media/phase/fournier_forand.h"
-#include "media/phase/henyey_greenstein.h"
-#include "media/phase/molecular_phase.h"
-#include "media/phase/tabulated_phase.h"
-#include "media/water/pure_water.h"
+#include "core/base/csv_table.h"
+#include "media/water/phase_functions.h"
+#include "media/water/water_types.h"
 #include "tests/support/adaptive_quadrature.h"
 #include "tests/support/water_descs.h"
 

@@ -1,9 +1,8 @@
 // ctest labels: unit analytic metamorphic
-#include "render/measures/light_numbers.h"
+#include "render/measures/picture_numbers.h"
 
 #include <gtest/gtest.h>
 
-#include "render/measures/lamp_numbers.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {

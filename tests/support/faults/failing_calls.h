@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-#include "cli/exit_code.h"
+#include "cli/command.h"
 #include "tests/support/cli_test.h"
 
 namespace uw::test {

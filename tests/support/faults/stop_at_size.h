@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "core/base/stop.h"
+#include "core/base/error.h"
 #include "tests/support/full_disk.h"
 
 namespace uw::test {

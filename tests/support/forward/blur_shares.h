@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/scene/forward_scatter_desc.h"
+#include "core/scene/water_desc.h"
 
 namespace uw::test {
 

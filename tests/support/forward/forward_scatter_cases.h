@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "core/forward/forward_scatter.h"
+#include "core/passes/forward_scatter.h"
 
 /// Scenes and closed forms that tests of ForwardScatter share.
 namespace uw::test::forward_scatter {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/affine.h"
 #include "core/base/ray.h"
+#include "core/base/vector_math.h"
 
 namespace uw::test {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/meshes/files/mesh_reader.h"
+#include "core/geometry/mesh_reader.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 
 namespace uw::test {

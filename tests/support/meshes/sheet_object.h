@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/surfaces/scene_objects.h"
+#include "core/geometry/scene_objects.h"
 
 namespace uw::test {
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "core/base/vec.h"
+#include "core/base/vector_math.h"
 
 /// Light by counting photons, with nothing in common with core/paths but vectors: an independent
 /// witness. Photons leave the lamp and go straight to their next collision, found by delta tracking

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/surfaces/surfaces.h"
+#include "core/geometry/surfaces.h"
 
 namespace uw::test {
 

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/integrators/integrator.h"
-#include "core/optics/optical_depth.h"
+#include "core/light/integrator.h"
+#include "core/light/medium.h"
 #include "tests/support/paths/path_scene.h"
 #include "tests/support/paths/term_sums.h"
 

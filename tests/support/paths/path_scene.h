@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/integrators/lit_scene.h"
-#include "core/surfaces/geometry_scene.h"
-#include "media/phase/henyey_greenstein.h"
+#include "core/geometry/geometry_scene.h"
+#include "core/light/integrator.h"
 #include "media/volumes/grid_field.h"
+#include "media/water/phase_functions.h"
 
 /// Scenes for light paths, made by hand: no file, no camera, any number of bands.
 namespace uw::test {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/base/vec.h"
+#include "core/base/vector_math.h"
 
 /// Light paths as in a textbook, with nothing in common with core/paths but vectors: an independent
 /// witness of whole images. In uniform water, one band; vertices and directions are those of

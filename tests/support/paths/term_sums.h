@@ -7,7 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/spectrum.h"
-#include "core/integrators/integrator.h"
+#include "core/light/integrator.h"
 #include "core/paths/path_tracer.h"
 #include "tests/support/paths/batch_means.h"
 

@@ -11,8 +11,8 @@
 
 #include "camera/camera.h"
 #include "core/base/parallel.h"
-#include "core/integrators/integrator_table.h"
-#include "media/volumes/voxel_depth.h"
+#include "core/light/integrator_table.h"
+#include "media/volumes/load_volumes.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
 #include "tests/support/random/light_bounds.h"

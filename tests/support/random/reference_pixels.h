@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/lamps/lamp.h"
+#include "core/light/lamp.h"
 #include "core/scene/scene_desc.h"
 #include "render/renderer.h"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/integrators/integrator_table.h"
+#include "core/light/integrator_table.h"
 #include "render/scene_loading.h"
 #include "tests/support/random/held_image.h"
 #include "tests/support/random/random_scene.h"

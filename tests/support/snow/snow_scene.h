@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/snow/snow_field.h"
+#include "core/passes/marine_snow.h"
 #include "tests/support/test_scene.h"
 
 /// Scenes of marine snow and what they show.

@@ -4,7 +4,7 @@
 #include <openvdb/points/PointDataGrid.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
-#include "media/vdb/openvdb_grids.h"
+#include "media/volumes/grid_bricks.h"
 
 namespace uw::test {
 namespace {

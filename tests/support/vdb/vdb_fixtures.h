@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/affine.h"
+#include "core/base/vector_math.h"
 
 /// VDB files made for tests, with OpenVDB itself.
 namespace uw::test {

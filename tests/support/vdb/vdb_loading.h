@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "media/vdb/vdb_file.h"
-#include "media/vdb/vdb_header_reader.h"
+#include "media/volumes/vdb_file.h"
+#include "media/volumes/vdb_header.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/vec.h"
+#include "core/base/vector_math.h"
 
 namespace uw::test {
 

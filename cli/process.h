@@ -1,0 +1,39 @@
+#pragma once
+
+#include <atomic>
+
+namespace uw {
+
+/// Lets Ctrl-C (SIGINT, SIGTERM) end the program at once with exit code 130 and a one-line message:
+/// right as long as nothing is being written.
+void install_stop_signal();
+
+/// From now on Ctrl-C requests an orderly stop, which stop_requested() reports; a second one ends
+/// the program at once.
+void begin_orderly_stop();
+
+/// Whether an orderly stop has been requested; the same for a StopScope around work that is given
+/// up in the middle.
+bool stop_requested();
+const std::atomic<bool>& stop_flag();
+
+/// For a program that has nothing to do until it is stopped, instead of the above: Ctrl-C waits for
+/// wait_for_stop_signal(). To be called before any thread is started.
+void hold_stop_signal();
+void wait_for_stop_signal();
+
+/// From here on an allocation fails once the process would take more than the memory that is
+/// available now (available_memory_bytes()): the run ends with one line. Without, Linux grants more
+/// than it has, and kills the process that uses it, or another one.
+void limit_memory();
+
+/// Programs that are started while it lives have the limit of before.
+class MemoryLimitLifted {
+  public:
+    MemoryLimitLifted();
+    ~MemoryLimitLifted();
+    MemoryLimitLifted(const MemoryLimitLifted&) = delete;
+    MemoryLimitLifted& operator=(const MemoryLimitLifted&) = delete;
+};
+
+}  // namespace uw

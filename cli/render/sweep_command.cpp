@@ -1,0 +1,500 @@
+#include "cli/render/sweep_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "camera/camera.h"
+#include "cli/console.h"
+#include "cli/image_choice.h"
+#include "cli/process.h"
+#include "cli/render/picture_numbers.h"
+#include "core/base/csv_table.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/base/text.h"
+#include "core/light/integrator_table.h"
+#include "core/scene/render_desc.h"
+#include "render/scene_loading.h"
+
+namespace uw {
+
+namespace {
+
+constexpr double k_most_axis_values = 1000;
+
+/// The numbers of "first:last:step"; none if `text` is something else.
+std::optional<std::array<double, 3>> range_in(std::string_view text) {
+    std::array<double, 3> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const std::size_t end = text.find(':');
+        const bool is_last = i + 1 == numbers.size();
+        if ((end == std::string_view::npos) != is_last) return std::nullopt;
+        if (parse_number(text.substr(0, end), numbers[i]) != NumberText::number)
+            return std::nullopt;
+        if (!is_last) text.remove_prefix(end + 1);
+    }
+    return numbers;
+}
+
+}  // namespace
+
+std::string SweepAxis::override_at(std::size_t index) const {
+    return fmt::format("{}={}", key, values[index]);
+}
+
+std::optional<SweepAxis> sweep_axis(const std::string& override) {
+    const std::size_t equals = override.find('=');
+    if (equals == std::string::npos) return std::nullopt;
+    const auto range = range_in(std::string_view(override).substr(equals + 1));
+    if (!range) return std::nullopt;
+    const auto [first, last, step] = *range;
+    const auto fail = [&](const char* what) {
+        throw UsageError(fmt::format("--set {}: {}", printable(override, 200), what));
+    };
+    if (step == 0) fail("the step is 0; give FIRST:LAST:STEP, such as -1.2:-0.2:0.2");
+    // The ends belong to it, though their distance be a multiple of the step up to rounding only.
+    const double count = std::floor(std::abs((last - first) / step) + 1e-9) + 1;
+    if (count > k_most_axis_values) fail("more than 1000 values; give a larger step");
+    if (count < 2) fail("the step is larger than the range; give a smaller one");
+    SweepAxis axis{override.substr(0, equals), {}};
+    const double signed_step = std::copysign(step, last - first);
+    for (int i = 0; i < static_cast<int>(count); ++i) {
+        // As decimal numbers are meant: 0.3, not 0.30000000000000004.
+        double value = 0;
+        parse_number(fmt::format("{:.12g}", first + i * signed_step), value);
+        axis.values.push_back(value);
+    }
+    return axis;
+}
+
+const char* const k_sweep_examples = R"(Examples:
+  uwvdb sweep plume.yaml --set 'lamps.left.position[0]=-1.2:-0.2:0.2'
+  uwvdb sweep plume.yaml --set 'lamps.left.position[0]=-1.5:-0.1:0.1' --target 3 -o out/distance.csv
+  uwvdb sweep stereo.yaml --camera left --set 'lamps.port.position[0]=-1.2:-0.2:0.2' \
+      --with 'lamps.starboard.position[0]=1.2:0.2:0.2'
+  uwvdb sweep plume.yaml --set 'lamps.left.position[0]=-1.2:-0.2:0.2' \
+      --set water.particles.large=0.1:1:0.3 --object seabed
+
+Renders the scene as a draft for each value from FIRST to LAST in steps of STEP, of a second --set
+for each pair, and measures it: signal, backscatter, contrast, evenness (docs/edit-numbers.md). Other
+values of --set are the same for all. Writes OUT.csv, a row for each picture and part of it, and
+OUT.svg, plots of contrast and signal to backscatter. Ctrl-C keeps what has been measured.
+Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
+130 interrupted.)";
+
+std::size_t SweepArguments::count() const {
+    std::size_t product = 1;
+    for (const SweepAxis& axis : axes) product *= axis.values.size();
+    return product;
+}
+
+Options sweep_options(SweepArguments& a) {
+    Options options;
+    options.path("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
+    options.path("-o,--output", "OUT.csv", a.output,
+                 "the table; the plot gets its name with .svg; default: the scene's, with -sweep");
+    Option& set = options.parsed(
+        "--set", "KEY.PATH=FIRST:LAST:STEP",
+        [&a](const std::string& text) {
+            if (const auto axis = sweep_axis(text))
+                a.axes.push_back(*axis);
+            else
+                a.overrides.push_back(text);
+        },
+        "vary a value of the scene file; once or twice; or KEY.PATH=VALUE: replace it");
+    set.required = true;
+    set.repeatable = true;
+    options
+        .parsed(
+            "--with", "KEY.PATH=FIRST:LAST:STEP",
+            [&a](const std::string& text) {
+                const auto axis = sweep_axis(text);
+                if (!axis)
+                    throw UsageError(fmt::format("--with {}: expected KEY.PATH=FIRST:LAST:STEP",
+                                                 printable(text, 200)));
+                a.companions.push_back(*axis);
+            },
+            "vary this value along with the first; may be repeated")
+        .repeatable = true;
+    options.number("--target", "D", a.target, 0, 1000,
+                   "measure a black and white target at D metres, too");
+    add_part_options(options, a.parts);
+    options.text("--camera", "NAME", a.camera, "which camera of a rig");
+    options.integer("--frame", "N", a.frame, 0, 999'999'999, "which frame of sequences");
+    options.size(a.size, "of the pictures; default: the scene's, or less: 480 pixels wide");
+    Option& quality = options.parsed(
+        "--quality", "NAME",
+        [&a](const std::string& word) {
+            const auto* const known = std::ranges::find(
+                k_quality_names, word, &std::pair<std::string_view, RenderDesc::Quality>::first);
+            if (known == k_quality_names.end())
+                throw UsageError(fmt::format("--quality: unknown '{}'; use {}", printable(word),
+                                             alternatives(words_of(k_quality_names))));
+            a.quality = known->second;
+        },
+        "of the pictures: draft, the default, final or exact");
+    quality.value = Option::Value::word;
+    for (const auto& [word, meaning] : k_quality_names) quality.words.emplace_back(word);
+    options.threads(a.threads);
+    options.confine();
+    options.flag("--quiet", a.quiet, "print nothing but warnings and errors");
+    return options;
+}
+
+void check_axes(const SweepArguments& a) {
+    if (a.axes.empty() || a.axes.size() > 2)
+        throw UsageError(
+            fmt::format("--set: {} values with a range; vary one or two, such as "
+                        "lamps.left.position[0]=-1.2:-0.2:0.2",
+                        a.axes.size()));
+    for (const SweepAxis& companion : a.companions)
+        if (companion.values.size() != a.axes.front().values.size())
+            throw UsageError(
+                fmt::format("--with {}: has {} values, but {} has {}; give it a step "
+                            "of as many",
+                            printable(companion.key, 200), companion.values.size(),
+                            printable(a.axes.front().key, 200), a.axes.front().values.size()));
+    constexpr std::size_t k_most_pictures = 10000;
+    if (a.count() > k_most_pictures)
+        throw UsageError(fmt::format("--set: {} pictures, more than {}; give larger steps",
+                                     a.count(), k_most_pictures));
+}
+
+namespace {
+
+constexpr double k_rendering = 0.9;  // of the time that a picture takes
+constexpr int k_usual_width = 480;   // of pictures without --size [pixels]
+
+/// Which value of each axis.
+struct Place {
+    std::size_t first, second;
+};
+
+Place place_of(const SweepArguments& a, std::size_t index) {
+    const std::size_t count = a.axes.front().values.size();
+    return {index % count, index / count};
+}
+
+std::vector<double> values_at(const SweepArguments& a, const Place& at) {
+    std::vector<double> values{a.axes[0].values[at.first]};
+    if (a.axes.size() > 1) values.push_back(a.axes[1].values[at.second]);
+    for (const SweepAxis& companion : a.companions) values.push_back(companion.values[at.first]);
+    return values;
+}
+
+void shrink(const SweepArguments& a, SceneDesc& scene) {
+    const CameraDesc& camera = scene.camera;
+    if (a.size)
+        resize_image(scene.camera, (*a.size)[0], (*a.size)[1]);
+    else if (camera.width > k_usual_width)
+        resize_image(scene.camera, k_usual_width,
+                     std::max(1, static_cast<int>(std::lround(static_cast<double>(camera.height) *
+                                                              k_usual_width / camera.width))));
+}
+
+ResolvedScene scene_at(const SweepArguments& a, const Place& at) {
+    std::vector<std::string> overrides = a.overrides;
+    overrides.push_back(a.axes[0].override_at(at.first));
+    if (a.axes.size() > 1) overrides.push_back(a.axes[1].override_at(at.second));
+    for (const SweepAxis& companion : a.companions)
+        overrides.push_back(companion.override_at(at.first));
+    const SceneDesc all = load_scene(a.scene, overrides);
+    SceneDesc scene = scene_of_image(all, {a.frame, chosen_camera(a.camera, all.cameras)});
+    shrink(a, scene);
+    scene.render.quality = a.quality;
+    if (a.quality == RenderDesc::Quality::draft)
+        scene.render.samples = integrator_kind(scene.render.integrator).draft_samples;
+    return scene;
+}
+
+class Run {
+  public:
+    Run(const SweepArguments& arguments, const SweepProgress& progress)
+        : a_(arguments),
+          progress_(progress),
+          renderer_([this](const std::string& stage, double fraction) {
+              return tell(stage == "render" ? k_rendering * fraction : 0);
+          }) {
+        for (const SweepAxis& axis : a_.axes) sweep_.keys.push_back(axis.key);
+        for (const SweepAxis& axis : a_.companions) sweep_.keys.push_back(axis.key);
+    }
+
+    Sweep take() {
+        try {
+            for (; done_ < a_.count(); ++done_) measure(place_of(a_, done_));
+            tell(0);  // all is done
+            sweep_.is_complete = true;
+        } catch (const Interrupted&) {
+            // What has been measured is the result.
+        }
+        return std::move(sweep_);
+    }
+
+  private:
+    bool tell(double share_of_picture) const {
+        return progress_((static_cast<double>(done_) + share_of_picture) /
+                         static_cast<double>(a_.count()));
+    }
+
+    void measure(const Place& at) {
+        const ResolvedScene scene = scene_at(a_, at);
+        sweep_.width = scene.desc().camera.width;
+        sweep_.height = scene.desc().camera.height;
+        const RenderOptions options{.layers = layers_to_measure(scene.desc()) +
+                                              (a_.parts.object.empty() ? "" : ",id")};
+        renderer_.set_scene(scene);
+        const Film& film = renderer_.render(options);
+        for (const std::string& warning : renderer_.report().warnings) warn(warning);
+        const LayerPlan plan = layer_plan(scene.desc(), options.layers);
+        const std::vector<PicturePart> parts = picture_parts(
+            a_.parts, scene.desc(), renderer_.assembled().surfaces->names(), film, plan);
+        SweepPoint point{values_at(a_, at), part_numbers({film, plan}, parts), {}};
+        if (a_.target)
+            point.target = target_numbers(
+                probe_.lamps_on_target(scene, *a_.target, [this] { return tell(k_rendering); }),
+                *a_.target, scene.desc().water.bands_nm.size(), probe_.options());
+        sweep_.points.push_back(std::move(point));
+    }
+
+    void warn(const std::string& warning) {
+        if (std::ranges::find(sweep_.warnings, warning) == sweep_.warnings.end())
+            sweep_.warnings.push_back(warning);
+    }
+
+    const SweepArguments& a_;
+    const SweepProgress& progress_;
+    Sweep sweep_;
+    std::size_t done_ = 0;
+    Renderer renderer_;
+    TargetProbe probe_;
+};
+
+}  // namespace
+
+Sweep run_pictures(const SweepArguments& a, const SweepProgress& progress) {
+    for (std::size_t index = 0; index < a.count(); ++index) {
+        const ResolvedScene scene = scene_at(a, place_of(a, index));
+        const CameraDesc& camera = scene.desc().camera;
+        check_parts(a.parts, scene.desc(), {0, 0, camera.width, camera.height});
+    }
+    return Run(a, progress).take();
+}
+
+namespace {
+
+/// Something measured at a point, by which a curve is drawn.
+struct Quantity {
+    std::string label;
+    std::function<double(const SweepPoint&)> value;  // NaN: there is none
+};
+
+enum class Kind { contrast, ratio, evenness };
+
+double number_of_part(const SweepPoint& point, const std::string& part, Kind kind) {
+    const auto found = std::ranges::find(point.parts, part, &PartNumbers::part);
+    if (found == point.parts.end()) return std::numeric_limits<double>::quiet_NaN();
+    const PictureNumbers& numbers = found->numbers.picture;
+    if (kind == Kind::contrast) return numbers.contrast;
+    if (kind == Kind::ratio) return numbers.signal_to_backscatter;
+    if (!numbers.evenness || numbers.evenness->pixels == 0)
+        return std::numeric_limits<double>::quiet_NaN();
+    return numbers.evenness->percentile5_to_mean;
+}
+
+/// The names of all parts that were measured, in their order.
+std::vector<std::string> parts_of(const Sweep& sweep) {
+    std::vector<std::string> names;
+    for (const SweepPoint& point : sweep.points)
+        for (const PartNumbers& part : point.parts)
+            if (std::ranges::find(names, part.part) == names.end()) names.push_back(part.part);
+    return names;
+}
+
+std::vector<Quantity> quantities_of(const Sweep& sweep, Kind kind) {
+    std::vector<Quantity> quantities;
+    for (const std::string& part : parts_of(sweep))
+        quantities.push_back(
+            {part, [part, kind](const SweepPoint& p) { return number_of_part(p, part, kind); }});
+    if (kind == Kind::evenness || sweep.points.empty() || !sweep.points.front().target)
+        return quantities;
+    quantities.push_back({fmt::format("target at {:g} m", sweep.points.front().target->distance),
+                          [kind](const SweepPoint& p) {
+                              return kind == Kind::contrast ? p.target->contrast
+                                                            : p.target->signal_to_backscatter;
+                          }});
+    return quantities;
+}
+
+PlotCurve styled(std::string label, std::size_t index) {
+    static constexpr std::array k_colours{
+        plot_colour::k_blue,   plot_colour::k_red, plot_colour::k_green, plot_colour::k_orange,
+        plot_colour::k_purple, plot_colour::k_sky, plot_colour::k_black};
+    static constexpr std::array k_dashes{"", "8 3", "2 2.5", "9 3 2 3"};
+    PlotCurve curve{std::move(label), {}, {}, k_colours[index % k_colours.size()]};
+    curve.dashes = k_dashes[index / k_colours.size() % k_dashes.size()];
+    curve.markers = true;
+    return curve;
+}
+
+/// Logarithmic where curves lie so far apart that some would be flat.
+AxisScale scale_for(const std::vector<PlotCurve>& curves) {
+    double least = std::numeric_limits<double>::infinity(), greatest = 0;
+    for (const PlotCurve& curve : curves)
+        for (const double value : curve.y)
+            if (std::isfinite(value) && value > 0) {
+                least = std::min(least, value);
+                greatest = std::max(greatest, value);
+            }
+    constexpr double k_far_apart = 20;
+    return greatest > k_far_apart * least ? AxisScale::log : AxisScale::linear;
+}
+
+PlotPanel panel_of(const Sweep& sweep, const SweepArguments& a, Kind kind, const char* title,
+                   const char* label) {
+    PlotPanel panel{title, {sweep.keys.front(), {}}, {label, {}}, {}};
+    if (kind != Kind::ratio) panel.y.request.min = 0;
+    if (kind == Kind::evenness) panel.y.request.max = 1;
+    std::vector<Quantity> quantities = quantities_of(sweep, kind);
+    if (quantities.empty()) return panel;
+    const std::size_t curves = a.axes.size() > 1 ? a.axes[1].values.size() : quantities.size();
+    for (std::size_t i = 0; i < curves; ++i) {
+        const bool by_value = a.axes.size() > 1;
+        const Quantity& quantity = by_value ? quantities.back() : quantities[i];
+        PlotCurve curve =
+            styled(by_value ? fmt::format("{:g}", a.axes[1].values[i]) : quantity.label, i);
+        for (const SweepPoint& point : sweep.points) {
+            if (by_value && point.values[1] != a.axes[1].values[i]) continue;
+            curve.x.push_back(point.values[0]);
+            curve.y.push_back(quantity.value(point));
+        }
+        if (!curve.x.empty()) panel.curves.push_back(std::move(curve));
+    }
+    if (kind == Kind::ratio) panel.y.request.scale = scale_for(panel.curves);
+    if (a.axes.size() > 1) panel.title += fmt::format(" ({})", quantities.back().label);
+    return panel;
+}
+
+}  // namespace
+
+std::string sweep_csv(const Sweep& sweep) {
+    const bool has_target = !sweep.points.empty() && sweep.points.front().target;
+    std::string text;
+    for (const std::string& key : sweep.keys) text += csv_text(key) + ",";
+    text += "part" + number_names_csv();
+    if (has_target)
+        text +=
+            ",target_distance,target_contrast,target_signal,target_backscatter,"
+            "target_signal_to_backscatter,target_irradiance";
+    text += "\n";
+    for (const SweepPoint& point : sweep.points)
+        for (const PartNumbers& part : point.parts) {
+            for (const double value : point.values) text += fmt::format("{},", value);
+            text += csv_text(part.part) + number_values_csv(part.numbers);
+            if (const auto& t = point.target)
+                for (const double value : {t->distance, t->contrast, t->signal, t->backscatter,
+                                           t->signal_to_backscatter, t->irradiance})
+                    text += "," + number_cell(value);
+            text += "\n";
+        }
+    return text;
+}
+
+PlotFigure sweep_figure(const Sweep& sweep, const SweepArguments& a) {
+    PlotFigure figure;
+    figure.title = a.scene.filename().string() + " over " + sweep.keys.front();
+    for (std::size_t i = 1; i < a.axes.size(); ++i)
+        figure.title += ", for values of " + a.axes[i].key;
+    figure.panels = {
+        panel_of(sweep, a, Kind::contrast, "Contrast", "Michelson contrast"),
+        panel_of(sweep, a, Kind::ratio, "Signal to backscatter", "signal / backscatter"),
+        panel_of(sweep, a, Kind::evenness, "Evenness of irradiance", "percentile 5 / mean")};
+    figure.columns = 3;
+    figure.panel_width = 400;
+    std::string along;
+    for (const SweepAxis& axis : a.companions)
+        along += fmt::format("{}{} from {:g} to {:g}", along.empty() ? "Along with it: " : ", ",
+                             axis.key, axis.values.front(), axis.values.back());
+    if (!along.empty()) figure.caption.push_back(along + ".");
+    figure.caption.push_back(
+        fmt::format("Pictures of {} x {} pixels{}. Definitions: docs/edit-numbers.md.", sweep.width,
+                    sweep.height, sweep.is_complete ? "" : "; interrupted, not all of them"));
+    return figure;
+}
+
+std::string best_of(const Sweep& sweep) {
+    const std::vector<Quantity> quantities = quantities_of(sweep, Kind::contrast);
+    if (quantities.empty()) return {};
+    const Quantity& quantity = quantities.back();
+    const SweepPoint* best = nullptr;
+    for (const SweepPoint& point : sweep.points)
+        if (!std::isnan(quantity.value(point)) &&
+            (best == nullptr || quantity.value(point) > quantity.value(*best)))
+            best = &point;
+    if (best == nullptr) return {};
+    std::string text =
+        fmt::format("best contrast of {}: {:.3g} at", quantity.label, quantity.value(*best));
+    for (std::size_t i = 0; i < sweep.keys.size(); ++i)
+        text += fmt::format(" {}={:g}", sweep.keys[i], best->values[i]);
+    return text;
+}
+
+namespace {
+
+std::filesystem::path table_of(const SweepArguments& a) {
+    if (a.output.empty()) return a.scene.stem().string() + "-sweep.csv";
+    if (a.output.extension() != ".csv")
+        throw UsageError(fmt::format("-o {}: it is written as CSV; give a name that ends in .csv",
+                                     printable(a.output.string(), 300)));
+    return a.output;
+}
+
+}  // namespace
+
+void run_sweep(const SweepArguments& a) {
+    check_axes(a);
+    const ThreadLimit limit(a.threads);
+    const std::filesystem::path table = table_of(a);
+    std::filesystem::path plot = table;
+    plot.replace_extension(".svg");
+    for (const auto& file : {table, plot}) const AtomicFile probe(file);
+    begin_orderly_stop();
+    Sweep sweep;
+    {
+        const StopScope scope(stop_flag());
+        Progress progress("sweep", "pictures", static_cast<double>(a.count()), a.quiet);
+        sweep = run_pictures(a, [&](double share) {
+            progress.update(share);
+            return !stop_requested();
+        });
+    }
+    for (const std::string& warning : sweep.warnings)
+        print_message(fmt::format("warning: {}\n", warning));
+    if (sweep.points.empty()) throw Interrupted();
+    TextFiles files;
+    files.add(table, sweep_csv(sweep));
+    files.add(plot, svg_document(sweep_figure(sweep, a)));
+    if (!a.quiet) print_message(best_of(sweep) + "\n");
+    files.commit(a.quiet);
+    if (!sweep.is_complete)
+        throw Interrupted(fmt::format("interrupted; {} of {} pictures are measured",
+                                      sweep.points.size(), a.count()));
+}
+
+Command sweep_command() {
+    const auto arguments = std::make_shared<SweepArguments>();
+    return {"sweep", "measure a scene over a range of values: a table and a plot", k_sweep_examples,
+            sweep_options(*arguments), [arguments] {
+                install_stop_signal();
+                run_sweep(*arguments);
+                return k_exit_done;
+            }};
+}
+
+}  // namespace uw

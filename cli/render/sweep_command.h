@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/render/picture_numbers.h"
+#include "cli/svg_plot.h"
+#include "render/measures/picture_numbers.h"
+#include "render/measures/target_probe.h"
+
+namespace uw {
+
+/// A value of the scene that is varied: `--set KEY.PATH=FIRST:LAST:STEP`.
+struct SweepAxis {
+    std::string key;
+    std::vector<double> values;
+
+    /// As an override of the scene, the value at `index`.
+    std::string override_at(std::size_t index) const;
+};
+
+/// The axis that an override describes; none if its value is not such a range. Both ends are
+/// included, up to rounding; the step's sign does not matter. Throws UsageError for a range that
+/// makes no sense, or of more than 1000 values.
+std::optional<SweepAxis> sweep_axis(const std::string& override);
+
+/// `uwvdb sweep` as typed.
+struct SweepArguments {
+    std::filesystem::path scene;
+    std::filesystem::path output;            // the CSV; empty: the scene's name with -sweep.csv
+    std::vector<std::string> overrides;      // --set key.path=value
+    std::vector<SweepAxis> axes;             // --set key.path=first:last:step, one or two
+    std::vector<SweepAxis> companions;       // --with: vary along with the first axis
+    std::optional<double> target;            // --target: distance of a target [m]
+    PartArguments parts;                     // --part, --object
+    std::string camera;                      // --camera: of a rig
+    std::optional<int> frame;                // --frame: of sequences
+    std::optional<std::array<int, 2>> size;  // --size WxH; none: at most 480 pixels wide
+    RenderDesc::Quality quality = RenderDesc::Quality::draft;  // --quality
+    int threads = 0;
+    bool quiet = false;
+
+    /// The number of pictures.
+    std::size_t count() const;
+};
+
+/// What `uwvdb sweep --help` ends with.
+extern const char* const k_sweep_examples;
+
+/// The options of `uwvdb sweep`, written to `arguments`.
+Options sweep_options(SweepArguments& arguments);
+
+/// Throws UsageError unless there are one or two axes, and companions are as long as the first.
+void check_axes(const SweepArguments& arguments);
+
+/// What was measured with one choice of the values that are varied.
+struct SweepPoint {
+    std::vector<double> values;      // of the axes, then of the first one's companions
+    std::vector<PartNumbers> parts;  // of all light; an object out of the picture has none
+    std::optional<TargetNumbers> target;
+};
+
+/// What was measured, in the order of the grid: the second axis is the slower one.
+struct Sweep {
+    std::vector<std::string> keys;  // of SweepPoint::values
+    std::vector<SweepPoint> points;
+    std::vector<std::string> warnings;  // about its pictures, each once
+    int width = 0, height = 0;          // of its pictures [pixels]
+    bool is_complete = false;
+};
+
+/// Called with the share of the pictures that is done; false ends the sweep with what there is.
+using SweepProgress = std::function<bool(double share)>;
+
+/// Reads the scene with all choices, and only if all of them can be read renders and measures one
+/// after the other. Throws UsageError, InputError and IoError.
+Sweep run_pictures(const SweepArguments& arguments, const SweepProgress& progress);
+
+/// A row for each picture and part of it: the values that were varied, then what was measured.
+std::string sweep_csv(const Sweep& sweep);
+
+/// Contrast, signal to backscatter and evenness over the first axis; a curve for each part, or for
+/// each value of a second axis.
+PlotFigure sweep_figure(const Sweep& sweep, const SweepArguments& arguments);
+
+/// Where the contrast is best, one line without a line break: of the target, else of the last part.
+std::string best_of(const Sweep& sweep);
+
+/// `uwvdb sweep`: renders a scene for a grid of values, measures the pictures, and writes a table
+/// and a plot of them; reports on stderr. What was measured before Ctrl-C is written, too; then it
+/// throws Interrupted. Throws UsageError, InputError and IoError; then no file has been touched.
+void run_sweep(const SweepArguments& arguments);
+
+/// `uwvdb sweep` as the command line knows it.
+Command sweep_command();
+
+}  // namespace uw

@@ -1,0 +1,235 @@
+#include "cli/water_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <ostream>
+#include <string_view>
+
+#include "cli/console.h"
+#include "cli/water_report.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/scene/scene_desc.h"
+#include "media/water/water_table.h"
+#include "media/water/water_types.h"
+
+namespace uw {
+
+namespace {
+
+constexpr int k_most_bands = 2000;
+
+[[noreturn]] void fail(const std::string& text, std::string_view what) {
+    throw UsageError(fmt::format("--bands {}: {}", printable(text), what));
+}
+
+/// A number within [low, high], or 0.
+double parse_number(std::string_view text, double low, double high) {
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && stop == end && value >= low && value <= high ? value : 0;
+}
+
+double parse_wavelength(std::string_view part, const std::string& text) {
+    const double value = parse_number(part, 10, 1e5);
+    if (value == 0) fail(text, "give nanometres, as in 620,540,450 or 400:700:10");
+    return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (std::size_t start = 0; start <= text.size();) {
+        const std::size_t end = std::min(text.find(separator, start), text.size());
+        parts.push_back(text.substr(start, end - start));
+        start = end + 1;
+    }
+    return parts;
+}
+
+std::vector<double> parse_range(const std::vector<std::string_view>& parts,
+                                const std::string& text) {
+    const double step = parts.size() == 3 ? parse_number(parts[2], 1e-6, 1e5) : 0;
+    if (step == 0) fail(text, "a range is first:last:step in nm, such as 400:700:10");
+    const double first = parse_wavelength(parts[0], text);
+    const double last = parse_wavelength(parts[1], text);
+    const double count = std::floor((last - first) / step + 1e-9) + 1;
+    if (count < 1) fail(text, "the last wavelength is less than the first; swap them");
+    if (count > k_most_bands)
+        fail(text, fmt::format("more than {} wavelengths; give a larger step", k_most_bands));
+    std::vector<double> bands;
+    bands.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < static_cast<int>(count); ++i) bands.push_back(first + i * step);
+    return bands;
+}
+
+}  // namespace
+
+std::vector<double> parse_bands(const std::string& text) {
+    const std::vector<std::string_view> range = split(text, ':');
+    if (range.size() > 1) return parse_range(range, text);
+    std::vector<double> bands;
+    for (const std::string_view part : split(text, ','))
+        bands.push_back(parse_wavelength(part, text));
+    if (bands.size() > static_cast<std::size_t>(k_most_bands))
+        fail(text, fmt::format("more than {} wavelengths", k_most_bands));
+    std::vector<double> sorted = bands;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+        fail(text, "a wavelength is given twice; remove one");
+    return bands;
+}
+
+const char* const k_water_examples = R"(Examples:
+  uwvdb water                                    pure sea water
+  uwvdb water jerlov-II --bands 400:700:10 --csv out/jerlov-II
+  uwvdb water --set water.particles='{small: 1, large: 1}' --band 540 --svg vsf.svg
+  uwvdb water plume.yaml --set water.preset=jerlov-3C --json
+
+Prints a, b and c [1/m] per band and what is derived from them, then the volume scattering function
+by component. --set water.* needs no scene. docs/water.md explains the tables and names their
+sources.
+Presets: jerlov-IB, jerlov-II, jerlov-III, jerlov-1C, jerlov-3C, jerlov-5C.
+Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
+
+Options water_options(WaterArguments& a) {
+    Options options;
+    options.text("PRESET|SCENE", "", a.subject,
+                 "a preset such as jerlov-II, or a scene file; default: pure sea water");
+    options.set(a.overrides);
+    options.parsed(
+        "--bands", "LIST", [&a](const std::string& text) { a.bands_nm = parse_bands(text); },
+        "nm: 620,540,450 or first:last:step, instead of the water's");
+    options.number("--band", "NM", a.band_nm, 0, 1e5,
+                   "nm: the scattering function at this band only");
+    options.path("--csv", "PREFIX", a.csv,
+                 "write PREFIX-coefficients.csv and PREFIX-vsf.csv, with finer angles");
+    options.path("--svg", "FILE", a.svg,
+                 "plot coefficients over wavelength, and scattering over angle");
+    options.flag("--json", a.json, "print everything as JSON instead of tables");
+    return options;
+}
+
+namespace {
+
+/// The wavelength of Kopelevich's tables and of the paper's figure 4.
+constexpr double k_reference_nm = 550;
+
+bool same_ignoring_case(const std::string& a, const std::string& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
+        return std::tolower(x) == std::tolower(y);
+    });
+}
+
+/// The preset called `subject`; "" if there is none.
+std::string preset_called(const std::string& subject) {
+    for (const std::string& name : jerlov_preset_names())
+        if (same_ignoring_case(name, subject)) return name;
+    return "";
+}
+
+/// Fills in title, water and volumes.
+void read_subject(const WaterArguments& a, WaterReport& report) {
+    const std::string preset = preset_called(a.subject);
+    if (a.subject.empty() || !preset.empty()) {
+        std::vector<std::string> overrides = a.overrides;
+        if (!preset.empty()) overrides.insert(overrides.begin(), "water.preset=" + preset);
+        report.water = read_water_overrides(overrides);
+        if (preset.empty())
+            report.title = a.overrides.empty() ? "pure sea water" : "sea water";
+        else
+            report.title = preset;
+        for (const std::string& text : a.overrides)
+            report.title += (&text == &a.overrides.front() ? " with " : ", ") + text;
+        return;
+    }
+    const std::filesystem::path file = a.subject;
+    std::error_code error;
+    if (!file.has_extension() && !file.has_parent_path() && !std::filesystem::exists(file, error))
+        throw UsageError(
+            fmt::format("'{}' is neither a preset nor a scene file; the presets are {}", a.subject,
+                        fmt::join(jerlov_preset_names(), ", ")));
+    SceneDesc scene = read_scene(file, a.overrides);
+    report.title = file.filename().string();
+    report.water = std::move(scene.water);
+    report.volumes = std::move(scene.volumes);
+}
+
+void replace_bands(const WaterArguments& a, WaterReport& report) {
+    if (a.bands_nm.empty()) return;
+    if (is_given_per_band(report.water, report.volumes))
+        throw UsageError(
+            "--bands: this scene gives coefficients per band, which say nothing about other bands; "
+            "leave --bands out, or give the scene a preset or particles instead");
+    report.water.bands_nm = a.bands_nm;
+}
+
+/// Chooses the wavelengths of the VSF tables and of the VSF plot.
+void choose_vsf_bands(const WaterArguments& a, WaterReport& report) {
+    const std::vector<double>& bands = report.table.wavelengths_nm;
+    const double wanted = a.band_nm.value_or(k_reference_nm);
+    const auto nearest = std::min_element(bands.begin(), bands.end(), [&](double x, double y) {
+        return std::abs(x - wanted) < std::abs(y - wanted);
+    });
+    report.plot_band = static_cast<std::size_t>(nearest - bands.begin());
+    if (!a.band_nm) {
+        for (std::size_t i = 0; i < bands.size(); ++i) report.vsf_bands.push_back(i);
+        return;
+    }
+    if (std::abs(*nearest - wanted) > 1e-6 * wanted)
+        throw UsageError(
+            fmt::format("--band {:g}: not one of the bands; the nearest is {:g} nm; "
+                        "choose others with --bands",
+                        wanted, *nearest));
+    report.vsf_bands = {report.plot_band};
+}
+
+/// `prefix` with `-tail.csv` appended, without the prefix's own extension .csv if it has one.
+std::filesystem::path csv_path(std::filesystem::path prefix, const char* tail) {
+    if (prefix.extension() == ".csv") prefix.replace_extension();
+    if (!prefix.has_filename())
+        throw UsageError("--csv: give the beginning of the files' names, such as out/water");
+    prefix += fmt::format("-{}.csv", tail);
+    return prefix;
+}
+
+}  // namespace
+
+void run_water(const WaterArguments& a, std::ostream& out) {
+    WaterReport report;
+    read_subject(a, report);
+    replace_bands(a, report);
+    report.table = tabulate_water(report.water, report.volumes);
+    report.sources =
+        water_sources(report.water, report.volumes, report.table.small_ppm, report.table.large_ppm);
+    choose_vsf_bands(a, report);
+
+    TextFiles files;
+    if (!a.csv.empty()) {
+        files.add(csv_path(a.csv, "coefficients"), water_coefficients_csv(report));
+        files.add(csv_path(a.csv, "vsf"), water_vsf_csv(report));
+    }
+    if (!a.svg.empty()) files.add(a.svg, svg_document(water_figure(report)));
+    for (const std::string& warning : report.table.warnings)
+        print_message(fmt::format("warning: {}\n", warning));
+    // Files first: whoever reads the tables may stop reading, which ends the program.
+    files.commit();
+    out << (a.json ? water_json(report) : water_text(report)) << std::flush;
+    if (!out) throw IoError("standard output: cannot write; is the disk full?");
+}
+
+Command water_command() {
+    const auto arguments = std::make_shared<WaterArguments>();
+    return {"water", "tables and plots of a water's optical properties", k_water_examples,
+            water_options(*arguments), [arguments] {
+                run_water(*arguments, std::cout);
+                return k_exit_done;
+            }};
+}
+
+}  // namespace uw

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace uw {
+
+/// Patterns for the frame number in file names:
+///
+///     %d %04d   #  ####   $F $F4   {frame} {frame:04d}
+///
+/// The number is padded with zeros to the given width, or to as many digits as there are #, and is
+/// never truncated. "$F" before a letter and "%4d" (blanks in names) are not patterns.
+bool has_frame_pattern(std::string_view name);
+
+/// `name` with `frame` (>= 0) substituted for all patterns.
+std::string expand_frame_pattern(std::string_view name, int frame);
+
+/// The file of one frame. Folders that exist under their literal name are taken literally.
+std::filesystem::path file_of_frame(const std::filesystem::path& name, int frame);
+
+/// The frames for which a file exists, ascending; the number must be part of the file's own name,
+/// not its folder's. Empty if there is no such folder.
+std::vector<int> frames_found(const std::filesystem::path& name);
+
+/// Whether the files of two frames differ.
+bool differs_by_frame(const std::filesystem::path& name);
+
+/// Git LFS and git-annex leave a small stand-in where the content of a large file has not been
+/// fetched. What `file` stands in for and how to fetch it, to follow its name ("is a Git LFS
+/// pointer ..."); "" if it is no such stand-in. Also recognises the broken links of git-annex.
+std::string stand_in_of(const std::filesystem::path& file);
+
+/// What tells whether a file is the one that was read, and unchanged, without reading it again.
+struct FileStamp {
+    dev_t device = 0;
+    ino_t number = 0;
+    std::uint64_t bytes = 0;
+    std::int64_t modified_s = 0, modified_ns = 0;
+
+    friend bool operator==(const FileStamp&, const FileStamp&) = default;
+};
+
+/// Of the file that a name leads to; none if there is none.
+std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
+
+/// Remembers, until the program ends, that `file` was opened to be read for the user: AtomicFile
+/// never replaces it. To be called by whatever opens such a file, before it does. Throws InputError
+/// if inputs are confined and `file` is not where they may be. Thread safe.
+void remember_input(const std::filesystem::path& file);
+
+/// From now on, until the program ends, all inputs have to lie in the folder of the first of them
+/// or below it, after symbolic links: what a scene from a stranger names cannot lead elsewhere.
+void confine_inputs();
+
+/// The files remembered so far that lie, after symbolic links, neither in `folder` nor below it:
+/// absolute, in alphabetical order. Thread safe.
+std::vector<std::filesystem::path> inputs_outside(const std::filesystem::path& folder);
+
+/// Whether `file` is one of those, by whatever name, symbolic or hard link. Thread safe.
+bool is_input(const std::filesystem::path& file);
+
+/// The unmodified contents of a text file of at most `most_bytes`. Messages begin with `subject`
+/// ("plume.yaml", or the scene entry that names the file, followed by the file) and call what was
+/// expected `noun` ("scene", "IES file"). Throws IoError if the file does not exist, is a folder,
+/// or cannot be read; InputError if it is larger. A pipe is read until it ends or the limit is
+/// exceeded; one that nobody writes to is empty.
+std::string read_text_file(const std::filesystem::path& file, const std::string& subject,
+                           std::size_t most_bytes, std::string_view noun);
+
+}  // namespace uw

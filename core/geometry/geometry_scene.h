@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/input_files.h"
+#include "core/base/ray.h"
+#include "core/geometry/mesh.h"
+#include "core/geometry/scene_objects.h"
+#include "core/geometry/surfaces.h"
+#include "core/scene/geometry_desc.h"
+
+namespace uw {
+
+/// Transforms a mesh to world space, in place: it may have tens of millions of vertices.
+void place_mesh(TriangleMesh& mesh, const Affine& world_from_object);
+
+/// Bounds of the referenced vertices; a file may have invalid vertices that no triangle uses.
+Bounds bounds_of(const TriangleMesh& mesh);
+
+/// What is traced of a mesh, as `desc` says; its ids are still to be set. `reflectance`: the one
+/// given in the scene, if any.
+std::shared_ptr<MeshObject> make_mesh_object(const GeometryDesc& desc, TriangleMesh mesh,
+                                             const std::optional<Spectrum>& reflectance);
+
+/// How many objects and materials of a scene are numbered before those of an entry.
+struct IdsBefore {
+    std::uint32_t objects = 0, materials = 0;
+
+    friend bool operator==(const IdsBefore&, const IdsBefore&) = default;
+};
+
+/// What a mesh file adds to the surfaces of a scene. Never changed once it is made.
+struct FileSurfaces {
+    struct Shared {
+        std::shared_ptr<const MeshObject> object;
+        Bounds bounds;  // in its own space
+        std::vector<SharedMesh::Placement> placements;
+    };
+    std::vector<std::string> objects, materials;  // MeshFile's
+    std::shared_ptr<const MeshObject> mesh;       // all that is there once; null: nothing
+    Bounds bounds;                                // of `mesh`
+    std::vector<Shared> shared;
+};
+
+/// The surfaces of mesh files, kept from one scene to the next: where some objects move, the files
+/// of all others are read once, and those of the moving ones, too. A file that has been replaced or
+/// written since, or one that it names, is read again.
+class MeshStore {
+  public:
+    /// Begins a scene: frees what none of the entries of its `geometry` is, and what the scene
+    /// before had no use for.
+    void keep_only(const std::vector<GeometryDesc>& geometry);
+
+    /// What the entry `desc`, that of a file, adds behind `before`. `reflectance`: its own, if any.
+    /// Appends to `warnings` and throws as read_mesh, whether it is read or not.
+    std::shared_ptr<const FileSurfaces> load(const GeometryDesc& desc, const IdsBefore& before,
+                                             const std::optional<Spectrum>& reflectance,
+                                             std::vector<std::string>& warnings);
+
+  private:
+    using Stamps = std::vector<std::pair<std::filesystem::path, std::optional<FileStamp>>>;
+
+    /// As it was read for `desc`, whose pose is left out if it moves.
+    struct Kept {
+        GeometryDesc desc;
+        Stamps stamps;  // of the file and those that it names
+        std::vector<std::string> warnings;
+        std::shared_ptr<const MeshFile> file;          // of what moves
+        std::shared_ptr<const FileSurfaces> surfaces;  // of what does not,
+        IdsBefore before;                              // with these ids
+        bool is_used = true;                           // by the scene built last
+    };
+    static Stamps stamps_of(const GeometryDesc& desc);
+    static bool is_unchanged(const Kept& kept);
+
+    std::vector<Kept> kept_;
+};
+
+/// Triangles that lie over one another by the thousands, such as those of copies in nearly the same
+/// place: no structure tells them apart, and each ray there meets all of them.
+struct TriangleOverlap {
+    double triangles = 0;         // how many there are, about
+    Point3 where;                 // [m]
+    std::uint32_t object_id = 0;  // of one of them
+};
+
+/// Where more surface than covers a cube's face 4096 times lies in one cube, of triangles of its
+/// size. Looks at 65536 triangles of all at most, whatever their number.
+std::optional<TriangleOverlap> find_overlap(const SceneObjects& objects);
+
+/// Reads the mesh files of `geometry` and prepares everything for ray tracing, in world space [m].
+/// Every shape honours its `world_from_object`. `wavelengths_nm`: one per band of the reflectances;
+/// RGB colours in files are converted to bands by ReflectanceBands. A given `reflectance` replaces
+/// a file's colours. Meshes that several objects of a file show are kept once (MeshFile::shared).
+///
+/// Every surface is opaque and diffuse on both sides: a single-sided glTF face is shaded from
+/// behind as well, since light does not pass through it either.
+///
+/// Appends the warnings of read_mesh to `warnings`. Throws InputError for invalid files, a singular
+/// transform, or reflectances with a different band count; IoError; std::runtime_error if Embree
+/// fails.
+std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
+                                         const std::vector<double>& wavelengths_nm,
+                                         std::vector<std::string>& warnings);
+/// The same with the meshes of `meshes`, as far as they are there, which becomes those of this
+/// scene.
+std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
+                                         const std::vector<double>& wavelengths_nm,
+                                         std::vector<std::string>& warnings, MeshStore& meshes);
+
+}  // namespace uw

@@ -1,0 +1,214 @@
+#include "core/geometry/gltf_inspection.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/geometry/gltf_document.h"
+#include "core/geometry/gltf_nodes.h"
+
+namespace uw {
+namespace {
+
+using Json = nlohmann::json;
+
+class Inspection {
+  public:
+    Inspection(const GltfDocument& document, const GltfUse& use) : document_(document), use_(use) {}
+
+    std::vector<std::string> run() {
+        check_extensions();
+        gltf_nodes(document_);  // a strict tree
+        check_sizes();
+        for (const Json& mesh : document_.list("meshes")) {
+            for (const Json& primitive : document_.list(mesh, "primitives"))
+                check_primitive(primitive);
+        }
+        for (const Json& material : document_.list("materials")) inspect_material(material);
+        return {ignored_.begin(), ignored_.end()};
+    }
+
+  private:
+    const Json& accessor(const Json& index) const {
+        const Json& accessors = document_.list("accessors");
+        if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size()) {
+            document_.fail("glTF refers to an accessor that does not exist");
+        }
+        return accessors[index.get<std::size_t>()];
+    }
+
+    void check_extensions() {
+        // Ignoring extensions that define how to read the geometry would change it; ignoring those
+        // that only add lights or materials does not.
+        for (const Json& required : document_.list("extensionsRequired")) {
+            const std::string extension = required.get<std::string>();
+            if (extension != "KHR_lights_punctual" && extension != "KHR_texture_transform" &&
+                !extension.starts_with("KHR_materials_")) {
+                document_.fail(
+                    fmt::format("needs the glTF extension {}, which is not supported; export "
+                                "without it",
+                                extension));
+            }
+        }
+        for (const Json& used : document_.list("extensionsUsed")) {
+            const std::string extension = used.get<std::string>();
+            if (extension == "KHR_materials_ior") {
+                if (!use_.pbr) ignored_.insert(extension);
+            } else if (extension != "KHR_lights_punctual" && extension != "KHR_texture_transform" &&
+                       extension != "KHR_materials_emissive_strength") {
+                ignored_.insert(extension);
+            }
+        }
+    }
+
+    /// Bytes available for a buffer: those of its own file, or of the glTF file.
+    std::uint64_t source_size(const Json& buffer, std::uint64_t own_size) const {
+        const std::string uri = buffer.value("uri", "");
+        if (uri.empty() || uri.starts_with("data:")) return own_size;
+        const std::filesystem::path source = gltf_uri_path(document_.file(), uri);
+        std::error_code status;
+        if (!std::filesystem::is_regular_file(source, status)) {
+            throw IoError(fmt::format("{}: its buffer {} is missing; put it beside the glTF file",
+                                      document_.name(), uri));
+        }
+        return std::filesystem::file_size(source);
+    }
+
+    void check_sizes() {
+        const std::uint64_t own_size = std::filesystem::file_size(document_.file());
+        std::uint64_t total = own_size;
+        for (const Json& buffer : document_.list("buffers")) {
+            const std::uint64_t size = source_size(buffer, own_size);
+            if (document_.whole_number(buffer, "byteLength", 0) > size) {
+                document_.fail("a glTF buffer is longer than its file; the file is truncated");
+            }
+            total += size;
+        }
+        for (const Json& view : document_.list("bufferViews")) check_view(view);
+        for (const Json& entry : document_.list("accessors")) check_accessor(entry, total);
+    }
+
+    void check_view(const Json& view) const {
+        const Json& buffer = document_.element("buffers", view, "buffer");
+        const std::uint64_t size = document_.whole_number(buffer, "byteLength", 0);
+        const std::uint64_t length = document_.whole_number(view, "byteLength", 0);
+        if (length > size || document_.whole_number(view, "byteOffset", 0) > size - length) {
+            document_.fail("a glTF bufferView reaches past its buffer; the file is truncated");
+        }
+    }
+
+    /// `source` names a bufferView and an offset in it; `count` elements must lie inside.
+    void check_range(const Json& source, std::uint64_t count, std::uint64_t element_size) const {
+        const Json& view = document_.element("bufferViews", source, "bufferView");
+        const std::uint64_t length = document_.whole_number(view, "byteLength", 0);
+        const std::uint64_t offset = document_.whole_number(source, "byteOffset", 0);
+        const std::uint64_t stride = document_.whole_number(view, "byteStride", element_size);
+        // glTF 2.0, 3.6.2.1: a stride is at most 252. It is below element_size for interleaved
+        // matrices only, which no mesh uses.
+        const bool sane = count == 0 || (offset <= length && stride <= 252 &&
+                                         stride >= element_size && element_size <= length - offset);
+        if (!sane || (count > 0 && (count - 1) * stride > length - offset - element_size)) {
+            document_.fail("a glTF accessor reaches past its bufferView; the file is truncated");
+        }
+    }
+
+    void check_accessor(const Json& entry, std::uint64_t total) const {
+        const std::uint64_t count = document_.whole_number(entry, "count", 0);
+        if (count > total)
+            document_.fail("a glTF accessor has a larger count than its file can hold");
+        const std::uint64_t size =
+            gltf_component_count(entry.value("type", "")) * component_size(entry);
+        if (size == 0) document_.fail("a glTF accessor has an invalid type");
+        if (entry.contains("bufferView")) check_range(entry, count, size);
+        if (!entry.contains("sparse")) return;
+        const Json& sparse = entry.at("sparse");
+        const std::uint64_t patches = document_.whole_number(sparse, "count", 0);
+        if (patches > count) document_.fail("a glTF accessor has more sparse values than values");
+        check_range(sparse.at("indices"), patches, component_size(sparse.at("indices")));
+        check_range(sparse.at("values"), patches, size);
+    }
+
+    std::uint64_t component_size(const Json& entry) const {
+        return gltf_component_size(document_.whole_number(entry, "componentType", 0));
+    }
+
+    void check_attribute(const std::string& semantic, const Json& entry) const {
+        const std::string type = entry.value("type", "");
+        const bool is_float = document_.whole_number(entry, "componentType", 0) == k_gltf_float;
+        const bool is_vector = semantic == "POSITION" || semantic == "NORMAL";
+        const bool is_uv = semantic.starts_with("TEXCOORD_");
+        const bool is_color = semantic.starts_with("COLOR_");
+        const bool is_share = is_uv && entry.value("normalized", false);
+        if ((is_vector || is_uv) && !is_float && !is_share) {
+            document_.fail(
+                fmt::format("glTF {} is quantised; export it as 32-bit floats", semantic));
+        }
+        if ((is_vector && type != "VEC3") || (is_uv && type != "VEC2") ||
+            (semantic == "TANGENT" && (type != "VEC4" || !is_float)) ||
+            (is_color && type != "VEC3" && type != "VEC4") ||
+            (semantic.starts_with("JOINTS_") && type != "VEC4") ||
+            (semantic.starts_with("WEIGHTS_") && type != "VEC4")) {
+            document_.fail(fmt::format("glTF {} has the invalid type '{}'", semantic, type));
+        }
+    }
+
+    void check_primitive(const Json& primitive) {
+        if (!primitive.contains("attributes") || !primitive["attributes"].contains("POSITION")) {
+            document_.fail("a glTF mesh has no POSITION");
+        }
+        const Json& attributes = primitive["attributes"];
+        const Json& positions = accessor(attributes["POSITION"]);
+        // Without data an accessor is all zeros, with any forged count.
+        if (!positions.contains("bufferView")) document_.fail("a glTF POSITION has no data");
+        const std::uint64_t count = document_.whole_number(positions, "count", 0);
+        const auto check_set = [&](const Json& set) {
+            for (const auto& [semantic, index] : set.items()) {
+                const Json& entry = accessor(index);
+                check_attribute(semantic, entry);
+                if (document_.whole_number(entry, "count", 0) != count) {
+                    document_.fail(
+                        fmt::format("glTF {} does not have the same count as POSITION", semantic));
+                }
+            }
+        };
+        check_set(attributes);
+        for (const Json& target : document_.list(primitive, "targets")) {
+            check_set(target);
+            ignored_.insert("morph targets");
+        }
+        if (primitive.contains("indices")) {
+            const Json& entry = accessor(primitive["indices"]);
+            const std::uint64_t type = document_.whole_number(entry, "componentType", 0);
+            if (entry.value("type", "") != "SCALAR" ||
+                (type != 5121 && type != 5123 && type != 5125)) {
+                document_.fail("glTF indices are not whole numbers");
+            }
+        }
+        if (document_.whole_number(primitive, "mode", 4) < 4) ignored_.insert("points and lines");
+    }
+
+    void inspect_material(const Json& material) {
+        const Json& surface = document_.object(material, "pbrMetallicRoughness");
+        if (!use_.pbr && !use_.diffuse_meant &&
+            (surface.value("metallicFactor", 1.0) > 0 ||
+             surface.contains("metallicRoughnessTexture"))) {
+            ignored_.insert("metallic");
+        }
+        if (material.contains("occlusionTexture")) ignored_.insert("occlusion maps");
+        if (material.value("alphaMode", "OPAQUE") == "BLEND") ignored_.insert("alpha blending");
+    }
+
+    const GltfDocument& document_;
+    GltfUse use_;
+    std::set<std::string> ignored_;
+};
+
+}  // namespace
+
+std::vector<std::string> inspect_gltf(const GltfDocument& document, const GltfUse& use) {
+    return Inspection(document, use).run();
+}
+
+}  // namespace uw

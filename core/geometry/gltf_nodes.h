@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/vector_math.h"
+#include "core/geometry/gltf_document.h"
+#include "core/geometry/mesh.h"
+#include "core/scene/geometry_desc.h"
+
+namespace uw {
+
+/// One node of the scene that a glTF file shows; for gltf_*.cpp only.
+struct GltfNode {
+    std::size_t index = 0;                 // in "nodes"
+    const nlohmann::json* json = nullptr;  // of the document
+    Affine file_from_node;                 // all parents' transforms and its own
+};
+
+/// What animations make of a node's own transform at a moment; the rest is as the node has it.
+struct GltfPose {
+    std::optional<std::array<double, 3>> translation, scale;
+    std::optional<std::array<double, 4>> rotation;  // x, y, z, w, unit
+};
+
+/// By the node's index.
+using GltfPoses = std::map<std::size_t, GltfPose>;
+
+/// The nodes of the file's scene ("scene", else the first; without scenes all nodes), parents
+/// before their children. Throws InputError unless they are a strict tree at most 256 deep, and for
+/// a node in `poses` that has a matrix.
+std::vector<GltfNode> gltf_nodes(const GltfDocument& document, const GltfPoses& poses = {});
+
+/// Where the file's animations have its nodes at `time` [s] (glTF 2.0, section 3.11): all of them
+/// at once; where several move the same part of a node, the first does. Before and after its keys a
+/// node stays where the nearest of them has it. Throws InputError for a sampler without keys, with
+/// times that do not ascend, or with values that do not fit. `document` has passed inspect_gltf.
+/// For gltf_*.cpp only.
+GltfPoses gltf_poses(const GltfDocument& document, GltfBytes& bytes, double time);
+
+/// Whether a channel moves a node, and not, say, the weights of morph targets. For gltf_*.cpp only.
+bool moves_node(const GltfDocument& document, const nlohmann::json& channel);
+
+/// What of a file would move but stands still here, as a warning without the file's name: what
+/// animations name, unless they move it at the time of `use`, and nodes with a skin. Empty if there
+/// are none. For gltf_*.cpp only.
+std::string unused_motion_of(const GltfDocument& document, const GltfUse& use);
+
+}  // namespace uw

@@ -1,0 +1,227 @@
+#include "core/geometry/gltf_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/geometry/gltf_document.h"
+#include "core/geometry/gltf_inspection.h"
+#include "core/geometry/gltf_nodes.h"
+#include "core/geometry/gltf_primitives.h"
+
+namespace uw {
+
+std::vector<std::filesystem::path> files_named_by_gltf(const std::filesystem::path& file) {
+    std::vector<std::filesystem::path> files;
+    try {
+        const GltfDocument document(file);
+        for (const char* const list : {"buffers", "images"})
+            for (const nlohmann::json& entry : document.list(list)) {
+                const std::string uri = entry.value("uri", "");
+                if (!uri.empty() && !uri.starts_with("data:"))
+                    files.push_back(gltf_uri_path(file, uri));
+            }
+    } catch (const std::exception&) {
+        return {};
+    }
+    return files;
+}
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// The first or last time of a sampler, which the format requires beside its keys.
+double bound_of(const Json& input, const char* key) {
+    return input.at(key).at(0).get<double>();
+}
+
+std::optional<TimeRange> time_range_of(const GltfDocument& document) {
+    std::optional<TimeRange> range;
+    for (const Json& animation : document.list("animations"))
+        for (const Json& channel : document.list(animation, "channels")) {
+            if (!moves_node(document, channel)) continue;
+            const Json& sampler = document.list(animation, "samplers")
+                                      .at(document.whole_number(channel, "sampler", 0));
+            const Json& input = document.element("accessors", sampler, "input");
+            const TimeRange keys{bound_of(input, "min"), bound_of(input, "max")};
+            if (!range) range = keys;
+            range = {std::min(range->first, keys.first), std::max(range->last, keys.last)};
+        }
+    return range;
+}
+
+}  // namespace
+
+std::optional<TimeRange> gltf_time_range(const std::filesystem::path& file) {
+    try {
+        // Without the word there is no need to parse what may be 100 MB.
+        if (read_gltf_text(file).find("\"animations\"") == std::string::npos) return std::nullopt;
+        return time_range_of(GltfDocument(file));
+    } catch (const std::exception&) {
+        return std::nullopt;
+    }
+}
+
+std::vector<Affine> gltf_placements(const std::filesystem::path& file, double time) {
+    try {
+        const GltfDocument document(file);
+        inspect_gltf(document, {});  // the accessors
+        GltfBytes bytes(document);
+        std::vector<Affine> placements;
+        for (const GltfNode& node : gltf_nodes(document, gltf_poses(document, bytes, time)))
+            if (node.json->contains("mesh")) placements.push_back(node.file_from_node);
+        return placements;
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError(
+            fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));
+    }
+}
+
+namespace {
+
+using Json = nlohmann::json;
+
+// A copy of a triangle takes some 100 bytes with Embree's structure over it, an instance a thousand
+// and more of every ray's time: meshes up to this size are copied to each node.
+constexpr std::uint64_t k_most_copied_triangles = 32;
+
+constexpr std::uint64_t k_triangle_mode = 4, k_last_mode = 6;
+
+/// One node that shows a mesh.
+struct MeshUse {
+    Affine file_from_node;
+    std::uint32_t object = 0;
+};
+
+/// Names what a file shows and sorts it into what is there once and what several nodes share.
+class GltfContents {
+  public:
+    GltfContents(const GltfDocument& document, const GltfPoses& poses)
+        : document_(document), uses_(document.list("meshes").size()) {
+        for (const GltfNode& node : gltf_nodes(document, poses)) {
+            if (node.json->contains("mesh")) add(node);
+        }
+        for (const Json& material : document.list("materials")) {
+            materials_.push_back(material.value("name", ""));
+            if (materials_.back().empty())
+                materials_.back() = fmt::format("material{}", materials_.size());
+        }
+    }
+
+    MeshFile read(GltfJoiner& joiner) {
+        MeshFile file;
+        std::vector<GltfPlacement> once;
+        for (std::size_t mesh = 0; mesh < uses_.size(); ++mesh) {
+            if (is_shared(mesh)) {
+                file.shared.push_back(share(mesh, joiner, once));
+            } else {
+                for (const MeshUse& use : uses_[mesh]) place(mesh, use, once);
+            }
+        }
+        // In the order of the nodes, as far as one mesh is built of them.
+        std::ranges::stable_sort(once, {}, &GltfPlacement::object);
+        file.mesh = joiner.join(once);
+        file.objects = std::move(objects_);
+        file.materials = std::move(materials_);
+        return file;
+    }
+
+  private:
+    void add(const GltfNode& node) {
+        const Json& mesh = document_.element("meshes", *node.json, "mesh");
+        const std::uint64_t index = document_.whole_number(*node.json, "mesh", 0);
+        std::string name = node.json->value("name", "");
+        if (name.empty()) name = mesh.value("name", "");
+        if (name.empty()) name = fmt::format("node{}", node.index);
+        uses_[index].push_back({node.file_from_node, static_cast<std::uint32_t>(objects_.size())});
+        objects_.push_back(std::move(name));
+    }
+
+    std::uint64_t triangles_of(std::size_t mesh) const {
+        std::uint64_t corners = 0;
+        for (const Json& primitive : document_.list(document_.list("meshes")[mesh], "primitives")) {
+            const bool is_indexed = primitive.contains("indices");
+            const Json& of = is_indexed ? primitive : primitive["attributes"];
+            corners += document_.whole_number(
+                document_.element("accessors", of, is_indexed ? "indices" : "POSITION"), "count",
+                0);
+        }
+        return corners / 3;
+    }
+
+    bool is_shared(std::size_t mesh) const {
+        return uses_[mesh].size() > 1 && triangles_of(mesh) > k_most_copied_triangles;
+    }
+
+    void place(std::size_t mesh, const MeshUse& use, std::vector<GltfPlacement>& to) const {
+        const Json& json = document_.list("meshes")[mesh];
+        const std::size_t materials = document_.list("materials").size();
+        for (const Json& primitive : document_.list(json, "primitives")) {
+            const std::uint64_t mode = document_.whole_number(primitive, "mode", k_triangle_mode);
+            if (mode < k_triangle_mode) continue;  // points and lines
+            if (mode > k_last_mode) document_.fail("a glTF primitive has an unknown mode");
+            GltfPlacement placement{&json, &primitive, use.file_from_node, materials, use.object};
+            if (primitive.contains("material")) {
+                placement.material = document_.whole_number(primitive, "material", 0);
+                if (placement.material >= materials) {
+                    document_.fail("glTF refers to a material that does not exist");
+                }
+            }
+            to.push_back(placement);
+        }
+    }
+
+    /// Nodes that flatten the mesh are added to `once`: their triangles are dropped and counted.
+    SharedMesh share(std::size_t mesh, GltfJoiner& joiner, std::vector<GltfPlacement>& once) const {
+        SharedMesh shared;
+        std::vector<GltfPlacement> primitives;
+        place(mesh, {}, primitives);
+        shared.mesh = joiner.join(primitives);
+        for (const MeshUse& use : uses_[mesh]) {
+            const double volume = use.file_from_node.determinant();
+            if (volume != 0 && std::isfinite(volume))
+                shared.placements.push_back({use.file_from_node, use.object});
+            else
+                place(mesh, use, once);
+        }
+        return shared;
+    }
+
+    const GltfDocument& document_;
+    std::vector<std::vector<MeshUse>> uses_;  // by mesh
+    std::vector<std::string> objects_, materials_;
+};
+
+}  // namespace
+
+MeshFile read_gltf(const std::filesystem::path& file, const GltfUse& use,
+                   std::vector<std::string>& warnings) {
+    try {
+        const GltfDocument document(file);
+        const std::vector<std::string> ignored = inspect_gltf(document, use);
+        if (!ignored.empty()) {
+            warnings.push_back(
+                fmt::format("{}: ignored: {}", file.string(), fmt::join(ignored, ", ")));
+        }
+        if (const std::string motion = unused_motion_of(document, use); !motion.empty()) {
+            warnings.push_back(fmt::format("{}: {}", file.string(), motion));
+        }
+        GltfBytes bytes(document);
+        GltfMaterials materials(document, bytes, use);
+        GltfJoiner joiner(document, bytes, materials);
+        GltfPoses poses;
+        if (use.time) poses = gltf_poses(document, bytes, *use.time);
+        return GltfContents(document, poses).read(joiner);
+    } catch (const Json::exception& error) {
+        throw InputError(
+            fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));
+    }
+}
+
+}  // namespace uw

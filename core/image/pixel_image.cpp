@@ -1,0 +1,112 @@
+#include "core/image/pixel_image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/base/available_memory.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/image/colour.h"
+
+namespace uw {
+
+void check_image_size(std::int64_t width, std::int64_t height, int channels,
+                      std::size_t encoded_bytes, const std::string& name) {
+    constexpr std::int64_t k_max_pixels = std::int64_t{1} << 28;
+    // No codec in use packs more values than this into a byte (deflate: 1032), so that a forged
+    // size in the header of a small file does not allocate gigabytes.
+    constexpr std::int64_t k_max_values_per_byte = 4096;
+    if (width > k_max_pixels || height > k_max_pixels || width * height > k_max_pixels) {
+        throw InputError(
+            fmt::format("{}: {} x {} pixels are more than the 2^28 supported; "
+                        "scale the image down",
+                        name, width, height));
+    }
+    if (width * height * channels / k_max_values_per_byte >
+        static_cast<std::int64_t>(encoded_bytes)) {
+        throw InputError(
+            fmt::format("{}: {} bytes cannot hold {} x {} pixels; the file is truncated", name,
+                        encoded_bytes, width, height));
+    }
+    // A byte or two as the codec gives it, and a float.
+    constexpr double k_bytes_per_value = 5;
+    require_memory(k_bytes_per_value * static_cast<double>(width * height * channels),
+                   fmt::format("{}: {} x {} pixels need", name, width, height),
+                   "scale the image down");
+}
+
+namespace {
+
+constexpr double k_percentile = 0.99;
+constexpr double k_luminance_of_percentile = 0.8;
+
+/// `encode`: linear to a value of the colour.
+template <class Colour, class Encode>
+Grid2D<Colour> preview_of(const Film& film, double exposure, const Encode& encode) {
+    const PixelWindow& window = film.window();
+    Grid2D<Colour> preview(window.width(), window.height());
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        const int y = static_cast<int>(line);
+        int x = window.x0;
+        for (Colour& out : preview.row(y)) {
+            const std::span<const float> pixel = film.pixel(x++, window.y0 + y);
+            if (!(pixel[k_alpha] > 0)) continue;  // black
+            for (const FilmChannel channel : {k_red, k_green, k_blue})
+                out[channel] = encode(exposure * pixel[channel]);
+        }
+    });
+    return preview;
+}
+
+}  // namespace
+
+std::optional<double> automatic_exposure(const Film& film) {
+    const PixelWindow& window = film.window();
+    constexpr float k_not_counted = -std::numeric_limits<float>::infinity();
+    std::vector<float> luminances(static_cast<std::size_t>(window.width()) *
+                                  static_cast<std::size_t>(window.height()));
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        const int y = window.y0 + static_cast<int>(line);
+        float* out = &luminances[line * static_cast<std::size_t>(window.width())];
+        for (int x = window.x0; x < window.x1; ++x) {
+            const std::span<const float> pixel = film.pixel(x, y);
+            const double brightness = luminance({pixel[k_red], pixel[k_green], pixel[k_blue]});
+            const bool counts = pixel[k_alpha] > 0 && std::isfinite(brightness);
+            *out++ = counts ? static_cast<float>(brightness) : k_not_counted;
+        }
+    });
+    std::erase(luminances, k_not_counted);
+    if (luminances.empty()) return std::nullopt;
+    const auto last = static_cast<double>(luminances.size() - 1);
+    const auto middle =
+        luminances.begin() + static_cast<std::ptrdiff_t>(std::floor(k_percentile * last));
+    std::size_t compared = 0;
+    const auto is_darker = [&](float a, float b) {
+        constexpr std::size_t k_between_stops = 1 << 16;
+        if (++compared % k_between_stops == 0) throw_if_stopped();
+        return a < b;
+    };
+    std::nth_element(luminances.begin(), middle, luminances.end(), is_darker);
+    double bright = *middle;
+    if (!(bright > 0)) bright = *std::max_element(middle, luminances.end());
+    const double exposure = k_luminance_of_percentile / bright;
+    if (!(bright > 0) || !std::isfinite(exposure)) return std::nullopt;
+    return exposure;
+}
+
+Preview make_preview(const Film& film, double exposure) {
+    return preview_of<Srgb8>(film, exposure, srgb_bytes());
+}
+
+Preview16 make_preview16(const Film& film, double exposure) {
+    return preview_of<Srgb16>(film, exposure, [](double linear) {
+        return static_cast<std::uint16_t>(std::lround(65535 * srgb_encode(linear)));
+    });
+}
+
+}  // namespace uw

@@ -1,0 +1,320 @@
+#include "core/light/lamp_profile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/light/photometric_files.h"
+
+namespace uw {
+
+DirectionCone DirectionCone::widened(double angle) const {
+    const double wide = std::acos(std::max(-1.0, cosine)) + angle;
+    return {axis, wide < std::numbers::pi ? std::cos(wide) : -1.0};
+}
+
+bool DirectionCone::includes(const DirectionCone& other) const {
+    if (has_all() || other.has_all()) return has_all();
+    const double apart =
+        std::atan2(glm::length(glm::cross(axis, other.axis)), glm::dot(axis, other.axis));
+    return apart + std::acos(other.cosine) <= std::acos(cosine) + 1e-12;
+}
+
+namespace {
+
+// Where on the line of `ray` the angle to `axis` has its extremum; may be infinite or NaN.
+double extremal_angle(const Ray& ray, const Point3& apex, const Vector3& axis) {
+    const Vector3 o = ray.origin - apex;
+    const double da = glm::dot(ray.direction, axis), oa = glm::dot(o, axis);
+    const double od = glm::dot(o, ray.direction);
+    // d/ds (x.a / |x|) = 0 with x = o + s d: linear in s.
+    return (da * glm::dot(o, o) - oa * od) / (oa - da * od);
+}
+
+}  // namespace
+
+void append_cone_crossings(const Ray& ray, const Point3& apex, const Vector3& axis,
+                           double cos_angle, std::vector<double>& s) {
+    const Vector3 o = ray.origin - apex;
+    const double da = glm::dot(ray.direction, axis);
+    const double oa = glm::dot(o, axis);
+    const double cos2 = cos_angle * cos_angle;
+    // (x.a)^2 = cos^2 |x|^2 with x = o + s d: a quadratic in s.
+    const double a = da * da - cos2;
+    const double half_b = da * oa - cos2 * glm::dot(o, ray.direction);
+    const double c = oa * oa - cos2 * glm::dot(o, o);
+    const auto append = [&](double root) {
+        // The quadratic describes both halves of the double cone; keep the lamp's own.
+        const double along_axis = oa + root * da;
+        if (std::isfinite(root) && root > 0 && along_axis * cos_angle >= 0) s.push_back(root);
+    };
+    const double discriminant = half_b * half_b - a * c;
+    if (discriminant < 0) return;
+    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
+    if (a != 0) append(q / a);
+    if (q != 0) append(c / q);
+}
+
+void append_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& normal,
+                           std::vector<double>& s) {
+    const double root = -glm::dot(ray.origin - apex, normal) / glm::dot(ray.direction, normal);
+    if (std::isfinite(root) && root > 0) s.push_back(root);
+}
+
+void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& side,
+                                const Vector3& normal, std::vector<double>& s) {
+    const double root = -glm::dot(ray.origin - apex, normal) / glm::dot(ray.direction, normal);
+    if (std::isfinite(root) && root > 0 && glm::dot(ray.at(root) - apex, side) >= 0)
+        s.push_back(root);
+}
+
+AxisApproach approach_to_axis(const Ray& ray, const Interval& stretch, const Point3& apex,
+                              const Vector3& axis) {
+    AxisApproach nearest{stretch.begin, -1};
+    for (const double s : {stretch.begin, stretch.end, extremal_angle(ray, apex, axis)}) {
+        if (!(s >= stretch.begin && s <= stretch.end)) continue;
+        const Vector3 x = ray.at(s) - apex;
+        const double cosine = glm::dot(x, axis) / glm::length(x);
+        if (cosine > nearest.cosine) nearest = {s, cosine};  // not at the apex itself: NaN
+    }
+    return nearest;
+}
+
+void append_nearest_to_axis(const Ray& ray, const Point3& apex, const Vector3& axis,
+                            std::vector<double>& s) {
+    const double root = extremal_angle(ray, apex, axis);
+    if (std::isfinite(root) && root > 0) s.push_back(root);
+}
+
+namespace {
+
+using Falloff = SpotProfileDesc::Falloff;
+
+bool is_blenders(Falloff falloff) {
+    return falloff == Falloff::blender || falloff == Falloff::blender_3_4;
+}
+
+double smoothstep(double x) {
+    return x * x * (3.0 - 2.0 * x);
+}
+
+// 2 pi int smoothstep sin(theta) over the edge of a spot, from full (inner) to dark (outer).
+double edge_solid_angle(double inner, double outer) {
+    constexpr int k_steps = 256;  // Simpson on a cubic times a sine: accurate to 1e-9
+    const double h = (outer - inner) / k_steps;
+    double sum = 0;
+    for (int i = 0; i <= k_steps; ++i) {
+        const double simpson = (i == 0 || i == k_steps) ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
+        sum +=
+            simpson * smoothstep(1.0 - static_cast<double>(i) / k_steps) * std::sin(inner + i * h);
+    }
+    return 2.0 * std::numbers::pi * sum * h / 3.0;
+}
+
+}  // namespace
+
+SpotProfile::SpotProfile(const SpotProfileDesc& desc, const LampPlacement& placement)
+    : axis_(placement.axis()),
+      falloff_(desc.falloff),
+      dark_angle_(glm::radians(
+          std::min(is_blenders(falloff_) ? 90.0 : 180.0, 0.5 * (desc.beam + desc.edge)))),
+      cos_dark_(std::cos(dark_angle_)),
+      full_angle_(glm::radians(std::max(0.0, 0.5 * (desc.beam - desc.edge)))),
+      cos_full_(std::cos(full_angle_)) {
+    if (is_blenders(falloff_)) {
+        // Blend is a share of the angle in Blender's cones, but of 1 - cos in its shading.
+        const double blend = 1 - full_angle_ / dark_angle_;
+        cos_full_ = cos_dark_ + (1 - cos_dark_) * blend;
+        full_angle_ = std::acos(std::min(1.0, cos_full_));
+    }
+    core_cones_.push_back(cos_full_);
+    if (falloff_ != Falloff::blender_3_4) return;
+    for (const double level : {0.95, 0.75, 0.5, 0.25, 0.1})  // within the core it is a cosine
+        if (level > cos_full_) core_cones_.push_back(level);
+}
+
+double SpotProfile::relative_intensity(const Vector3& v) const {
+    const double cosine = glm::dot(v, axis_) / glm::length(v);
+    if (cosine <= cos_dark_) return 0.0;
+    const double core = falloff_ == Falloff::blender_3_4 ? cosine : 1.0;
+    if (cosine >= cos_full_) return core;
+    const double ramp = (cosine - cos_dark_) / (cos_full_ - cos_dark_);
+    if (falloff_ == Falloff::gltf) return ramp * ramp;
+    if (is_blenders(falloff_)) return core * smoothstep(ramp);
+    const double angle = std::acos(glm::clamp(cosine, -1.0, 1.0));
+    return smoothstep((dark_angle_ - angle) / (dark_angle_ - full_angle_));
+}
+
+double SpotProfile::solid_angle() const {
+    // Integrals over the cosine: of the core, and of the edge as a ramp from cos_dark_ on.
+    const double width = cos_full_ - cos_dark_;
+    const double full = 2.0 * std::numbers::pi * (1.0 - cos_full_);
+    switch (falloff_) {
+        case Falloff::gltf:  // int t^2 dt = 1/3
+            return full + 2.0 * std::numbers::pi * width / 3.0;
+        case Falloff::blender:  // int 3 t^2 - 2 t^3 dt = 1/2
+            return full + std::numbers::pi * width;
+        case Falloff::blender_3_4:  // and int 3 t^3 - 2 t^4 dt = 7/20
+            return std::numbers::pi *
+                   (1 - cos_full_ * cos_full_ + width * (cos_dark_ + 0.7 * width));
+        case Falloff::smooth:
+            break;
+    }
+    return full + edge_solid_angle(full_angle_, dark_angle_);
+}
+
+void SpotProfile::append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                                std::vector<double>& s) const {
+    for (const double cosine : core_cones_) append_cone_crossings(ray, apex, axis_, cosine, s);
+    if (cos_dark_ == cos_full_) return;
+    const AxisApproach nearest = approach_to_axis(ray, stretch, apex, axis_);
+    if (nearest.cosine <= cos_dark_) return;
+    // Of the edge, what the ray comes to: one that grazes the beam sees only a narrow peak.
+    double begin = full_angle_;
+    if (nearest.cosine < cos_full_) {
+        begin = std::acos(nearest.cosine);
+        s.push_back(nearest.s);
+    }
+    for (const double part : {0.25, 0.5, 0.75, 1.0})
+        append_cone_crossings(ray, apex, axis_, std::cos(begin + part * (dark_angle_ - begin)), s);
+}
+
+namespace {
+
+constexpr int k_breaks = 8;  // to either side of where a ray is brightest: down to 4e-5 of it
+// What a ray may be lit by at least, relative to the axis, to be worth any breaks.
+constexpr double k_negligible = 1e-12;
+
+}  // namespace
+
+CosineProfile::CosineProfile(const CosineProfileDesc& desc, const LampPlacement& placement)
+    : axis_(placement.axis()),
+      exponent_(std::log(0.5) / std::log(std::cos(glm::radians(0.5 * desc.fwhm)))) {
+    // A cosine beam is smooth but may be narrow: across it a ray sees very nearly a Gaussian, as
+    // wide wherever it passes. Break it at odd multiples of 0.3 standard deviations.
+    for (int i = 0; i < k_breaks; ++i) {
+        const double deviations = 0.3 * (2 * i + 1);
+        break_ratios_.push_back(std::exp(-0.5 * deviations * deviations / exponent_));
+    }
+}
+
+double CosineProfile::relative_intensity(const Vector3& v) const {
+    const double cosine = glm::dot(v, axis_) / glm::length(v);
+    return cosine <= 0 ? 0.0 : std::pow(cosine, exponent_);
+}
+
+double CosineProfile::solid_angle() const {
+    return 2.0 * std::numbers::pi / (exponent_ + 1.0);
+}
+
+void CosineProfile::append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                                  std::vector<double>& s) const {
+    const double greatest = approach_to_axis(ray, stretch, apex, axis_).cosine;
+    if (greatest <= 0 || std::pow(greatest, exponent_) < k_negligible) return;
+    for (const double ratio : break_ratios_)
+        append_cone_crossings(ray, apex, axis_, greatest * ratio, s);
+    append_plane_crossing(ray, apex, axis_, s);
+}
+
+namespace {
+
+// Lumens in a file are those of the bare lamps: the luminaire may absorb much of them, but emits no
+// more.
+constexpr double k_flux_tolerance = 0.01;
+constexpr double k_least_efficiency = 0.1;
+
+std::shared_ptr<const PhotometricWeb> read_web(const IesProfileDesc& profile,
+                                               std::vector<std::string>& warnings) {
+    const IesFile file = read_ies(profile.file);
+    for (const std::string& warning : file.warnings)
+        warnings.push_back(profile.where + ": " + warning);
+    auto web = std::make_shared<const PhotometricWeb>(file);
+    const double flux = web->flux();
+    if (file.lumens > 0 && flux > (1 + k_flux_tolerance) * file.lumens)
+        warnings.push_back(fmt::format(
+            "{}: the candelas of {} add up to {:.4g} lm, more than the {:.4g} lm of its "
+            "lamps; check its multiplier and its lumens",
+            profile.where, profile.file.filename().string(), flux, file.lumens));
+    if (file.lumens > 0 && flux < k_least_efficiency * file.lumens)
+        warnings.push_back(
+            fmt::format("{}: the candelas of {} add up to {:.4g} lm, {:.2g} % of the {:.4g} lm of "
+                        "its lamps; check its multiplier (candelas may be per 1000 lm)",
+                        profile.where, profile.file.filename().string(), flux,
+                        100 * flux / file.lumens, file.lumens));
+    return web;
+}
+
+}  // namespace
+
+IesProfile::IesProfile(const IesProfileDesc& desc, const LampPlacement& placement,
+                       std::shared_ptr<const PhotometricWeb> web)
+    : web_(std::move(web)), cos_dark_(std::cos(web_->dark_angle())) {
+    const Vector3& direction = placement.direction;
+    const Vector3 towards = placement.across();
+    // The zenith, the opposite end of the luminaire's axis, is z of a right-handed system.
+    const Vector3 across = glm::cross(-direction, towards);
+    const double turn = glm::radians(desc.rotate), tilt = glm::radians(desc.tilt);
+    const Vector3 turned = std::cos(turn) * towards + std::sin(turn) * across;
+    const auto in_world = [&](const Vector3& v) {
+        return glm::normalize(placement.world_from_frame.apply_to_vector(v));
+    };
+    axis_ = in_world(std::cos(tilt) * direction + std::sin(tilt) * turned);
+    zero_ = in_world(std::cos(tilt) * turned - std::sin(tilt) * direction);
+    quarter_ = glm::cross(-axis_, zero_);
+    constexpr double k_flat = 1e-6;  // a cone this close to 90 degrees is treated as a plane
+    if (std::abs(cos_dark_) < k_flat) cos_dark_ = -1e-3;
+    for (const double azimuth : web_->azimuth_breaks())
+        half_planes_.push_back(std::cos(azimuth) * zero_ + std::sin(azimuth) * quarter_);
+    for (const double angle : web_->polar_breaks()) {
+        const double cosine = std::cos(angle);
+        if (std::abs(cosine) < k_flat)
+            breaks_at_equator_ = true;
+        else if (std::abs(cosine) < 1)
+            cones_.push_back(cosine);
+    }
+}
+
+double IesProfile::relative_intensity(const Vector3& v) const {
+    const double x = glm::dot(v, zero_), y = glm::dot(v, quarter_), along = glm::dot(v, axis_);
+    const double polar = std::atan2(std::sqrt(x * x + y * y), along);
+    const double azimuth = web_->is_rotational() ? 0.0 : std::atan2(y, x);
+    return web_->candelas(polar, azimuth) / web_->peak();
+}
+
+void IesProfile::append_breaks(const Ray& ray, const Interval& /*stretch*/, const Point3& apex,
+                               std::vector<double>& s) const {
+    for (const double cosine : cones_) append_cone_crossings(ray, apex, axis_, cosine, s);
+    if (breaks_at_equator_) append_plane_crossing(ray, apex, axis_, s);
+    append_nearest_to_axis(ray, apex, axis_, s);
+    for (const Vector3& side : half_planes_)
+        append_half_plane_crossing(ray, apex, side, glm::cross(axis_, side), s);
+}
+
+IesProfile make_profile(const IesProfileDesc& desc, const LampPlacement& placement,
+                        std::vector<std::string>& warnings) {
+    return {desc, placement, read_web(desc, warnings)};
+}
+
+namespace {
+
+template <class... Profiles>
+constexpr bool all_are_profiles(const std::variant<Profiles...>* /*type*/) {
+    return (IsALampProfile<Profiles> && ...);
+}
+static_assert(all_are_profiles(static_cast<const LampProfile*>(nullptr)));
+static_assert(std::variant_size_v<LampProfile> == std::variant_size_v<LampProfileDesc>);
+
+}  // namespace
+
+LampProfile make_lamp_profile(const LampProfileDesc& desc, const LampPlacement& placement,
+                              std::vector<std::string>& warnings) {
+    const auto make = [&](const auto& described) -> LampProfile {
+        return make_profile(described, placement, warnings);
+    };
+    return std::visit(make, desc);
+}
+
+}  // namespace uw

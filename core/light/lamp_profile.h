@@ -1,0 +1,237 @@
+#pragma once
+
+#include <concepts>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/base/ray.h"
+#include "core/base/vector_math.h"
+#include "core/light/photometric_files.h"
+#include "core/scene/lamp_desc.h"
+
+namespace uw {
+
+/// The orientation of a lamp in the world, which places its profile.
+struct LampPlacement {
+    Affine world_from_frame;     // of the camera, or of another mount; rigid
+    Vector3 direction{0, 0, 1};  // in which the lamp shines, in this frame, unit
+
+    /// Perpendicular to the direction, in the frame, unit: from where angles about the direction
+    /// are counted. The frame's x axis (y if the lamp shines along x), projected.
+    Vector3 across() const {
+        const Vector3 x(1, 0, 0), y(0, 1, 0);
+        const Vector3& reference = glm::length(glm::cross(direction, x)) > 1e-6 ? x : y;
+        return glm::normalize(reference - glm::dot(reference, direction) * direction);
+    }
+    /// The direction in which the lamp shines, world, unit.
+    Vector3 axis() const { return glm::normalize(world_from_frame.apply_to_vector(direction)); }
+};
+
+/// The directions within an angle of an axis.
+struct DirectionCone {
+    Vector3 axis{0, 0, 1};  // unit
+    double cosine = -1;     // of the angle; -1: all directions
+
+    bool has_all() const { return cosine <= -1; }
+    /// `direction`: of any length.
+    bool has(const Vector3& direction) const {
+        if (has_all()) return true;  // regardless of rounding
+        const double along = glm::dot(direction, axis);
+        const double edge = cosine * cosine * glm::dot(direction, direction);  // of along^2
+        return cosine >= 0 ? along >= 0 && along * along >= edge
+                           : along >= 0 || along * along <= edge;
+    }
+    /// All directions within `angle` [rad] of a direction in this cone.
+    DirectionCone widened(double angle) const;
+    bool includes(const DirectionCone& other) const;
+};
+
+/// Crossings of a ray with the surfaces at which a lamp's profile may have breaks, all through the
+/// lamp (`apex`). Each function appends distances > 0 along `ray`, in no particular order, and none
+/// where there is no crossing.
+
+/// The cone of half-angle acos(`cos_angle`) about `axis` (unit).
+void append_cone_crossings(const Ray& ray, const Point3& apex, const Vector3& axis,
+                           double cos_angle, std::vector<double>& s);
+
+/// The plane perpendicular to `normal`.
+void append_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& normal,
+                           std::vector<double>& s);
+
+/// The half of the plane perpendicular to `normal` that lies towards `side`.
+void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& side,
+                                const Vector3& normal, std::vector<double>& s);
+
+/// Where on a stretch of a ray the angle to a beam's axis is least.
+struct AxisApproach {
+    double s = 0;        // distance along the ray
+    double cosine = -1;  // of the angle, seen from the beam's apex
+};
+
+/// That of `stretch` to `axis` (unit), seen from `apex`.
+AxisApproach approach_to_axis(const Ray& ray, const Interval& stretch, const Point3& apex,
+                              const Vector3& axis);
+
+/// Where the angle to `axis` (unit), seen from `apex`, is least or greatest: the azimuth changes
+/// fastest there, and a profile peaked on its axis has a kink.
+void append_nearest_to_axis(const Ray& ray, const Point3& apex, const Vector3& axis,
+                            std::vector<double>& s);
+
+/// The profile of a lamp that is equally bright in all directions (IsALampProfile).
+class IsotropicProfile {
+  public:
+    static constexpr std::string_view k_name = "isotropic";
+
+    double relative_intensity(const Vector3& /*v*/) const { return 1.0; }
+    double solid_angle() const { return 4.0 * std::numbers::pi; }
+    std::optional<double> peak_candelas() const { return std::nullopt; }
+    bool has_even_core() const { return true; }
+    DirectionCone cone() const { return {}; }
+    void append_breaks(const Ray& /*ray*/, const Interval& /*stretch*/, const Point3& /*apex*/,
+                       std::vector<double>& /*s*/) const {}
+};
+
+inline IsotropicProfile make_profile(const IsotropicProfileDesc& /*desc*/,
+                                     const LampPlacement& /*placement*/,
+                                     std::vector<std::string>& /*warnings*/) {
+    return {};
+}
+
+/// The profile of a spot: full in its core, 0 outside beam/2 + edge/2 of its axis, and with one of
+/// several falloffs between (SpotProfileDesc::Falloff, IsALampProfile).
+class SpotProfile {
+  public:
+    static constexpr std::string_view k_name = "spot";
+
+    SpotProfile(const SpotProfileDesc& desc, const LampPlacement& placement);
+
+    double relative_intensity(const Vector3& v) const;
+    double solid_angle() const;
+    std::optional<double> peak_candelas() const { return std::nullopt; }
+    bool has_even_core() const { return falloff_ != SpotProfileDesc::Falloff::blender_3_4; }
+    DirectionCone cone() const { return {axis_, cos_dark_}; }
+    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                       std::vector<double>& s) const;
+
+  private:
+    Vector3 axis_;
+    SpotProfileDesc::Falloff falloff_;
+    double dark_angle_, cos_dark_;    // the spot is dark outside this angle [rad]
+    double full_angle_, cos_full_;    // and shines fully inside this one
+    std::vector<double> core_cones_;  // cosines at which the core has breaks, its edge included
+};
+
+inline SpotProfile make_profile(const SpotProfileDesc& desc, const LampPlacement& placement,
+                                std::vector<std::string>& /*warnings*/) {
+    return {desc, placement};
+}
+
+/// The profile cos^m of the angle from the axis, 1/2 at fwhm/2 and 0 behind the lamp
+/// (IsALampProfile).
+class CosineProfile {
+  public:
+    static constexpr std::string_view k_name = "cosine";
+
+    CosineProfile(const CosineProfileDesc& desc, const LampPlacement& placement);
+
+    double relative_intensity(const Vector3& v) const;
+    double solid_angle() const;
+    std::optional<double> peak_candelas() const { return std::nullopt; }
+    bool has_even_core() const { return false; }
+    /// All directions: a half-space is too wide to be worth restricting the search.
+    DirectionCone cone() const { return {axis_, -1}; }
+    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                       std::vector<double>& s) const;
+
+  private:
+    Vector3 axis_;
+    double exponent_;  // m
+    // Ratios of the cosines at which it has breaks along a ray to the greatest one on it.
+    std::vector<double> break_ratios_;
+};
+
+inline CosineProfile make_profile(const CosineProfileDesc& desc, const LampPlacement& placement,
+                                  std::vector<std::string>& /*warnings*/) {
+    return {desc, placement};
+}
+
+/// The profile of a luminaire given by its photometry, relative to its brightest direction
+/// (IsALampProfile).
+///
+/// Azimuth 0 points towards the frame's x axis (its y axis if the lamp shines along x), projected
+/// along the lamp's direction; `rotate` turns it about that direction, then `tilt` tilts the
+/// luminaire's axis from that direction towards it. Azimuth 90 degrees lies anticlockwise of 0 seen
+/// from behind the lamp, as in LM-63.
+class IesProfile {
+  public:
+    static constexpr std::string_view k_name = "IES luminaire";
+
+    /// `web` is the photometry of `desc.file`.
+    IesProfile(const IesProfileDesc& desc, const LampPlacement& placement,
+               std::shared_ptr<const PhotometricWeb> web);
+
+    double relative_intensity(const Vector3& v) const;
+    double solid_angle() const { return web_->flux() / web_->peak(); }
+    std::optional<double> peak_candelas() const { return web_->peak(); }
+    bool has_even_core() const { return false; }
+    DirectionCone cone() const { return {axis_, cos_dark_}; }
+    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                       std::vector<double>& s) const;
+
+  private:
+    std::shared_ptr<const PhotometricWeb> web_;
+    Vector3 axis_, zero_, quarter_;   // its axis, and azimuths 0 and 90 degrees perpendicular to it
+    double cos_dark_;                 // dark outside this angle from the axis
+    std::vector<double> cones_;       // cosines of the cones at which the profile has breaks
+    bool breaks_at_equator_ = false;  // whether it also has one at the plane normal to the axis
+    std::vector<Vector3> half_planes_;  // azimuthal directions at which the profile has breaks
+};
+
+/// Reads the file. Adds a one-line warning if its candelas are inconsistent with its lumens. Throws
+/// InputError for a file that is not LM-63, IoError for one that cannot be read.
+IesProfile make_profile(const IesProfileDesc& desc, const LampPlacement& placement,
+                        std::vector<std::string>& warnings);
+
+/// All profiles, placed in the world: how a lamp's radiant intensity depends on direction. There is
+/// one for each alternative of LampProfileDesc, and beside it a function `make_profile` that
+/// constructs it from its description.
+using LampProfile = std::variant<IsotropicProfile, SpotProfile, CosineProfile, IesProfile>;
+
+/// Makes the profile that `desc` describes. Reads the files it needs; adds warnings and throws as
+/// that profile's make_profile does.
+LampProfile make_lamp_profile(const LampProfileDesc& desc, const LampPlacement& placement,
+                              std::vector<std::string>& warnings);
+
+/// The requirements on a profile.
+///
+/// - k_name: its name in reports ("spot").
+/// - relative_intensity(v): intensity in the direction of `v` (from the lamp, of any length),
+///   relative to that where the lamp is brightest: 0..1.
+/// - solid_angle(): the relative intensity integrated over the sphere [sr], the power of the lamp
+///   for 1 W/sr where it is brightest.
+/// - peak_candelas(): luminous intensity where it is brightest [cd], if the profile is absolute.
+/// - has_even_core(): whether a relative intensity of 1 at a point implies 1 around it, up to a
+///   break.
+/// - cone(): a cone outside which it is dark.
+/// - append_breaks(ray, stretch, apex, s): appends distances along `ray` so that between those in
+///   `stretch` the profile of a lamp at `apex` is smooth and changes little, as compared with where
+///   it is brightest in that interval: the edges of its beam and cones of equal intensity inside.
+template <class P>
+concept IsALampProfile = requires(const P& profile, const Vector3& v, const Ray& ray,
+                                  const Interval& stretch, const Point3& apex,
+                                  std::vector<double>& s) {
+    { P::k_name } -> std::convertible_to<std::string_view>;
+    { profile.relative_intensity(v) } -> std::same_as<double>;
+    { profile.solid_angle() } -> std::same_as<double>;
+    { profile.peak_candelas() } -> std::same_as<std::optional<double>>;
+    { profile.has_even_core() } -> std::same_as<bool>;
+    { profile.cone() } -> std::same_as<DirectionCone>;
+    profile.append_breaks(ray, stretch, apex, s);
+};
+
+}  // namespace uw

@@ -1,0 +1,215 @@
+#include "core/light/planes_integrator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/image/image_quantity.h"
+
+namespace uw {
+
+namespace {
+
+constexpr const char* k_uniform_water_only =
+    "the planes integrator handles only uniform water: remove `volumes`, or use integrator volume";
+
+void check_for_planes(const SceneDesc& scene) {
+    if (!scene.volumes.empty())
+        throw InputError(fmt::format("{}: {}", scene.volumes.front().where, k_uniform_water_only));
+    if (scene.camera.distortion.model == DistortionDesc::Model::fisheye)
+        throw InputError(fmt::format(
+            "{}: render.integrator: the planes integrator sums over slabs parallel to the image "
+            "plane, but a fisheye lens can see past them; use integrator volume",
+            scene.file.filename().string()));
+}
+
+LightTransport make_planes(const IntegratorInputs& inputs) {
+    return {
+        std::make_unique<PlanesIntegrator>(inputs.scene, inputs.world_from_camera, inputs.slabs),
+        std::make_unique<DirectLighting>(inputs.scene)};
+}
+
+}  // namespace
+
+constinit const IntegratorKind PlanesIntegrator::k_kind{
+    .sums_slabs = true, .check = check_for_planes, .make = make_planes};
+
+struct PlanesIntegrator::Workspace {
+    std::vector<Sample> samples;
+    std::vector<Spectrum> radiance;  // per sample
+    // For the samples that the lamp illuminates:
+    std::vector<std::size_t> lit;
+    std::vector<double> path;    // lamp to sample to camera [m]
+    std::vector<double> weight;  // relative intensity / R^2 * length [1/m]
+    std::vector<double> psi;
+    std::vector<double> phase;
+    std::vector<Spectrum> beta;
+};
+
+PlanesIntegrator::PlanesIntegrator(const LitScene& scene, const Affine& world_from_camera,
+                                   const Slabs& slabs)
+    : scene_(scene),
+      camera_from_world_(world_from_camera.inverse()),
+      slabs_(slabs),
+      attenuation_(*scene.medium) {
+    if (scene.medium->constituent_count() > 0) throw InputError(k_uniform_water_only);
+}
+
+void PlanesIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
+                                  InScatter& result) const {
+    in_scatter_from(ray, 0, distances, result);
+}
+
+void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
+                                       std::span<const double> distances, InScatter& result) const {
+    thread_local Workspace w;
+    const std::vector<Lamp>& emitters = *scene_.emitters;
+    result.reset(distances.size(), scene_.lamp_count());
+    place_samples(ray, begin, distances, w.samples);
+    for (std::size_t j = 0; j < emitters.size(); ++j) {
+        throw_if_stopped();
+        light_samples(ray, emitters[j], w);
+        const std::size_t lamp = emitters[j].index();
+        Spectrum whole;
+        std::size_t next = 0;
+        const auto finish =
+            [&](std::size_t until) {  // all whole slabs before these have been summed
+                for (; next < until; ++next) result.at(next, lamp) += whole;
+            };
+        for (std::size_t i = 0; i < w.samples.size(); ++i) {
+            const Sample& sample = w.samples[i];
+            if (!sample.cut) finish(sample.distance);
+            Spectrum& sum = sample.cut ? result.at(sample.distance, lamp) : whole;
+            sum += w.radiance[i];
+        }
+        finish(distances.size());
+    }
+}
+
+void PlanesIntegrator::place_samples(const Ray& ray, double begin,
+                                     std::span<const double> distances,
+                                     std::vector<Sample>& samples) const {
+    samples.clear();
+    const RayDepth depth(camera_from_world_, ray);
+    if (depth.cosine() <= 0) return;
+    std::size_t next = 0;  // the first distance that is not before the slab
+    for (int i = 0; i < slabs_.count; ++i) {
+        const Interval slab{std::max(begin, depth.distance(slabs_.boundary(i))),
+                            depth.distance(slabs_.boundary(i + 1))};
+        if (slab.length() <= 0) continue;
+        for (; next < distances.size() && distances[next] < slab.end; ++next)
+            if (distances[next] > slab.begin)
+                samples.push_back({0.5 * (slab.begin + distances[next]),
+                                   distances[next] - slab.begin, next, true});
+        if (next == distances.size()) return;
+        samples.push_back({0.5 * (slab.begin + slab.end), slab.length(), next, false});
+    }
+}
+
+void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace& w) const {
+    const Medium& medium = *scene_.medium;
+    w.radiance.assign(w.samples.size(), Spectrum{});
+    w.lit.clear();
+    w.path.clear();
+    w.weight.clear();
+    w.psi.clear();
+    for (std::size_t i = 0; i < w.samples.size(); ++i) {
+        const Sample& sample = w.samples[i];
+        const Point3 x = ray.at(sample.s);
+        const Point3 origin = lamp.origin(x);
+        const Vector3 from_lamp = x - origin;
+        const double radius = glm::length(from_lamp);
+        const double relative = lamp.holds(radius) ? 0.0 : lamp.relative_intensity(from_lamp);
+        if (relative <= 0 || scene_.surfaces->occluded(origin, x)) continue;
+        w.lit.push_back(i);
+        w.path.push_back(radius + sample.s);
+        w.weight.push_back(relative / lamp.spread(radius) * sample.length);
+        // Angle between the directions of travel, lamp to X and X to camera; atan2 is accurate near
+        // pi.
+        w.psi.push_back(std::atan2(glm::length(glm::cross(ray.direction, from_lamp)),
+                                   -glm::dot(ray.direction, from_lamp)));
+    }
+    const auto bands = static_cast<std::size_t>(medium.band_count());
+    w.phase.resize(w.psi.size());
+    w.beta.assign(w.psi.size(), Spectrum{});
+    for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
+        medium.phase_functions[m]->evaluate(w.psi, w.phase);
+        const Spectrum& scattering = medium.uniform.scattering[m];
+        for (std::size_t i = 0; i < w.psi.size(); ++i)
+            add_scaled(w.beta[i].first(bands), w.phase[i], scattering.first(bands));
+    }
+    for (std::size_t i = 0; i < w.lit.size(); ++i)
+        w.radiance[w.lit[i]] = per_band(bands, [&](std::size_t b) {
+            return lamp.axis_intensity()[b] * w.weight[i] * w.beta[i][b] *
+                   std::exp(-attenuation_.uniform[b] * w.path[i]);
+        });
+}
+
+namespace {
+
+// Number of slices from F to where the weight differs from 1 by less than 1e-3. Equal steps of
+// sqrt(F / Z) are small near F, where the weight is steep, and large where it hardly changes.
+constexpr int k_slices = 64;
+
+}  // namespace
+
+FocusWeightedIntegrator::FocusWeightedIntegrator(std::unique_ptr<const Integrator> integrator,
+                                                 double focal_length)
+    : integrator_(std::move(integrator)), focal_length_(focal_length) {
+    for (int i = k_slices; i > 0; --i) {
+        const double ratio = static_cast<double>(k_slices) / i;
+        faces_.push_back(focal_length * ratio * ratio);
+    }
+}
+
+void FocusWeightedIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
+                                         InScatter& result) const {
+    thread_local std::vector<double> stops;
+    thread_local InScatter unweighted;
+    find_stops(0, distances, stops);
+    integrator_->in_scatter(ray, stops, unweighted);
+    weigh(0, stops, unweighted, distances, result);
+}
+
+void FocusWeightedIntegrator::in_scatter_from(const Ray& ray, double begin,
+                                              std::span<const double> distances,
+                                              InScatter& result) const {
+    thread_local std::vector<double> stops;
+    thread_local InScatter unweighted;
+    find_stops(begin, distances, stops);
+    integrator_->in_scatter_from(ray, begin, stops, unweighted);
+    weigh(begin, stops, unweighted, distances, result);
+}
+
+void FocusWeightedIntegrator::find_stops(double begin, std::span<const double> distances,
+                                         std::vector<double>& stops) const {
+    stops.assign(distances.begin(), distances.end());
+    const auto first = std::upper_bound(faces_.begin(), faces_.end(), begin);
+    const auto behind = std::lower_bound(first, faces_.end(), distances.back());
+    stops.insert(stops.end(), first, behind);
+    std::sort(stops.begin(), stops.end());
+}
+
+void FocusWeightedIntegrator::weigh(double begin, std::span<const double> stops,
+                                    const InScatter& unweighted, std::span<const double> distances,
+                                    InScatter& result) const {
+    const std::size_t lamps = unweighted.lamp_count();
+    result.reset(distances.size(), lamps);
+    for (std::size_t j = 0; j < lamps; ++j) {
+        Spectrum sum, before;
+        std::size_t next = 0;  // of the distances
+        for (std::size_t i = 0; i < stops.size(); ++i) {
+            const double from = i == 0 ? begin : stops[i - 1];
+            const double weight = focus_factor(0.5 * (from + stops[i]), focal_length_);
+            sum += weight * (unweighted.at(i, j) - before);
+            before = unweighted.at(i, j);
+            for (; next < distances.size() && distances[next] <= stops[i]; ++next)
+                result.at(next, j) = sum;
+        }
+    }
+}
+
+}  // namespace uw

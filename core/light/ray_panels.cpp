@@ -1,0 +1,78 @@
+#include "core/light/ray_panels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/light/integrator.h"
+
+namespace uw {
+
+LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
+    const Vector3 to_lamp = lamp - ray.origin;
+    foot = glm::dot(to_lamp, ray.direction);
+    distance = glm::length(to_lamp - foot * ray.direction);
+}
+
+LampPassage::LampPassage(const Ray& ray, const Lamp& lamp) : LampPassage(ray, lamp.position()) {
+    const Sunlight* const sun = lamp.sunlight();
+    if (!sun) return;
+    parallel = true;
+    begin_length = sun->length_to(ray.origin);
+    slope = sun->slope(ray.direction);
+    const double sine = glm::length(glm::cross(sun->direction, ray.direction));
+    const double cosine = -glm::dot(sun->direction, ray.direction);  // of psi
+    tangent = cosine > 0 ? sine / (1 + cosine) : (1 - cosine) / sine;
+}
+
+void append_octaves(const LampPassage& passage, const Interval& interval, std::vector<double>& s) {
+    if (passage.parallel) return;
+    const auto append = [&](double at) {
+        if (at > interval.begin && at < interval.end) s.push_back(at);
+    };
+    append(passage.foot);
+    const double reach =
+        std::max(std::abs(interval.begin - passage.foot), std::abs(interval.end - passage.foot));
+    for (double u = 0.75 * std::max(passage.distance, k_lamp_radius); u < reach; u *= 2) {
+        append(passage.foot - u);
+        append(passage.foot + u);
+    }
+}
+
+Interval inside(const Ray& ray, const Bounds& bounds) {
+    Interval stretch{0, k_far};
+    if (bounds.empty()) return {1, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double d = ray.direction[axis];
+        const double to_min = bounds.min[axis] - ray.origin[axis];
+        const double to_max = bounds.max[axis] - ray.origin[axis];
+        if (d == 0 && (to_min > 0 || to_max < 0)) return {1, 0};
+        if (d == 0) continue;
+        stretch.begin = std::max(stretch.begin, std::min(to_min / d, to_max / d));
+        stretch.end = std::min(stretch.end, std::max(to_min / d, to_max / d));
+    }
+    return stretch;
+}
+
+void PanelBreaks::reset(const Interval& stretch) {
+    stretch_ = stretch;
+    candidates_.clear();
+}
+
+const std::vector<double>& PanelBreaks::kept() {
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.s < b.s; });
+    candidates_.push_back({stretch_.end, 0});
+    kept_.assign(1, stretch_.begin);
+    double spacing_of_last = 0;
+    for (const Candidate& candidate : candidates_) {
+        const double since_last = candidate.s - kept_.back();
+        if (since_last < candidate.spacing) continue;
+        // An edge replaces a mark just before it.
+        if (candidate.spacing == 0 && since_last < spacing_of_last) kept_.pop_back();
+        kept_.push_back(candidate.s);
+        spacing_of_last = candidate.spacing;
+    }
+    return kept_;
+}
+
+}  // namespace uw

@@ -1,0 +1,307 @@
+#include "core/light/reference_integrator.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/light/ray_panels.h"
+
+namespace uw {
+
+namespace {
+
+// Light whose path exceeds the least optical depth by this much adds less than 1e-6.
+constexpr double k_negligible_optical_depth = 15;
+// Of steps among particles [optical depths], as a multiple of the step that is given: a tenth.
+constexpr double k_depth_of_steps = 20;
+// What is behind this optical depth adds less than 1e-17 of all light.
+constexpr double k_dark = 40;
+
+LightTransport make_reference(const IntegratorInputs& inputs) {
+    return {std::make_unique<ReferenceIntegrator>(inputs.scene),
+            std::make_unique<DirectLighting>(inputs.scene)};
+}
+
+}  // namespace
+
+constinit const IntegratorKind ReferenceIntegrator::k_kind{.make = make_reference};
+
+ReferenceIntegrator::ReferenceIntegrator(const LitScene& scene, double step)
+    : scene_(scene), attenuation_(*scene.medium), step_(step) {}
+
+void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
+                                     InScatter& result) const {
+    const std::vector<Lamp>& emitters = *scene_.emitters;
+    result.reset(distances.size(), scene_.lamp_count());
+    const Interval grid = inside(ray, scene_.field->bounds());
+    const double voxel = scene_.field->finest_voxel();
+    const double least_c =
+        attenuation_.uniform.least(static_cast<std::size_t>(attenuation_.band_count));
+    const double greatest_c =
+        attenuation_.uniform.greatest(static_cast<std::size_t>(attenuation_.band_count));
+    for (std::size_t j = 0; j < emitters.size(); ++j) {
+        const LampPassage passage(ray, emitters[j]);
+        const double reach =
+            least_c > 0 ? passage.reach(k_negligible_optical_depth / least_c) : k_far;
+        const auto scale_at = [&](double s) {
+            // Ten times as far as the densest band's light reaches only the others' is left, of
+            // which steps of that length in proportion are as small a part.
+            if (passage.parallel)
+                return greatest_c > 0 ? std::max(1 / greatest_c, 0.1 * s) / (1 + passage.rate())
+                                      : k_far;
+            return std::max(passage.radius(s), k_lamp_radius);
+        };
+        // The water's surface may be less than a step away.
+        const Interval lit =
+            passage.parallel ? emitters[j].beam(ray, {0, reach}) : Interval{0, reach};
+        Spectrum sum;
+        double s = lit.begin;
+        double depth = 0;  // of the grid before s, in the band that sees farthest
+        for (std::size_t i = 0; i < distances.size(); ++i) {
+            const double end = std::min(distances[i], lit.end);
+            while (s < end && depth < k_dark) {
+                throw_if_stopped();
+                double length = step_ * scale_at(s);
+                const bool in_grid = s < grid.end && s + length > grid.begin;
+                const auto [least, greatest] =
+                    in_grid ? attenuation_at(ray.at(s)) : std::pair(0.0, 0.0);
+                if (in_grid)
+                    length = std::min({length, 0.25 * voxel, k_depth_of_steps * step_ / greatest});
+                length = std::min(length, end - s);
+                depth += length * least;
+                sum += length * in_scatter_per_metre(ray, s + 0.5 * length, j);
+                s = end - s > length ? s + length : end;
+            }
+            result.at(i, emitters[j].index()) += sum;
+        }
+    }
+}
+
+std::pair<double, double> ReferenceIntegrator::attenuation_at(const Point3& x) const {
+    std::vector<double> concentration(scene_.medium->constituents.size());
+    scene_.field->sample(x, concentration);
+    std::array<double, k_max_bands> values{};
+    const auto bands = std::span(values).first(static_cast<std::size_t>(attenuation_.band_count));
+    for (std::size_t b = 0; b < bands.size(); ++b)
+        bands[b] = attenuation_.optical_depth(b, 1, concentration);
+    const auto [least, greatest] = std::ranges::minmax(bands);
+    return {least, greatest};
+}
+
+Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
+                                                   std::size_t lamp_index) const {
+    const Lamp& lamp = (*scene_.emitters)[lamp_index];
+    const Medium& medium = *scene_.medium;
+    const Point3 x = ray.at(s);
+    const Point3 origin = lamp.origin(x);
+    const Vector3 from_lamp = x - origin;
+    const double radius = glm::length(from_lamp);
+    const double relative = lamp.relative_intensity(from_lamp);
+    if (lamp.holds(radius) || relative <= 0 || scene_.surfaces->occluded(origin, x)) return {};
+    // psi is the angle between the directions of travel: w_in = from_lamp, w_out = -ray.direction.
+    const double psi = std::atan2(glm::length(glm::cross(from_lamp, ray.direction)),
+                                  -glm::dot(from_lamp, ray.direction));
+    const std::size_t constituents = medium.constituents.size();
+    std::vector<double> from_lamp_column(constituents), to_camera_column(constituents),
+        concentration(constituents);
+    scene_.field->column(origin, x, from_lamp_column);
+    scene_.field->column(ray.origin, x, to_camera_column);
+    scene_.field->sample(x, concentration);
+    for (std::size_t k = 0; k < constituents; ++k) from_lamp_column[k] += to_camera_column[k];
+    const Spectrum transmittance = attenuation_.transmittance(radius + s, from_lamp_column);
+    Spectrum result;
+    for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
+        const double p = medium.phase_functions[m]->evaluate(psi);
+        Spectrum b = medium.uniform.scattering[m];
+        for (std::size_t k = 0; k < constituents; ++k)
+            b += concentration[k] * medium.constituents[k].per_unit.scattering[m];
+        result += lamp.axis_intensity() * relative * transmittance * b * p / lamp.spread(radius);
+    }
+    return result;
+}
+
+namespace {
+
+// Initial panels of the quadrature: narrower than a phase function's forward peak where it matters,
+// and than the shadows of thin things, so that no feature is missed between the first nodes.
+constexpr std::size_t k_first_panels = 500;
+constexpr double k_least_rate = 1e-3;  // of -e^(-c s) [1/m]
+constexpr int k_deepest_halving = 18;  // 2^-18 of a first panel at a shadow's edge
+
+// Simpson's rule; `sixth` of the panel's width.
+Spectrum simpson(const Spectrum& begin, const Spectrum& middle, const Spectrum& end, double sixth) {
+    return sixth * (begin + 4 * middle + end);
+}
+
+void check_uniform(const LitScene& scene) {
+    if (scene.medium->constituent_count() > 0)
+        throw std::invalid_argument("the quadrature integrator is for uniform water");
+}
+
+}  // namespace
+
+/// The integral of one lamp's light along one ray over the angle psi; of a sun's, whose angle is
+/// the same all along it, over -e^(-c s), with the least c, in which its attenuation is nearly
+/// linear.
+class QuadratureIntegrator::RayIntegral {
+  public:
+    RayIntegral(const QuadratureIntegrator& owner, const Ray& ray, const Lamp& lamp)
+        : owner_(owner), ray_(ray), lamp_(lamp) {
+        if (lamp.sunlight()) {
+            psi_ = std::acos(-glm::dot(lamp.sunlight()->direction, ray.direction));
+            const auto bands = static_cast<std::size_t>(owner.attenuation_.band_count);
+            rate_ = std::max(owner.attenuation_.uniform.least(bands), k_least_rate);
+            return;
+        }
+        const Vector3 to_lamp = lamp.position() - ray.origin;
+        foot_ = glm::dot(to_lamp, ray.direction);
+        // A ray straight through the lamp has no angle to integrate over, but one that narrowly
+        // misses it does.
+        distance_ = std::max(1e-9, glm::length(to_lamp - foot_ * ray.direction));
+    }
+
+    /// In-scatter from `begin` to `end` along the ray.
+    Spectrum operator()(double begin, double end) {
+        const double from = variable(begin), to = variable(end);
+        std::vector<Spectrum> f(2 * k_first_panels + 1);
+        for (std::size_t i = 0; i < f.size(); ++i)
+            f[i] = integrand(from + (to - from) * static_cast<double>(i) / (2 * k_first_panels));
+        const double h = (to - from) / k_first_panels;
+        std::vector<Spectrum> coarse(k_first_panels);
+        scale_ = Spectrum{};
+        for (std::size_t p = 0; p < k_first_panels; ++p) {
+            coarse[p] = simpson(f[2 * p], f[2 * p + 1], f[2 * p + 2], h / 6);
+            scale_ += coarse[p];
+        }
+        Spectrum sum;
+        for (std::size_t p = 0; p < k_first_panels; ++p) {
+            const double a = from + h * static_cast<double>(p);
+            sum += refine(a, a + h, f[2 * p], f[2 * p + 1], f[2 * p + 2], coarse[p], 0);
+        }
+        return sum;
+    }
+
+  private:
+    // The variable of the integral.
+    double variable(double s) const {
+        return lamp_.sunlight() ? -std::exp(-rate_ * s) : std::atan2(distance_, foot_ - s);
+    }
+
+    Spectrum integrand(double variable) const {
+        if (!lamp_.sunlight())
+            return scattered(variable, foot_ - distance_ / std::tan(variable),
+                             foot_ + distance_ * std::tan(0.5 * variable), 1 / distance_);
+        if (!(variable < 0)) return {};
+        const double s = -std::log(-variable) / rate_;
+        return scattered(psi_, s, s + lamp_.sunlight()->length_to(ray_.at(s)),
+                         -1 / (rate_ * variable));
+    }
+
+    // The light scattered at `s` by `psi`, attenuated over the `path` from the lamp to the camera.
+    Spectrum scattered(double psi, double s, double path, double weight) const {
+        const Point3 x = ray_.at(s), origin = lamp_.origin(x);
+        const double relative = lamp_.relative_intensity(x - origin);
+        Spectrum value{};
+        if (relative <= 0 || owner_.scene_.surfaces->occluded(origin, x)) return value;
+        const Medium& medium = *owner_.scene_.medium;
+        for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
+            const double p = medium.phase_functions[m]->evaluate(psi);
+            value += medium.uniform.scattering[m] * p;
+        }
+        value *= per_band(static_cast<std::size_t>(medium.band_count()), [&](std::size_t b) {
+            return lamp_.axis_intensity()[b] * relative * weight *
+                   std::exp(-owner_.attenuation_.uniform[b] * path);
+        });
+        return value;
+    }
+
+    Spectrum refine(double a, double b, const Spectrum& fa, const Spectrum& fm, const Spectrum& fb,
+                    const Spectrum& whole, int depth) {
+        const double middle = 0.5 * (a + b);
+        const Spectrum fl = integrand(0.5 * (a + middle)), fr = integrand(0.5 * (middle + b));
+        const Spectrum left = simpson(fa, fl, fm, (middle - a) / 6);
+        const Spectrum right = simpson(fm, fr, fb, (b - middle) / 6);
+        const Spectrum change = left + right - whole;
+        if (depth >= k_deepest_halving || is_small(change, depth))
+            return left + right + change / 15;
+        return refine(a, middle, fa, fl, fm, left, depth + 1) +
+               refine(middle, b, fm, fr, fb, right, depth + 1);
+    }
+
+    bool is_small(const Spectrum& change, int depth) const {
+        for (std::size_t i = 0; i < k_max_bands; ++i) {
+            // The tolerance is divided evenly among the panels that there would be at this depth.
+            if (!(std::abs(change[i]) <=
+                  15 * owner_.tolerance_ * scale_[i] / (k_first_panels * std::exp2(0.5 * depth))))
+                return false;
+        }
+        return true;
+    }
+
+    const QuadratureIntegrator& owner_;
+    const Ray& ray_;
+    const Lamp& lamp_;
+    double foot_ = 0;
+    double distance_ = 0;
+    double psi_ = 0, rate_ = 0;  // of a sun
+    Spectrum scale_{};           // a first estimate of the integral, per band
+};
+
+QuadratureIntegrator::QuadratureIntegrator(const LitScene& scene, double tolerance)
+    : scene_(scene), attenuation_(*scene.medium), tolerance_(tolerance) {
+    check_uniform(scene);
+}
+
+void QuadratureIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
+                                      InScatter& result) const {
+    const std::vector<Lamp>& emitters = *scene_.emitters;
+    result.reset(distances.size(), scene_.lamp_count());
+    for (std::size_t j = 0; j < emitters.size(); ++j) {
+        throw_if_stopped();
+        RayIntegral integral(*this, ray, emitters[j]);
+        Spectrum sum;
+        double begin = 0;
+        for (std::size_t i = 0; i < distances.size(); ++i) {
+            sum += integral(begin, distances[i]);
+            result.at(i, emitters[j].index()) += sum;
+            begin = distances[i];
+        }
+    }
+}
+
+UniformWaterLighting::UniformWaterLighting(const LitScene& scene)
+    : scene_(scene), attenuation_(*scene.medium) {
+    check_uniform(scene);
+}
+
+void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> samples,
+                                    SurfaceLight& light) const {
+    const auto bands = static_cast<std::size_t>(attenuation_.band_count);
+    light.reset(samples.size(), *scene_.emitters, bands);
+    const auto set_transmittance = [&](std::span<double> transmittance, double length) {
+        for (std::size_t b = 0; b < bands; ++b)
+            transmittance[b] = std::exp(-attenuation_.uniform[b] * length);
+    };
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const auto& [ray, hit, x, y] = *samples[i];
+        set_transmittance(light.to_camera(i), distance(ray.origin, hit.position));
+        for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
+            const Lamp& lamp = (*scene_.emitters)[j];
+            const Point3 origin = lamp.origin(hit.position);
+            const Vector3 v = origin - hit.position;
+            const double r2 = glm::dot(v, v);
+            const double geometry_term = lamp.relative_intensity(-v) * glm::dot(hit.normal, v) /
+                                         (lamp.spread(std::sqrt(r2)) * std::sqrt(r2));
+            if (geometry_term <= 0 || glm::dot(hit.geometric_normal, v) <= 0 ||
+                scene_.surfaces->occluded(origin, hit.position))
+                continue;
+            light.geometry_term(i, j) = geometry_term;
+            set_transmittance(light.from_emitter(i, j), std::sqrt(r2));
+        }
+    }
+}
+
+}  // namespace uw

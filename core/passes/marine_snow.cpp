@@ -1,0 +1,226 @@
+#include "core/passes/marine_snow.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+
+namespace uw {
+
+namespace {
+
+// Below this relative difference expm1(x)/x is 1.
+constexpr double k_smallest_power = 1e-12;
+
+/// int_a^b D^power dD, without cancellation where the power is nearly -1.
+double integral_of_power(double power, double a, double b) {
+    const double x = (power + 1) * std::log(b / a);
+    const double ratio = std::abs(x) < k_smallest_power ? 1 : std::expm1(x) / x;
+    return std::pow(a, power + 1) * std::log(b / a) * ratio;
+}
+
+}  // namespace
+
+JungeSizes::JungeSizes(double exponent, double least, double greatest)
+    : exponent_(exponent), least_(least), greatest_(greatest) {}
+
+double JungeSizes::share(double a, double b) const {
+    return integral_of_power(-exponent_, a, b) / integral_of_power(-exponent_, least_, greatest_);
+}
+
+double JungeSizes::quantile(double u, double a, double b) const {
+    const double power = 1 - exponent_, x = power * std::log(b / a);
+    if (std::abs(x) < k_smallest_power) return a * std::pow(b / a, u);
+    return a * std::exp(std::log1p(u * std::expm1(x)) / power);
+}
+
+double JungeSizes::mean_area(double a, double b) const {
+    return std::numbers::pi / 4 * integral_of_power(2 - exponent_, a, b) /
+           integral_of_power(-exponent_, a, b);
+}
+
+namespace {
+
+constexpr std::uint64_t k_stream = 0x736e6f77;  // other numbers than for light paths
+// Particles in a cell, on the mean: enough for the cost of a cell to vanish, few enough for cells
+// to fill a view closely.
+constexpr double k_per_cell = 16;
+// The last octave is never much narrower than the others.
+constexpr double k_least_ratio = 1.01;
+
+}  // namespace
+
+SnowField::SnowField(const SnowDesc& desc)
+    : sizes_(desc.exponent, desc.least, desc.greatest), drift_(desc.drift), seed_(desc.seed) {
+    for (double least = desc.least; least < desc.greatest;) {
+        double greatest = 2 * least;
+        if (greatest * k_least_ratio > desc.greatest) greatest = desc.greatest;
+        const double number = desc.number * sizes_.share(least, greatest);
+        classes_.push_back({.least = least,
+                            .greatest = greatest,
+                            .number = number,
+                            .mean_area = sizes_.mean_area(least, greatest),
+                            .edge = std::cbrt(k_per_cell / number)});
+        least = greatest;
+    }
+}
+
+void SnowField::append_particles(std::size_t index, const SnowCell& cell, double time,
+                                 std::vector<SnowParticle>& particles) const {
+    const SnowClass& kind = classes_[index];
+    std::uint64_t seed = PathRandom::seed_of(k_stream, seed_, index);
+    for (const std::int64_t i : cell)
+        seed = PathRandom::seed_of(seed, static_cast<std::uint64_t>(i));
+    PathRandom of_cell(seed, 0);
+    const auto count = static_cast<std::uint64_t>(poisson(k_per_cell, of_cell));
+    const Vector3 moved = displacement(time);
+    for (std::uint64_t n = 0; n < count; ++n) {
+        const std::uint64_t id = PathRandom::seed_of(seed, n + 1);
+        PathRandom random(id, 0);
+        SnowParticle& particle = particles.emplace_back();
+        for (int axis = 0; axis < 3; ++axis)
+            particle.position[axis] =
+                (static_cast<double>(cell[static_cast<std::size_t>(axis)]) + random.next()) *
+                    kind.edge +
+                moved[axis];
+        particle.diameter = sizes_.quantile(random.next(), kind.least, kind.greatest);
+        particle.id = id;
+    }
+}
+
+namespace {
+
+/// Lets the uniform water scatter `b` more, as diffuse spheres do, while its attenuation stays.
+/// What is added and taken away again leaves nothing: both are of one phase function.
+void scatter_more(const Spectrum& b, Medium& medium) {
+    auto& phases = medium.phase_functions;
+    const auto known = std::ranges::find_if(phases, [](const auto& phase) {
+        return dynamic_cast<const LambertSphere*>(phase.get()) != nullptr;
+    });
+    const auto m = static_cast<std::size_t>(known - phases.begin());
+    if (m == phases.size()) {
+        phases.push_back(std::make_shared<LambertSphere>());
+        medium.uniform.scattering.emplace_back();
+        for (Constituent& constituent : medium.constituents)
+            constituent.per_unit.scattering.emplace_back();
+    }
+    medium.uniform.scattering[m] += b;
+    medium.uniform.absorption -= b;
+}
+
+/// Lets `x` absorb what it scattered.
+void stop_scattering(OpticalCoefficients& x) {
+    x.absorption = x.attenuation();
+    for (Spectrum& b : x.scattering) b = {};
+}
+
+void check_rest(const SnowDesc& snow, const Medium& water, const Spectrum& b) {
+    constexpr int k_steps = 360;
+    // What is added to the coefficients and taken away again leaves rounding behind.
+    constexpr double k_rounding = 1e-9;
+    for (int i = 0; i <= k_steps; ++i) {
+        const double psi = std::numbers::pi * i / k_steps;
+        Spectrum beta;
+        for (std::size_t m = 0; m < water.phase_functions.size(); ++m)
+            beta += water.uniform.scattering[m] * water.phase_functions[m]->evaluate(psi);
+        for (std::size_t band = 0; band < water.wavelengths_nm.size(); ++band) {
+            const double own = b[band] * LambertSphere::at(psi);
+            if (own <= beta[band] * (1 + k_rounding)) continue;
+            throw InputError(fmt::format(
+                "{}: the particles scatter {:.3g} 1/(m sr) at {:g} nm by {:.0f} degrees, more than "
+                "the water's coefficients hold ({:.3g}); give fewer, smaller or darker ones, or "
+                "write mean: added",
+                snow.where, own, water.wavelengths_nm[band], 180.0 * i / k_steps, beta[band]));
+        }
+    }
+}
+
+}  // namespace
+
+SnowCoefficients snow_coefficients(const SnowDesc& snow) {
+    const JungeSizes sizes(snow.exponent, snow.least, snow.greatest);
+    SnowCoefficients result;
+    result.attenuation = snow.number * sizes.mean_area(snow.least, snow.greatest);
+    for (std::size_t b = 0; b < snow.reflectance.size(); ++b)
+        result.scattering[b] = result.attenuation * snow.reflectance[b];
+    return result;
+}
+
+void add_snow(const SnowDesc& snow, Medium& medium) {
+    const SnowCoefficients own = snow_coefficients(snow);
+    scatter_more(own.scattering, medium);
+    for (double& a : medium.uniform.absorption.first(medium.wavelengths_nm.size()))
+        a += own.attenuation;
+}
+
+Medium without_snow(const SnowDesc& snow, const Medium& medium) {
+    const Spectrum b = snow_coefficients(snow).scattering;
+    check_rest(snow, medium, b);
+    Medium rest = medium;
+    scatter_more(-1.0 * b, rest);
+    return rest;
+}
+
+Medium snow_alone(const SnowDesc& snow, const Medium& medium) {
+    Medium alone = medium;
+    stop_scattering(alone.uniform);
+    for (Constituent& constituent : alone.constituents) stop_scattering(constituent.per_unit);
+    scatter_more(snow_coefficients(snow).scattering, alone);
+    return alone;
+}
+
+BeyondSnow::BeyondSnow(std::unique_ptr<const Integrator> water,
+                       std::unique_ptr<const Integrator> snow, std::vector<Part> parts)
+    : water_(std::move(water)), snow_(std::move(snow)), parts_(std::move(parts)) {
+    std::ranges::sort(parts_, {}, &Part::range);
+}
+
+void BeyondSnow::in_scatter(const Ray& ray, std::span<const double> distances,
+                            InScatter& result) const {
+    water_->in_scatter(ray, distances, result);
+    add_beyond(ray, 0, distances, result);
+}
+
+void BeyondSnow::in_scatter_from(const Ray& ray, double begin, std::span<const double> distances,
+                                 InScatter& result) const {
+    water_->in_scatter_from(ray, begin, distances, result);
+    add_beyond(ray, begin, distances, result);
+}
+
+void BeyondSnow::add_beyond(const Ray& ray, double begin, std::span<const double> distances,
+                            InScatter& result) const {
+    const double from = std::max(begin, parts_.front().range);
+    const double end = distances.back();
+    if (!(end > from)) return;
+    thread_local std::vector<double> stops;
+    thread_local InScatter light;
+    stops.clear();
+    for (const double distance : distances)
+        if (distance > from) stops.push_back(distance);
+    for (const Part& part : parts_)
+        if (part.range > from && part.range < end) stops.push_back(part.range);
+    std::ranges::sort(stops);
+    snow_->in_scatter_from(ray, from, stops, light);
+    const auto up_to = [&](double distance, std::size_t lamp) {
+        if (!(distance > from)) return Spectrum{};
+        const auto stop = std::ranges::lower_bound(stops, distance);
+        return light.at(static_cast<std::size_t>(stop - stops.begin()), lamp);
+    };
+    for (std::size_t i = 0; i < distances.size(); ++i)
+        for (std::size_t lamp = 0; lamp < result.lamp_count(); ++lamp)
+            for (const Part& part : parts_) {
+                if (part.range >= distances[i]) continue;
+                Spectrum beyond = up_to(distances[i], lamp) - up_to(part.range, lamp);
+                // Of few slabs, the light of a part may be more than that of the whole.
+                for (double& radiance : beyond.values) radiance = std::max(radiance, 0.0);
+                result.at(i, lamp) += part.share * beyond;
+            }
+}
+
+}  // namespace uw

@@ -1,0 +1,447 @@
+#include "core/passes/path_film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "core/base/available_memory.h"
+#include "core/base/error.h"
+#include "core/base/grid2d.h"
+#include "core/base/parallel.h"
+#include "core/geometry/surface_reflection.h"
+#include "core/passes/pixel_renderer.h"
+#include "core/paths/path_tracer.h"
+#include "core/scene/render_desc.h"
+
+namespace uw {
+
+namespace {
+
+// Rays of one batch that are traced and lit together.
+constexpr int k_together = 64;
+
+// Each of the estimates of a path has random numbers of its own, after those of its image position.
+enum Stream : std::uint64_t { k_position, k_single, k_water, k_surface };
+constexpr int k_position_dimensions = 2;
+// Beyond the lattice, whose dimensions after those of the position the estimates use.
+constexpr int k_aperture_dimension = 64;
+
+// Parts of an exposure have batches of their own, far from each other's.
+constexpr unsigned k_part_shift = 24;
+
+// Through a random point of the aperture, if there is one, at a random moment.
+std::optional<Ray> camera_ray(const RaySource& rays, double x, double y, PathRandom& random) {
+    if (!rays.has_aperture() && !rays.moves()) return rays.refracted_ray(x, y);
+    random.skip_to(k_aperture_dimension);
+    const double a = random.next(), b = random.next();
+    return rays.aperture_ray(x, y, rays.has_aperture() ? aperture_point(a, b) : AperturePoint{},
+                             random.next());
+}
+
+}  // namespace
+
+/// The paths of one batch.
+struct PathPixels::Batch {
+    std::uint64_t pixel, number;
+    int samples;
+
+    PathRandom random(Stream stream, int index) const {
+        PathRandom numbers(PathRandom::seed_of(pixel, number, stream),
+                           static_cast<std::uint32_t>(index));
+        if (stream != k_position) numbers.skip_to(k_position_dimensions);
+        return numbers;
+    }
+};
+
+/// Adds up terms, in the pixel and for the batch.
+class PathPixels::Sum final : public PathTerms {
+  public:
+    Sum(PixelResult& pixel, std::size_t bands) : pixel_(pixel), bands_(bands) {}
+
+    std::size_t bands() const { return bands_; }
+    /// The part of the pixel's light that the next terms belong to.
+    void set_part(Spectrum PixelResult::*part) { part_ = part; }
+    /// Light that the water scatters here belongs to the first slab, too.
+    void set_first_slab(const Interval& slab) { first_slab_ = slab; }
+    /// Counted by the pixel's alpha.
+    void add_rays(std::size_t count) { pixel_.alpha += static_cast<double>(count); }
+
+    void begin_batch() { batch_ = {}; }
+    /// Of all terms since begin_batch.
+    const Spectrum& batch() const { return batch_; }
+
+    void add(const PathTerm& term) override {
+        add_to(pixel_.*part_, term);
+        add_to(batch_, term);
+        if (part_ == &PixelResult::backscatter && term.distance >= first_slab_.begin &&
+            term.distance < first_slab_.end)
+            add_to(pixel_.backscatter_first, term);
+        if (term.lamp != k_no_lamp && !pixel_.lamps.empty()) add_to(pixel_.lamps[term.lamp], term);
+        if (pixel_.orders.empty()) return;
+        const auto last = static_cast<int>(pixel_.orders.size()) - 1;
+        add_to(pixel_.orders[static_cast<std::size_t>(std::min(term.scatterings, last))], term);
+        add_to(pixel_.reflections[static_cast<std::size_t>(std::min(term.reflections, last))],
+               term);
+    }
+
+  private:
+    void add_to(Spectrum& sum, const PathTerm& term) const {
+        uw::add(sum.first(bands_), term.radiance);
+    }
+
+    PixelResult& pixel_;
+    std::size_t bands_;
+    Spectrum PixelResult::*part_ = &PixelResult::direct;
+    Interval first_slab_{};
+    Spectrum batch_;
+};
+
+void PathPixels::render(int x, int y, const PathRound& round, const TracedCallback& traced,
+                        PixelResult& result) const {
+    thread_local PixelView view;
+    render_the_rest(x, y, round, view, result);
+    const auto bands = static_cast<std::size_t>(pixels_.band_count());
+    const bool has_ray = view.ray.has_value();
+    Sum sum(result, bands);
+    std::array<Spectrum, PathRound::k_batches> means;
+    std::array<int, PathRound::k_batches> sizes{};
+    const int batches = round.batches();
+    const auto pixel = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
+    for (int b = 0; b < batches; ++b) {
+        const auto i = static_cast<std::size_t>(b);
+        // As equal as can be.
+        sizes[i] = (b + 1) * round.samples / batches - b * round.samples / batches;
+        const auto number = (static_cast<std::uint64_t>(pixels_.first_sample()) << k_part_shift) +
+                            static_cast<std::uint64_t>(round.number) * PathRound::k_batches + i;
+        sum.begin_batch();
+        trace(x, y, {pixel, number, sizes[i]}, view, sum, traced);
+        means[i] = sum.batch() / sizes[i];
+    }
+    const double share = 1.0 / round.samples;
+    result.alpha *= share;
+    for (Spectrum PixelResult::*part :
+         {&PixelResult::direct, &PixelResult::backscatter, &PixelResult::backscatter_first,
+          &PixelResult::multiple_volume, &PixelResult::multiple_surface})
+        result.*part *= share;
+    for (std::vector<Spectrum>* list : {&result.lamps, &result.orders, &result.reflections})
+        for (Spectrum& light : *list) light *= share;
+    if (!has_ray) result.pixel_factor = pixels_.pixel_factor(view);
+    if (batches == 1) return;
+    // The variance of a batch's mean falls as 1 / its size.
+    for (std::size_t band = 0; band < bands; ++band) {
+        const double mean = result.direct[band] + result.backscatter[band] +
+                            result.multiple_volume[band] + result.multiple_surface[band];
+        double spread = 0;
+        for (std::size_t b = 0; b < static_cast<std::size_t>(batches); ++b) {
+            const double deviation = means[b][band] - mean;
+            spread += sizes[b] * share * deviation * deviation;
+        }
+        result.error[band] = result.pixel_factor * std::sqrt(spread / (batches - 1));
+    }
+}
+
+/// Everything but the light of the paths, which is 0 afterwards.
+void PathPixels::render_the_rest(int x, int y, const PathRound& round, PixelView& view,
+                                 PixelResult& result) const {
+    thread_local SurfaceLight light;
+    thread_local std::vector<double> no_water;
+    pixels_.trace(x, y, view);
+    if (round.number == 0) {
+        no_water.assign(pixels_.in_scatter().value_count(), 0.0);
+        pixels_.light_surfaces(std::span(&view, 1), light);
+        pixels_.shade(view, light, 0, no_water, result);
+        for (Spectrum& lamp : result.lamps) lamp = {};
+        result.direct = {};
+        result.alpha = 0;
+    } else {
+        const bool lamps = pixels_.in_scatter().parts().lamps;
+        result.reset(lamps ? static_cast<std::size_t>(pixels_.lamp_count()) : 0);
+        result.pixel_factor = pixels_.pixel_factor(view);
+    }
+    result.orders.assign(order_count_, Spectrum{});
+    result.reflections.assign(order_count_, Spectrum{});
+}
+
+void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,
+                       const TracedCallback& traced) const {
+    thread_local std::vector<Ray> rays;
+    thread_local std::vector<int> indices;  // of the rays' paths
+    thread_local std::vector<SurfaceHit> hits;
+    thread_local std::vector<char> found;
+    thread_local std::vector<SurfaceSample> samples;
+    thread_local std::vector<const SurfaceSample*> surfaces;
+    thread_local SurfaceLight light;
+    for (int first = 0; first < batch.samples; first += k_together) {
+        const int end = std::min(first + k_together, batch.samples);
+        rays.clear();
+        indices.clear();
+        samples.clear();
+        surfaces.clear();
+        for (int i = first; i < end; ++i) {
+            PathRandom random = batch.random(k_position, i);
+            const double across = x + random.next();
+            const double down = y + random.next();
+            const std::optional<Ray> ray = camera_ray(pixels_.rays(), across, down, random);
+            if (!ray) continue;
+            rays.push_back(*ray);
+            indices.push_back(i);
+            samples.push_back({*ray, {}, across, down});
+            if (view.ray) continue;  // a pixel whose edge alone sees water
+            view.ray = ray;
+            view.x = across;
+            view.y = down;
+        }
+        hits.resize(rays.size());
+        found.resize(rays.size());
+        pixels_.scene().surfaces->closest_hits(rays, k_far, hits, found);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (found[i] == 0) continue;
+            samples[i].hit = hits[i];
+            surfaces.push_back(&samples[i]);
+        }
+        pixels_.transport().surfaces->evaluate(surfaces, light);
+        std::size_t in_light = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const SurfaceSample* const surface = found[i] != 0 ? &samples[i] : nullptr;
+            trace_path(surface, rays[i], light, in_light, batch, indices[i], sum);
+            if (surface != nullptr) ++in_light;
+        }
+        sum.add_rays(rays.size());
+        traced(end - first);
+    }
+}
+
+void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+                            std::size_t in_light, const Batch& batch, int index, Sum& sum) const {
+    thread_local CameraSegment segment;
+    const PathTracer& paths = *pixels_.transport().paths;
+    Spectrum leaving;
+    if (surface != nullptr) {
+        sum.set_part(&PixelResult::direct);
+        add_direct(*surface, light, in_light, sum, leaving);
+    }
+    paths.begin(ray, surface != nullptr ? &surface->hit : nullptr, leaving.first(sum.bands()),
+                segment);
+    const auto estimate = [&](Spectrum PixelResult::*part, Stream stream, const auto& trace_part) {
+        PathRandom random = batch.random(stream, index);
+        sum.set_part(part);
+        (paths.*trace_part)(segment, random, sum);
+    };
+    if (pixels_.in_scatter().parts().first_slab)
+        sum.set_first_slab(pixels_.in_scatter().first_slab_along(ray));
+    estimate(&PixelResult::backscatter, k_single, &PathTracer::trace_single);
+    estimate(&PixelResult::multiple_volume, k_water, &PathTracer::trace_water);
+    estimate(&PixelResult::multiple_surface, k_surface, &PathTracer::trace_surface);
+}
+
+/// `leaving`: the radiance at the surface itself [W m^-2 sr^-1].
+void PathPixels::add_direct(const SurfaceSample& surface, const SurfaceLight& light,
+                            std::size_t in_light, Sum& sum, Spectrum& leaving) const {
+    const std::size_t bands = sum.bands();
+    const LitScene& scene = pixels_.scene();
+    const std::span<const double> to_camera = light.to_camera(in_light);
+    const SurfaceReflection reflection(*scene.surfaces, surface, pixels_.band_count());
+    Spectrum arriving, brdf;
+    PathTerm term{.distance = surface.hit.distance, .radiance = arriving.first(bands)};
+    if (reflection.emits()) {
+        for (std::size_t b = 0; b < bands; ++b) {
+            leaving[b] += reflection.emission()[b];
+            arriving[b] = reflection.emission()[b] * to_camera[b];
+        }
+        sum.add(term);
+    }
+    term.reflections = 1;
+    for (std::size_t j = 0; j < light.emitter_count(); ++j) {
+        if (!light.visible(in_light, j)) continue;
+        reflection.brdf(light.emitters()[j].origin(surface.hit.position), brdf);
+        for (std::size_t b = 0; b < bands; ++b) {
+            const double reflected = light.irradiance(in_light, j, b) * brdf[b];
+            leaving[b] += reflected;
+            arriving[b] = reflected * to_camera[b];
+        }
+        term.lamp = light.emitters()[j].index();
+        sum.add(term);
+    }
+}
+
+namespace {
+
+// Pixels that one task renders, in a row.
+constexpr int k_run = 8;
+// Paths between two reports of progress, at which an image can be stopped: milliseconds of work.
+constexpr std::uint64_t k_report = 64;
+// The error of so many paths is no more than a guess: more of them than it says are traced.
+constexpr double k_margin = 1.05;
+// Paths per pixel that an image is taken to need before anything is known of it.
+constexpr int k_guess = 64;
+
+// Rounds are at least this fraction of the paths before them.
+constexpr double k_least_growth = 0.125;
+
+constexpr int k_batches = PathRound::k_batches;
+
+// Paths per pixel that will reach the error, all in all.
+double samples_needed(double error, const PathAccuracy& so_far) {
+    const double ratio = so_far.error.value_or(0.0) / error;
+    return k_margin * so_far.samples * ratio * ratio;
+}
+
+/// What is known of the total of every pixel: the variance of its estimate, by band, and its mean
+/// over the bands.
+class Spread {
+  public:
+    Spread(const PixelWindow& window, std::size_t bands) : window_(window), bands_(bands) {
+        const double bytes =
+            4.0 * static_cast<double>(bands_ + 1) * window.width() * window.height();
+        require_memory(bytes,
+                       fmt::format("camera.resolution: the standard error of {} x {} pixels needs",
+                                   window.width(), window.height()),
+                       "render it in parts, with --crop, or make it smaller, with --size");
+        values_.assign(window.width() * static_cast<int>(bands_ + 1), window.height());
+    }
+
+    /// Includes a pixel's further paths, with their share of all.
+    void merge(int x, int y, const PixelResult& result, double share) {
+        const std::span<float> own = pixel(x, y);
+        double light = 0;
+        for (std::size_t b = 0; b < bands_; ++b) {
+            const double before = (1 - share) * (1 - share) * static_cast<double>(own[b]);
+            const double more = share * result.error[b];
+            own[b] = static_cast<float>(before + more * more);
+            light += result.direct[b] + result.backscatter[b] + result.multiple_volume[b] +
+                     result.multiple_surface[b];
+        }
+        const double mean = result.pixel_factor * light / static_cast<double>(bands_);
+        own[bands_] =
+            static_cast<float>((1 - share) * static_cast<double>(own[bands_]) + share * mean);
+    }
+
+    /// Of the whole image, relative to its mean.
+    double error() const {
+        double variance = 0, mean = 0;
+        for (int y = window_.y0; y < window_.y1; ++y) {
+            for (int x = window_.x0; x < window_.x1; ++x) {
+                const std::span<const float> own = pixel(x, y);
+                for (std::size_t b = 0; b < bands_; ++b) variance += static_cast<double>(own[b]);
+                mean += static_cast<double>(own[bands_]);
+            }
+        }
+        if (variance == 0) return 0;
+        const double pixels = static_cast<double>(window_.width()) * window_.height();
+        return std::sqrt(variance / (pixels * static_cast<double>(bands_))) / (mean / pixels);
+    }
+
+    /// The standard error of a pixel, by band.
+    void store_error(int x, int y, std::span<float> channels) const {
+        const std::span<const float> own = pixel(x, y);
+        for (std::size_t b = 0; b < bands_; ++b)
+            channels[b] = static_cast<float>(std::sqrt(static_cast<double>(own[b])));
+    }
+
+  private:
+    std::size_t first(int x) const {
+        return static_cast<std::size_t>(x - window_.x0) * (bands_ + 1);
+    }
+    std::span<float> pixel(int x, int y) {
+        return values_.row(y - window_.y0).subspan(first(x), bands_ + 1);
+    }
+    std::span<const float> pixel(int x, int y) const {
+        return values_.row(y - window_.y0).subspan(first(x), bands_ + 1);
+    }
+
+    PixelWindow window_;
+    std::size_t bands_;
+    Grid2D<float> values_;
+};
+
+/// Tells how far an image has got, whose number of paths may not be known yet.
+class RoundProgress {
+  public:
+    RoundProgress(const ProgressCallback& progress, const PixelWindow& window)
+        : progress_(progress), pixels_(static_cast<double>(window.width()) * window.height()) {}
+
+    void begin_round(double samples_in_all) { all_ = pixels_ * samples_in_all; }
+
+    /// From any thread.
+    void add(int paths) {
+        const auto more = static_cast<std::uint64_t>(paths);
+        const std::uint64_t before = done_.fetch_add(more);
+        if (before / k_report == (before + more) / k_report) return;
+        // The rest may take longer than foreseen.
+        constexpr double k_almost = 0.99;
+        if (!progress_(std::min(k_almost, static_cast<double>(before + more) / all_)))
+            throw Interrupted();
+    }
+
+  private:
+    const ProgressCallback& progress_;
+    double pixels_;
+    double all_ = 1;  // paths
+    std::atomic<std::uint64_t> done_ = 0;
+};
+
+}  // namespace
+
+int samples_of_next_round(const PathGoal& goal, const PathAccuracy& so_far) {
+    if (!goal.error) return so_far.samples == 0 ? goal.samples : 0;
+    if (so_far.samples == 0) return k_batches;
+    const int possible = k_most_paths - so_far.samples;
+    if (possible <= 0 || so_far.error.value_or(0.0) <= *goal.error) return 0;
+    // Batches of 2^k paths cover their dimensions best. The next round may correct a round too few.
+    const double missing = samples_needed(*goal.error, so_far) - so_far.samples;
+    const double most = std::min({missing, 2.0 * so_far.samples, static_cast<double>(possible)});
+    const double wanted = std::max(most, k_least_growth * so_far.samples);
+    int samples = k_batches;
+    while (2 * samples <= wanted) samples *= 2;
+    return std::min(samples, possible);
+}
+
+PathAccuracy render_path_film(const PixelRenderer& renderer, const PathGoal& goal,
+                              const LayerPlan& plan, const BandColour& colour, Film& film,
+                              const ProgressCallback& progress, const AccuracyCallback& reached) {
+    const PathPixels pixels(renderer, plan.order_count());
+    const PixelWindow& window = film.window();
+    Spread spread(window, plan.band_count());
+    RoundProgress so_far(progress, window);
+    const int runs = (window.width() + k_run - 1) / k_run;  // in a row
+    const auto tasks = static_cast<std::size_t>(runs) * static_cast<std::size_t>(window.height());
+    PathAccuracy accuracy;
+    PathRound round;
+    for (; (round.samples = samples_of_next_round(goal, accuracy)) > 0; ++round.number) {
+        const int samples = accuracy.samples + round.samples;
+        const double share = static_cast<double>(round.samples) / samples;
+        double in_all = samples;
+        if (goal.error)
+            in_all = std::clamp(round.number == 0 ? k_guess : samples_needed(*goal.error, accuracy),
+                                in_all, static_cast<double>(k_most_paths));
+        so_far.begin_round(in_all);
+        parallel_for(tasks, [&](std::size_t task) {
+            thread_local PixelResult result;
+            const int y = window.y0 + static_cast<int>(task) / runs;
+            const int begin = window.x0 + static_cast<int>(task) % runs * k_run;
+            for (int x = begin; x < std::min(begin + k_run, window.x1); ++x) {
+                pixels.render(
+                    x, y, round, [&](int paths) { so_far.add(paths); }, result);
+                if (round.number == 0)
+                    store_pixel(result, plan, colour, film.pixel(x, y));
+                else
+                    merge_paths(result, share, plan, colour, film.pixel(x, y));
+                spread.merge(x, y, result, share);
+            }
+        });
+        accuracy.samples = samples;
+        if (samples > 1) accuracy.error = spread.error();
+        if (reached) reached(accuracy);
+    }
+    if (plan.has(Layer::error))
+        for (int y = window.y0; y < window.y1; ++y)
+            for (int x = window.x0; x < window.x1; ++x)
+                spread.store_error(x, y, plan.channels(Layer::error, film.pixel(x, y)));
+    if (!progress(1)) throw Interrupted();
+    return accuracy;
+}
+
+}  // namespace uw

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "core/passes/pixel_renderer.h"
+#include "core/passes/render_film.h"
+
+namespace uw {
+
+/// Light paths of each pixel: a round of an image, which may have several.
+struct PathRound {
+    /// Paths are traced in as many batches, whose means are independent; their spread tells the
+    /// standard error.
+    static constexpr int k_batches = 16;
+
+    int number = 0;   // of the round, from 0: each has random numbers of its own
+    int samples = 1;  // paths per pixel, >= 1
+
+    int batches() const { return samples < k_batches ? samples : k_batches; }
+};
+
+/// Pixels whose light is the mean over random paths from the camera (PathTracer): no bias, and a
+/// standard error.
+class PathPixels {
+  public:
+    /// Receives the number of paths traced since it was last called; may throw.
+    using TracedCallback = std::function<void(int paths)>;
+
+    /// `pixels` renders everything that is not a mean over paths, and its light transport has
+    /// paths; it must outlive this object. `order_count`: of PixelResult::orders and reflections.
+    PathPixels(const PixelRenderer& pixels, std::size_t order_count)
+        : pixels_(pixels), order_count_(order_count) {}
+
+    /// Renders pixel (x, y). The same for any number of threads, and for any part of the image. In
+    /// rounds after the first, only what is a mean over paths. Thread safe.
+    void render(int x, int y, const PathRound& round, const TracedCallback& traced,
+                PixelResult& result) const;
+
+  private:
+    class Sum;
+    struct Batch;
+
+    void render_the_rest(int x, int y, const PathRound& round, PixelView& view,
+                         PixelResult& result) const;
+    void trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,
+               const TracedCallback& traced) const;
+    void trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+                    std::size_t in_light, const Batch& batch, int index, Sum& sum) const;
+    void add_direct(const SurfaceSample& surface, const SurfaceLight& light, std::size_t in_light,
+                    Sum& sum, Spectrum& leaving) const;
+
+    const PixelRenderer& pixels_;
+    std::size_t order_count_;
+};
+
+/// When an image of light paths is done.
+struct PathGoal {
+    int samples = 16;  // paths per pixel
+    /// Instead: the greatest PathAccuracy::error. No more than k_most_paths are traced for it.
+    std::optional<double> error{};
+};
+
+/// What an image of light paths has reached.
+struct PathAccuracy {
+    int samples = 0;  // paths per pixel
+    /// The standard error of the image: the RMS over pixels and bands of that of the total, over
+    /// the total's mean. None for a single path.
+    std::optional<double> error{};
+};
+
+/// Receives what has been reached, after each round, while no pixel is being rendered.
+using AccuracyCallback = std::function<void(const PathAccuracy& so_far)>;
+
+/// The number of paths per pixel to trace next for an image that has reached `so_far`; 0: it is
+/// done. For an error that must not be exceeded, the number follows from the error so far, and is
+/// at most twice that of the paths so far.
+int samples_of_next_round(const PathGoal& goal, const PathAccuracy& so_far);
+
+/// Renders every pixel of the film's window by light paths, round after round, on all permitted
+/// threads. The result does not depend on their number, and pixels do not depend on the window
+/// unless it is an error that is to be reached. Throws Interrupted if `progress` returned false;
+/// InputError if there is not enough memory.
+PathAccuracy render_path_film(const PixelRenderer& renderer, const PathGoal& goal,
+                              const LayerPlan& plan, const BandColour& colour, Film& film,
+                              const ProgressCallback& progress,
+                              const AccuracyCallback& reached = {});
+
+}  // namespace uw

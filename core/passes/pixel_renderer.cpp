@@ -1,0 +1,358 @@
+#include "core/passes/pixel_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "core/geometry/surface_reflection.h"
+
+namespace uw {
+
+namespace {
+
+// Other numbers than for light paths.
+constexpr std::uint64_t k_sampling_seed = 0x61706572;
+
+// Base-2 radical inverse: 0, 1/2, 1/4, 3/4, ...; of other bases likewise.
+template <unsigned base>
+double radical_inverse(int number) {
+    double result = 0, digit = 1.0 / base;
+    for (auto i = static_cast<unsigned>(number); i != 0; i /= base, digit /= base)
+        result += digit * (i % base);
+    return result;
+}
+
+}  // namespace
+
+PixelSampling::PixelSampling(const PixelSamples& samples, int x, int y) : samples_(samples) {
+    const auto pixel = static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x);
+    PathRandom random(PathRandom::seed_of(k_sampling_seed, pixel), 0);
+    shift_a_ = random.next();
+    shift_b_ = random.next();
+    shift_moment_ = random.next();
+}
+
+ImageOffset PixelSampling::offset(int i) const {
+    if (samples_.total > 0) {
+        const double half_step = 0.5 / samples_.total;
+        const int number = samples_.first + i;
+        return {radical_inverse<2>(number) + half_step, radical_inverse<3>(number) + half_step};
+    }
+    if (samples_.count == 1) return {0.5, 0.5};
+    const double half_step = 0.5 / samples_.count;
+    return {static_cast<double>(i) / samples_.count + half_step, radical_inverse<2>(i) + half_step};
+}
+
+AperturePoint PixelSampling::aperture(int i) const {
+    const bool is_part = samples_.total > 0;
+    const int number = samples_.first + i;
+    const double a = (is_part ? radical_inverse<5>(number) : radical_inverse<3>(number)) + shift_a_;
+    const double b = (is_part ? radical_inverse<7>(number) : radical_inverse<5>(number)) + shift_b_;
+    return aperture_point(std::fmod(a, 1.0), std::fmod(b, 1.0));
+}
+
+void find_matches(const PointMatchers& matchers, std::span<PixelView> views) {
+    if (!matchers.next && !matchers.previous && !matchers.other_camera) return;
+    thread_local std::vector<const SurfaceHit*> hits;
+    thread_local std::vector<std::optional<PointMatch>> matches;
+    hits.clear();
+    for (const PixelView& view : views)
+        if (view.has_hit) hits.push_back(&view.hit);
+    matches.resize(hits.size());
+    const auto look = [&](const PointMatcher* matcher,
+                          std::optional<PointMatch> PointMatches::*which) {
+        if (!matcher) return;
+        matcher->match(hits, matches);
+        auto match = matches.begin();
+        for (PixelView& view : views)
+            if (view.has_hit) view.matches.*which = *match++;
+    };
+    look(matchers.next, &PointMatches::next);
+    look(matchers.previous, &PointMatches::previous);
+    look(matchers.other_camera, &PointMatches::other_camera);
+}
+
+void store_matches(const PointMatchers& matchers, const PixelView& view, PixelResult& result) {
+    const auto store = [&](const PointMatcher* matcher, const std::optional<PointMatch>& match,
+                           double sign, std::array<double, 2>& offset, double* occluded) {
+        if (!matcher || !match) return;
+        offset = {sign * (match->x - view.x), sign * (match->y - view.y)};
+        if (occluded) *occluded = match->is_occluded ? 1 : 0;
+    };
+    store(matchers.next, view.matches.next, 1, result.flow, &result.flow_occluded);
+    store(matchers.previous, view.matches.previous, 1, result.flow_back, nullptr);
+    store(matchers.other_camera, view.matches.other_camera, matchers.is_first_camera ? -1 : 1,
+          result.disparity, &result.disparity_occluded);
+}
+
+namespace {
+
+// Surface samples whose distances agree to within this fraction share one integral through the
+// water: their in-scatter differs by less than 1 % of that of the last centimetres.
+constexpr double k_same_distance = 0.01;
+// Samples on the object seen at the pixel's centre are assigned the centre's distance if theirs is
+// this close to it: to first order the mean over a slanted surface is its centre, and the water ray
+// does not continue behind the surface it hits.
+constexpr double k_same_surface = 0.25;
+
+// Derives the view's distances and weights from its samples, merging distances that agree.
+void group_distances(std::vector<double>& distances, int samples, PixelView& view) {
+    std::sort(distances.begin(), distances.end());
+    for (std::size_t first = 0; first < distances.size();) {
+        std::size_t last = first;
+        double sum = 0;
+        while (last < distances.size() &&
+               distances[last] <= distances[first] * (1 + k_same_distance))
+            sum += distances[last++];
+        const auto count = static_cast<double>(last - first);
+        const bool at_center =
+            view.has_hit && distances[first] <= view.path && view.path <= distances[last - 1];
+        view.distances.push_back(at_center ? view.path : sum / count);
+        view.weights.push_back(count / samples);
+        first = last;
+    }
+}
+
+}  // namespace
+
+PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
+                             const LightTransport& transport, const PixelSamples& samples,
+                             const Slabs& slabs, const SensorModel& sensor,
+                             const InScatterParts& parts, const PointMatchers& matchers)
+    : rays_(rays),
+      scene_(scene),
+      transport_(transport),
+      samples_(samples),
+      sensor_(sensor),
+      in_scatter_(*transport.integrator, rays.world_from_camera(), slabs, lamp_count(),
+                  band_count(), parts),
+      matchers_(matchers),
+      camera_from_world_(rays.world_from_camera().inverse()) {}
+
+void PixelRenderer::trace(int x, int y, PixelView& view) const {
+    begin_view(x, y, view);
+    view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
+    finish_ground_truth(view);
+    find_matches(matchers_, std::span(&view, 1));
+    add_samples(x, y, view);
+}
+
+void PixelRenderer::trace(const PixelWindow& window, Grid2D<PixelView>& views) const {
+    thread_local std::vector<Ray> rays;
+    thread_local std::vector<SurfaceHit> hits;
+    thread_local std::vector<char> found;
+    views.resize(window.width(), window.height());
+    for (int y = window.y0; y < window.y1; ++y) {
+        const std::span<PixelView> row = views.row(y - window.y0);
+        rays.clear();
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            begin_view(window.x0 + static_cast<int>(i), y, row[i]);
+            if (row[i].ray) rays.push_back(*row[i].ray);
+        }
+        hits.resize(rays.size());
+        found.resize(rays.size());
+        scene_.surfaces->closest_hits(rays, k_far, hits, found);
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            PixelView& view = row[i];
+            if (view.ray) {
+                view.has_hit = found[next] != 0;
+                if (view.has_hit) view.hit = hits[next];
+                ++next;
+            }
+            finish_ground_truth(view);
+            add_samples(window.x0 + static_cast<int>(i), y, view);
+        }
+        find_matches(matchers_, row);
+    }
+}
+
+void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
+    view.alpha = 0;
+    view.distances.clear();
+    view.weights.clear();
+    view.samples.clear();
+    view.x = x + 0.5;
+    view.y = y + 0.5;
+    view.has_hit = false;
+    view.ray = rays_.refracted_ray(view.x, view.y);
+}
+
+// The ray of a single sample is that of the ground truth.
+void PixelRenderer::add_center(PixelView& view) {
+    if (!view.ray) return;
+    view.alpha = 1;
+    view.distances.push_back(view.has_hit ? view.path : k_far);
+    view.weights.push_back(1);
+    if (view.has_hit) view.samples.push_back({*view.ray, view.hit, view.x, view.y});
+}
+
+void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
+    thread_local std::vector<double> distances;
+    distances.clear();
+    const int count = samples_.count;
+    if (count == 1 && samples_.total == 0) {
+        add_center(view);
+        return;
+    }
+    const bool has_aperture = rays_.has_aperture();
+    const bool differ = has_aperture || rays_.moves();
+    const PixelSampling sampling(samples_, x, y);
+    for (int i = 0; i < count; ++i) {
+        throw_if_stopped();
+        const ImageOffset offset = sampling.offset(i);
+        const AperturePoint point = has_aperture ? sampling.aperture(i) : AperturePoint{};
+        const std::optional<Ray> ray =
+            differ ? rays_.aperture_ray(x + offset.x, y + offset.y, point, sampling.moment(i))
+                   : rays_.refracted_ray(x + offset.x, y + offset.y);
+        if (!ray) continue;
+        if (!view.ray) {
+            view.ray = ray;
+            view.x = x + offset.x;
+            view.y = y + offset.y;
+        }
+        view.alpha += 1.0 / count;
+        SurfaceSample& sample = view.samples.emplace_back();
+        sample.ray = *ray;
+        sample.x = x + offset.x;
+        sample.y = y + offset.y;
+        if (!scene_.surfaces->closest_hit(*ray, k_far, sample.hit)) {
+            view.samples.pop_back();
+            distances.push_back(k_far);
+            continue;
+        }
+        const bool at_center = view.has_hit && sample.hit.object_id == view.hit.object_id &&
+                               std::abs(sample.hit.distance / view.path - 1) < k_same_surface;
+        distances.push_back(at_center ? view.path : sample.hit.distance);
+    }
+    group_distances(distances, count, view);
+}
+
+void PixelRenderer::light_surfaces(std::span<const PixelView> views, SurfaceLight& light) const {
+    thread_local std::vector<const SurfaceSample*> samples;
+    samples.clear();
+    for (const PixelView& view : views)
+        for (const SurfaceSample& sample : view.samples) samples.push_back(&sample);
+    transport_.surfaces->evaluate(samples, light);
+}
+
+void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
+                          std::size_t first_sample, std::span<const double> in_scatter,
+                          PixelResult& result) const {
+    const auto bands = static_cast<std::size_t>(band_count());
+    result.reset(in_scatter_.parts().lamps ? scene_.lamp_count() : 0, bands);
+    result.alpha = view.alpha;
+    store_truth(view, result);
+    for (std::size_t i = 0; i < view.samples.size(); ++i) {
+        throw_if_stopped();
+        add_surface(view.samples[i], light, first_sample + i, result);
+    }
+    if (!view.samples.empty())
+        for (double& transmittance : result.transmittance.first(bands))
+            transmittance /= static_cast<double>(view.samples.size());
+    if (!view.ray) return;
+    add_water(in_scatter, result);
+    result.pixel_factor = pixel_factor(view);
+}
+
+void PixelRenderer::store_truth(const PixelView& view, PixelResult& result) const {
+    result.has_hit = view.has_hit;
+    if (!view.has_hit) return;
+    result.hit = view.hit;
+    result.depth_z = view.depth_z;
+    result.range = view.range;
+    result.path = view.path;
+    store_matches(matchers_, view, result);
+}
+
+void PixelRenderer::find_truth(int x, int y, PixelResult& result) const {
+    thread_local PixelView view;
+    result.reset(0);
+    begin_view(x, y, view);
+    view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
+    finish_ground_truth(view);
+    find_matches(matchers_, std::span(&view, 1));
+    store_truth(view, result);
+}
+
+double PixelRenderer::pixel_factor(const PixelView& view) const {
+    if (!view.ray || !(sensor_.uses_lens() || rays_.port_dims())) return 1;
+    const double focus = rays_.has_aperture() ? 1 / rays_.focus_vergence()
+                         : view.has_hit       ? view.range
+                                              : k_infinitely_far;
+    return sensor_.pixel_factor(rays_.lens_ray(view.x, view.y), focus);
+}
+
+void PixelRenderer::render(int x, int y, PixelResult& result) const {
+    thread_local PixelView view;
+    thread_local std::vector<double> in_scatter;
+    thread_local SurfaceLight surfaces;
+    trace(x, y, view);
+    in_scatter.resize(in_scatter_.value_count());
+    in_scatter_.integrate(view, in_scatter);
+    light_surfaces(std::span(&view, 1), surfaces);
+    shade(view, surfaces, 0, in_scatter, result);
+}
+
+void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight& light,
+                                std::size_t sample, PixelResult& result) const {
+    const SurfaceHit& hit = surface.hit;
+    const double weight = 1.0 / samples_.count;
+    const double seen = sensor_.surface_factor(hit.distance);
+    const auto bands = static_cast<std::size_t>(band_count());
+    const std::span<const double> to_camera = light.to_camera(sample);
+    const SurfaceReflection reflection(*scene_.surfaces, surface, band_count());
+    add(result.transmittance.first(bands), to_camera);
+    if (reflection.emits()) {
+        for (std::size_t b = 0; b < bands; ++b) {
+            const double emission = weight * reflection.emission()[b] * seen;
+            result.clean[b] += emission;
+            result.direct[b] += emission * to_camera[b] * light.glow_weight(sample);
+        }
+    }
+    Spectrum brdf;
+    for (std::size_t j = 0; j < light.emitter_count(); ++j) {
+        if (!light.visible(sample, j)) continue;
+        const Lamp& emitter = light.emitters()[j];
+        result.lit += weight * emitter.share() / static_cast<double>(lamp_count());
+        reflection.brdf(emitter.origin(surface.hit.position), brdf);
+        // One loop instead of a spectrum per product: this runs for every sample and every emitter.
+        for (std::size_t b = 0; b < bands; ++b) {
+            const double irradiance = weight * light.irradiance(sample, j, b);
+            const double response = brdf[b] * seen;
+            const double direct = irradiance * response * to_camera[b];
+            result.irradiance[b] += irradiance;
+            result.exitance[b] += irradiance * hit.reflectance[b];
+            result.clean[b] += weight * light.clean(sample, j, b) * response;
+            result.direct[b] += direct;
+            if (!result.lamps.empty()) result.lamps[emitter.index()][b] += direct;
+        }
+    }
+}
+
+void PixelRenderer::add_water(std::span<const double> in_scatter, PixelResult& result) const {
+    for (std::size_t group = 0; group < in_scatter_.group_count(); ++group) {
+        const std::span<const double> values = in_scatter_.group(in_scatter, group);
+        add(result.backscatter.first(values.size()), values);
+        if (!result.lamps.empty()) add(result.lamps[group].first(values.size()), values);
+    }
+    if (!in_scatter_.parts().first_slab) return;
+    // A difference of sums, which are rounded and interpolated.
+    std::ranges::transform(in_scatter_.first_slab(in_scatter), result.backscatter_first.begin(),
+                           [](double value) { return std::max(0.0, value); });
+}
+
+void PixelRenderer::finish_ground_truth(PixelView& view) const {
+    if (!view.has_hit) return;
+    const Point3 in_camera = rays_.is_rolling()
+                                 ? rays_.world_from_camera_at(view.y).inverse() * view.hit.position
+                                 : camera_from_world_ * view.hit.position;
+    view.depth_z = in_camera.z;
+    view.range = glm::length(from_origin(in_camera));
+    view.path = view.hit.distance;
+}
+
+}  // namespace uw

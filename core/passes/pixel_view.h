@@ -1,0 +1,119 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/vector_math.h"
+#include "core/geometry/surfaces.h"
+#include "core/light/integrator.h"
+#include "core/light/slabs.h"
+#include "core/light/surface_lighting.h"
+
+namespace uw {
+
+/// Where a point that one image sees is in another.
+struct PointMatch {
+    /// Image position [pixels], perhaps outside the image; NaN where the camera cannot image it.
+    double x = std::numeric_limits<double>::quiet_NaN();
+    double y = std::numeric_limits<double>::quiet_NaN();
+    bool is_occluded = true;  ///< hidden by a surface, or not within the image
+};
+
+/// Finds the surface points of one image in another of the scene: of another frame, or of another
+/// camera. Thread safe.
+class PointMatcher {
+  public:
+    virtual ~PointMatcher() = default;
+
+    /// `matches[i]` is that of `hits[i]`, none for a point that has no counterpart; neighbours
+    /// together cost less.
+    virtual void match(std::span<const SurfaceHit* const> hits,
+                       std::span<std::optional<PointMatch>> matches) const = 0;
+};
+
+/// Where a point is in other images, as far as they are asked for (PointMatchers).
+struct PointMatches {
+    std::optional<PointMatch> next, previous, other_camera;
+};
+
+/// The images in which the points of an image are looked for; null: not wanted, or there is none.
+struct PointMatchers {
+    const PointMatcher* next = nullptr;      ///< frame
+    const PointMatcher* previous = nullptr;  ///< frame
+    const PointMatcher* other_camera = nullptr;
+    bool is_first_camera = true;  ///< whether this image is that of the pair's first camera
+};
+
+/// What the rays of one pixel hit, before any lighting. Reused storage.
+struct PixelView {
+    double alpha = 0;        // fraction of the samples whose ray enters the water
+    std::optional<Ray> ray;  // along which the pixel's water is integrated, if one enters it
+    double x = 0, y = 0;     // image position of that ray
+    /// The distances to which the pixel's water extends [m along `ray`, ascending; k_far without a
+    /// surface], and the fraction of the samples for each. Empty without a ray.
+    std::vector<double> distances, weights;
+
+    std::vector<SurfaceSample> samples;  // those that hit a surface
+
+    // Ground truth at the pixel's centre:
+    bool has_hit = false;
+    SurfaceHit hit;
+    double depth_z = 0;  // camera-frame z of the hit
+    double range = 0;    // from the camera's centre to the hit
+    double path = 0;     // in water, from the outer glass surface to the hit
+    PointMatches matches;
+};
+
+/// The parts of the in-scatter that an image requires.
+struct InScatterParts {
+    bool lamps = true;       // each lamp separately, not only the sum
+    bool first_slab = true;  // of the first slab
+};
+
+/// The in-scatter along a ray up to a distance, as a list of values that can be interpolated: the
+/// bands for each lamp (or for all lamps together), then those for the first slab, if requested [W
+/// m^-2 sr^-1].
+class RayInScatter {
+  public:
+    /// `integrator` must outlive this object; the first slab is that of `slabs`.
+    RayInScatter(const Integrator& integrator, const Affine& world_from_camera, const Slabs& slabs,
+                 int lamps, int bands, const InScatterParts& parts);
+
+    /// Number of values in a list.
+    std::size_t value_count() const { return (groups_ + (parts_.first_slab ? 1 : 0)) * bands_; }
+    std::size_t band_count() const { return bands_; }
+    const InScatterParts& parts() const { return parts_; }
+    /// Number of lamp groups: one per lamp, or one for all lamps.
+    std::size_t group_count() const { return groups_; }
+    /// The bands of one group's light in a list.
+    std::span<const double> group(std::span<const double> values, std::size_t group) const {
+        return values.subspan(group * bands_, bands_);
+    }
+    /// The bands of the first slab's light in a list. Precondition: parts().first_slab.
+    std::span<const double> first_slab(std::span<const double> values) const {
+        return values.subspan(groups_ * bands_, bands_);
+    }
+
+    /// Integrates up to each of `distances` [m, > 0] and writes the lists consecutively. Thread
+    /// safe.
+    void integrate(const Ray& ray, std::span<const double> distances,
+                   std::span<double> values) const;
+
+    /// Writes the list of a pixel: the weighted mean over its distances, zeros without a ray.
+    /// Thread safe.
+    void integrate(const PixelView& view, std::span<double> values) const;
+
+    /// The part of the ray within the first slab [m]; empty if it does not pass it.
+    Interval first_slab_along(const Ray& ray) const;
+
+  private:
+    const Integrator& integrator_;
+    Affine camera_from_world_;
+    Slabs slabs_;
+    std::size_t lamps_, bands_, groups_;
+    InScatterParts parts_;
+};
+
+}  // namespace uw

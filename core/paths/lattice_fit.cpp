@@ -1,0 +1,125 @@
+#include "core/paths/lattice_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace uw {
+
+bool CholeskyFactor::factor(std::span<const double> matrix, std::size_t size, double least_pivot) {
+    size_ = size;
+    lower_.assign(matrix.begin(), matrix.end());
+    for (std::size_t i = 0; i < size; ++i) {
+        double* row = &lower_[i * size];
+        for (std::size_t j = 0; j <= i; ++j) {
+            const double* other = &lower_[j * size];
+            double sum = row[j];
+            for (std::size_t k = 0; k < j; ++k) sum -= row[k] * other[k];
+            if (i != j) {
+                row[j] = sum / other[j];
+                continue;
+            }
+            if (!(sum > least_pivot * row[i])) return false;
+            row[i] = std::sqrt(sum);
+        }
+    }
+    return true;
+}
+
+void CholeskyFactor::solve(std::span<double> x) const {
+    for (std::size_t i = 0; i < size_; ++i) {
+        for (std::size_t k = 0; k < i; ++k) x[i] -= lower_[i * size_ + k] * x[k];
+        x[i] /= lower_[i * size_ + i];
+    }
+    for (std::size_t i = size_; i-- > 0;) {
+        for (std::size_t k = i + 1; k < size_; ++k) x[i] -= lower_[k * size_ + i] * x[k];
+        x[i] /= lower_[i * size_ + i];
+    }
+}
+
+namespace {
+
+constexpr int k_most_terms = 6;  // 1, x, y, x^2, xy, y^2
+constexpr std::array<int, 5> k_reaches{0, 1, 2, 4, LatticeFit::k_reach};
+// In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
+// light less well.
+constexpr double k_agreement = 2.2;
+// Of normal equations, relative.
+constexpr double k_least_pivot = 1e-6;
+
+using Terms = std::array<double, k_most_terms>;
+
+// Calls visit(node, weight, terms) for the nodes nearer than reach + 1, with a weight that falls to
+// 0 there, and terms of x and y in units of it.
+template <class Visit>
+void visit_near(std::span<const FitNode> nodes, int reach, const Visit& visit) {
+    const double scale = 1.0 / (reach + 1);
+    for (const FitNode& node : nodes) {
+        const double x = node.dx * scale, y = node.dy * scale;
+        const double near = 1 - x * x - y * y;
+        if (near > 0) visit(node, near * node.weight, Terms{1, x, y, x * x, x * y, y * y});
+    }
+}
+
+}  // namespace
+
+bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms) {
+    const auto size = static_cast<std::size_t>(terms);
+    normal_.assign(size * size, 0.0);
+    tried_.clear();
+    int used = 0;
+    visit_near(nodes, reach, [&](const FitNode&, double rest, const Terms& t) {
+        ++used;
+        for (std::size_t i = 0; i < size; ++i)
+            for (std::size_t j = 0; j <= i; ++j) normal_[i * size + j] += rest * t[i] * t[j];
+    });
+    if (used < 2 * terms - 1 || !cholesky_.factor(normal_, size, k_least_pivot)) return false;
+    Terms solution{1};  // of which the first term is the value at (0, 0)
+    cholesky_.solve(std::span(solution).first(size));
+    tried_value_ = tried_variance_ = 0;
+    double amplification = 0;
+    visit_near(nodes, reach, [&](const FitNode& node, double rest, const Terms& t) {
+        double weight = 0;
+        for (std::size_t i = 0; i < size; ++i) weight += solution[i] * t[i];
+        weight *= rest;
+        tried_.push_back({node.index, weight});
+        tried_value_ += weight * node.value;
+        tried_variance_ += weight * weight * node.variance;
+        amplification += weight * weight;
+    });
+    // An extrapolation that makes noise greater is left to a lower degree.
+    return terms == 1 || amplification <= 1;
+}
+
+std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, double tolerance) {
+    weights_.clear();
+    variance_ = 0;
+    struct Accepted {
+        double value, deviation;
+    };
+    std::array<Accepted, k_reaches.size()> accepted{};
+    std::size_t count = 0;
+    for (const int reach : k_reaches) {
+        // Of the highest degree that the nodes determine.
+        bool found = false;
+        for (const int terms : {6, 3, 1}) {
+            if (reach < 2 && terms == 6) continue;
+            found = fit_within(nodes, reach, terms);
+            if (found) break;
+        }
+        if (!found) continue;
+        const bool agrees =
+            std::all_of(accepted.begin(), accepted.begin() + static_cast<std::ptrdiff_t>(count),
+                        [&](const Accepted& narrower) {
+                            return std::abs(tried_value_ - narrower.value) <=
+                                   k_agreement * narrower.deviation + tolerance;
+                        });
+        if (count > 0 && !agrees) break;
+        accepted[count++] = {tried_value_, std::sqrt(tried_variance_)};
+        weights_.swap(tried_);
+        variance_ = tried_variance_;
+    }
+    return weights_;
+}
+
+}  // namespace uw

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/grid2d.h"
+#include "core/base/ray.h"
+#include "core/light/integrator.h"
+#include "core/light/integrator_kind.h"
+#include "core/paths/distance_intervals.h"
+#include "core/paths/path_tracer.h"
+
+namespace uw {
+
+/// The surface that a node's ray hits.
+struct NodeSurface {
+    std::uint32_t object_id = 0;
+    Point3 position;
+    Vector3 normal{0, 0, 1};
+    bool is_glossy = false;
+};
+
+/// Light that was scattered or reflected more than once, at one image position.
+struct NodeLight {
+    /// By interval of distance, group and band: radiance from the water within it, at the camera.
+    std::vector<float> water;
+    /// By group and band: indirect irradiance / pi, what a white surface would reflect, and then
+    /// what the surface's specular lobe reflects [W m^-2 sr^-1], but for what it mirrors
+    /// (PathTracer::is_mirrored).
+    std::vector<float> diffuse, glossy;
+    // The sums over the groups, means over the bands:
+    std::vector<float> water_mean;  // by interval
+    double diffuse_mean = 0;
+};
+
+/// Estimates of that light, and what they belong to.
+struct MultipleNode {
+    bool has_ray = false;
+    std::optional<NodeSurface> surface;
+    double reach = 0;  // of the water along its ray [m]
+    /// IntervalWeights of its ray, by interval and band, and their means over the bands.
+    std::vector<float> weights, mean_weights;
+    double mean_light = 0;    // roughly that of the ray, mean over the bands
+    double surface_seen = 0;  // the camera's radiance per diffuse_mean
+    /// Two independent estimates: what is decided by one is applied to the other.
+    std::array<NodeLight, 2> halves;
+    // The variances of either half's means:
+    std::vector<float> water_variance;
+    double diffuse_variance = 0;
+};
+
+/// How nodes are estimated.
+struct MultipleNodeOptions {
+    std::size_t groups = 1;  // one for all light, or one per lamp and one for emission
+    int paths = 512;         // per node, of each kind
+};
+
+/// Estimates nodes by light paths. Thread safe.
+class MultipleNodes {
+  public:
+    /// All references must outlive this object; `transport` has paths.
+    MultipleNodes(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
+                  const IntervalWeights& weights, const MultipleNodeOptions& options)
+        : rays_(rays),
+          scene_(scene),
+          transport_(transport),
+          weights_(weights),
+          intervals_(weights.intervals()),
+          options_(options) {}
+
+    const MultipleNodeOptions& options() const { return options_; }
+    void set_paths(int paths) { options_.paths = paths; }
+
+    /// The variance of one path of each kind over the squared mean of all light, on the average
+    /// over the image: from a few nodes all over it, by about so many paths, within limits.
+    double relative_variance(double paths) const;
+
+    /// The node at image position (x, y) [pixels]. `seed`: of its random numbers.
+    void estimate(double x, double y, std::uint64_t seed, MultipleNode& node) const;
+    /// The light on one surface sample alone, by this many paths.
+    void estimate_surface(const SurfaceSample& sample, int paths, NodeLight& light) const;
+    /// What the sample's specular lobe mirrors (PathTracer::trace_mirrored), by this many paths:
+    /// the radiance at the sample, by group and band.
+    void estimate_mirrored(const SurfaceSample& sample, int paths,
+                           std::vector<double>& radiance) const;
+
+  private:
+    class WaterSum;
+    class SurfaceSum;
+    struct Workspace;
+
+    static Workspace& workspace_of_thread();
+    void begin(const SurfaceSample& sample, bool has_hit, Workspace& w, MultipleNode& node) const;
+    void trace_water(std::uint64_t seed, Workspace& w, MultipleNode& node) const;
+    void trace_surface(std::uint64_t seed, int paths, Workspace& w, MultipleNode& node) const;
+
+    const RaySource& rays_;
+    const LitScene& scene_;
+    const LightTransport& transport_;
+    const IntervalWeights& weights_;
+    const DistanceIntervals& intervals_;
+    MultipleNodeOptions options_;
+};
+
+/// The cosine of the largest angle between the normals at two places whose indirect light is
+/// alike.
+inline constexpr double k_least_node_cosine = 0.96;
+
+/// Whether a node tells what light there is in the water of an interval: if enough of it lies
+/// before the node's surface, and enough of its light arrives.
+inline bool shows_interval(const MultipleNode& node, const DistanceIntervals& intervals,
+                           std::size_t interval) {
+    constexpr double k_least_share = 0.3;
+    constexpr float k_least_weight = 1e-30F;
+    return node.has_ray && node.mean_weights[interval] >= k_least_weight &&
+           intervals.share(interval, 0, node.reach) >= k_least_share;
+}
+
+/// Whether two nodes tell of light on the same surface.
+inline bool see_same_surface(const MultipleNode& a, const MultipleNode& b) {
+    return a.surface && b.surface && a.surface->object_id == b.surface->object_id &&
+           a.surface->is_glossy == b.surface->is_glossy &&
+           glm::dot(a.surface->normal, b.surface->normal) >= k_least_node_cosine;
+}
+
+}  // namespace uw

@@ -1,0 +1,386 @@
+#include "core/paths/node_smoothing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/base/available_memory.h"
+#include "core/base/parallel.h"
+#include "core/paths/lattice_fit.h"
+#include "core/paths/multiple_nodes.h"
+
+namespace uw {
+
+namespace {
+
+// Nodes that say what to expect, and those that what is too much is shared among, in steps.
+constexpr int k_expecting_reach = 2, k_taking_reach = 4;
+static_assert(k_expecting_reach + k_taking_reach == k_sharing_reach);
+// A half is limited to so many standard deviations above the nodes around, or to so many times the
+// other half.
+constexpr double k_most_deviations = 4, k_most_of_other_half = 1.5;
+constexpr std::size_t k_fewest_values = 8;  // that say what to expect
+
+/// Light of one kind that nodes hold, in values that are alike from node to node.
+class NodeQuantity {
+  public:
+    virtual ~NodeQuantity() = default;
+    /// Whether node `other` says something about `node`, which may be the same.
+    virtual bool is_alike(const MultipleNode& node, const MultipleNode& other) const = 0;
+    virtual double value(const MultipleNode& node, std::size_t half) const = 0;
+    /// The light itself by group and band, and what an even value of 1 is of it, by band.
+    virtual std::span<float> light(NodeLight& half) const = 0;
+    virtual double of_even_value(const MultipleNode& node, std::size_t band) const = 0;
+    /// The mean over the bands, to which `change` is added.
+    virtual void add_to_mean(NodeLight& half, double change) const = 0;
+};
+
+class WaterQuantity final : public NodeQuantity {
+  public:
+    WaterQuantity(const DistanceIntervals& intervals, std::size_t interval, std::size_t groups,
+                  std::size_t bands)
+        : intervals_(intervals), interval_(interval), values_(groups * bands), bands_(bands) {}
+
+    bool is_alike(const MultipleNode& node, const MultipleNode& other) const override {
+        return shows_interval(node, intervals_, interval_) &&
+               shows_interval(other, intervals_, interval_);
+    }
+    double value(const MultipleNode& node, std::size_t half) const override {
+        return static_cast<double>(node.halves[half].water_mean[interval_]) /
+               static_cast<double>(node.mean_weights[interval_]);
+    }
+    std::span<float> light(NodeLight& half) const override {
+        return std::span(half.water).subspan(interval_ * values_, values_);
+    }
+    double of_even_value(const MultipleNode& node, std::size_t band) const override {
+        return static_cast<double>(node.weights[interval_ * bands_ + band]);
+    }
+    void add_to_mean(NodeLight& half, double change) const override {
+        half.water_mean[interval_] += static_cast<float>(change);
+    }
+
+  private:
+    const DistanceIntervals& intervals_;
+    std::size_t interval_, values_, bands_;
+};
+
+class SurfaceQuantity final : public NodeQuantity {
+  public:
+    bool is_alike(const MultipleNode& node, const MultipleNode& other) const override {
+        return see_same_surface(node, other);
+    }
+    double value(const MultipleNode& node, std::size_t half) const override {
+        return node.halves[half].diffuse_mean;
+    }
+    std::span<float> light(NodeLight& half) const override { return half.diffuse; }
+    double of_even_value(const MultipleNode&, std::size_t) const override { return 1; }
+    void add_to_mean(NodeLight& half, double change) const override { half.diffuse_mean += change; }
+};
+
+/// Calls `visit` with each node within `reach` that is alike.
+template <class Visit>
+void for_alike(const NodeQuantity& quantity, const Grid2D<MultipleNode>& nodes, std::size_t at,
+               int reach, const Visit& visit) {
+    const int i = static_cast<int>(at) % nodes.width(), j = static_cast<int>(at) / nodes.width();
+    for (int v = std::max(0, j - reach); v <= std::min(nodes.height() - 1, j + reach); ++v)
+        for (int u = std::max(0, i - reach); u <= std::min(nodes.width() - 1, i + reach); ++u)
+            if (quantity.is_alike(nodes[at], nodes(u, v))) visit(nodes.index(u, v));
+}
+
+// The most that a half of a node may hold, as a value; infinity if too little is known. By median
+// and median deviation, which other outliers among the nodes around hardly move.
+double limit_of(const NodeQuantity& quantity, const Grid2D<MultipleNode>& nodes, std::size_t at,
+                std::size_t half) {
+    constexpr double k_deviation_of_median = 1.4826;  // of a normal distribution
+    thread_local std::vector<double> values;
+    values.clear();
+    for_alike(quantity, nodes, at, k_expecting_reach, [&](std::size_t other) {
+        if (other == at) return;
+        for (const std::size_t h : {0U, 1U}) values.push_back(quantity.value(nodes[other], h));
+    });
+    if (values.size() < k_fewest_values) return std::numeric_limits<double>::infinity();
+    const auto median_of_values = [] {
+        const auto middle = values.begin() + std::ssize(values) / 2;
+        std::ranges::nth_element(values, middle);
+        return *middle;
+    };
+    const double median = median_of_values();
+    for (double& value : values) value = std::abs(value - median);
+    const double deviation = k_deviation_of_median * median_of_values();
+    return std::max({0.0, median + k_most_deviations * deviation,
+                     k_most_of_other_half * quantity.value(nodes[at], 1 - half)});
+}
+
+void share(const NodeQuantity& quantity, std::size_t bands, Grid2D<MultipleNode>& nodes) {
+    // Of the light of each half.
+    std::vector<std::array<double, 2>> kept(nodes.size(), {1, 1});
+    parallel_for(nodes.size(), [&](std::size_t at) {
+        if (!quantity.is_alike(nodes[at], nodes[at])) return;
+        for (const std::size_t half : {0U, 1U}) {
+            const double value = quantity.value(nodes[at], half);
+            if (!(value > 0)) continue;
+            const double limit = limit_of(quantity, nodes, at, half);
+            if (value > limit) kept[at][half] = limit / value;
+        }
+    });
+    std::vector<double> excess, even;
+    for (std::size_t at = 0; at < nodes.size(); ++at) {
+        for (const std::size_t half : {0U, 1U}) {
+            if (kept[at][half] == 1) continue;
+            const std::span<float> light = quantity.light(nodes[at].halves[half]);
+            excess.assign(light.begin(), light.end());
+            for (double& value : excess) value *= 1 - kept[at][half];
+            even.assign(bands, 0.0);
+            for_alike(quantity, nodes, at, k_taking_reach, [&](std::size_t other) {
+                for (std::size_t b = 0; b < bands; ++b)
+                    even[b] += quantity.of_even_value(nodes[other], b);
+            });
+            const auto add = [&](std::size_t other, const auto& change_of) {
+                NodeLight& to = nodes[other].halves[half];
+                const std::span<float> values = quantity.light(to);
+                double sum = 0;
+                for (std::size_t k = 0; k < values.size(); ++k) {
+                    const double change = change_of(k);
+                    values[k] += static_cast<float>(change);
+                    sum += change;
+                }
+                quantity.add_to_mean(to, sum / static_cast<double>(bands));
+            };
+            add(at, [&](std::size_t k) { return -excess[k]; });
+            for_alike(quantity, nodes, at, k_taking_reach, [&](std::size_t other) {
+                add(other, [&](std::size_t k) {
+                    const double all = even[k % bands];
+                    const double share = quantity.of_even_value(nodes[other], k % bands);
+                    return all > 0 ? excess[k] * share / all : other == at ? excess[k] : 0.0;
+                });
+            });
+        }
+    }
+}
+
+}  // namespace
+
+void share_outliers(Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
+                    std::size_t groups) {
+    std::size_t values = 0;
+    for (const MultipleNode& node : nodes) values = std::max(values, node.halves[0].water.size());
+    if (values == 0) return;
+    const std::size_t bands = values / (intervals.count() * groups);
+    for (std::size_t interval = 0; interval < intervals.count(); ++interval)
+        share(WaterQuantity(intervals, interval, groups, bands), bands, nodes);
+    share(SurfaceQuantity(), bands, nodes);
+}
+
+namespace {
+
+constexpr int k_variance_reach = 2;  // of nodes whose variances are averaged
+static_assert(k_smoothing_reach == LatticeFit::k_reach + k_variance_reach + k_sharing_reach);
+// Differences between fits that do not matter, relative to the light of the nodes around.
+constexpr double k_tolerance = 1e-3;
+
+/// The nodes around one that take part in a fit.
+class Neighbourhood {
+  public:
+    /// `of(node)` is the node's FitNode without its place, or empty if it takes no part.
+    template <class Of>
+    void find(const Grid2D<MultipleNode>& raw, int i, int j, const Of& of) {
+        constexpr int k_reach = LatticeFit::k_reach;
+        nodes_.clear();
+        light_ = weight_ = 0;
+        for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v) {
+            for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach);
+                 ++u) {
+                std::optional<FitNode> node = of(raw(u, v));
+                if (!node) continue;
+                node->dx = u - i;
+                node->dy = v - j;
+                node->index = raw.index(u, v);
+                nodes_.push_back(*node);
+                light_ += raw(u, v).mean_light;
+                weight_ += node->weight;
+            }
+        }
+        const double count = std::max(1.0, static_cast<double>(nodes_.size()));
+        light_ /= count;
+        weight_ /= count;
+    }
+
+    std::span<const FitNode> nodes() const { return nodes_; }
+    /// The mean of their light.
+    double light() const { return light_; }
+    /// The mean of their weights.
+    double weight() const { return weight_; }
+
+  private:
+    std::vector<FitNode> nodes_;
+    double light_ = 0, weight_ = 0;
+};
+
+/// The nodes with each variance averaged over those around: that of a few batches says little by
+/// itself, and that of the whole neighbourhood would hide features of its dark parts. The water's
+/// is in proportion to the weights of its intervals, as that of counts to their expectation.
+Grid2D<MultipleNode> with_mean_variances(const Grid2D<MultipleNode>& raw) {
+    constexpr int k_reach = k_variance_reach;
+    Grid2D<MultipleNode> nodes = raw;
+    std::size_t intervals = 0;
+    for (const MultipleNode& node : raw) intervals = std::max(intervals, node.mean_weights.size());
+    parallel_for(raw.size(), [&](std::size_t at) {
+        const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
+        MultipleNode& node = nodes(i, j);
+        std::ranges::fill(node.water_variance, 0.0F);
+        node.diffuse_variance = 0;
+        thread_local std::vector<double> variances, weights;
+        variances.assign(intervals, 0.0);
+        weights.assign(intervals, 0.0);
+        double surfaces = 0;
+        for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v) {
+            for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach);
+                 ++u) {
+                const MultipleNode& other = raw(u, v);
+                if (!other.has_ray) continue;
+                for (std::size_t k = 0; k < intervals; ++k) {
+                    variances[k] += static_cast<double>(other.water_variance[k]);
+                    weights[k] += static_cast<double>(other.mean_weights[k]);
+                }
+                if (!other.surface) continue;
+                ++surfaces;
+                node.diffuse_variance += other.diffuse_variance;
+            }
+        }
+        for (std::size_t k = 0; k < node.water_variance.size(); ++k)
+            if (weights[k] > 0)
+                node.water_variance[k] = static_cast<float>(
+                    variances[k] / weights[k] * static_cast<double>(node.mean_weights[k]));
+        node.diffuse_variance /= std::max(surfaces, 1.0);
+    });
+    return nodes;
+}
+
+class NodeSmoothing {
+  public:
+    NodeSmoothing(const Grid2D<MultipleNode>& raw, const DistanceIntervals& intervals,
+                  std::size_t groups, std::size_t bands)
+        : raw_(raw), intervals_(intervals), bands_(bands), values_(groups * bands) {}
+
+    void smooth(int i, int j, SmoothNode& node) const {
+        const MultipleNode& own = raw_(i, j);
+        node.mean_light = own.mean_light;
+        smooth_water(i, j, node);
+        if (own.surface) smooth_surface(i, j, node);
+    }
+
+  private:
+    void smooth_water(int i, int j, SmoothNode& node) const;
+    void smooth_surface(int i, int j, SmoothNode& node) const;
+
+    const Grid2D<MultipleNode>& raw_;
+    const DistanceIntervals& intervals_;
+    std::size_t bands_, values_;
+};
+
+void NodeSmoothing::smooth_water(int i, int j, SmoothNode& node) const {
+    thread_local LatticeFit fit;
+    thread_local Neighbourhood near;
+    const MultipleNode& own = raw_(i, j);
+    node.light.water.assign(intervals_.count() * values_, 0.0F);
+    for (std::size_t interval = 0; interval < intervals_.count(); ++interval) {
+        for (std::size_t half = 0; half < 2; ++half) {
+            near.find(raw_, i, j, [&](const MultipleNode& other) -> std::optional<FitNode> {
+                if (!shows_interval(other, intervals_, interval)) return std::nullopt;
+                FitNode of;
+                of.weight = static_cast<double>(other.mean_weights[interval]);
+                of.value =
+                    static_cast<double>(other.halves[1 - half].water_mean[interval]) / of.weight;
+                of.variance =
+                    static_cast<double>(other.water_variance[interval]) / (of.weight * of.weight);
+                return of;
+            });
+            if (near.nodes().empty()) return;
+            // As much as the node's ray shows of it: nothing behind its surface.
+            const double shown =
+                own.has_ray ? static_cast<double>(own.mean_weights[interval]) : 0.0;
+            const double tolerance =
+                k_tolerance * near.light() / std::max(shown, 1e-3 * near.weight());
+            for (const FitWeight& weight : fit.fit(near.nodes(), tolerance)) {
+                const MultipleNode& other = raw_[weight.index];
+                const float* water = &other.halves[half].water[interval * values_];
+                for (std::size_t k = 0; k < values_; ++k) {
+                    const float of_band = other.weights[interval * bands_ + k % bands_];
+                    if (!(of_band > 0)) continue;
+                    node.light.water[interval * values_ + k] +=
+                        static_cast<float>(0.5 * weight.weight) * water[k] / of_band;
+                }
+            }
+            node.variance += 0.25 * fit.variance() * shown * shown;
+        }
+        node.known_to = intervals_.end(interval);
+    }
+}
+
+void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
+    thread_local LatticeFit fit;
+    thread_local Neighbourhood near;
+    const MultipleNode& own = raw_(i, j);
+    node.surface = own.surface;
+    node.light.diffuse.assign(values_, 0.0F);
+    node.light.glossy.assign(own.surface->is_glossy ? values_ : 0, 0.0F);
+    for (std::size_t half = 0; half < 2; ++half) {
+        near.find(raw_, i, j, [&](const MultipleNode& other) -> std::optional<FitNode> {
+            if (!see_same_surface(own, other)) return std::nullopt;
+            FitNode of;
+            of.value = other.halves[1 - half].diffuse_mean;
+            of.variance = other.diffuse_variance;
+            return of;
+        });
+        const double tolerance = k_tolerance * near.light() / std::max(own.surface_seen, 1e-3);
+        for (const FitWeight& weight : fit.fit(near.nodes(), tolerance)) {
+            const NodeLight& other = raw_[weight.index].halves[half];
+            const auto share = static_cast<float>(0.5 * weight.weight);
+            for (std::size_t k = 0; k < values_; ++k)
+                node.light.diffuse[k] += share * other.diffuse[k];
+            for (std::size_t k = 0; k < node.light.glossy.size(); ++k)
+                node.light.glossy[k] += share * other.glossy[k];
+        }
+        node.variance += 0.25 * fit.variance() * own.surface_seen * own.surface_seen;
+    }
+}
+
+}  // namespace
+
+// Nodes as they were estimated, with their variances averaged, and smoothed.
+void require_room_for_nodes(std::size_t nodes, std::size_t intervals, std::size_t groups,
+                            const LitScene& scene) {
+    const auto bands = static_cast<std::size_t>(scene.medium->band_count());
+    const std::size_t copies = 2 * (1 + 2 * groups) + groups;
+    const double bytes = static_cast<double>(sizeof(float) * copies) *
+                         static_cast<double>(nodes * intervals * bands);
+    require_memory(bytes,
+                   fmt::format("render.scattering: multiple: {} lamps in {} bands need",
+                               scene.lamp_count(), bands),
+                   "leave out the lamps' layers, use fewer bands, or --quality draft");
+}
+
+Grid2D<SmoothNode> smoothed(const Grid2D<MultipleNode>& raw, const DistanceIntervals& intervals,
+                            std::size_t groups) {
+    Grid2D<SmoothNode> nodes;
+    nodes.assign(raw.width(), raw.height());
+    std::size_t values = 0;
+    for (const MultipleNode& node : raw) values = std::max(values, node.halves[0].water.size());
+    if (values == 0) return nodes;
+    Grid2D<MultipleNode> averaged = with_mean_variances(raw);
+    share_outliers(averaged, intervals, groups);
+    const NodeSmoothing smoothing(averaged, intervals, groups,
+                                  values / (intervals.count() * groups));
+    parallel_for(raw.size(), [&](std::size_t at) {
+        const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
+        smoothing.smooth(i, j, nodes(i, j));
+    });
+    return nodes;
+}
+
+}  // namespace uw

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/base/grid2d.h"
+#include "core/paths/distance_intervals.h"
+#include "core/paths/lattice_fit.h"
+#include "core/paths/multiple_nodes.h"
+
+namespace uw {
+
+/// How far away the nodes are, in steps of the lattice, on which a node depends by share_outliers.
+inline constexpr int k_sharing_reach = 6;
+
+/// Takes from nodes what rare bright paths have left there, and shares it among the nodes around:
+/// the sum stays what it was, and no node is far brighter than all others. The light of a feature
+/// shows in both halves of a node; a half is limited only as far as it exceeds the other half, too.
+/// `groups`: MultipleNodeOptions::groups.
+void share_outliers(Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
+                    std::size_t groups);
+
+/// How far away the nodes are, in steps of the lattice, on which a smoothed node depends.
+inline constexpr int k_smoothing_reach = LatticeFit::k_reach + 2 + k_sharing_reach;
+
+/// A node whose light is smoothed over those around it.
+struct SmoothNode {
+    std::optional<NodeSurface> surface;
+    /// The distance up to which the water's light is known [m], which may be beyond the node's own
+    /// surface; 0: nothing is known.
+    double known_to = 0;
+    NodeLight light;                      // that of the water divided by IntervalWeights
+    double mean_light = 0, variance = 0;  // of the node's ray, and of its smoothed light
+};
+
+/// Throws InputError if so many nodes, with the copies that smoothing makes, do not fit into free
+/// memory. `groups`: MultipleNodeOptions::groups.
+void require_room_for_nodes(std::size_t nodes, std::size_t intervals, std::size_t groups,
+                            const LitScene& scene);
+
+/// Smooths the nodes of a lattice (share_outliers, then LatticeFit): the water's light interval by
+/// interval over the nodes whose rays reach it, the surfaces' over those that see the same surface.
+/// The neighbourhood for either half of the estimates is chosen by the other one: if a half chose
+/// its own, a rare bright path would stop the smoothing around it and be counted there once more.
+/// `groups`: MultipleNodeOptions::groups.
+Grid2D<SmoothNode> smoothed(const Grid2D<MultipleNode>& raw, const DistanceIntervals& intervals,
+                            std::size_t groups);
+
+}  // namespace uw

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/base/ray.h"
+#include "core/base/spectrum.h"
+#include "core/geometry/surfaces.h"
+#include "core/light/integrator.h"
+#include "core/light/medium.h"
+
+namespace uw {
+
+/// In place of a lamp's index: light emitted by surfaces.
+inline constexpr std::size_t k_no_lamp = std::numeric_limits<std::size_t>::max();
+
+/// The light that one light path, or one bundle of them, brings to the camera.
+struct PathTerm {
+    std::size_t lamp = k_no_lamp;  // where it comes from, by index
+    int scatterings = 0;           // in the water, on the way
+    int reflections = 0;           // by surfaces
+    bool from_water = false;       // it was last scattered by the water, not reflected or emitted
+    double distance = 0;           // from the ray's origin to where that happened [m]
+    /// Estimate of the radiance, one value per band of the scene [W m^-2 sr^-1].
+    std::span<const double> radiance;
+};
+
+/// Receives the terms of a path one by one. Their sum is an unbiased estimate.
+class PathTerms {
+  public:
+    virtual ~PathTerms() = default;
+    virtual void add(const PathTerm& term) = 0;
+};
+
+/// What a path from the camera has done up to its current segment.
+struct PathState {
+    Spectrum throughput;  // radiance at the camera per radiance that arrives along the segment
+    int scatterings = 0, reflections = 0;
+    bool from_water = false;  // where it first turned, seen from the camera
+    double distance = 0;      // and how far along the camera ray [m]
+    double branches = 1;      // into how many it has split
+
+    /// A term of light that arrives along the segment.
+    PathTerm term(std::size_t lamp, std::span<const double> radiance) const {
+        return {lamp, scatterings, reflections, from_water, distance, radiance};
+    }
+};
+
+/// A straight part of a light path through the water, from a point to the first surface. Reused
+/// storage.
+struct WaterSegment {
+    Ray ray;
+    double length = 0;  // [m]; k_far without a surface
+    bool has_hit = false;
+    SurfaceHit hit;                // at its end
+    ConcentrationProfile profile;  // without knots where all of the water is uniform
+    bool has_field = false;        // without a profile, the field is asked at every point
+};
+
+/// The state of the water at one point of a segment. Reused storage.
+struct WaterPoint {
+    double distance = 0;                // along the segment [m]
+    std::vector<double> concentration;  // of the constituents
+    std::vector<double> column;         // up to here [unit m]
+    // WaterOptics::find_scattering: b_m [1/m], either `mixed` or the uniform water's.
+    std::span<const Spectrum> scattering{};
+    std::vector<Spectrum> mixed{};
+};
+
+/// What WaterSegments need to know of a scene. Thread safe.
+class WaterOptics {
+  public:
+    explicit WaterOptics(const LitScene& scene);
+
+    const LitScene& scene() const { return scene_; }
+    const AttenuationTable& attenuation() const { return attenuation_; }
+    std::size_t bands() const { return bands_; }
+    /// That in which the uniform water attenuates least.
+    std::size_t clearest_band() const { return clearest_band_; }
+    std::size_t constituents() const { return attenuation_.constituents.size(); }
+
+    /// Finds the end of the segment that begins with `ray`, and the concentrations along it.
+    void trace(const Ray& ray, WaterSegment& segment) const;
+    /// The same for a few looks at points of it: no hit, no profile.
+    void trace_briefly(const Ray& ray, WaterSegment& segment) const;
+    /// The same as trace for a segment whose end is known: `hit`, or none if null.
+    void set(const Ray& ray, const SurfaceHit* hit, WaterSegment& segment) const;
+
+    /// Concentrations and columns at `distance`, without the scattering.
+    void look_up(const WaterSegment& segment, double distance, WaterPoint& point) const;
+    /// The scattering coefficients at a point.
+    void find_scattering(WaterPoint& point) const;
+    /// c in every band at a point [1/m].
+    void attenuations(const WaterPoint& point, std::span<double> c) const;
+
+    /// e^-tau of every band for a path of `length` [m] with these columns. Bands are computed four
+    /// at a time: past the last, values up to a multiple of four are overwritten, too.
+    void transmittances(double length, std::span<const double> columns, Spectrum& values) const;
+    /// The sum over the bands of a, b and e^(-c length) of the uniform water.
+    double attenuated_sum(const Spectrum& a, const Spectrum& b, double length) const;
+    /// The distance at which the optical depth in `band` is `depth`; the segment's length if it is
+    /// less everywhere.
+    double distance_at_depth(const WaterSegment& segment, std::size_t band, double depth) const;
+
+  private:
+    double depth_at_knot(const WaterSegment& segment, std::size_t band, std::size_t knot) const;
+
+    LitScene scene_;
+    AttenuationTable attenuation_;
+    std::size_t bands_, clearest_band_ = 0;
+    Bounds bounds_;  // of the field
+};
+
+/// A camera ray in the water up to the first surface, prepared for many paths (PathTracer::begin).
+/// Reused storage.
+struct CameraSegment {
+    WaterSegment water;
+    Spectrum transmittance;  // up to the surface; not set without one
+    /// Where the paths' first scattering lies: running sums of weights of the intervals between
+    /// `distances`, in each of which it is uniform. Empty where the water scatters no light.
+    std::vector<double> distances, cumulative;
+    /// Rough means over the bands, which guide the paths.
+    struct Light {
+        double own = 0;      // the ray's radiance, without single scattering
+        double ambient = 0;  // what a path may meet anywhere
+    } light;
+};
+
+}  // namespace uw

@@ -1,0 +1,250 @@
+#include "core/paths/surface_glow.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/paths/point_spread.h"
+
+namespace uw {
+
+namespace {
+
+// Angles of cells are rounded to so many steps of an octave.
+constexpr double k_scales_of_octave = 4;
+// Weights that are left out, relative to the surface's own light.
+constexpr float k_least_weight = 1e-5F;
+// Cells show the same surface as a pixel if their distances differ by less, relatively.
+constexpr double k_agreeing_distance = 0.1;
+
+}  // namespace
+
+/// Blurs one channel interval by interval.
+class SurfaceGlow::Spreading {
+  public:
+    Spreading(const SurfaceGlow& glow, const PointSpread& spread, std::span<const BlurFit> fits)
+        : glow_(glow), spread_(spread), fits_(fits) {}
+
+    /// The light of a channel that is scattered last in `interval`, by cell. Valid until the next
+    /// call.
+    const Grid2D<float>& part(std::size_t interval, std::size_t band, double begin,
+                              std::span<const float> source) {
+        const Grid2D<Cell>& cells = glow_.cells_;
+        find_level_weights(interval, band);
+        pyramid_.begin(cells.width(), cells.height());
+        const std::size_t distances = spread_.distances().size();
+        for (std::size_t level = 0; level < levels(); ++level) {
+            if (greatest_[level] < k_least_weight) continue;
+            image_.resize(cells.width(), cells.height());
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                const Cell& cell = cells[i];
+                if (source[i] == 0 || cell.distance <= begin) {
+                    image_[i] = 0;
+                    continue;
+                }
+                const auto d = static_cast<std::size_t>(cell.place);
+                const float t = cell.place - static_cast<float>(d);
+                const float* weight =
+                    &weights_[(level * glow_.angles_.size() + cell.scale) * distances + d];
+                image_[i] = source[i] * (weight[0] + t * (weight[1] - weight[0]));
+            }
+            pyramid_.add(static_cast<int>(level), image_);
+        }
+        return pyramid_.sum();
+    }
+
+  private:
+    std::size_t levels() const {
+        return static_cast<std::size_t>(
+            BlurPyramid::level_count(glow_.cells_.width(), glow_.cells_.height()));
+    }
+
+    void find_level_weights(std::size_t interval, std::size_t band) {
+        const std::size_t scales = glow_.angles_.size(), distances = spread_.distances().size();
+        weights_.resize(levels() * scales * distances);
+        greatest_.assign(levels(), 0.0F);
+        std::vector<double> fitted(levels());
+        for (std::size_t scale = 0; scale < scales; ++scale) {
+            for (std::size_t d = 0; d < distances; ++d) {
+                fits_[scale].fit(spread_.transfer(interval, band, d), fitted);
+                for (std::size_t level = 0; level < levels(); ++level) {
+                    const auto weight = static_cast<float>(fitted[level]);
+                    weights_[(level * scales + scale) * distances + d] = weight;
+                    greatest_[level] = std::max(greatest_[level], std::abs(weight));
+                }
+            }
+        }
+    }
+
+    const SurfaceGlow& glow_;
+    const PointSpread& spread_;
+    std::span<const BlurFit> fits_;  // by scale
+    BlurPyramid pyramid_;
+    Grid2D<float> image_;
+    std::vector<float> weights_;   // by level, scale and distance
+    std::vector<float> greatest_;  // by level
+};
+
+SurfaceGlow::SurfaceGlow(const RaySource& rays, const LitScene& scene,
+                         const SurfaceLighting& lighting, const DistanceIntervals& intervals,
+                         std::size_t channels, int cells, const Radiance& radiance,
+                         std::span<const Position> nodes)
+    : channels_(channels) {
+    const double area = static_cast<double>(rays.width()) * rays.height();
+    spacing_ = std::max(1, static_cast<int>(std::ceil(std::sqrt(area / cells))));
+    cells_.assign((rays.width() + spacing_ - 1) / spacing_,
+                  (rays.height() + spacing_ - 1) / spacing_);
+    source_.assign(channels_ * cells_.size(), 0.0F);
+    light_.assign(channels_ * cells_.size(), 0.0F);
+    trace(rays, scene, lighting, radiance);
+    double farthest = 0;
+    for (const Cell& cell : cells_)
+        if (std::isfinite(cell.distance))
+            farthest = std::max(farthest, static_cast<double>(cell.distance));
+    if (farthest == 0) return;
+    const PointSpread spread(*scene.medium, intervals, farthest);
+    intervals_ = spread.interval_count();
+    node_light_.assign(nodes.size() * intervals_ * channels_, 0.0F);
+    const std::span<const double> distances = spread.distances();
+    for (Cell& cell : cells_) {
+        const auto after = std::ranges::upper_bound(distances, cell.distance);
+        const auto d =
+            std::clamp<std::ptrdiff_t>(after - distances.begin() - 1, 0, std::ssize(distances) - 2);
+        const double* at = &distances[static_cast<std::size_t>(d)];
+        cell.place =
+            static_cast<float>(d) + static_cast<float>(std::clamp(
+                                        (cell.distance - at[0]) / (at[1] - at[0]), 0.0, 1 - 1e-4));
+    }
+    const int levels = BlurPyramid::level_count(cells_.width(), cells_.height());
+    std::vector<BlurFit> fits;
+    for (const double angle : angles_) fits.emplace_back(levels, angle);
+    const auto bands = static_cast<std::size_t>(scene.medium->band_count());
+    parallel_for(channels_, [&](std::size_t channel) {
+        const auto source = std::span(source_).subspan(channel * cells_.size(), cells_.size());
+        if (std::ranges::all_of(source, [](float value) { return value == 0; })) return;
+        Spreading spreading(*this, spread, fits);
+        std::array<Corner, 4> corners;
+        for (std::size_t interval = 0; interval < intervals_; ++interval) {
+            const double begin = intervals.begin(interval);
+            const Grid2D<float>& part = spreading.part(interval, channel % bands, begin, source);
+            for (std::size_t i = 0; i < cells_.size(); ++i)
+                if (cells_[i].distance > begin) light_[i * channels_ + channel] += part[i];
+            for (std::size_t node = 0; node < nodes.size(); ++node) {
+                find_corners(nodes[node].x, nodes[node].y, corners);
+                double sum = 0;
+                for (const Corner& corner : corners) sum += corner.weight * part[corner.cell];
+                node_light_[(node * intervals_ + interval) * channels_ + channel] =
+                    static_cast<float>(sum);
+            }
+        }
+    });
+    source_ = {};
+}
+
+void SurfaceGlow::trace(const RaySource& rays, const LitScene& scene,
+                        const SurfaceLighting& lighting, const Radiance& radiance) {
+    Grid2D<float> angles(cells_.width(), cells_.height());
+    parallel_for(static_cast<std::size_t>(cells_.height()), [&](std::size_t row) {
+        thread_local std::vector<Ray> water_rays;
+        thread_local std::vector<int> columns;
+        thread_local std::vector<SurfaceHit> hits;
+        thread_local std::vector<char> found;
+        thread_local std::vector<SurfaceSample> samples;
+        thread_local std::vector<const SurfaceSample*> pointers;
+        thread_local SurfaceLight light;
+        const int j = static_cast<int>(row);
+        const double y = (j + 0.5) * spacing_;
+        water_rays.clear();
+        columns.clear();
+        for (int i = 0; i < cells_.width(); ++i) {
+            cells_(i, j).distance = std::numeric_limits<float>::infinity();
+            const double x = (i + 0.5) * spacing_;
+            const auto ray = rays.refracted_ray(x, y);
+            if (!ray) continue;
+            water_rays.push_back(*ray);
+            columns.push_back(i);
+            const auto right = rays.refracted_ray(x + spacing_, y);
+            const auto below = rays.refracted_ray(x, y + spacing_);
+            if (right && below)
+                angles(i, j) = static_cast<float>(std::sqrt(glm::length(glm::cross(
+                    right->direction - ray->direction, below->direction - ray->direction))));
+        }
+        hits.resize(water_rays.size());
+        found.resize(water_rays.size());
+        scene.surfaces->closest_hits(water_rays, k_far, hits, found);
+        samples.clear();
+        for (std::size_t k = 0; k < water_rays.size(); ++k) {
+            if (!found[k]) continue;
+            cells_(columns[k], j).distance = static_cast<float>(hits[k].distance);
+            samples.push_back({water_rays[k], hits[k], (columns[k] + 0.5) * spacing_, y});
+        }
+        pointers.clear();
+        for (const SurfaceSample& sample : samples) pointers.push_back(&sample);
+        lighting.evaluate(pointers, light);
+        std::vector<double> values(channels_);
+        for (std::size_t k = 0, sample = 0; k < water_rays.size(); ++k) {
+            if (!found[k]) continue;
+            std::ranges::fill(values, 0.0);
+            radiance(samples[sample], light, sample, values);
+            ++sample;
+            const std::size_t cell = cells_.index(columns[k], j);
+            for (std::size_t c = 0; c < channels_; ++c)
+                source_[c * cells_.size() + cell] = static_cast<float>(values[c]);
+        }
+    });
+    // Angles between the least and the greatest; where a cell has none, any will do.
+    float least = std::numeric_limits<float>::max(), greatest = 0;
+    for (const float angle : angles) {
+        if (!(angle > 0)) continue;
+        least = std::min(least, angle);
+        greatest = std::max(greatest, angle);
+    }
+    if (greatest == 0) least = greatest = 1;
+    const auto scale_of = [&](double angle) {
+        return std::lround(k_scales_of_octave * std::log2(std::max(angle / least, 1.0)));
+    };
+    const long last = std::min(scale_of(greatest), 255L);
+    for (long scale = 0; scale <= last; ++scale)
+        angles_.push_back(least * std::exp2(static_cast<double>(scale) / k_scales_of_octave));
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+        cells_[i].scale = static_cast<std::uint8_t>(std::min(scale_of(angles[i]), last));
+}
+
+void SurfaceGlow::find_corners(double x, double y, std::array<Corner, 4>& corners) const {
+    const double u = std::clamp(x / spacing_ - 0.5, 0.0, cells_.width() - 1.0);
+    const double v = std::clamp(y / spacing_ - 0.5, 0.0, cells_.height() - 1.0);
+    const int i = static_cast<int>(u), j = static_cast<int>(v);
+    const int right = std::min(i + 1, cells_.width() - 1);
+    const int below = std::min(j + 1, cells_.height() - 1);
+    corners = {Corner{cells_.index(i, j), (1 - u + i) * (1 - v + j)},
+               Corner{cells_.index(right, j), (u - i) * (1 - v + j)},
+               Corner{cells_.index(i, below), (1 - u + i) * (v - j)},
+               Corner{cells_.index(right, below), (u - i) * (v - j)}};
+}
+
+void SurfaceGlow::add(double x, double y, double distance, double weight,
+                      std::span<double> radiance) const {
+    if (intervals_ == 0) return;
+    std::array<Corner, 4> corners;
+    find_corners(x, y, corners);
+    // Of the cells that see the same surface, if there are any.
+    double total = 0;
+    std::array<double, 4> same{};
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const double other = cells_[corners[k].cell].distance;
+        const bool agrees = distance < k_far
+                                ? std::abs(other - distance) <= k_agreeing_distance * distance
+                                : !std::isfinite(other);
+        if (agrees) total += same[k] = corners[k].weight;
+    }
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const double share = weight * (total > 0 ? same[k] / total : corners[k].weight);
+        if (share == 0) continue;
+        const float* light = &light_[corners[k].cell * channels_];
+        for (std::size_t c = 0; c < channels_; ++c) radiance[c] += share * light[c];
+    }
+}
+
+}  // namespace uw

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/base/grid2d.h"
+#include "core/base/ray.h"
+#include "core/light/integrator.h"
+#include "core/light/surface_lighting.h"
+#include "core/paths/distance_intervals.h"
+#include "core/paths/point_spread.h"
+
+namespace uw {
+
+/// Light of surfaces that the water scatters by small angles on its way to the camera
+/// (PointSpread), all over an image: the surfaces as the camera sees them, blurred. Light is taken
+/// to reach a pixel if it is scattered last before the pixel's own surface.
+///
+/// Computed for cells of one or some pixels of the whole image, whatever part of it is rendered.
+class SurfaceGlow {
+  public:
+    /// Sets the radiance at the camera of a sample, which is number `index` of `light`, by channel.
+    using Radiance = std::function<void(const SurfaceSample&, const SurfaceLight& light,
+                                        std::size_t index, std::span<double> radiance)>;
+    struct Position {
+        double x, y;  // in the image [pixels]
+    };
+
+    /// For `channels` channels, each of a band: channel % band_count. `cells`: at most. Reads the
+    /// references only here.
+    SurfaceGlow(const RaySource& rays, const LitScene& scene, const SurfaceLighting& lighting,
+                const DistanceIntervals& intervals, std::size_t channels, int cells,
+                const Radiance& radiance, std::span<const Position> nodes);
+
+    /// The number of intervals in which there is such light.
+    std::size_t interval_count() const { return intervals_; }
+    /// The light that is scattered last in each of them, by interval and channel, at the position
+    /// of number `node`.
+    std::span<const float> of_node(std::size_t node) const {
+        return std::span(node_light_)
+            .subspan(node * intervals_ * channels_, intervals_ * channels_);
+    }
+    /// Adds the light at an image position [pixels] along a ray up to `distance`, times `weight`,
+    /// to `radiance`, by channel.
+    void add(double x, double y, double distance, double weight, std::span<double> radiance) const;
+
+  private:
+    struct Cell {
+        float distance = 0;      // of the surface [m], infinity if there is none
+        float place = 0;         // among the distances of PointSpread
+        std::uint8_t scale = 0;  // index of its angle
+    };
+    class Spreading;
+    struct Corner {
+        std::size_t cell;
+        double weight;
+    };
+
+    void trace(const RaySource& rays, const LitScene& scene, const SurfaceLighting& lighting,
+               const Radiance& radiance);
+    void find_corners(double x, double y, std::array<Corner, 4>& corners) const;
+
+    std::size_t channels_ = 0, intervals_ = 0;
+    int spacing_ = 1;  // of the cells [pixels]
+    Grid2D<Cell> cells_;
+    std::vector<double> angles_;  // of a cell [rad], by scale
+    std::vector<float> source_;   // by channel and cell
+    std::vector<float> light_;    // by cell and channel
+    std::vector<float> node_light_;
+};
+
+}  // namespace uw

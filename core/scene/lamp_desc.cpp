@@ -1,0 +1,333 @@
+#include "core/scene/lamp_desc.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "core/scene/config_value.h"
+#include "core/scene/scene_context.h"
+#include "core/scene/trajectory_reader.h"
+
+namespace uw {
+
+LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& context) {
+    using Type = LampSpectrumDesc::Type;
+    constexpr auto k_example = "write {type: led, name: LED-B4} or {file: lamp.csv}";
+    ConfigMap map(value, {"type", "temperature", "name", "file", "column"}, k_example);
+    LampSpectrumDesc spectrum;
+    spectrum.where = value.location();
+    if (!map.has("type") && map.has("file")) {
+        spectrum.type = Type::file;
+        spectrum.file = read_existing_file(*map.find("file"), context);
+        if (const auto column = map.find("column"))
+            spectrum.column = column->text("name the column of the file");
+        map.finish("a spectrum with 'file'");
+        return spectrum;
+    }
+    const ConfigValue type = map.require("type", k_example);
+    constexpr std::array<std::pair<std::string_view, Type>, 4> k_types{
+        {{"flat", Type::flat},
+         {"d65", Type::d65},
+         {"blackbody", Type::blackbody},
+         {"led", Type::led}}};
+    spectrum.type = type.choice(k_types);
+    if (spectrum.type == Type::blackbody) {
+        constexpr auto k_mend = "give the colour temperature in kelvin, such as 5600";
+        spectrum.temperature = map.require("temperature", k_mend).within(500, 100000, k_mend);
+    }
+    if (spectrum.type == Type::led) {
+        constexpr auto k_mend = "name one of the CIE's LED illuminants, such as LED-B4";
+        spectrum.name = map.require("name", k_mend).text(k_mend);
+    }
+    map.finish("spectrum type '" + type.node().scalar + "'");
+    return spectrum;
+}
+
+namespace {
+
+LampProfileDesc read_isotropic(ConfigMap& /*map*/, const SceneContext& /*context*/) {
+    return IsotropicProfileDesc{};
+}
+
+LampProfileDesc read_spot(ConfigMap& map, const SceneContext& /*context*/) {
+    SpotProfileDesc profile;
+    const ConfigValue beam = map.require("beam", "give the full angle at half intensity");
+    profile.beam = beam.number("give the full angle at half intensity in degrees");
+    if (profile.beam <= 0 || profile.beam > 180) {
+        beam.fail(
+            fmt::format("must be greater than 0 and at most 180, found {}; give the full "
+                        "angle at half intensity in degrees",
+                        profile.beam));
+    }
+    if (const auto edge = map.find("edge")) {
+        profile.edge = edge->non_negative("give the width of the edge in degrees");
+        if (profile.edge > profile.beam) {
+            edge->fail(
+                fmt::format("must not be wider than the beam of {}, found {}; the light "
+                            "falls from full at beam/2 - edge/2 to none at beam/2 + edge/2",
+                            profile.beam, profile.edge));
+        }
+    }
+    if (const auto falloff = map.find("falloff")) {
+        using Falloff = SpotProfileDesc::Falloff;
+        constexpr auto k_falloffs = std::to_array<std::pair<std::string_view, Falloff>>(
+            {{"smooth", Falloff::smooth},
+             {"gltf", Falloff::gltf},
+             {"blender", Falloff::blender},
+             {"blender-3.4", Falloff::blender_3_4}});
+        profile.falloff = falloff->choice(k_falloffs);
+        const bool is_blenders =
+            profile.falloff == Falloff::blender || profile.falloff == Falloff::blender_3_4;
+        if (is_blenders && profile.beam + profile.edge > 180)
+            falloff->fail(fmt::format(
+                "needs beam + edge, Blender's Size, of at most 180, found {}; make them narrower",
+                profile.beam + profile.edge));
+    }
+    return profile;
+}
+
+LampProfileDesc read_cosine(ConfigMap& map, const SceneContext& /*context*/) {
+    constexpr auto k_mend = "give the full angle at half intensity in degrees";
+    return CosineProfileDesc{map.require("fwhm", k_mend).between(0, 180, k_mend)};
+}
+
+LampProfileDesc read_ies_profile(ConfigMap& map, const SceneContext& context) {
+    IesProfileDesc profile;
+    profile.where = map.value().location();
+    profile.file = read_existing_file(map.require("file", "name the IES file (LM-63)"), context);
+    if (const auto rotate = map.find("rotate"))
+        profile.rotate =
+            rotate->within(-360, 360, "give the turn about the lamp's direction in degrees");
+    if (const auto tilt = map.find("tilt"))
+        profile.tilt = tilt->within(
+            -180, 180, "give the angle between the lamp's direction and its axis in degrees");
+    return profile;
+}
+
+LampProfileDesc read_profile(const ConfigValue& value, const SceneContext& context) {
+    using Read = LampProfileDesc (*)(ConfigMap&, const SceneContext&);
+    constexpr auto k_types =
+        std::to_array<std::pair<std::string_view, Read>>({{"isotropic", read_isotropic},
+                                                          {"spot", read_spot},
+                                                          {"cosine", read_cosine},
+                                                          {"ies", read_ies_profile}});
+    static_assert(k_types.size() == std::variant_size_v<LampProfileDesc>);
+    constexpr auto k_example = "write {type: spot, beam: 60, edge: 5}";
+    ConfigMap map(value, {"type", "beam", "edge", "falloff", "fwhm", "file", "rotate", "tilt"},
+                  k_example);
+    const ConfigValue type = map.require("type", k_example);
+    LampProfileDesc profile = type.choice(k_types)(map, context);
+    map.finish("profile type '" + type.node().scalar + "'");
+    return profile;
+}
+
+/// Whether the profile determines the lamp's brightness.
+bool is_absolute(const LampProfileDesc& profile) {
+    return std::visit([](const auto& desc) { return desc.k_is_absolute; }, profile);
+}
+
+void read_lumens(const ConfigValue& value, std::string_view mend, LampDesc& lamp) {
+    lamp.lumens = value.positive(mend);
+    if (!lamp.spectrum) {
+        value.fail(
+            "only the lamp's spectrum can convert lumens to watts; give it, such as spectrum: "
+            "{type: led, name: LED-B4}");
+    }
+}
+
+/// A lamp with a spectrum has a single number, one without has a number per band. `unit`: "W/sr on
+/// the axis".
+PerBand read_watts(const ConfigValue& value, std::string_view unit, const SceneContext& context,
+                   const LampDesc& lamp) {
+    PerBand values = lamp.spectrum
+                         ? PerBand{value.non_negative(fmt::format(
+                               "with a spectrum, give its total {} as one number", unit))}
+                         : value.non_negative_per_band(context.band_count,
+                                                       fmt::format("give {}, per band", unit));
+    if (std::all_of(values.begin(), values.end(), [](double x) { return x == 0; })) {
+        context.warn(value, "is 0 in every band: this lamp is dark");
+    }
+    return values;
+}
+
+void read_output(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
+    if (const auto entry = map.find("spectrum")) lamp.spectrum = read_spectrum(*entry, context);
+    const auto intensity = map.find("intensity");
+    const auto power = map.find("power");
+    const auto lumens = map.find("lumens");
+    if (intensity && power) {
+        power->fail("a lamp has either intensity or power; remove one");
+    }
+    if (lumens && (intensity || power)) {
+        lumens->fail("a lamp has either lumens or watts; remove one");
+    }
+    if (lumens) {
+        read_lumens(*lumens, "give the luminous flux in lm", lamp);
+    } else if (intensity) {
+        lamp.intensity = read_watts(*intensity, "W/sr on the axis", context, lamp);
+    } else if (power) {
+        lamp.power = read_watts(*power, "W in all directions", context, lamp);
+    } else if (!is_absolute(lamp.profile)) {
+        map.value().fail(
+            "does not say how bright it is; give intensity in W/sr or power in W, or its spectrum "
+            "and lumens");
+    }
+}
+
+void read_samples(ConfigMap& map, int& samples) {
+    if (const auto entry = map.find("samples"))
+        samples = entry->integer(1, 1024, "give the number of points that stand for it");
+}
+
+LampExtentDesc read_rectangle(ConfigMap& map) {
+    LampExtentDesc extent;
+    constexpr auto k_mend = "give the sides of the luminous rectangle in metres";
+    extent.width = map.require("width", k_mend).positive(k_mend);
+    extent.height = map.require("height", k_mend).positive(k_mend);
+    if (const auto rotate = map.find("rotate"))
+        extent.rotate =
+            rotate->within(-360, 360, "give the turn about the lamp's direction in degrees");
+    read_samples(map, extent.samples);
+    return extent;
+}
+
+LampExtentDesc read_disk(ConfigMap& map) {
+    LampExtentDesc extent;
+    extent.shape = LampExtentDesc::Shape::disk;
+    constexpr auto k_mend = "give the radius of the luminous disk in metres";
+    extent.radius = map.require("radius", k_mend).positive(k_mend);
+    read_samples(map, extent.samples);
+    return extent;
+}
+
+enum class LampType { point, rectangle, disk, sun };
+
+LampType read_type(ConfigMap& map) {
+    constexpr auto k_types =
+        std::to_array<std::pair<std::string_view, LampType>>({{"point", LampType::point},
+                                                              {"rectangle", LampType::rectangle},
+                                                              {"disk", LampType::disk},
+                                                              {"sun", LampType::sun}});
+    const auto type = map.find("type");
+    return type ? type->choice(k_types) : LampType::point;
+}
+
+void read_irradiance(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
+    if (const auto entry = map.find("spectrum")) lamp.spectrum = read_spectrum(*entry, context);
+    const auto irradiance = map.find("irradiance");
+    const auto lux = map.find("lux");
+    if (irradiance && lux) lux->fail("a sun has either lux or watts; remove one");
+    if (irradiance)
+        lamp.intensity = read_watts(*irradiance, "W/m2 at the water's surface", context, lamp);
+    else if (lux)
+        read_lumens(*lux, "give the illuminance in lx", lamp);
+    else
+        map.value().fail(
+            "does not say how bright it is; give irradiance in W/m2, or its spectrum and lux");
+}
+
+/// A lamp of type sun. Its direction is the world's, in the water.
+void read_sun(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
+    SunDesc sun;
+    constexpr auto k_mend = "give the direction in which its light travels in the water";
+    lamp.direction = map.require("direction", k_mend).direction(k_mend);
+    if (!context.water_surface)
+        map.value().fail(
+            "a sun's light begins at the water's surface, but the scene does not say where that "
+            "is; give water: {surface: {point: [0, 10, 0], normal: [0, 1, 0]}}");
+    sun.surface = *context.water_surface;
+    if (const auto angle = map.find("angle"))
+        sun.angle = angle->within(0, 90, "give the angle across the sun's disc in degrees");
+    read_samples(map, sun.samples);
+    lamp.sun = sun;
+    lamp.fixed_to_camera = false;
+    read_irradiance(map, context, lamp);
+}
+
+// What the lamp is fixed to.
+void read_frame(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
+    enum class Frame { camera, rig, world };
+    constexpr std::array<std::pair<std::string_view, Frame>, 3> k_frames{
+        {{"camera", Frame::camera}, {"rig", Frame::rig}, {"world", Frame::world}}};
+    Frame frame = context.rig ? Frame::rig : Frame::camera;
+    if (lamp.trajectory) frame = Frame::world;
+    if (const auto entry = map.find("frame")) {
+        frame = entry->choice(k_frames);
+        if (frame == Frame::rig && !context.rig)
+            entry->fail(
+                "there is no rig in this scene; use camera or world, or give cameras: a list of "
+                "named cameras");
+        if (lamp.trajectory && frame != Frame::world)
+            entry->fail("a lamp with a trajectory of its own is fixed to nothing else; remove one");
+    }
+    lamp.fixed_to_camera = frame == Frame::camera && !context.rig;
+    if (context.rig && frame != Frame::world) {
+        lamp.fixed_to_rig = true;
+        lamp.world_from_mount =
+            frame == Frame::rig ? context.rig->world_from_rig : context.rig->world_from_camera;
+    }
+}
+
+/// A lamp that stands somewhere.
+void read_placed(ConfigMap& map, LampType type, const SceneContext& context, LampDesc& lamp) {
+    if (const auto entry = map.find("trajectory"))
+        lamp.trajectory = read_trajectory(*entry, context, false);
+    if (!lamp.trajectory || map.has("position"))
+        lamp.position =
+            at_origin_plus(map.require("position", "give the lamp's position in metres")
+                               .vector("give the lamp's position, three lengths in metres"));
+    if (const auto entry = map.find("direction"))
+        lamp.direction = entry->direction("give the direction in which the lamp shines, not all 0");
+    if (type == LampType::rectangle) lamp.extent = read_rectangle(map);
+    if (type == LampType::disk) lamp.extent = read_disk(map);
+    // A diffuse surface, unless a profile says otherwise.
+    if (lamp.extent) lamp.profile = CosineProfileDesc{120};
+    if (const auto entry = map.find("profile")) lamp.profile = read_profile(*entry, context);
+    read_output(map, context, lamp);
+    read_frame(map, context, lamp);
+}
+
+LampDesc read_lamp(const ConfigValue& value, std::size_t number, const SceneContext& context) {
+    ConfigMap map(value,
+                  {"name", "type", "position", "direction", "width", "height", "radius", "rotate",
+                   "samples", "profile", "spectrum", "intensity", "power", "lumens", "frame",
+                   "angle", "irradiance", "lux", "trajectory"},
+                  "write {name: left, position: [-1, 0, 0], intensity: 50}");
+    LampDesc lamp;
+    lamp.where = value.location();
+    const auto name = map.find("name");
+    lamp.name = name ? read_short_name(*name, "a layer's name", "name the lamp, such as left")
+                     : fmt::format("lamp{}", number);
+    const LampType type = read_type(map);
+    if (type == LampType::sun)
+        read_sun(map, context, lamp);
+    else
+        read_placed(map, type, context, lamp);
+    const ConfigNode* const word = value.node().find("type");
+    map.finish(fmt::format("a lamp of type '{}'", word ? word->scalar : "point"));
+    return lamp;
+}
+
+}  // namespace
+
+std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context) {
+    std::vector<LampDesc> lamps;
+    for (const ConfigValue& entry : value.list("write one '- name: ...' per lamp")) {
+        LampDesc lamp = read_lamp(entry, lamps.size() + 1, context);
+        for (const LampDesc& other : lamps) {
+            if (other.name == lamp.name) {
+                entry.fail(fmt::format("the name '{}' is taken by another lamp; give each its own",
+                                       lamp.name));
+            }
+        }
+        lamps.push_back(std::move(lamp));
+    }
+    return lamps;
+}
+
+}  // namespace uw

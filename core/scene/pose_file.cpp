@@ -1,0 +1,392 @@
+#include "core/scene/pose_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/input_files.h"
+#include "core/base/json.h"
+#include "core/base/text.h"
+#include "core/scene/yaml_document.h"
+
+namespace uw {
+
+namespace {
+
+// Files have four digits and more.
+constexpr double k_unit_tolerance = 1e-3;
+constexpr double k_last_frame = 999'999'999;
+
+/// The number at the end of an image's name, and what is before it.
+struct NumberedName {
+    std::string_view stem;
+    double number = 0;
+};
+
+std::optional<NumberedName> numbered(std::string_view name) {
+    const std::size_t folder = name.find_last_of('/');
+    const std::size_t dot = name.find_last_of('.');
+    if (dot != std::string_view::npos && (folder == std::string_view::npos || dot > folder))
+        name = name.substr(0, dot);
+    std::size_t digits = name.size();
+    while (digits > 0 && name[digits - 1] >= '0' && name[digits - 1] <= '9') --digits;
+    NumberedName result{name.substr(0, digits)};
+    if (parse_number(name.substr(digits), result.number) != NumberText::number ||
+        result.number > k_last_frame)
+        return std::nullopt;
+    return result;
+}
+
+/// Sets the times to the numbers in the names, if these differ in nothing else.
+bool number_by_names(const std::vector<NamedPose>& named, std::vector<TimedPose>& poses) {
+    std::optional<std::string_view> stem;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        const auto name = numbered(named[i].name);
+        if (!name || (stem && *stem != name->stem)) return false;
+        stem = name->stem;
+        poses[i].time = name->number;
+    }
+    std::ranges::sort(poses, {}, &TimedPose::time);
+    return std::ranges::adjacent_find(poses, {}, &TimedPose::time) == poses.end();
+}
+
+}  // namespace
+
+void PoseLine::fail(const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", origin, number, what));
+}
+
+double PoseLine::parsed(std::string_view cell, std::string_view name) const {
+    double value = 0;
+    if (parse_number(cell, value) != NumberText::number || std::abs(value) > k_largest_pose_number)
+        fail(fmt::format("{}: expected a number of at most 1e12, found '{}'", name,
+                         printable(cell)));
+    return value;
+}
+
+Rotation PoseLine::rotation(double w, double x, double y, double z) const {
+    const double length = std::sqrt(w * w + x * x + y * y + z * z);
+    if (!(std::abs(length - 1) <= k_unit_tolerance))
+        fail(fmt::format("the quaternion has length {:.6g}, not 1; check the order of the columns",
+                         length));
+    return normalised({w, x, y, z});
+}
+
+std::vector<TimedPose> by_frame(std::vector<NamedPose> named, const std::string& origin) {
+    std::ranges::sort(named, {}, &NamedPose::name);
+    const auto twin = std::ranges::adjacent_find(named, {}, &NamedPose::name);
+    if (twin != named.end())
+        PoseLine{origin, std::max(twin->line, (twin + 1)->line)}.fail(fmt::format(
+            "the image '{}' is there twice; give each its own name", printable(twin->name)));
+    std::vector<TimedPose> poses;
+    poses.reserve(named.size());
+    for (const NamedPose& pose : named)
+        poses.push_back({static_cast<double>(poses.size()), pose.pose});
+    std::vector<TimedPose> by_number = poses;
+    return number_by_names(named, by_number) ? by_number : poses;
+}
+
+namespace {
+
+/// Takes the next line from the beginning of `text`, without blanks at its ends.
+std::string_view take_line(std::string_view& text) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    constexpr std::string_view k_blanks = " \t\r";
+    const std::size_t first = line.find_first_not_of(k_blanks);
+    if (first == std::string_view::npos) return {};
+    return line.substr(first, line.find_last_not_of(k_blanks) - first + 1);
+}
+
+/// The cells of a line, between blanks or, with one, a separator and blanks; at most `most`, the
+/// last of which is then the rest of the line.
+std::vector<std::string_view> cells_of(std::string_view line, std::string_view separators,
+                                       std::size_t most = SIZE_MAX) {
+    std::vector<std::string_view> cells;
+    while (true) {
+        const std::size_t first = line.find_first_not_of(separators);
+        if (first == std::string_view::npos) return cells;
+        line.remove_prefix(first);
+        const std::size_t end = cells.size() + 1 == most
+                                    ? line.size()
+                                    : std::min(line.find_first_of(separators), line.size());
+        cells.push_back(line.substr(0, end));
+        line.remove_prefix(end);
+    }
+}
+
+void check_count(const PoseLine& line, std::size_t poses) {
+    if (poses >= k_most_poses)
+        line.fail("the file has more than a million poses; give those that are needed");
+}
+
+void check_time(const PoseLine& line, const std::vector<TimedPose>& poses, double time) {
+    if (poses.empty() || time > poses.back().time) return;
+    line.fail(time == poses.back().time
+                  ? "has the time of the pose before; give each its own"
+                  : "its time is before that of the pose before; sort the file by time");
+}
+
+}  // namespace
+
+PoseFile read_tum(std::string_view text, const std::string& origin) {
+    PoseFile file;
+    for (PoseLine line{origin, 1}; !text.empty(); ++line.number) {
+        const std::string_view content = take_line(text);
+        if (content.empty() || content.front() == '#') continue;
+        const std::vector<std::string_view> cells = cells_of(content, " \t,");
+        constexpr std::array<std::string_view, 8> k_columns{"timestamp", "tx", "ty", "tz",
+                                                            "qx",        "qy", "qz", "qw"};
+        if (cells.size() != k_columns.size())
+            line.fail(fmt::format("expected the 8 columns timestamp tx ty tz qx qy qz qw, found {}",
+                                  cells.size()));
+        check_count(line, file.poses.size());
+        std::array<double, 8> v{};
+        for (std::size_t i = 0; i < v.size(); ++i) v[i] = line.parsed(cells[i], k_columns[i]);
+        if (file.poses.empty()) file.first_time = v[0];
+        const double time = v[0] - file.first_time;
+        check_time(line, file.poses, time);
+        file.poses.push_back({time, {{v[1], v[2], v[3]}, line.rotation(v[7], v[4], v[5], v[6])}});
+    }
+    return file;
+}
+
+PoseFile read_euroc(std::string_view text, const std::string& origin) {
+    PoseFile file;
+    std::int64_t first_ns = 0;
+    for (PoseLine line{origin, 1}; !text.empty(); ++line.number) {
+        const std::string_view content = take_line(text);
+        if (content.empty() || content.front() == '#') continue;
+        const std::vector<std::string_view> cells = cells_of(content, " \t,");
+        constexpr std::array<std::string_view, 8> k_columns{"time", "x",  "y",  "z",
+                                                            "qw",   "qx", "qy", "qz"};
+        if (cells.size() < k_columns.size())
+            line.fail(
+                fmt::format("expected the 8 columns ns, x, y, z, qw, qx, qy, qz or more, found {}",
+                            cells.size()));
+        check_count(line, file.poses.size());
+        std::int64_t ns = 0;
+        const auto [end, error] =
+            std::from_chars(cells[0].data(), cells[0].data() + cells[0].size(), ns);
+        if (error != std::errc() || end != cells[0].data() + cells[0].size() || ns < 0)
+            line.fail(fmt::format("expected the time in whole nanoseconds, found '{}'",
+                                  printable(cells[0])));
+        std::array<double, 8> v{};
+        for (std::size_t i = 1; i < v.size(); ++i) v[i] = line.parsed(cells[i], k_columns[i]);
+        if (file.poses.empty()) {
+            first_ns = ns;
+            file.first_time = static_cast<double>(ns) * 1e-9;
+        }
+        // The difference of whole numbers: a double in seconds resolves 200 ns of a Unix time.
+        const double time = static_cast<double>(ns - first_ns) * 1e-9;
+        check_time(line, file.poses, time);
+        file.poses.push_back({time, {{v[1], v[2], v[3]}, line.rotation(v[4], v[5], v[6], v[7])}});
+    }
+    return file;
+}
+
+PoseFile read_colmap_images(std::string_view text, const std::string& origin) {
+    std::vector<NamedPose> named;
+    for (PoseLine line{origin, 1}; !text.empty(); ++line.number) {
+        const std::string_view content = take_line(text);
+        if (content.empty() || content.front() == '#') continue;
+        constexpr std::array<std::string_view, 10> k_columns{
+            "IMAGE_ID", "QW", "QX", "QY", "QZ", "TX", "TY", "TZ", "CAMERA_ID", "NAME"};
+        const std::vector<std::string_view> cells = cells_of(content, " \t", k_columns.size());
+        if (cells.size() != k_columns.size())
+            line.fail(
+                fmt::format("expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, found {} "
+                            "columns; COLMAP's images.txt has two lines for each image",
+                            cells.size()));
+        check_count(line, named.size());
+        std::array<double, 8> v{};
+        for (std::size_t i = 1; i < v.size(); ++i) v[i] = line.parsed(cells[i], k_columns[i]);
+        const Affine camera_from_world{line.rotation(v[1], v[2], v[3], v[4]).matrix(),
+                                       Vector3(v[5], v[6], v[7])};
+        named.push_back({std::string(cells[9]), pose_of(camera_from_world.inverse()), line.number});
+        take_line(text);  // the points that it sees
+        ++line.number;
+    }
+    PoseFile file;
+    file.counts_frames = true;
+    file.poses = by_frame(std::move(named), origin);
+    return file;
+}
+
+namespace {
+
+// Files have six digits and more, some after a scale was taken out.
+constexpr double k_rigid_tolerance = 1e-3;
+
+/// One of the file's frames, for messages.
+class NerfstudioFrame {
+  public:
+    NerfstudioFrame(const Json& frame, std::size_t index, const std::string& origin)
+        : frame_(frame), index_(index), origin_(origin) {}
+
+    NamedPose read() const {
+        if (!frame_.is_object() || !frame_.contains("transform_matrix"))
+            fail("has no transform_matrix");
+        const Json& rows = frame_["transform_matrix"];
+        if (!rows.is_array() || (rows.size() != 4 && rows.size() != 3))
+            fail("its transform_matrix has not four rows of four numbers");
+        Matrix3 linear(0.0);
+        Vector3 offset(0.0);
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            for (std::size_t j = 0; j < 4; ++j) {
+                const double x = number(rows[i], j);
+                if (i == 3) {
+                    if (std::abs(x - (j == 3 ? 1 : 0)) > k_rigid_tolerance)
+                        fail("its transform_matrix does not end in 0, 0, 0, 1");
+                } else if (j == 3) {
+                    offset[static_cast<int>(i)] = x;
+                } else {
+                    linear[static_cast<int>(j)][static_cast<int>(i)] = x;
+                }
+            }
+        check_rotation(linear);
+        // y up and -z forward become y down and z forward.
+        linear[1] = -linear[1];
+        linear[2] = -linear[2];
+        return {name(), {at_origin_plus(offset), rotation_of(linear)}, index_};
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const {
+        throw InputError(fmt::format("{}: frames[{}]: {}", origin_, index_, what));
+    }
+
+    double number(const Json& row, std::size_t j) const {
+        if (!row.is_array() || row.size() != 4 || !row[j].is_number())
+            fail("its transform_matrix has not four rows of four numbers");
+        const double x = row[j].get<double>();
+        if (!(std::abs(x) <= k_largest_pose_number))
+            fail("its transform_matrix has a number above 1e12");
+        return x;
+    }
+
+    void check_rotation(const Matrix3& linear) const {
+        const Matrix3 product = glm::transpose(linear) * linear;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                if (!(std::abs(product[i][j] - (i == j ? 1 : 0)) <= k_rigid_tolerance))
+                    fail("its transform_matrix is not rigid to within 1e-3; take out its scale");
+        if (glm::determinant(linear) < 0) fail("its transform_matrix mirrors the world");
+    }
+
+    /// The image's; a frame without one is called by its place.
+    std::string name() const {
+        const auto found = frame_.find("file_path");
+        if (found == frame_.end()) return fmt::format("{:09}", index_);
+        if (!found->is_string()) fail("its file_path is no text");
+        return found->get<std::string>();
+    }
+
+    const Json& frame_;
+    std::size_t index_;
+    const std::string& origin_;
+};
+
+}  // namespace
+
+PoseFile read_nerfstudio(std::string_view text, const std::string& origin) {
+    Json json;
+    try {
+        json = Json::parse(text);
+    } catch (const Json::exception& error) {
+        throw InputError(fmt::format("{}: is not JSON: {}", origin, printable(error.what(), 200)));
+    }
+    const auto frames = json.is_object() ? json.find("frames") : json.end();
+    if (!json.is_object() || frames == json.end() || !frames->is_array())
+        throw InputError(
+            fmt::format("{}: has no list 'frames', as nerfstudio's transforms.json has", origin));
+    if (frames->size() > k_most_poses)
+        throw InputError(
+            fmt::format("{}: has more than a million poses; give those that are needed", origin));
+    std::vector<NamedPose> named;
+    for (std::size_t i = 0; i < frames->size(); ++i)
+        named.push_back(NerfstudioFrame((*frames)[i], i, origin).read());
+    PoseFile file;
+    file.counts_frames = true;
+    file.poses = by_frame(std::move(named), origin);
+    return file;
+}
+
+namespace {
+
+// Of COLMAP's images.txt nearly all is points.
+constexpr std::size_t k_most_bytes = std::size_t{1} << 30;
+
+PoseFile read_text(std::string_view text, PoseFormat format, const std::string& origin) {
+    constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(k_byte_order_mark)) text.remove_prefix(k_byte_order_mark.size());
+    switch (format) {
+        case PoseFormat::tum:
+            return read_tum(text, origin);
+        case PoseFormat::euroc:
+            return read_euroc(text, origin);
+        case PoseFormat::colmap:
+            return read_colmap_images(text, origin);
+        case PoseFormat::nerfstudio:
+            break;
+    }
+    return read_nerfstudio(text, origin);
+}
+
+}  // namespace
+
+PoseFile read_pose_file(const std::filesystem::path& file, PoseFormat format,
+                        const std::string& subject) {
+    const std::string origin = fmt::format("{}: {}", subject, printable(file.string(), 300));
+    const std::string text = read_text_file(file, origin, k_most_bytes, "file of poses");
+    PoseFile poses = read_text(text, format, origin);
+    if (poses.poses.empty()) throw InputError(origin + ": has no pose");
+    poses.hash = text_hash(text);
+    return poses;
+}
+
+namespace {
+
+/// From the file's world and times to the scene's.
+std::vector<TimedPose> placed(const PoseFile& file, const TrajectoryDesc& desc, double fps) {
+    const Pose world_from_file = pose_of(desc.world_from_file);
+    std::vector<TimedPose> poses;
+    poses.reserve(file.poses.size());
+    for (const auto& [time, pose] : file.poses) {
+        const double scene_time = file.counts_frames ? time / fps
+                                  : desc.start       ? time + (file.first_time - *desc.start)
+                                                     : time;
+        const Point3 scaled = at_origin_plus(desc.scale * from_origin(pose.position));
+        poses.push_back(
+            {scene_time,
+             {desc.world_from_file * scaled, world_from_file.rotation * pose.rotation}});
+    }
+    return poses;
+}
+
+}  // namespace
+
+std::string load_trajectory(TrajectoryDesc& desc, double fps) {
+    if (desc.file.empty()) {
+        desc.trajectory =
+            std::make_shared<Trajectory>(desc.keyframes, desc.interpolation, desc.pacing);
+        return {};
+    }
+    const PoseFile file = read_pose_file(desc.file, desc.format, desc.where);
+    const std::vector<TimedPose> poses = placed(file, desc, fps);
+    if (const auto fault = Trajectory::first_fault(poses, desc.pacing))
+        throw InputError(fmt::format(
+            "{}: poses {} and {} of '{}' are at the same place, where no time passes at the given "
+            "speed; leave 'speed' out",
+            desc.where, *fault, *fault + 1, desc.file.filename().string()));
+    desc.trajectory = std::make_shared<Trajectory>(poses, desc.interpolation, desc.pacing);
+    return file.hash;
+}
+
+}  // namespace uw

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/vector_math.h"
+#include "core/scene/config_value.h"
+#include "core/scene/trajectory.h"
+
+namespace uw {
+
+/// One value per band of the scene, in the order of WaterDesc::bands_nm.
+using PerBand = std::vector<double>;
+
+/// The surface of the water: a plane, through which sunlight enters.
+struct WaterSurfaceDesc {
+    Point3 point;             ///< on it, world [m]
+    Vector3 normal{0, 1, 0};  ///< out of the water, world, unit
+
+    friend bool operator==(const WaterSurfaceDesc&, const WaterSurfaceDesc&) = default;
+};
+
+struct LoadedGrid;    // media/volumes/loaded_grid.h
+struct TriangleMesh;  // core/geometry/mesh.h
+
+/// What a scene refers to by names instead of reading it from files: grids of volumes as `array`,
+/// meshes of geometry as `mesh`.
+struct SceneArrays {
+    std::map<std::string, std::shared_ptr<const LoadedGrid>> grids;
+    std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes;
+};
+
+/// Shared by the readers of a scene's sections. Each reads and fully checks one section, and throws
+/// InputError "file:line:column: key path: what; mend" for invalid input.
+struct SceneContext {
+    std::filesystem::path folder;        // of the scene file; file names are relative to it
+    std::size_t band_count = 0;          // of water.bands, which is read first
+    std::vector<std::string>* warnings;  // one line each
+    std::optional<WaterSurfaceDesc> water_surface{};  // of water, which is read before the lamps
+    /// For a scene with a rig, which is read before its lamps.
+    struct RigFrames {
+        Affine world_from_rig, world_from_camera;  // the first camera's
+    };
+    std::optional<RigFrames> rig{};
+    std::optional<TrajectoryDesc> rig_trajectory{};  // likewise
+    const SceneArrays* arrays = nullptr;             // null: the scene has files alone
+
+    /// Adds the warning "<location>: <what>".
+    void warn(const ConfigValue& value, const std::string& what) const {
+        warnings->push_back(value.location() + ": " + what);
+    }
+};
+
+/// A file name, resolved against the scene's folder. Throws InputError if no such file exists.
+std::filesystem::path read_existing_file(const ConfigValue& value, const SceneContext& context);
+
+/// The same, but a name with patterns for the frame number that is not itself a file denotes a
+/// sequence; its files are not checked.
+std::filesystem::path read_existing_file_or_sequence(const ConfigValue& value,
+                                                     const SceneContext& context,
+                                                     bool& is_sequence);
+
+/// Fails: nothing in memory is called so.
+[[noreturn]] void fail_not_in_memory(const ConfigValue& value, const std::string& name);
+
+/// What `value` names among `known`, null: nothing is, as the scene has files alone. Throws
+/// InputError if it is not there.
+template <class T>
+std::shared_ptr<const T> read_in_memory(
+    const ConfigValue& value, const std::map<std::string, std::shared_ptr<const T>>* known) {
+    const std::string name = value.text("give its name in memory");
+    if (known != nullptr)
+        if (const auto found = known->find(name); found != known->end()) return found->second;
+    fail_not_in_memory(value, name);
+}
+
+/// A name that becomes part of `of` ("a layer's name"): up to 64 letters, digits, _ and -.
+std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend);
+
+}  // namespace uw

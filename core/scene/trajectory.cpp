@@ -1,0 +1,273 @@
+#include "core/scene/trajectory.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/numerics.h"
+
+namespace uw {
+
+Rotation Rotation::operator*(const Rotation& o) const {
+    return {w * o.w - x * o.x - y * o.y - z * o.z, w * o.x + x * o.w + y * o.z - z * o.y,
+            w * o.y - x * o.z + y * o.w + z * o.x, w * o.z + x * o.y - y * o.x + z * o.w};
+}
+
+Matrix3 Rotation::matrix() const {
+    // Columns.
+    return Matrix3(1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),  //
+                   2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w),  //
+                   2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y));
+}
+
+Rotation normalised(const Rotation& q) {
+    const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    return {q.w / length, q.x / length, q.y / length, q.z / length};
+}
+
+Rotation rotation_of(const Matrix3& m) {
+    // Four times the products of the components with one another; the largest square comes first,
+    // so that nothing small is divided by.
+    const double trace = m[0][0] + m[1][1] + m[2][2];
+    const double yz = m[1][2] - m[2][1], zx = m[2][0] - m[0][2], xy = m[0][1] - m[1][0];
+    const std::array<double, 4> squares{1 + trace, 1 + 2 * m[0][0] - trace, 1 + 2 * m[1][1] - trace,
+                                        1 + 2 * m[2][2] - trace};
+    std::size_t largest = 0;
+    for (std::size_t k = 1; k < 4; ++k)
+        if (squares[k] > squares[largest]) largest = k;
+    const double s01 = m[0][1] + m[1][0], s02 = m[0][2] + m[2][0], s12 = m[1][2] + m[2][1];
+    switch (largest) {
+        case 0:
+            return normalised({squares[0], yz, zx, xy});
+        case 1:
+            return normalised({yz, squares[1], s01, s02});
+        case 2:
+            return normalised({zx, s01, squares[2], s12});
+        default:
+            return normalised({xy, s02, s12, squares[3]});
+    }
+}
+
+Rotation rotation_by(const Vector3& v) {
+    const double angle = glm::length(v);
+    // sin(angle/2)/angle; below the limit its series is exact to rounding.
+    const double share = angle < 1e-4 ? 0.5 - angle * angle / 48 : std::sin(angle / 2) / angle;
+    return {std::cos(angle / 2), share * v.x, share * v.y, share * v.z};
+}
+
+Vector3 rotation_vector(const Rotation& q) {
+    const double sign = q.w < 0 ? -1 : 1;
+    const Vector3 imaginary(sign * q.x, sign * q.y, sign * q.z);
+    const double sine = glm::length(imaginary);
+    if (sine == 0) return Vector3(0.0);
+    return imaginary * (2 * std::atan2(sine, sign * q.w) / sine);
+}
+
+PositionSpline::PositionSpline(const std::vector<double>& knots, const std::vector<Point3>& points)
+    : points_(points), bends_(points.size(), Vector3(0.0)) {
+    // The tridiagonal system for the bends at inner knots, by elimination; those at the ends are 0.
+    const std::size_t count = points.size();
+    std::vector<double> above(count, 0.0);
+    for (std::size_t i = 1; i + 1 < count; ++i) {
+        const double before = knots[i] - knots[i - 1], after = knots[i + 1] - knots[i];
+        const double pivot = 2 * (before + after) - before * above[i - 1];
+        above[i] = after / pivot;
+        const Vector3 turn =
+            (points[i + 1] - points[i]) / after - (points[i] - points[i - 1]) / before;
+        bends_[i] = (6.0 * turn - before * bends_[i - 1]) / pivot;
+    }
+    for (std::size_t i = count - 1; i-- > 1;) bends_[i] -= above[i] * bends_[i + 1];
+}
+
+Point3 PositionSpline::at(const std::vector<double>& knots, double u) const {
+    const KnotSpan span = span_of(knots, u);
+    const double b = span.share, a = 1 - b;
+    const Vector3 bent =
+        (a * a * a - a) * bends_[span.first] + (b * b * b - b) * bends_[span.first + 1];
+    const Point3 straight =
+        points_[span.first] + b * (points_[span.first + 1] - points_[span.first]);
+    return straight + span.width * span.width / 6 * bent;
+}
+
+Vector3 PositionSpline::velocity(const std::vector<double>& knots, double u) const {
+    const KnotSpan span = span_of(knots, u);
+    const double b = span.share, a = 1 - b;
+    const Vector3 bent =
+        (3 * b * b - 1) * bends_[span.first + 1] - (3 * a * a - 1) * bends_[span.first];
+    return (points_[span.first + 1] - points_[span.first]) / span.width + span.width / 6 * bent;
+}
+
+namespace {
+
+/// The turn from `a` to `b` in the axes of either.
+Vector3 turn_between(const Rotation& a, const Rotation& b) {
+    return rotation_vector(a.inverse() * b);
+}
+
+}  // namespace
+
+RotationSpline::RotationSpline(const std::vector<double>& knots,
+                               const std::vector<Rotation>& rotations)
+    : rotations_(rotations), velocities_(rotations.size(), Vector3(0.0)) {
+    const std::size_t last = rotations.size() - 1;
+    const auto rate = [&](std::size_t i) {
+        return turn_between(rotations[i], rotations[i + 1]) / (knots[i + 1] - knots[i]);
+    };
+    for (std::size_t i = 1; i < last; ++i) {
+        const double before = knots[i] - knots[i - 1], after = knots[i + 1] - knots[i];
+        velocities_[i] = (after * rate(i - 1) + before * rate(i)) / (before + after);
+    }
+    if (last == 1) {
+        velocities_.front() = velocities_.back() = rate(0);
+    } else {
+        velocities_.front() = 2.0 * rate(0) - velocities_[1];
+        velocities_.back() = 2.0 * rate(last - 1) - velocities_[last - 1];
+    }
+}
+
+Rotation RotationSpline::at(const std::vector<double>& knots, double u) const {
+    const KnotSpan span = span_of(knots, u);
+    const Rotation& a = rotations_[span.first];
+    const Rotation& b = rotations_[span.first + 1];
+    const Vector3 first = velocities_[span.first] * (span.width / 3);
+    const Vector3 third = velocities_[span.first + 1] * (span.width / 3);
+    const Vector3 second = rotation_vector(rotation_by(first).inverse() * a.inverse() * b *
+                                           rotation_by(third).inverse());
+    // The cumulative Bernstein polynomials of degree 3.
+    const double t = span.share, left = 1 - t;
+    return normalised(a * rotation_by(first * (1 - left * left * left)) *
+                      rotation_by(second * (t * t * (3 - 2 * t))) *
+                      rotation_by(third * (t * t * t)));
+}
+
+Rotation turned(const Rotation& a, const Rotation& b, double share) {
+    return normalised(a * rotation_by(share * turn_between(a, b)));
+}
+
+namespace {
+
+// The parts of a span over which its length is integrated by Gauss's rule with four nodes: of a
+// span that turns by a right angle the error is then below 1e-9 of its length.
+constexpr int k_parts = 8;
+
+std::vector<Point3> positions_of(const std::vector<Pose>& poses) {
+    std::vector<Point3> positions;
+    positions.reserve(poses.size());
+    for (const Pose& pose : poses) positions.push_back(pose.position);
+    return positions;
+}
+
+std::vector<Rotation> rotations_of(const std::vector<Pose>& poses) {
+    std::vector<Rotation> rotations;
+    rotations.reserve(poses.size());
+    for (const Pose& pose : poses) rotations.push_back(pose.rotation);
+    return rotations;
+}
+
+}  // namespace
+
+std::optional<std::size_t> Trajectory::first_fault(const std::vector<TimedPose>& poses,
+                                                   const Pacing& pacing) {
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+        const bool is_fine = pacing.kind == Pacing::Kind::given
+                                 ? poses[i].time > poses[i - 1].time
+                                 : distance(poses[i].pose.position, poses[i - 1].pose.position) > 0;
+        if (!is_fine) return i;
+    }
+    if (pacing.kind == Pacing::Kind::constant && poses.size() > 1 &&
+        !(poses.back().time > poses.front().time))
+        return poses.size() - 1;
+    return std::nullopt;
+}
+
+Trajectory::Trajectory(const std::vector<TimedPose>& poses, Interpolation interpolation,
+                       Pacing pacing) {
+    for (const TimedPose& timed : poses) {
+        poses_.push_back(timed.pose);
+        times_.push_back(timed.time);
+    }
+    knots_ = times_;
+    if (pacing.kind != Pacing::Kind::given && poses_.size() > 1) pace(interpolation, pacing);
+    if (interpolation == Interpolation::smooth && poses_.size() > 1) {
+        if (!positions_) positions_.emplace(knots_, positions_of(poses_));
+        rotations_.emplace(knots_, rotations_of(poses_));
+    }
+}
+
+// Sets the knots, the lengths and the times.
+void Trajectory::pace(Interpolation interpolation, const Pacing& pacing) {
+    knots_.front() = 0;
+    for (std::size_t i = 1; i < knots_.size(); ++i)
+        knots_[i] = knots_[i - 1] + std::sqrt(distance(poses_[i - 1].position, poses_[i].position));
+    if (interpolation == Interpolation::smooth) positions_.emplace(knots_, positions_of(poses_));
+    lengths_.push_back(0);
+    for (std::size_t i = 1; i < knots_.size(); ++i)
+        lengths_.push_back(lengths_.back() + length_between(knots_[i - 1], knots_[i]));
+    const double first = times_.front(), total = lengths_.back();
+    const double duration =
+        pacing.kind == Pacing::Kind::speed ? total / pacing.speed : times_.back() - first;
+    for (std::size_t i = 1; i < times_.size(); ++i)
+        times_[i] = first + duration * (lengths_[i] / total);
+}
+
+Vector3 Trajectory::velocity(double u) const {
+    if (positions_) return positions_->velocity(knots_, u);
+    const KnotSpan span = span_of(knots_, u);
+    return (poses_[span.first + 1].position - poses_[span.first].position) / span.width;
+}
+
+// Both within one span, whose velocity is smooth; at its ends the velocity is that of the span.
+double Trajectory::length_between(double u0, double u1) const {
+    double length = 0;
+    const double step = (u1 - u0) / k_parts;
+    for (int part = 0; part < k_parts; ++part)
+        for (const QuadratureNode& node : gauss_legendre(4))
+            length +=
+                node.weight * step * glm::length(velocity(u0 + (part + node.position) * step));
+    return length;
+}
+
+// Where on the path its length from the beginning is `length`: by bisection and Newton's method.
+double Trajectory::place_at_length(double length) const {
+    const KnotSpan span = span_of(lengths_, length);
+    const double begin = knots_[span.first];
+    const double rest = length - lengths_[span.first];
+    double low = begin, high = knots_[span.first + 1];
+    double u = begin + span.share * (high - low);
+    constexpr int k_most_steps = 60;  // of bisection alone
+    for (int step = 0; step < k_most_steps; ++step) {
+        const double excess = length_between(begin, u) - rest;
+        if (std::abs(excess) <= 1e-13 * lengths_.back()) break;
+        (excess > 0 ? high : low) = u;
+        const double newton = u - excess / glm::length(velocity(u));
+        u = newton > low && newton < high ? newton : 0.5 * (low + high);
+    }
+    return u;
+}
+
+Pose Trajectory::at(double time) const {
+    if (poses_.size() == 1) return poses_.front();
+    double u = time;
+    if (!lengths_.empty()) {
+        const KnotSpan span = span_of(times_, time);
+        u = place_at_length(lengths_[span.first] +
+                            span.share * (lengths_[span.first + 1] - lengths_[span.first]));
+    }
+    if (positions_) return {positions_->at(knots_, u), rotations_->at(knots_, u)};
+    const KnotSpan span = span_of(knots_, u);
+    const Pose& a = poses_[span.first];
+    const Pose& b = poses_[span.first + 1];
+    return {a.position + span.share * (b.position - a.position),
+            turned(a.rotation, b.rotation, span.share)};
+}
+
+Pose Trajectory::at_or_beyond(double time) const {
+    const double nearest = std::clamp(time, first_time(), last_time());
+    if (time == nearest) return at(time);
+    const Pose end = at(nearest), within = at(2 * nearest - time);
+    if (within == end) return end;  // to the bit: it stands still
+    return {end.position + (end.position - within.position),
+            end.rotation * within.rotation.inverse() * end.rotation};
+}
+
+}  // namespace uw

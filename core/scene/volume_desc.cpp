@@ -1,0 +1,155 @@
+#include "core/scene/volume_desc.h"
+
+#include <array>
+
+#include "core/base/text.h"
+#include "core/scene/config_value.h"
+#include "core/scene/scene_context.h"
+#include "core/scene/trajectory_reader.h"
+#include "core/scene/water_desc.h"
+
+namespace uw {
+
+namespace {
+
+constexpr auto k_grids_example = "write {density: {small: 2, large: 10}}";
+
+bool all_zero(const PerBand& values) {
+    for (const double value : values) {
+        if (value != 0) return false;
+    }
+    return true;
+}
+
+GridMappingDesc read_mapping(const ConfigValue& value, const std::string& grid,
+                             const SceneContext& context) {
+    ConfigMap map(value, {"small", "large", "absorption", "scattering", "phase"},
+                  "write {small: 2, large: 10} in ppm per unit of grid value");
+    GridMappingDesc mapping;
+    mapping.grid = grid;
+    mapping.where = value.location();
+    if (map.has("absorption") || map.has("scattering")) {
+        GridMappingDesc::Optics optics{PerBand(context.band_count, 0.0),
+                                       PerBand(context.band_count, 0.0), std::nullopt};
+        constexpr auto k_mend = "give coefficients in 1/m per unit of grid value";
+        if (const auto entry = map.find("absorption")) {
+            optics.absorption = entry->non_negative_per_band(context.band_count, k_mend);
+        }
+        if (const auto entry = map.find("scattering")) {
+            optics.scattering = entry->non_negative_per_band(context.band_count, k_mend);
+        }
+        if (const auto entry = map.find("phase")) optics.phase = read_phase(*entry, context);
+        map.finish("a grid with 'absorption' or 'scattering'");
+        if (all_zero(optics.absorption) && all_zero(optics.scattering)) {
+            context.warn(value, "all coefficients are 0: this grid will not be seen");
+        }
+        mapping.optics = std::move(optics);
+        return mapping;
+    }
+    if (!map.has("small") && !map.has("large")) {
+        value.fail(
+            "does not say what the grid means; give small and large in ppm per unit of grid value, "
+            "or absorption and scattering in 1/m");
+    }
+    constexpr auto k_mend = "give ppm per unit of grid value";
+    if (const auto entry = map.find("small")) mapping.small_ppm = entry->non_negative(k_mend);
+    if (const auto entry = map.find("large")) mapping.large_ppm = entry->non_negative(k_mend);
+    map.finish("a grid given in ppm");
+    if (mapping.small_ppm == 0 && mapping.large_ppm == 0) {
+        context.warn(value, "small and large are 0: this grid will not be seen");
+    }
+    return mapping;
+}
+
+std::vector<GridMappingDesc> read_grids(const ConfigValue& value, const SceneContext& context) {
+    const ConfigNode& node = value.node();
+    if (node.kind != ConfigNode::Kind::map || node.entries.empty()) {
+        value.fail("expected grid names with their meanings, found " + node.description() + "; " +
+                   k_grids_example);
+    }
+    std::vector<GridMappingDesc> grids;
+    grids.reserve(node.entries.size());
+    for (const ConfigNode::Entry& entry : node.entries) {
+        const ConfigValue mapping(entry.value, value.path() + "." + printable(entry.key));
+        grids.push_back(read_mapping(mapping, entry.key, context));
+    }
+    return grids;
+}
+
+MotionDesc read_motion(const ConfigValue& value, const VolumeDesc& volume,
+                       const SceneContext& context) {
+    constexpr auto k_form = "write {grid: velocity}, or {grid: [vel.x, vel.y, vel.z]}";
+    ConfigMap map(value, {"grid", "file", "scale"}, k_form);
+    MotionDesc motion;
+    motion.where = value.location();
+    const ConfigValue grid = map.require("grid", k_form);
+    if (grid.node().kind == ConfigNode::Kind::sequence) {
+        for (const ConfigValue& entry : grid.list(k_form))
+            motion.grids.push_back(entry.text(k_form));
+        if (motion.grids.size() != 3)
+            grid.fail("velocity is one grid of vectors, or three of numbers: x, y, z");
+    } else {
+        motion.grids.push_back(grid.text(k_form));
+    }
+    motion.file = volume.file;
+    motion.is_sequence = volume.is_sequence;
+    if (const auto entry = map.find("file"))
+        motion.file = read_existing_file_or_sequence(*entry, context, motion.is_sequence);
+    if (const auto entry = map.find("scale")) motion.scale = entry->number("give m/s per unit");
+    return motion;
+}
+
+/// A grid that is in memory.
+VolumeDesc read_array(ConfigMap& map, const ConfigValue& name, const SceneContext& context) {
+    VolumeDesc volume;
+    volume.where = map.value().location();
+    volume.array = read_in_memory(name, context.arrays ? &context.arrays->grids : nullptr);
+    const ConfigValue grids = map.require("grids", k_grids_example);
+    volume.grids = read_grids(grids, context);
+    if (volume.grids.size() != 1) grids.fail("an array is one grid; give one meaning");
+    if (const auto entry = map.find("transform"))
+        volume.world_from_upright = read_transform(*entry);
+    map.finish("an array");
+    return volume;
+}
+
+VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
+    ConfigMap map(
+        value, {"file", "array", "grids", "centering", "up", "voxel_size", "transform", "velocity"},
+        "write {file: plume.vdb, grids: {density: {small: 2, large: 10}}}");
+    if (const auto array = map.find("array")) return read_array(map, *array, context);
+    VolumeDesc volume;
+    volume.where = value.location();
+    volume.file = read_existing_file_or_sequence(map.require("file", "name a VDB file"), context,
+                                                 volume.is_sequence);
+    volume.grids = read_grids(map.require("grids", k_grids_example), context);
+    if (const auto entry = map.find("centering")) {
+        constexpr std::array<std::pair<std::string_view, Centering>, 2> k_choices{
+            {{"cell", Centering::cell}, {"node", Centering::node}}};
+        volume.centering = entry->choice(k_choices);
+    }
+    if (const auto entry = map.find("up")) {
+        constexpr std::array<std::pair<std::string_view, UpAxis>, 2> k_choices{
+            {{"y", UpAxis::y}, {"z", UpAxis::z}}};
+        volume.up = entry->choice(k_choices);
+    }
+    if (const auto entry = map.find("voxel_size"))
+        volume.voxel_size = entry->positive("give the edge of a voxel in metres");
+    if (const auto entry = map.find("transform"))
+        volume.world_from_upright = read_transform(*entry);
+    if (const auto entry = map.find("velocity"))
+        volume.motion = read_motion(*entry, volume, context);
+    return volume;
+}
+
+}  // namespace
+
+std::vector<VolumeDesc> read_volumes(const ConfigValue& value, const SceneContext& context) {
+    std::vector<VolumeDesc> volumes;
+    for (const ConfigValue& entry : value.list("write one '- file: ...' per volume")) {
+        volumes.push_back(read_volume(entry, context));
+    }
+    return volumes;
+}
+
+}  // namespace uw

@@ -1,0 +1,315 @@
+#include "dataset/completion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <system_error>
+#include <vector>
+
+#include "core/base/csv_table.h"
+#include "core/base/error.h"
+#include "core/base/output_files.h"
+#include "core/base/parallel.h"
+#include "core/image/contact_sheet.h"
+#include "core/image/image_file.h"
+#include "core/scene/trajectory.h"
+#include "dataset/data_card.h"
+#include "dataset/formats.h"
+#include "dataset/view.h"
+
+namespace uw {
+
+Manifest::Manifest(const DatasetDefinition& definition)
+    : definition_(definition),
+      csv_("view,draw,frame,time_s,camera,tx,ty,tz,qx,qy,qz,qw,record,image") {
+    for (const std::string& drawn : definition.draws.front())
+        csv_ += "," + csv_text(drawn.substr(0, drawn.find('=')));
+    csv_ += "\n";
+}
+
+void Manifest::add(const ViewRecord& record) {
+    const View& view = record.view;
+    const auto [p, q] = pose_of(record.camera.world_from_camera);
+    const std::optional<int> frame = definition_.frames[view.frame];
+    const std::string name = record_file(definition_, view);
+    const SetFile* const image = record.file("image");
+    csv_ += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", definition_.index(view),
+                        view.draw, frame ? std::to_string(*frame) : "", record.time,
+                        definition_.cameras[view.camera], p.x, p.y, p.z, q.x, q.y, q.z, q.w, name,
+                        image ? image->path : "");
+    for (const std::string& drawn : definition_.draws[view.draw])
+        csv_ += "," + csv_text(std::string_view(drawn).substr(drawn.find('=') + 1));
+    csv_ += "\n";
+    Json files = Json::object();
+    for (const SetFile& file : record.files) files[file.role] = file.path;
+    const Json json{{"view", definition_.index(view)},
+                    {"draw", view.draw},
+                    {"frame", frame ? Json(*frame) : Json(nullptr)},
+                    {"time_s", record.time},
+                    {"camera", definition_.cameras[view.camera]},
+                    {"position", point_json(p)},
+                    {"rotation_wxyz", {q.w, q.x, q.y, q.z}},
+                    {"record", name},
+                    {"files", files}};
+    views_ += (views_.empty() ? "" : ",\n") + json.dump();
+}
+
+std::string Manifest::json() const {
+    return fmt::format("{{\"draws\": {},\n\"views\": [\n{}\n]}}\n", Json(definition_.draws).dump(),
+                       views_);
+}
+
+namespace {
+
+std::string html_text(const std::string& text) {
+    std::string escaped;
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                escaped += "&amp;";
+                break;
+            case '<':
+                escaped += "&lt;";
+                break;
+            case '>':
+                escaped += "&gt;";
+                break;
+            case '"':
+                escaped += "&quot;";
+                break;
+            case '\'':
+                escaped += "&#39;";
+                break;
+            default:
+                escaped += c;
+        }
+    }
+    return escaped;
+}
+
+constexpr const char* k_page_head =
+    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+    "<meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n<style>\n"
+    "body {{ font: 15px/1.5 sans-serif; margin: 2em; background: #101418; color: #dde; }}\n"
+    "a {{ color: #8cf; }}\n"
+    "main {{ display: flex; flex-wrap: wrap; gap: 12px; }}\n"
+    "figure {{ margin: 0; }}\n"
+    "figure img {{ width: 320px; display: block; background: #000; }}\n"
+    "figcaption {{ font-size: 13px; color: #9ab; }}\n"
+    "</style>\n</head>\n<body>\n<h1>{0}</h1>\n";
+
+}  // namespace
+
+std::string dataset_page(const DatasetDefinition& definition, const std::vector<PageView>& views) {
+    std::string page = fmt::format(k_page_head, html_text("Data set of " + definition.scene));
+    page += fmt::format("<p>{} views", definition.view_count());
+    if (views.size() < definition.view_count())
+        page += fmt::format(", {} of them here", views.size());
+    page +=
+        ". <a href=\"README.md\">data card</a>, <a href=\"manifest.csv\">manifest</a>, "
+        "<a href=\"SHA256SUMS\">checksums</a></p>\n";
+    page += fmt::format("<p><code>{}</code></p>\n<main>\n", html_text(definition.command));
+    for (const PageView& view : views) {
+        page += "<figure>";
+        for (const std::string& picture : view.pictures)
+            page +=
+                fmt::format("<a href=\"{0}\"><img src=\"{0}\" loading=\"lazy\" alt=\"{1}\"></a>",
+                            html_text(picture), html_text(view.label));
+        page += fmt::format("<figcaption>{}</figcaption></figure>\n", html_text(view.label));
+    }
+    return page + "</main>\n</body>\n</html>\n";
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t k_most_on_sheet = 60;
+constexpr std::size_t k_most_on_page = 240;
+
+class Completion {
+  public:
+    Completion(const fs::path& folder, const DatasetFile& set, const CompletionProgress& progress)
+        : folder_(folder),
+          set_(set),
+          definition_(set.definition),
+          sum_(sum_of(definition_)),
+          progress_(progress),
+          manifest_(definition_),
+          files_(folder) {}
+
+    void run(bool check) {
+        if (check) check_files();
+        remove_left_overs();
+        for (std::size_t draw = 0; draw < definition_.draws.size(); ++draw) complete_draw(draw);
+        write_pictures();
+        files_.add_bytes("card", "README.md", data_card(set_, view_bytes_));
+        files_.add_bytes("manifest", "manifest.csv", manifest_.csv());
+        files_.add_bytes("manifest", "manifest.json", manifest_.json());
+        files_.add("set", k_dataset_file, [](const fs::path&) {});  // is there
+        write_checksums();
+        tell(1);
+    }
+
+  private:
+    void tell(double share) const {
+        if (!progress_(share)) throw Interrupted();
+    }
+
+    /// All views' files by content.
+    void check_files() {
+        std::mutex mutex;
+        std::vector<std::size_t> faulty;
+        std::atomic<std::size_t> done = 0;
+        parallel_for(definition_.view_count(), [&](std::size_t index) {
+            const View view = definition_.view(index);
+            const auto record = read_record(folder_, definition_, sum_, view);
+            const bool is_there =
+                record && std::ranges::all_of(record->files, [&](const SetFile& file) {
+                    return is_whole(folder_, file, true);
+                });
+            const std::lock_guard lock(mutex);
+            if (!is_there) faulty.push_back(index);
+            tell(k_checking * static_cast<double>(++done) /
+                 static_cast<double>(definition_.view_count()));
+        });
+        refuse(std::move(faulty));
+    }
+
+    void refuse(std::vector<std::size_t> faulty) const {
+        if (faulty.empty()) return;
+        std::ranges::sort(faulty);
+        constexpr std::size_t k_named = 5;
+        std::string names;
+        for (std::size_t i = 0; i < std::min(faulty.size(), k_named); ++i) {
+            const View view = definition_.view(faulty[i]);
+            names += (names.empty() ? "" : ", ") + definition_.folder(view.draw) +
+                     definition_.stem(view);
+        }
+        throw InputError(
+            fmt::format("{}: {} of {} views are missing or damaged ({}{}); run their shards again, "
+                        "or the whole "
+                        "command, which keeps what is there",
+                        folder_.string(), faulty.size(), definition_.view_count(), names,
+                        faulty.size() > k_named ? ", ..." : ""));
+    }
+
+    /// What AtomicFile could not remove because its process was killed. Nothing of other machines
+    /// works on the set any more, since all views are there.
+    void remove_left_overs() const {
+        std::error_code error;
+        std::vector<fs::path> folders{folder_};
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_, error))
+            if (entry.is_directory(error)) folders.push_back(entry.path());
+        for (const fs::path& folder : folders) AtomicFile::remove_left_overs(folder, true);
+    }
+
+    void complete_draw(std::size_t draw) {
+        CompleteSequence sequence{definition_, draw, definition_.folder(draw), {}};
+        const std::size_t count = definition_.frames.size() * definition_.cameras.size();
+        std::vector<std::size_t> missing;
+        for (std::size_t i = draw * count; i < (draw + 1) * count; ++i) {
+            const View view = definition_.view(i);
+            auto record = read_record(folder_, definition_, sum_, view);
+            if (!record || !std::ranges::all_of(record->files, [&](const SetFile& file) {
+                    return is_whole(folder_, file, false);
+                })) {
+                missing.push_back(i);
+                continue;
+            }
+            sequence.records.push_back(std::move(*record));
+        }
+        refuse(std::move(missing));
+        for (const ViewRecord& record : sequence.records) take(record);
+        for (const std::string& name : definition_.formats)
+            if (const auto complete = dataset_format(name).complete) complete(sequence, files_);
+        if (needs_points()) {
+            const std::string points = definition_.folder(draw) + "views/points.csv";
+            files_.add("points", points, [](const fs::path&) {});  // is there
+        }
+        tell(k_checking + (1 - k_checking) * static_cast<double>(draw + 1) /
+                              static_cast<double>(definition_.draws.size() + 1));
+    }
+
+    bool needs_points() const {
+        return std::ranges::any_of(definition_.formats, [](const std::string& name) {
+            return dataset_format(name).needs_points;
+        });
+    }
+
+    void take(const ViewRecord& record) {
+        manifest_.add(record);
+        for (const SetFile& file : record.files) {
+            files_.take(file);
+            view_bytes_ += file.bytes;
+        }
+        files_.add("record", record_file(definition_, record.view), [](const fs::path&) {});
+        const std::size_t index = definition_.index(record.view);
+        if (is_chosen(index, k_most_on_page)) show(record);
+        const SetFile* const image = picture_of(record);
+        if (image != nullptr && is_chosen(index, k_most_on_sheet))
+            sheet_.push_back(folder_ / image->path);
+    }
+
+    /// Whether a view is among `most` that are spread evenly over all.
+    bool is_chosen(std::size_t index, std::size_t most) const {
+        const std::size_t count = definition_.view_count();
+        if (count <= most) return true;
+        return (index * most + most - 1) / count != ((index + 1) * most + most - 1) / count;
+    }
+
+    /// What shows a view: its image, in the folder of whichever format has it.
+    static const SetFile* picture_of(const ViewRecord& record) {
+        const auto found = std::ranges::find_if(
+            record.files, [](const SetFile& file) { return file.role.starts_with("image"); });
+        return found == record.files.end() ? nullptr : &*found;
+    }
+
+    void show(const ViewRecord& record) {
+        PageView view;
+        view.label = definition_.folder(record.view.draw) + definition_.stem(record.view);
+        if (const SetFile* image = picture_of(record)) view.pictures.push_back(image->path);
+        if (const SetFile* clean = record.file("clean")) view.pictures.push_back(clean->path);
+        page_.push_back(std::move(view));
+    }
+
+    void write_pictures() {
+        if (!sheet_.empty())
+            files_.add("sheet", "contact_sheet.png",
+                       [&](const fs::path& file) { write_png(file, contact_sheet(sheet_), {}); });
+        files_.add_bytes("page", "index.html", dataset_page(definition_, page_));
+    }
+
+    /// As sha256sum writes and checks them, by name.
+    void write_checksums() const {
+        std::vector<SetFile> all = files_.written();
+        std::ranges::sort(all, {}, &SetFile::path);
+        std::string text;
+        for (const SetFile& file : all) text += fmt::format("{}  {}\n", file.sha256, file.path);
+        SetFiles(folder_).add_bytes("checksums", "SHA256SUMS", text);
+    }
+
+    static constexpr double k_checking = 0.5;  // of the work
+
+    const fs::path& folder_;
+    const DatasetFile& set_;
+    const DatasetDefinition& definition_;
+    std::string sum_;
+    const CompletionProgress& progress_;
+    Manifest manifest_;
+    SetFiles files_;
+    std::uint64_t view_bytes_ = 0;
+    std::vector<PageView> page_;
+    std::vector<fs::path> sheet_;
+};
+
+}  // namespace
+
+void complete_dataset(const fs::path& folder, const DatasetFile& set, bool check,
+                      const CompletionProgress& progress) {
+    Completion(folder, set, progress).run(check);
+}
+
+}  // namespace uw

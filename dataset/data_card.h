@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/base/json.h"
+#include "core/scene/scene_desc.h"
+#include "dataset/definition.h"
+
+namespace uw {
+
+/// What a data card says of a scene: water, lamps, cameras, what is in it and how it is rendered.
+/// `first`: of the set's first view, resolved.
+Json facts_of(const SceneDesc& first);
+
+/// The data card of a set, README.md in Markdown. `bytes`: of the files of all views.
+std::string data_card(const DatasetFile& set, std::uint64_t bytes);
+
+}  // namespace uw

@@ -1,0 +1,82 @@
+#include "dataset/formats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+
+namespace uw {
+
+std::span<const DatasetFormat> dataset_formats() {
+    static const std::array k_formats{png_format(),   exr_format(),    depth_format(),
+                                      mask_format(),  ids_format(),    clean_format(),
+                                      numpy_format(), flow_format(),   disparity_format(),
+                                      kitti_format(), colmap_format(), nerfstudio_format(),
+                                      tum_format(),   euroc_format(),  calibration_format()};
+    return k_formats;
+}
+
+const DatasetFormat& dataset_format(std::string_view name) {
+    const std::span<const DatasetFormat> formats = dataset_formats();
+    const auto found = std::ranges::find(formats, name, &DatasetFormat::name);
+    if (found != formats.end()) return *found;
+    std::vector<std::string_view> names;
+    for (const DatasetFormat& format : formats) names.push_back(format.name);
+    throw UsageError(
+        fmt::format("--format: unknown '{}'; {}", printable(name), suggestion(name, names)));
+}
+
+namespace {
+
+/// Adds the layers of `request` that a set with or without frames and rig can have.
+void append_layers(std::string& layers, std::string_view request,
+                   const DatasetDefinition& definition) {
+    while (!request.empty()) {
+        const std::size_t end = std::min(request.find(','), request.size());
+        const std::string_view layer = request.substr(0, end);
+        const bool is_missing = (layer.starts_with("flow") && !definition.frames.front()) ||
+                                (layer.starts_with("disparity") && definition.cameras.size() < 2);
+        if (!is_missing) layers += (layers.empty() ? "" : ",") + std::string(layer);
+        request.remove_prefix(std::min(end + 1, request.size()));
+    }
+}
+
+}  // namespace
+
+std::string layers_of(const DatasetDefinition& definition) {
+    std::string layers;
+    for (const std::string& name : definition.formats)
+        append_layers(layers, dataset_format(name).layers, definition);
+    if (!definition.layers.empty()) layers += (layers.empty() ? "" : ",") + definition.layers;
+    return layers.empty() ? "depth" : layers;  // the least: a request of none means the default set
+}
+
+bool needs_points(const DatasetDefinition& definition) {
+    return std::ranges::any_of(definition.formats, [](const std::string& name) {
+        return dataset_format(name).needs_points;
+    });
+}
+
+void write_view(const std::filesystem::path& folder, const std::string& sum,
+                const ViewImages& images) {
+    SetFiles files(folder);
+    for (const std::string& name : images.definition.formats)
+        if (const auto write = dataset_format(name).write_view) write(images, files);
+    const ViewRecord record{images.view, sum, images.time, images.camera, files.written()};
+    SetFiles(folder).add_bytes("record", record_file(images.definition, images.view),
+                               record_text(record));
+}
+
+bool is_view_complete(const std::filesystem::path& folder, const DatasetDefinition& definition,
+                      const std::string& sum, const View& view) {
+    const auto record = read_record(folder, definition, sum, view);
+    return record && std::ranges::all_of(record->files, [&](const SetFile& file) {
+               return is_whole(folder, file, true);
+           });
+}
+
+}  // namespace uw

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/camera_desc.h"
+#include "core/scene/scene_desc.h"
+#include "core/scene/trajectory.h"
+#include "dataset/definition.h"
+#include "dataset/set_files.h"
+#include "dataset/view.h"
+
+namespace uw {
+
+/// All views of one draw, in their order, once they are written: what formats make tables of.
+struct CompleteSequence {
+    const DatasetDefinition& definition;
+    std::size_t draw = 0;
+    std::string folder;  // DatasetDefinition::folder
+    std::vector<ViewRecord> records;
+
+    /// The view of a frame and a camera, by their places.
+    const ViewRecord& at(std::size_t frame, std::size_t camera) const {
+        return records[frame * definition.cameras.size() + camera];
+    }
+};
+
+/// A file of a view as a table in the folder `from` of the sequence names it: "images/000012.png".
+inline std::string within(const CompleteSequence& sequence, const std::string& from,
+                          const SetFile& file) {
+    return file.path.substr(sequence.folder.size() + from.size());
+}
+
+/// A camera's pose in the world, its quaternion with w >= 0.
+inline Pose camera_pose(const CameraDesc& camera) {
+    Pose pose = pose_of(camera.world_from_camera);
+    Rotation& q = pose.rotation;
+    if (q.w < 0) q = {-q.w, -q.x, -q.y, -q.z};
+    return pose;
+}
+
+/// A format of data sets: what is rendered for it, and which files it has.
+struct DatasetFormat {
+    std::string_view name;     // as --format takes it
+    std::string_view summary;  // one line, for --help
+    /// Its paragraph in a set's data card, in Markdown: folders, units, conventions.
+    std::string_view card;
+    /// The layers that it is made of, as LayerPlan takes them; empty: the image alone.
+    std::string_view layers = {};
+    bool needs_points = false;  // ViewImages::points
+    bool needs_images = false;  // those of png, which is then written as well
+    /// Throws UsageError of one line for a set that it cannot express. `scene`: of the first view,
+    /// with its rig. May be null.
+    void (*check)(const DatasetDefinition& definition, const SceneDesc& scene) = nullptr;
+    /// Writes the files of one view; called from several threads for different views. May be null.
+    void (*write_view)(const ViewImages& images, SetFiles& files) = nullptr;
+    /// Writes what needs all views of a draw. May be null.
+    void (*complete)(const CompleteSequence& sequence, SetFiles& files) = nullptr;
+};
+
+/// One format per file. Private to this folder.
+
+DatasetFormat png_format();
+DatasetFormat depth_format();
+DatasetFormat mask_format();
+DatasetFormat ids_format();
+DatasetFormat clean_format();
+DatasetFormat exr_format();
+DatasetFormat numpy_format();
+DatasetFormat flow_format();
+DatasetFormat disparity_format();
+DatasetFormat kitti_format();
+DatasetFormat colmap_format();
+DatasetFormat nerfstudio_format();
+DatasetFormat tum_format();
+DatasetFormat euroc_format();
+DatasetFormat calibration_format();
+
+/// Every format, in the order in which --help lists them.
+std::span<const DatasetFormat> dataset_formats();
+
+/// The format of a name. Throws UsageError that lists those there are.
+const DatasetFormat& dataset_format(std::string_view name);
+
+/// The layers that a set's formats are made of, as LayerPlan takes them.
+std::string layers_of(const DatasetDefinition& definition);
+
+/// Whether any of its formats needs ViewImages::points.
+bool needs_points(const DatasetDefinition& definition);
+
+/// Writes the files of a view in every format of its set, then its record. Throws IoError and
+/// InputError.
+void write_view(const std::filesystem::path& folder, const std::string& sum,
+                const ViewImages& images);
+
+/// Whether a view's record is there and all of its files are as they were written, by their
+/// checksums.
+bool is_view_complete(const std::filesystem::path& folder, const DatasetDefinition& definition,
+                      const std::string& sum, const View& view);
+
+}  // namespace uw

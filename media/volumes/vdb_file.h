@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/scene/volume_desc.h"
+#include "media/volumes/loaded_grid.h"
+
+namespace uw {
+
+inline constexpr std::size_t k_default_slab_bytes = std::size_t{256} << 20;
+
+/// Reads one grid of `header.file`. Voxels are processed in slabs of at most about `slab_bytes` of
+/// 32-bit values (but no less than an eighth of the grid); the result is 16-bit. Throws InputError
+/// starting with `where` if it cannot be used (see select_grid), is an undeclared level set, or
+/// cannot be decoded.
+LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,
+                     std::size_t slab_bytes = k_default_slab_bytes);
+
+/// Only the transform of a grid (LoadedGrid::file_from_index). Throws as load_grid.
+Affine read_file_from_index(const VdbHeader& header, const std::string& name,
+                            const SourceLocation& where);
+
+/// Reads one grid as load_grid does, averaged over the exposure time: every voxel's value is the
+/// mean of those advected there from -shutter/2 to +shutter/2 ("Eulerian Motion Blur", Kim and Ko
+/// 2007: traced back along the velocity at the frame's time, evaluated at the midpoint). The grid
+/// is enlarged accordingly. `centering`: of both grids. All of them are in memory at once, with 32
+/// bits. Throws as load_grid, and also if a velocity grid is missing or unusable, or if it moves
+/// the grid by more than 128 voxels.
+LoadedGrid load_moving_grid(const VdbHeader& header, const std::string& name,
+                            const SourceLocation& where, const MotionDesc& motion,
+                            Centering centering);
+
+}  // namespace uw

@@ -1,0 +1,114 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <string>
+
+#include "camera/calibration.h"
+#include "core/scene/yaml_document.h"
+#include "media/volumes/array_grid.h"
+#include "media/volumes/loaded_grid.h"
+#include "media/volumes/vdb_header.h"
+#include "media/volumes/vdb_inspect.h"
+#include "python/bindings.h"
+#include "python/camera.h"
+#include "python/objects.h"
+
+namespace py = pybind11;
+
+namespace uw {
+
+namespace {
+
+/// What a file's fault is reported at, beside its name.
+constexpr const char* k_where = "read_vdb";
+
+py::tuple read_vdb(const std::filesystem::path& file, const std::string& name) {
+    GridArray array;
+    VdbHeader header;
+    {
+        const py::gil_scoped_release release;
+        header = read_vdb_header(file, k_where);
+        array = read_grid_array(
+            header, name.empty() && header.grids.size() == 1 ? header.grids[0].name : name,
+            k_where);
+    }
+    const auto owned = new std::vector<float>(std::move(array.values));
+    const py::capsule owner(owned,
+                            [](void* values) { delete static_cast<std::vector<float>*>(values); });
+    const std::vector<py::ssize_t> shape(array.size.begin(), array.size.end());
+    const py::array_t<float> values(shape, owned->data(), owner);
+    // As a scene places it that does not say how.
+    const Placement placement = decide_placement(header, {});
+    const double shift = placement.centering == Centering::cell ? 0.5 : 0.0;
+    const Vector3 first = Vector3(array.first[0], array.first[1], array.first[2]) + shift;
+    const Affine world_from_index =
+        upright_from_file(placement.up) * array.file_from_index * Affine::translation(first);
+    return py::make_tuple(array.name, values, matrix_of(world_from_index));
+}
+
+py::object box_of(const Bounds& bounds) {
+    if (bounds.empty()) return py::none();
+    const auto corner = [](const Point3& p) { return py::make_tuple(p.x, p.y, p.z); };
+    return py::make_tuple(corner(bounds.min), corner(bounds.max));
+}
+
+py::dict grid_of(const GridInspection& grid) {
+    py::dict dict;
+    dict["name"] = grid.summary.name;
+    dict["type"] = grid.summary.value_type;
+    dict["class"] = grid.summary.grid_class;
+    dict["unusable"] = grid.unusable;
+    dict["unread"] = grid.unread;
+    dict["transform"] = grid.transform;
+    dict["voxel_size"] = py::make_tuple(grid.voxel_size.x, grid.voxel_size.y, grid.voxel_size.z);
+    dict["bounds"] = box_of(grid.world_bounds);
+    dict["active_voxels"] = grid.active_voxels;
+    for (const char* key : {"min", "mean", "max"}) dict[key] = py::none();
+    if (!grid.values) return dict;
+    dict["min"] = grid.values->min;
+    dict["mean"] = grid.values->mean;
+    dict["max"] = grid.values->max;
+    return dict;
+}
+
+py::dict inspect(const std::filesystem::path& file) {
+    VdbInspection inspection;
+    {
+        const py::gil_scoped_release release;
+        inspection = inspect_vdb(file, "inspect");
+    }
+    py::list grids;
+    for (const GridInspection& grid : inspection.grids) grids.append(grid_of(grid));
+    py::dict dict;
+    dict["creator"] = inspection.header.creator;
+    dict["centering"] = inspection.placement.centering == Centering::cell ? "cell" : "node";
+    dict["up"] = inspection.placement.up == UpAxis::z ? "z" : "y";
+    dict["grids"] = grids;
+    return dict;
+}
+
+/// The camera of a file, as the section of a scene that describes it and by itself.
+py::dict load_calibration(const std::filesystem::path& file, const std::string& camera) {
+    const Calibration calibration = read_calibration(file, camera);
+    const std::string text = write_calibration(CalibrationFormat::scene, calibration.desc);
+    py::dict dict;
+    dict["format"] = std::string(word_of(calibration.format));
+    dict["name"] = calibration.camera;
+    dict["names"] = calibration.cameras;
+    dict["model"] = calibration.model;
+    dict["warnings"] = calibration.warnings;
+    dict["section"] = object_of(parse_yaml(text, "calibration"))["camera"];
+    dict["camera"] = camera_of(calibration.desc);
+    return dict;
+}
+
+}  // namespace
+
+void bind_files(py::module_& module) {
+    module.def("read_vdb", read_vdb, py::arg("file"), py::arg("grid"));
+    module.def("inspect", inspect, py::arg("file"));
+    module.def("load_calibration", load_calibration, py::arg("file"), py::arg("camera"));
+}
+
+}  // namespace uw

@@ -1,0 +1,426 @@
+#include "python/rendering.h"
+
+#include <fmt/format.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "cli/validate/validation.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/base/text.h"
+#include "core/image/image_file.h"
+#include "core/image/pixel_image.h"
+#include "python/bindings.h"
+#include "python/scene.h"
+#include "render/image_derivative.h"
+#include "render/image_header.h"
+#include "render/resolved_scene.h"
+#include "render/scene_loading.h"
+
+namespace uw {
+
+namespace {
+
+// A person who presses Ctrl-C does not notice it, and neither does the work.
+constexpr std::chrono::milliseconds k_interval{20};
+
+}  // namespace
+
+std::vector<WatchedTask::News> WatchedTask::take_news() {
+    return std::exchange(news_, {});
+}
+
+bool WatchedTask::tell(const std::string& stage, double fraction) {
+    if (is_cancelled_) return false;
+    const std::lock_guard lock(mutex_);
+    const bool goes_on =
+        !news_.empty() && news_.back().stage == stage && fraction > 0 && news_.back().fraction > 0;
+    if (goes_on)
+        news_.back().fraction = fraction;
+    else
+        news_.push_back({stage, fraction});
+    return true;
+}
+
+void WatchedTask::run(const std::function<void()>& work, const Watch& watch) {
+    is_done_ = false;
+    is_cancelled_ = false;
+    news_.clear();
+    std::exception_ptr fault, stop;
+    std::thread worker([&] {
+        const StopScope scope(is_cancelled_);
+        try {
+            work();
+        } catch (...) {
+            fault = std::current_exception();
+        }
+        const std::lock_guard lock(mutex_);
+        is_done_ = true;
+        changed_.notify_all();
+    });
+    const auto look = [&](const std::vector<News>& news) {
+        if (stop) return;
+        try {
+            watch(news);
+        } catch (...) {
+            stop = std::current_exception();
+            is_cancelled_ = true;
+        }
+    };
+    std::unique_lock lock(mutex_);
+    while (!changed_.wait_for(lock, k_interval, [this] { return is_done_; })) {
+        const std::vector<News> news = take_news();
+        lock.unlock();
+        look(news);
+        lock.lock();
+    }
+    lock.unlock();
+    worker.join();
+    if (!fault) look(take_news());
+    if (stop) std::rethrow_exception(stop);
+    if (fault) std::rethrow_exception(fault);
+}
+
+namespace py = pybind11;
+
+void check_signals() {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+void run_interruptible(WatchedTask& task, const std::function<void()>& work) {
+    const py::gil_scoped_release release;
+    task.run(work, [](const std::vector<WatchedTask::News>& /*news*/) { check_signals(); });
+}
+
+void save(const ImageObject& image, const std::filesystem::path& file,
+          std::optional<double> exposure, const ExrOptions& options) {
+    if (file.extension() == ".exr") {
+        write_exr(file, image.film, image.metadata, options);
+        return;
+    }
+    if (file.extension() != ".png")
+        throw UsageError(fmt::format(
+            "save: {}: it is written as OpenEXR or PNG; give a name that ends in .exr or .png",
+            printable(file.string(), 300)));
+    ImageMetadata metadata = image.metadata;
+    const double factor = exposure ? *exposure : automatic_exposure(image.film).value_or(1.0);
+    metadata["exposure"] = factor;
+    write_png(file, make_preview(image.film, factor), metadata);
+}
+
+}  // namespace uw
+
+namespace uw {
+
+namespace {
+
+/// A view of all the film's values that keeps the image alive: rows, columns, channels.
+py::array_t<float> pixels(const py::object& self) {
+    const auto& film = self.cast<ImageObject&>().film;
+    const PixelWindow& window = film.window();
+    const auto width = static_cast<py::ssize_t>(window.width());
+    const auto channels = static_cast<py::ssize_t>(film.channel_names().size());
+    constexpr auto k_size = static_cast<py::ssize_t>(sizeof(float));
+    return {{static_cast<py::ssize_t>(window.height()), width, channels},
+            {width * channels * k_size, channels * k_size, k_size},
+            film.values().data(),
+            self};
+}
+
+/// A derivative (rows, columns, bands), a view that keeps the image alive.
+py::array_t<float> derivative(const py::object& self, const std::string& name) {
+    const auto& image = self.cast<ImageObject&>();
+    const auto found = image.derivatives.find(name);
+    if (found == image.derivatives.end())
+        throw py::key_error(name + ": request it by derivatives=[...] when rendering");
+    const PixelWindow& window = image.film.window();
+    const std::vector<py::ssize_t> shape{window.height(), window.width(),
+                                         static_cast<py::ssize_t>(image.bands_nm.size())};
+    return py::array_t<float>(shape, found->second.data(), self);
+}
+
+double exposure_of(const ImageObject& image, std::optional<double> exposure) {
+    return exposure ? *exposure : automatic_exposure(image.film).value_or(1.0);
+}
+
+py::array_t<std::uint8_t> srgb(const ImageObject& image, std::optional<double> exposure) {
+    Preview preview;
+    {
+        const py::gil_scoped_release release;
+        preview = make_preview(image.film, exposure_of(image, exposure));
+    }
+    py::array_t<std::uint8_t> pixels({preview.height(), preview.width(), 3});
+    static_assert(sizeof(Srgb8) == 3);
+    std::memcpy(pixels.mutable_data(), preview.values().data(), 3 * preview.size());
+    return pixels;
+}
+
+py::dict report(const ImageObject& image) {
+    const RenderReport& r = image.report;
+    py::dict dict;
+    dict["pixels"] = r.pixels;
+    dict["camera_rays"] = r.camera_rays;
+    dict["splat_rays"] = r.splat_rays;
+    dict["light_bytes"] = r.light_bytes;
+    dict["active_voxels"] = r.active_voxels;
+    dict["grid_bytes"] = r.grid_bytes;
+    dict["triangles"] = r.triangles;
+    dict["samples"] = r.paths.samples;
+    dict["error"] = r.paths.error;
+    dict["multiple_error"] = r.multiple_error;
+    dict["exposure_parts"] = r.exposure_parts;
+    dict["motion_pixels"] = r.motion_pixels;
+    dict["snow_particles"] = r.snow_particles;
+    return dict;
+}
+
+void save_image(const ImageObject& image, const std::filesystem::path& file,
+                std::optional<double> exposure, const std::string& precision) {
+    ExrOptions options;
+    const auto* const found = std::ranges::find(k_precision_names, precision,
+                                                [](const auto& word) { return word.first; });
+    if (found == k_precision_names.end())
+        throw UsageError(fmt::format("save: precision: unknown '{}'; use {}", printable(precision),
+                                     alternatives(words_of(k_precision_names))));
+    options.precision = found->second;
+    WatchedTask task;
+    run_interruptible(task, [&] { save(image, file, exposure, options); });
+}
+
+py::tuple window(const ImageObject& image) {
+    const PixelWindow& w = image.film.window();
+    return py::make_tuple(w.x0, w.y0, w.x1, w.y1);
+}
+
+}  // namespace
+
+void bind_image(py::module_& module) {
+    py::class_<ImageObject, std::shared_ptr<ImageObject>>(module, "Image")
+        .def_property_readonly("pixels", pixels)
+        .def("derivative", derivative, py::arg("name"))
+        .def_property_readonly("channels",
+                               [](const ImageObject& i) { return i.film.channel_names(); })
+        .def_property_readonly("window", window)
+        .def_property_readonly("report", report)
+        .def_readonly("bands", &ImageObject::bands_nm)
+        .def_readonly("metadata", &ImageObject::metadata)
+        .def_readonly("objects", &ImageObject::objects)
+        .def_readonly("materials", &ImageObject::materials)
+        .def_property_readonly("warnings", [](const ImageObject& i) { return i.report.warnings; })
+        .def("automatic_exposure",
+             [](const ImageObject& image) { return automatic_exposure(image.film); })
+        .def("srgb", srgb, py::arg("exposure"))
+        .def("save", save_image, py::arg("file"), py::arg("exposure"), py::arg("precision"));
+}
+
+}  // namespace uw
+
+namespace uw {
+
+namespace {
+
+constexpr std::size_t k_longest_value = 80;  // in messages
+
+/// What of a scene is rendered, and how.
+struct Wanted {
+    ImageRequest image;
+    ImageChoice choice;
+    RenderOptions options;
+    std::vector<std::string> derivatives;
+};
+
+[[noreturn]] void refuse_setting(const py::dict& settings, const char* key, const char* expected) {
+    throw UsageError(
+        fmt::format("{}: expected {}, found {}", key, expected,
+                    printable(py::repr(settings[key]).cast<std::string>(), k_longest_value)));
+}
+
+template <class T>
+void take_setting(const py::dict& settings, const char* key, T& value, const char* expected) {
+    if (!settings.contains(key)) return;
+    try {
+        value = settings[key].cast<T>();
+    } catch (const py::cast_error&) {
+        refuse_setting(settings, key, expected);
+    }
+}
+
+Wanted wanted_of(const py::dict& settings) {
+    Wanted wanted;
+    const auto take = [&](const char* key, auto& value, const char* expected) {
+        take_setting(settings, key, value, expected);
+    };
+    const char* const name = "a name";
+    const char* const number = "a whole number of 0 or more";
+    take("quality", wanted.image.quality, name);
+    take("integrator", wanted.image.integrator, name);
+    take("samples", wanted.image.samples, "a whole number of 1 or more");
+    take("error", wanted.image.error, "a number");
+    take("size", wanted.image.size, "(width, height) in whole pixels");
+    take("layers", wanted.options.layers, "names of layers");
+    take("orders", wanted.options.paths.orders, number);
+    take("frame", wanted.choice.frame, "a whole number");
+    take("camera", wanted.choice.camera, number);
+    take("derivatives", wanted.derivatives, "names of derivatives");
+    if (wanted.image.samples && *wanted.image.samples < 1)
+        refuse_setting(settings, "samples", "a whole number of 1 or more");
+    if (wanted.image.size && std::ranges::min(*wanted.image.size) < 1)
+        refuse_setting(settings, "size", "(width, height) of 1 pixel or more");
+    if (wanted.options.paths.orders < 0) refuse_setting(settings, "orders", number);
+    wanted.options.paths.error = wanted.image.error;
+    wanted.options.frame = wanted.choice.frame.value_or(0);
+    std::optional<std::array<int, 4>> crop;
+    take("crop", crop, "(x0, y0, x1, y1) in whole pixels");
+    if (crop) wanted.options.window = PixelWindow{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
+    return wanted;
+}
+
+std::map<int, std::string> numbered(const auto& names) {
+    std::map<int, std::string> result;
+    for (const auto& entry : names) result[static_cast<int>(result.size()) + 1] = entry.name;
+    return result;
+}
+
+class RendererObject {
+  public:
+    explicit RendererObject(int threads)
+        : threads_(threads), renderer_([this](const std::string& stage, double fraction) {
+              return task_.tell(stage, fraction);
+          }) {}
+
+    std::shared_ptr<ImageObject> render(const SceneObject& scene, const py::dict& settings,
+                                        const py::object& progress) {
+        const std::unique_lock alone(busy_, std::try_to_lock);
+        if (!alone)
+            throw UsageError(
+                "render: this Renderer is at work, in another thread or further up; make one for "
+                "each thread");
+        const Wanted wanted = wanted_of(settings);
+        // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): other threads may change it
+        const std::shared_ptr<const SceneDesc> desc = scene.desc();
+        std::shared_ptr<ImageObject> image;
+        const py::gil_scoped_release release;
+        task_.run([&] { with_threads(threads_, [&] { image = work(*desc, wanted); }); },
+                  [&](const std::vector<WatchedTask::News>& news) { watch(news, progress); });
+        return image;
+    }
+
+    void clear() {
+        const std::unique_lock alone(busy_, std::try_to_lock);
+        if (!alone) throw UsageError("clear: this Renderer is at work in another thread");
+        renderer_ = Renderer([this](const std::string& stage, double fraction) {
+            return task_.tell(stage, fraction);
+        });
+    }
+
+  private:
+    std::shared_ptr<ImageObject> work(const SceneDesc& desc, const Wanted& wanted) {
+        SceneDesc requested = desc;
+        apply_request(wanted.image, requested);
+        renderer_.set_scene(scene_of_image(requested, wanted.choice));
+        renderer_.render(wanted.options);
+        const AssembledScene& scene = renderer_.assembled();
+        ImageObject image{
+            renderer_.release_film(),
+            metadata_of(scene, wanted.choice.frame, wanted.options.paths, renderer_.report()),
+            renderer_.report(),
+            scene.desc.water.bands_nm,
+            {},
+            {}};
+        if (requests_ids(wanted.options.layers)) {
+            const SurfaceNames& names = scene.surfaces->names();
+            add_id_names(names, image.metadata);
+            image.objects = numbered(names.objects);
+            image.materials = numbered(names.materials);
+        }
+        for (const std::string& name : wanted.derivatives)
+            image.derivatives[name] = image_derivative(renderer_, name, wanted.options);
+        return std::make_shared<ImageObject>(std::move(image));
+    }
+
+    static void watch(const std::vector<WatchedTask::News>& news, const py::object& progress) {
+        check_signals();
+        const py::gil_scoped_acquire acquire;
+        if (progress.is_none()) return;
+        for (const auto& [stage, fraction] : news)
+            if (progress(stage, fraction).is(py::bool_(false)))
+                throw Interrupted("render: stopped by its progress callback");
+    }
+
+    int threads_;
+    std::mutex busy_;
+    WatchedTask task_;
+    Renderer renderer_;
+};
+
+}  // namespace
+
+void bind_renderer(py::module_& module) {
+    py::class_<RendererObject>(module, "Renderer")
+        .def(py::init<int>(), py::arg("threads"))
+        .def("render", &RendererObject::render, py::arg("scene"), py::arg("settings"),
+             py::arg("progress"))
+        .def("clear", &RendererObject::clear);
+}
+
+}  // namespace uw
+
+namespace uw {
+
+namespace {
+
+py::dict check_of(const Check& check, const std::vector<double>& bands_nm) {
+    py::dict dict;
+    dict["left"] = check.left;
+    dict["right"] = check.right;
+    dict["component"] = check.component.name;
+    dict["band"] = bands_nm[check.band];
+    dict["largest"] = check.largest;
+    dict["rms"] = check.rms;
+    dict["tolerance"] = check.tolerance;
+    dict["passed"] = check.passed();
+    return dict;
+}
+
+py::list validate(const SceneObject& scene, double tolerance, std::size_t camera,
+                  std::optional<int> frame) {
+    SceneDesc desc = *scene.desc();
+    desc.water.snow.reset();  // particles do not depend on the method
+    WatchedTask task;
+    ValidationOptions options;
+    options.tolerance = tolerance;
+    options.proceed = [&task] { return task.tell("validation", 0); };
+    SceneValidation validation;
+    run_interruptible(task, [&] {
+        validation = validate_scene(scene_of_image(desc, {frame, camera}),
+                                    desc.file.filename().string(), options);
+    });
+    py::list checks;
+    for (const Check& check : validation.checks)
+        checks.append(check_of(check, validation.bands_nm));
+    return checks;
+}
+
+}  // namespace
+
+void bind_validate(py::module_& module) {
+    module.def("validate", validate, py::arg("scene"), py::arg("tolerance"), py::arg("camera"),
+               py::arg("frame"));
+}
+
+}  // namespace uw

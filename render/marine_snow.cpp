@@ -1,0 +1,455 @@
+#include "render/marine_snow.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/base/parallel.h"
+#include "core/passes/marine_snow.h"
+
+namespace uw {
+
+namespace {
+
+// Particles are drawn where they cover so much of a pixel, as long as they are not too many.
+constexpr double k_least_cover = 1e-3;
+// Above this, single particles are missed by the eye.
+constexpr double k_visible_cover = 0.02;
+// Light from beyond this optical depth, in the clearest band, is a thousandth of what it was.
+constexpr double k_seen_depth = 6.9;
+constexpr double k_farthest = 200;  // m
+// Neighbouring covers that are tried.
+constexpr double k_cover_step = 1.05;
+
+/// The solid angle in water of the whole image [sr].
+double view_angle(const Camera& camera) {
+    constexpr int k_steps = 32;
+    const auto ray = [&](int i, int j) {
+        return camera.refracted_ray(static_cast<double>(i) / k_steps * camera.width(),
+                                    static_cast<double>(j) / k_steps * camera.height());
+    };
+    double sum = 0;
+    for (int j = 0; j < k_steps; ++j)
+        for (int i = 0; i < k_steps; ++i) {
+            const auto a = ray(i, j), b = ray(i + 1, j), c = ray(i, j + 1);
+            if (a && b && c)
+                sum += glm::length(
+                    glm::cross(b->direction - a->direction, c->direction - a->direction));
+        }
+    return sum;
+}
+
+}  // namespace
+
+double SnowModel::drawn_depth(double distance) const {
+    double depth = 0;
+    for (std::size_t k = 0; k < ranges.size(); ++k)
+        depth += field.classes()[k].attenuation() * std::min(distance, ranges[k]);
+    return depth;
+}
+
+std::vector<BeyondSnow::Part> SnowModel::parts() const {
+    double all = 0;
+    for (const SnowClass& kind : field.classes()) all += kind.attenuation();
+    std::vector<BeyondSnow::Part> parts;
+    for (std::size_t k = 0; k < ranges.size(); ++k)
+        parts.push_back({ranges[k], field.classes()[k].attenuation() / all});
+    return parts;
+}
+
+std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Camera& camera,
+                                                 const Medium& medium) {
+    auto model = std::make_shared<SnowModel>(SnowModel{.field = SnowField(desc),
+                                                       .water = without_snow(desc, medium),
+                                                       .alone = snow_alone(desc, medium)});
+    const std::vector<SnowClass>& classes = model->field.classes();
+    const double least_c = medium.uniform.attenuation().least(medium.wavelengths_nm.size());
+    const double reach = std::min(k_farthest, k_seen_depth / std::max(least_c, 1e-6));
+    const double view = view_angle(camera);
+    const double pixel = view / camera.width() / camera.height();
+    model->ranges.assign(classes.size(), reach);
+    double wanted = 0;  // of particles in view
+    for (double cover = k_least_cover; view > 0; cover *= k_cover_step) {
+        double count = 0;
+        for (std::size_t k = 0; k < classes.size(); ++k) {
+            double& range = model->ranges[k];
+            range = std::min(reach, std::sqrt(classes[k].mean_area / (cover * pixel)));
+            count += classes[k].number * view * range * range * range / 3;
+        }
+        model->expected_count = count;
+        if (wanted == 0) wanted = count;
+        if (count > desc.most) continue;
+        if (cover > k_visible_cover)
+            model->warning = fmt::format(
+                "{}: of about {:.3g} particles in view {:.3g} are drawn, those that cover {:.2g} % "
+                "of a pixel or more, and the others are their mean; give a greater least diameter "
+                "or a smaller number, or most",
+                desc.where, wanted, count, 100 * cover);
+        break;
+    }
+    return model;
+}
+
+namespace {
+
+const TrajectoryDesc* trajectory_of(const SceneDesc& scene) {
+    if (scene.rig_trajectory) return &*scene.rig_trajectory;
+    return scene.camera.trajectory ? &*scene.camera.trajectory : nullptr;
+}
+
+/// Where the camera of an image moves while its shutter is open; `from` and `to` in time.
+Affine moved(const Trajectory& trajectory, double from, double to, const Affine& pose) {
+    return trajectory.at(to).affine() * trajectory.at(from).affine().inverse() * pose;
+}
+
+}  // namespace
+
+std::vector<ExposureView> exposure_views(const SceneDesc& scene) {
+    std::vector<ExposureView> views{{Camera(scene.camera), 0, {}}};
+    const double half = 0.5 * scene.render.shutter;
+    if (!(half > 0)) return views;
+    const double middle = scene.time.value_or(0);
+    const TrajectoryDesc* trajectory = trajectory_of(scene);
+    for (const double offset : {-half, half}) {
+        CameraDesc camera = scene.camera;
+        if (trajectory != nullptr) {
+            const Trajectory& path = *trajectory->trajectory;
+            const double time = middle + offset;
+            if (time < path.first_time() || time > path.last_time()) continue;
+            camera.world_from_camera = moved(path, middle, time, camera.world_from_camera);
+        }
+        views.push_back({Camera(camera), offset,
+                         scene.camera.world_from_camera * camera.world_from_camera.inverse()});
+    }
+    return views;
+}
+
+namespace {
+
+// Rays along each edge of the image and in rows between. What bulges between two of them, of the
+// edges of a distorted image, is less than (angle between them)^2 / 8 of the distance.
+constexpr int k_hull_steps = 48;
+constexpr double k_bulge = 1e-3;
+
+/// The rays of an image position through the centre of the aperture and around its rim.
+void append_rays(const Camera& camera, double x, double y, std::vector<Ray>& rays) {
+    if (const auto ray = camera.refracted_ray(x, y)) rays.push_back(*ray);
+    if (!camera.has_aperture()) return;
+    // An octagon around the circle.
+    constexpr double k_around = 1.0824;  // 1 / cos 22.5 degrees
+    for (int i = 0; i < 8; ++i) {
+        const double angle = i * 0.7853981633974483;
+        const auto ray =
+            camera.aperture_ray(x, y, {k_around * std::cos(angle), k_around * std::sin(angle)});
+        if (ray) rays.push_back(*ray);
+    }
+}
+
+/// Outward normals of a pyramid through the corners of the view; wherever they point, the body
+/// between planes across them holds all that is seen.
+std::vector<Vector3> side_normals(const Camera& camera) {
+    const double width = camera.width(), height = camera.height();
+    const std::array<std::optional<Ray>, 4> corners{
+        camera.refracted_ray(0, 0), camera.refracted_ray(width, 0),
+        camera.refracted_ray(width, height), camera.refracted_ray(0, height)};
+    const auto axis = camera.refracted_ray(0.5 * width, 0.5 * height);
+    std::vector<Vector3> normals;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const auto &a = corners[i], &b = corners[(i + 1) % corners.size()];
+        if (!a || !b || !axis) continue;
+        const Vector3 across = glm::cross(a->direction, b->direction);
+        if (glm::length(across) < 1e-9) continue;
+        const double side = glm::dot(across, axis->direction) > 0 ? -1 : 1;
+        normals.push_back(side / glm::length(across) * across);
+    }
+    if (axis) normals.push_back(axis->direction);
+    return normals;
+}
+
+}  // namespace
+
+ViewHull::ViewHull(const std::vector<ExposureView>& views, double reach, const Vector3& drift) {
+    for (const Vector3& normal : side_normals(views.front().camera))
+        planes_.push_back({normal, -1e300});
+    std::vector<Ray> rays;
+    for (const ExposureView& view : views) {
+        rays.clear();
+        for (int j = 0; j <= k_hull_steps; ++j)
+            for (int i = 0; i <= k_hull_steps; ++i) {
+                const bool is_edge = i == 0 || j == 0 || i == k_hull_steps || j == k_hull_steps;
+                if (!is_edge && (i % 8 != 0 || j % 8 != 0)) continue;
+                append_rays(view.camera,
+                            static_cast<double>(i) / k_hull_steps * view.camera.width(),
+                            static_cast<double>(j) / k_hull_steps * view.camera.height(), rays);
+            }
+        for (const Ray& ray : rays)
+            for (const double s : {0.0, reach}) {
+                const Point3 seen = ray.at(s) - view.time * drift;
+                bounds_.extend(seen);
+                for (Plane& plane : planes_)
+                    plane.offset =
+                        std::max(plane.offset, glm::dot(plane.normal, from_origin(seen)));
+            }
+    }
+    if (bounds_.empty()) return;
+    const double margin = k_bulge * reach;
+    for (int axis = 0; axis < 3; ++axis) {
+        bounds_.min[axis] -= margin;
+        bounds_.max[axis] += margin;
+    }
+    for (Plane& plane : planes_) plane.offset += margin;
+}
+
+void SnowLighting::radiance(const Point3& x, const Ray& ray, double distance,
+                            std::span<double> radiance) const {
+    const std::vector<Lamp>& emitters = *scene_.emitters;
+    const std::size_t constituents = scene_.medium->constituents.size();
+    thread_local std::vector<double> to_camera, column;
+    to_camera.assign(constituents, 0.0);
+    column.resize(constituents);
+    if (constituents > 0) scene_.field->column(ray.origin, x, to_camera);
+    std::ranges::fill(radiance, 0.0);
+    for (std::size_t j = 0; j < emitters.size(); ++j) {
+        const Lamp& lamp = emitters[j];
+        const Point3 origin = lamp.origin(x);
+        const Vector3 from_lamp = x - origin;
+        const double radius = glm::length(from_lamp);
+        const double relative = lamp.relative_intensity(from_lamp);
+        if (lamp.holds(radius) || relative <= 0 || scene_.surfaces->occluded(origin, x)) continue;
+        if (constituents > 0) {
+            if (deep_shadows_.empty())
+                scene_.field->column(origin, x, column);
+            else
+                deep_shadows_[j]->columns(std::span<const Point3>(&x, 1), column);
+            add(column, to_camera);
+        }
+        const double psi = std::atan2(glm::length(glm::cross(from_lamp, ray.direction)),
+                                      -glm::dot(from_lamp, ray.direction));
+        const double factor = relative / lamp.spread(radius) * LambertSphere::at(psi);
+        for (std::size_t b = 0; b < radiance.size(); ++b)
+            radiance[b] += factor * lamp.axis_intensity()[b] *
+                           std::exp(-attenuation_.optical_depth(b, radius + distance, column));
+    }
+}
+
+namespace {
+
+/// Cells of a class of particles in one layer of its lattice.
+struct CellLayer {
+    std::size_t kind;
+    std::int64_t first;  // index along x
+    double reach;
+    const ViewHull* hull;
+};
+
+/// Two directions across a ray.
+struct AcrossAxes {
+    Vector3 u, v;
+
+    explicit AcrossAxes(const Vector3& direction) {
+        const Vector3 other = std::abs(direction.x) < 0.6 ? Vector3(1, 0, 0) : Vector3(0, 1, 0);
+        u = glm::normalize(glm::cross(direction, other));
+        v = glm::cross(direction, u);
+    }
+};
+
+/// How far from `x` a ray passes the plane across `direction` through it.
+Vector3 miss(const Ray& ray, const Point3& x, const Vector3& direction) {
+    const double s = glm::dot(x - ray.origin, direction) / glm::dot(ray.direction, direction);
+    return ray.at(s) - x;
+}
+
+/// Metres in that plane per pixel; empty where the image has no neighbouring rays.
+std::optional<PlaneMap> plane_from_pixels(const Camera& camera, const ImagePoint& at,
+                                          const Ray& ray, const Point3& x, const AcrossAxes& axes) {
+    constexpr double k_step = 0.5;  // pixels
+    const auto moved = [&](double dx, double dy) -> std::optional<std::array<double, 2>> {
+        for (const double sign : {1.0, -1.0}) {
+            const auto beside = camera.refracted_ray(at.x + sign * dx, at.y + sign * dy);
+            if (!beside) continue;
+            const Vector3 offset = sign / k_step * miss(*beside, x, ray.direction);
+            return std::array<double, 2>{glm::dot(offset, axes.u), glm::dot(offset, axes.v)};
+        }
+        return std::nullopt;
+    };
+    const auto right = moved(k_step, 0), down = moved(0, k_step);
+    if (!right || !down) return std::nullopt;
+    const PlaneMap map{(*right)[0], (*right)[1], (*down)[0], (*down)[1]};
+    if (!(std::abs(map.determinant()) > 0)) return std::nullopt;
+    return map;
+}
+
+/// Where an image out of focus shows light of `x`, by the point of the aperture that it passes.
+PlaneMap blur_of(const Camera& camera, const ImagePoint& at, const Ray& ray, const Point3& x,
+                 const AcrossAxes& axes, const PlaneMap& pixels_from_plane) {
+    if (!camera.has_aperture()) return {};
+    PlaneMap misses;
+    if (const auto side = camera.aperture_ray(at.x, at.y, {1, 0})) {
+        const Vector3 offset = miss(*side, x, ray.direction);
+        misses.xx = glm::dot(offset, axes.u);
+        misses.yx = glm::dot(offset, axes.v);
+    }
+    if (const auto side = camera.aperture_ray(at.x, at.y, {0, 1})) {
+        const Vector3 offset = miss(*side, x, ray.direction);
+        misses.xy = glm::dot(offset, axes.u);
+        misses.yy = glm::dot(offset, axes.v);
+    }
+    return pixels_from_plane * misses;
+}
+
+/// The path of the image of what is at `x` in the middle of the exposure.
+Footprint::Path path_of(const std::vector<ExposureView>& views, const ImagePoint& at,
+                        const Point3& x, const Vector3& drift, const AcrossAxes& axes,
+                        const PlaneMap& pixels_from_plane) {
+    // Shorter ones [pixels] are straight, and as long as their tangent.
+    constexpr double k_short = 2;
+    Footprint::Path path{{at.x, at.y}, {}, {}};
+    // From the middle to the moments when the shutter opens and closes, in units of the half
+    // exposure; an end that is unknown is taken to mirror the other.
+    std::optional<std::array<double, 2>> before, after;
+    for (std::size_t i = 1; i < views.size(); ++i) {
+        // What the camera sees there at that moment it sees here in the middle.
+        const Point3 there = views[i].middle_from_moment * (x + views[i].time * drift);
+        const Vector3 moved = there - x;
+        const double u = glm::dot(moved, axes.u), v = glm::dot(moved, axes.v);
+        std::array<double, 2> step{pixels_from_plane.xx * u + pixels_from_plane.xy * v,
+                                   pixels_from_plane.yx * u + pixels_from_plane.yy * v};
+        if (std::hypot(step[0], step[1]) > k_short) {
+            const auto image = views.front().camera.project(there);
+            if (!image) continue;
+            step = {image->x - at.x, image->y - at.y};
+        }
+        (views[i].time < 0 ? before : after) = step;
+    }
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double last = after ? (*after)[axis] : (before ? -(*before)[axis] : 0);
+        const double first = before ? (*before)[axis] : -last;
+        path.linear[axis] = 0.5 * (last - first);
+        path.quadratic[axis] = 0.5 * (last + first);
+    }
+    return path;
+}
+
+/// Appends what the window shows of a particle.
+void place(const SnowPlacing& scene, const SnowParticle& particle, double range,
+           const PixelWindow& window, SnowSplats& result) {
+    const Camera& camera = scene.views.front().camera;
+    const Point3& x = particle.position;
+    const auto sight = camera.sight(x);
+    if (!sight) return;
+    const ImagePoint& at = sight->image;
+    const Ray& ray = sight->ray;
+    const double distance = uw::distance(ray.origin, x);
+    if (distance > range || distance <= 0.5 * particle.diameter) return;
+    // Most that are not drawn are hidden, or else outside the window: first what tells the sooner.
+    const bool is_within =
+        at.x >= window.x0 && at.x < window.x1 && at.y >= window.y0 && at.y < window.y1;
+    const auto end_of_sight = [&] {
+        return scene.surfaces.empty() ? k_infinitely_far : scene.surfaces.hit_distance(ray);
+    };
+    double end = is_within ? end_of_sight() : k_infinitely_far;
+    if (end <= distance) return;
+    const AcrossAxes axes(ray.direction);
+    const auto plane = plane_from_pixels(camera, at, ray, x, axes);
+    if (!plane) return;
+    const PlaneMap pixels = plane->inverse();
+    const Footprint footprint(path_of(scene.views, at, x, scene.desc.drift, axes, pixels),
+                              0.5 * particle.diameter * pixels,
+                              blur_of(camera, at, ray, x, axes, pixels));
+    const PixelWindow seen = intersection(footprint.bounds(), window);
+    if (seen.width() <= 0 || seen.height() <= 0) return;
+    if (!is_within) end = end_of_sight();
+    if (end <= distance) return;
+    const std::size_t bands = scene.desc.reflectance.size();
+    thread_local std::vector<double> radiance;
+    radiance.resize(bands);
+    scene.lighting.radiance(x, ray, distance, radiance);
+    // The coefficients hold the particles in front of this one, which cover it as well.
+    const double seen_through =
+        std::exp(scene.model.drawn_depth(distance)) * scene.sensor.surface_factor(distance);
+    const auto first = static_cast<std::uint32_t>(result.radiance.size());
+    for (std::size_t b = 0; b < bands; ++b)
+        result.radiance.push_back(
+            static_cast<float>(radiance[b] * scene.desc.reflectance[b] * seen_through));
+    result.splats.push_back(
+        {.distance = distance,
+         .id = particle.id,
+         .hidden = static_cast<float>(scene.veil.share_beyond(at.x, at.y, distance, end)),
+         .radiance = first,
+         .footprint = footprint});
+}
+
+std::int64_t cell_of(double position, double edge) {
+    return static_cast<std::int64_t>(std::floor(position / edge));
+}
+
+/// The particles of a class in one layer of cells.
+void place_layer(const SnowPlacing& scene, const CellLayer& layer, const PixelWindow& window,
+                 SnowSplats& result) {
+    const SnowClass& kind = scene.model.field.classes()[layer.kind];
+    const Vector3 moved = scene.model.field.displacement(scene.time);
+    const Bounds& bounds = layer.hull->bounds();
+    const double margin = 0.5 * kind.greatest;
+    const double around_cell = 0.5 * std::sqrt(3.0) * kind.edge + margin;
+    std::array<std::int64_t, 2> first{}, last{};
+    for (int axis = 1; axis < 3; ++axis) {
+        const auto i = static_cast<std::size_t>(axis - 1);
+        first[i] = cell_of(bounds.min[axis] - margin - moved[axis], kind.edge);
+        last[i] = cell_of(bounds.max[axis] + margin - moved[axis], kind.edge);
+    }
+    thread_local std::vector<SnowParticle> particles;
+    for (std::int64_t j = first[0]; j <= last[0]; ++j)
+        for (std::int64_t k = first[1]; k <= last[1]; ++k) {
+            const SnowCell cell{layer.first, j, k};
+            Point3 centre;
+            for (int axis = 0; axis < 3; ++axis)
+                centre[axis] =
+                    (static_cast<double>(cell[static_cast<std::size_t>(axis)]) + 0.5) * kind.edge +
+                    moved[axis];
+            if (!layer.hull->may_see(centre, around_cell)) continue;
+            particles.clear();
+            scene.model.field.append_particles(layer.kind, cell, scene.time, particles);
+            for (const SnowParticle& particle : particles)
+                if (layer.hull->may_see(particle.position, margin))
+                    place(scene, particle, layer.reach, window, result);
+        }
+}
+
+}  // namespace
+
+SnowSplats SnowPlacing::splats(const PixelWindow& window,
+                               const std::function<void(double fraction)>& progress) const {
+    std::vector<ViewHull> hulls;
+    std::vector<CellLayer> layers;
+    hulls.reserve(model.ranges.size());
+    for (std::size_t k = 0; k < model.ranges.size(); ++k) {
+        const SnowClass& kind = model.field.classes()[k];
+        const ViewHull& hull = hulls.emplace_back(views, model.ranges[k], desc.drift);
+        if (hull.bounds().empty()) continue;
+        const double margin = 0.5 * kind.greatest + model.field.displacement(time).x;
+        const double other = 0.5 * kind.greatest - model.field.displacement(time).x;
+        const std::int64_t first = cell_of(hull.bounds().min.x - margin, kind.edge);
+        const std::int64_t last = cell_of(hull.bounds().max.x + other, kind.edge);
+        for (std::int64_t i = first; i <= last; ++i)
+            layers.push_back({k, i, model.ranges[k], &hull});
+    }
+    std::vector<SnowSplats> parts(layers.size());
+    std::atomic<std::size_t> done = 0;
+    parallel_for(layers.size(), [&](std::size_t i) {
+        place_layer(*this, layers[i], window, parts[i]);
+        progress(static_cast<double>(++done) / static_cast<double>(layers.size()));
+    });
+    SnowSplats all;
+    for (SnowSplats& part : parts) {
+        all.append(part);
+        part = {};
+    }
+    return all;
+}
+
+}  // namespace uw

@@ -1,0 +1,73 @@
+// ctest labels: unit
+#include "core/geometry/gltf_document.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "tests/support/meshes/mesh_fixtures.h"
+#include "tests/support/message_of.h"
+
+namespace uw {
+namespace {
+
+constexpr auto k_least_gltf = R"({"asset":{"version":"2.0"},"extras":7})";
+
+class GltfJson : public testing::Test {
+  protected:
+    nlohmann::json load(const std::string& bytes) const {
+        return load_gltf_json(folder_.write("m.gltf", bytes));
+    }
+    void expect_refused(const std::string& bytes, const std::string& what) const {
+        const std::string message = test::message_of<InputError>([&] { load(bytes); });
+        EXPECT_EQ(message, folder_.path("m.gltf").string() + ": " + what);
+    }
+    test::MeshFolder folder_;
+};
+
+TEST_F(GltfJson, IsTheTextOrTheFirstChunk) {
+    EXPECT_EQ(load(k_least_gltf).at("extras"), 7);
+    EXPECT_EQ(load(test::glb_bytes(k_least_gltf)).at("extras"), 7);
+    EXPECT_EQ(load(test::glb_bytes(k_least_gltf, "1234")).at("extras"), 7);
+}
+
+TEST_F(GltfJson, OfOtherVersionsIsRefused) {
+    expect_refused("{}", "not a glTF file (it has no 'asset')");
+    expect_refused("[]", "not a glTF file (it has no 'asset')");
+    expect_refused(R"({"asset":{}})", "not glTF 2; export it as glTF 2.0");
+    expect_refused(R"({"asset":{"version":"1.0"}})", "not glTF 2; export it as glTF 2.0");
+    std::string glb = test::glb_bytes(k_least_gltf);
+    glb[4] = 1;
+    expect_refused(glb, "not a GLB file of version 2; export it as glTF 2.0");
+    expect_refused("glTF\x02", "not a GLB file of version 2; export it as glTF 2.0");
+}
+
+TEST_F(GltfJson, ThatIsCutOffIsRefused) {
+    const std::string glb = test::glb_bytes(k_least_gltf);
+    expect_refused(glb.substr(0, glb.size() - 1),
+                   "the GLB file is truncated; export the mesh again");
+    std::string forged = glb;
+    forged[15] = '\x7f';  // the chunk's length
+    expect_refused(forged, "the GLB file is truncated; export the mesh again");
+    EXPECT_THROW(load(std::string(k_least_gltf).substr(0, 20)), nlohmann::json::exception);
+}
+
+TEST_F(GltfJson, MayBeNestedAHundredDeep) {
+    const auto nested = [](int depth) {
+        return R"({"asset":{"version":"2.0"},"extras":)" + std::string(depth, '[') +
+               std::string(depth, ']') + "}";
+    };
+    EXPECT_NO_THROW(load(nested(99)));
+    expect_refused(nested(100), "the glTF is nested too deeply");
+    expect_refused(nested(1000000), "the glTF is nested too deeply");
+    // Brackets in a text are none.
+    EXPECT_NO_THROW(
+        load(R"({"asset":{"version":"2.0"},"extras":"\")" + std::string(500, '[') + "\"}"));
+}
+
+TEST_F(GltfJson, ThatIsNoFileCannotBeOpened) {
+    EXPECT_THROW(load_gltf_json(folder_.path("none.gltf")), IoError);
+    EXPECT_THROW(load_gltf_json(folder_.path("")), IoError);
+}
+
+}  // namespace
+}  // namespace uw

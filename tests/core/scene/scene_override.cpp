@@ -1,0 +1,101 @@
+// ctest labels: unit
+#include "core/scene/key_path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/scene/scene_desc.h"
+#include "tests/support/scene_folder.h"
+
+namespace uw {
+namespace {
+
+constexpr std::string_view k_scene =
+    "uwvdb: 1\n"
+    "camera: {resolution: [64, 48], intrinsics: {fx: 50}}\n"
+    "lamps:\n"
+    "- {name: left, position: [0, 0, 0], intensity: 1}\n"
+    "- {position: [0, 0, 0], intensity: 2}\n";
+
+SceneDesc read_with(const std::vector<std::string>& overrides) {
+    const test::SceneFolder folder;
+    return read_scene(folder.write("scene.yaml", k_scene), overrides);
+}
+
+std::string error_of(const std::vector<std::string>& overrides) {
+    try {
+        read_with(overrides);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no InputError";
+}
+
+TEST(SceneOverride, setsByIndexAndByName) {
+    EXPECT_EQ(read_with({"lamps[1].intensity=[4, 5, 6]"}).lamps[1].intensity, (PerBand{4, 5, 6}));
+    EXPECT_EQ(read_with({"lamps.left.intensity=7"}).lamps[0].intensity, (PerBand{7, 7, 7}));
+    EXPECT_EQ(read_with({"lamps.lamp2.intensity=8"}).lamps[1].intensity, (PerBand{8, 8, 8}));
+    EXPECT_EQ(read_with({"lamps[0].position[2]=3.5"}).lamps[0].position, (Point3{0, 0, 3.5}));
+}
+
+TEST(SceneOverride, makesMapsOnTheWay) {
+    const SceneDesc scene = read_with(
+        {"camera.pose.position=[0, 1, 2]", "camera.pose.look_at=[0, 1, 3]", "water.bands=[500]"});
+    EXPECT_EQ(scene.camera.world_from_camera.offset(), Vector3(0, 1, 2));
+    EXPECT_EQ(scene.water.bands_nm, std::vector<double>{500});
+}
+
+TEST(SceneOverride, replacesWholeValuesAndTheLastOneHolds) {
+    const SceneDesc scene =
+        read_with({"camera.intrinsics={fov_x: 60}", "render.samples=2", "render.samples=3"});
+    EXPECT_NEAR(scene.camera.intrinsics.fx, 32 * std::sqrt(3.0), 1e-12);  // 32 / tan 30 deg
+    EXPECT_EQ(scene.render.samples, 3);
+}
+
+TEST(SceneOverride, reachesGridsWithBracketsInTheirName) {
+    const test::SceneFolder folder;
+    folder.write("a.vdb", "x");
+    const auto file = folder.write(
+        "scene.yaml",
+        std::string(k_scene) + "volumes:\n- {file: a.vdb, grids: {\"density[1]\": {small: 1}}}\n");
+    const SceneDesc scene = read_scene(file, {"volumes[0].grids.density[1].small=9"});
+    EXPECT_EQ(scene.volumes.at(0).grids.at(0).small_ppm, 9);
+}
+
+TEST(SceneOverride, wrongFormIsWrongUsage) {
+    std::string deep = "a";
+    for (int i = 0; i < 100000; ++i) deep += ".a";
+    EXPECT_THROW(read_with({deep + "=1"}), UsageError);
+    for (const char* const text : {"render.samples", "=3", "a..b=3", "a.=3", "[0].x=3", "a[=3",
+                                   "a[x]=3", "a[1]b=3", "a[-1]=3", ".a=3", ""}) {
+        EXPECT_THROW(read_with({text}), UsageError) << text;
+    }
+}
+
+TEST(SceneOverride, errorsNameTheOverrideAndTheMend) {
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"water.bnds=[1, 2, 3]",
+         "--set water.bnds=[1, 2, 3]: water.bnds: unknown key; did you mean 'bands'?"},
+        {"lamps[2].intensity=3",
+         "--set lamps[2].intensity=3: lamps: has 2 entries, so there is no [2]; count from [0]"},
+        {"lamps.left.positon[0]=3",
+         "lamps.left.positon: is not in the scene, so there is no [0]; did you mean 'position'?"},
+        {"volumes[0].up=z", "volumes: has 0 entries, so there is no [0]; set the whole list"},
+        {"lamps.right.intensity=3",
+         "lamps: is a list, and none of its 2 entries is called 'right'; there are: left, lamp2"},
+        {"camera[0]=3", "camera: is a map, not a list; leave out [0]"},
+        {"uwvdb.x=3", "uwvdb: is the number 1, so it has no key 'x'; set uwvdb itself"},
+        {"render.samples=", "render.samples: has no value"},
+        {"render.samples=abc", "--set render.samples=abc: render.samples: expected a number"},
+        {"lamps=[1, 2", "--set lamps=[1, 2: end of sequence flow not found; correct"},
+    };
+    for (const auto& [text, expected] : cases) {
+        EXPECT_NE(error_of({text}).find(expected), std::string::npos)
+            << text << "\n  gave:     " << error_of({text}) << "\n  expected: " << expected;
+    }
+}
+
+}  // namespace
+}  // namespace uw
