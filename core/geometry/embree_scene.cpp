@@ -275,7 +275,7 @@ unsigned occluded_packet(const TracedScene& traced, std::span<Query> queries) {
 
 namespace {
 
-// Of a triangle in Embree's structure, measured with 10^7 of them while it is built.
+// The memory of a triangle in Embree's structure, measured with 10^7 of them while it is built.
 constexpr double k_bytes_per_triangle = 100;
 
 void check_memory(const SceneObjects& objects) {

@@ -186,7 +186,8 @@ std::shared_ptr<const FileSurfaces> MeshStore::load(const GeometryDesc& desc,
 namespace {
 
 constexpr std::uint64_t k_most_probes = 1 << 16;
-// Of a cube's face. A lawn of 10^5 blades of grass to a square metre comes to a hundredth of it.
+// How many times triangles may cover a cube's face. A lawn of 10^5 blades of grass to a square
+// metre comes to a hundredth of it.
 constexpr double k_most_coverage = 4096;
 // From fewer of its triangles, little is known of a cube.
 constexpr std::size_t k_least_samples = 64;
@@ -225,7 +226,7 @@ Sample sample_of(const Corners& corners) {
     return {cube, area / (edge * edge), 0, 0};
 }
 
-/// Of one of `stride` triangles each, not always the same one: objects repeat.
+/// Takes one of every `stride` triangles, and not always the same one, since objects repeat.
 std::vector<Sample> samples_of(const SceneObjects& objects, std::uint64_t stride) {
     std::vector<Sample> samples;
     samples.reserve(k_most_probes);

@@ -154,7 +154,7 @@ WaterShares::Share WaterShares::parallel_share(const WaterOptics& optics,
     phase_.resize(tables.phase_count());
     tables.phase(passage.tangent, phase_);
     for (std::size_t m = 0; m < phase_.size(); ++m) share.mass += phase_weights_[m] * phase_[m];
-    // Of the clearest band that scatters at all; if none does, only the field.
+    // The clearest band that scatters at all decides; if none does, only the field counts.
     const AttenuationTable& attenuation = optics.attenuation();
     double least = k_far;
     for (std::size_t b = 0; b < optics.bands(); ++b)

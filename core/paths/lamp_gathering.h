@@ -75,7 +75,7 @@ class WaterShares {
         std::size_t part_count = 0;
         double mass = 0;               // of the weighted phase functions on them
         std::size_t first_masses = 0;  // of masses_
-        // Of a sun, whose mass is that of the weighted phase functions at its one angle:
+        // Members for a sun, whose mass is that of the weighted phase functions at its one angle:
         bool parallel = false;
         ParallelStretch stretch;
         LampPassage passage;

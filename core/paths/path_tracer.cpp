@@ -56,7 +56,7 @@ constexpr double k_least_survival = 0.25, k_least_lobe_survival = 0.2, k_most_su
 // a lamp, a path splits: into these many branches relative to it, each with its share of the light.
 // In all it has no more than the limit, or the paths of a black pixel might never end.
 constexpr double k_splitting = 0.3, k_most_branches = 16;
-// Of a surface, as far as paths head for it.
+// The least reflectance that a surface counts with when paths head for it.
 constexpr double k_least_reflectance = 0.1;
 // How far rays begin above the surface they leave, relative to the coordinates and to the last
 // segment: above the rounding of single precision, in which surfaces are found.

@@ -140,8 +140,9 @@ class PathTracer {
     /// The light that the segment's surface reflects, other than direct light of lamps, and not
     /// what it emits: `multiple.surface`. Nothing without a surface.
     void trace_surface(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
-    /// Of that the light that was scattered or reflected once, or emitted, before the sample
-    /// reflects it; at the surface itself, not dimmed by the water in front of it.
+    /// Traces the part of trace_surface's light that was scattered or reflected once, or emitted,
+    /// before the sample reflects it. It is the light at the surface itself, not dimmed by the
+    /// water in front of it.
     void trace_mirrored(const SurfaceSample& sample, PathRandom& random, PathTerms& terms) const;
     /// Whether a term of trace_surface is one of trace_mirrored.
     static bool is_mirrored(const PathTerm& term) {

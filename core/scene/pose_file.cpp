@@ -320,7 +320,7 @@ PoseFile read_nerfstudio(std::string_view text, const std::string& origin) {
 
 namespace {
 
-// Of COLMAP's images.txt nearly all is points.
+// COLMAP's images.txt consists almost entirely of points, so that it may be large.
 constexpr std::size_t k_most_bytes = std::size_t{1} << 30;
 
 PoseFile read_text(std::string_view text, PoseFormat format, const std::string& origin) {

@@ -8,14 +8,15 @@ namespace uw {
 /// camera [m]. Rays are traced in single precision, which resolves 1 m out there; products of four
 /// such numbers are still far from its largest, 3e38.
 inline constexpr double k_largest_coordinate = 1e7;
-/// Of a ray in the image: the tangent of its angle to the optical axis, 89.99 degrees.
+/// The largest tangent of the angle between a ray of the image and the optical axis: 89.99 degrees.
 inline constexpr double k_largest_slope = 1e4;
-/// Of a pixel, as such a tangent: single precision does not tell narrower ones apart.
+/// The smallest width of a pixel, as such a tangent: single precision does not tell narrower ones
+/// apart.
 inline constexpr double k_narrowest_pixel = 1e-9;
 /// The narrowest beam of a lamp [degrees].
 inline constexpr double k_narrowest_beam = 0.01;
-/// Of a sun's light: the greatest angle between any of it, in the water, and the normal of the
-/// water's surface [degrees].
+/// The greatest angle in the water between any light of a sun and the normal of the water's surface
+/// [degrees].
 inline constexpr double k_lowest_sun = 89;
 /// The largest intensity [W/sr], power [W] or flux [lm] of a lamp.
 inline constexpr double k_largest_brightness = 1e12;

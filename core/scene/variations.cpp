@@ -33,7 +33,7 @@ double above(double x) {
     return 0.5 * std::erfc(x / std::numbers::sqrt2);
 }
 
-/// Of the standard normal distribution within [low, high].
+/// The quantile `u` of the standard normal distribution cut off at [low, high].
 double normal_quantile(double low, double high, double u) {
     if (low + high > 0) return -normal_quantile(-high, -low, 1 - u);  // the left tail is precise
     low = std::clamp(low, -k_farthest, k_farthest);

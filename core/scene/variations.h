@@ -116,7 +116,8 @@ inline constexpr std::string_view k_distribution_mend =
 /// The shares of `count` > 0 things with these weights >= 0, or without any all alike. Throws
 /// InputError at `where` if no weight is above 0.
 Shares shares_of(std::size_t count, std::vector<double> weights, const ConfigValue& where);
-/// The same of weights in the scene, of which there may be none; `of` are the things.
+/// Reads the shares of `count` things from the weights that the scene gives them, or makes them
+/// equal if it gives none. `of` is the list of the things, for messages.
 Shares read_shares(std::size_t count, const std::optional<ConfigValue>& weights,
                    const ConfigValue& of);
 
