@@ -296,9 +296,7 @@ std::optional<ScatterPlace> WaterShares::place_around(const ScatteringTables& ta
                         0.5 * (1 + h * h) * share.distance * density};
 }
 
-}  // namespace
-
-struct LampGathering::Workspace {
+struct GatheringWorkspace {
     // One lamp's light on a surface.
     struct SurfaceShare {
         std::size_t lamp = 0;
@@ -312,6 +310,8 @@ struct LampGathering::Workspace {
     WaterPoint point;
     Spectrum radiance, brdf;
 };
+
+}  // namespace
 
 LampGathering::LampGathering(const WaterOptics& optics, const ScatteringTables& tables,
                              std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
@@ -329,7 +329,7 @@ void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
 void LampGathering::gather_from_water(const WaterSegment& segment, std::span<const double> weights,
                                       const PathState& state, PathRandom& random,
                                       PathTerms& terms) const {
-    thread_local Workspace w;
+    thread_local GatheringWorkspace w;
     const double of_lamp = random.next(), of_phase = random.next(), of_angle = random.next();
     const std::size_t phases = tables_.phase_count();
     if (phases == 0) return;
@@ -369,7 +369,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
 double LampGathering::gather_from_surface(const WaterSegment& segment,
                                           const Spectrum& transmittance, const PathState& state,
                                           PathRandom& random, PathTerms& terms) const {
-    thread_local Workspace w;
+    thread_local GatheringWorkspace w;
     double u = random.next();
     const std::size_t bands = optics_.bands();
     const std::vector<Lamp>& lamps = *optics_.scene().emitters;
@@ -411,7 +411,7 @@ double LampGathering::gather_from_surface(const WaterSegment& segment,
     }
     if (w.of_surface.empty()) return seen;
     const auto [chosen, probability] = choose(w.cumulative, u);
-    const Workspace::SurfaceShare& share = w.of_surface[chosen];
+    const GatheringWorkspace::SurfaceShare& share = w.of_surface[chosen];
     const Lamp& lamp = lamps[share.lamp];
     const Point3 origin = lamp.origin(hit.position);
     if (optics_.scene().surfaces->occluded(origin, hit.position)) return seen;

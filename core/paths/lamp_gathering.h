@@ -36,8 +36,6 @@ class LampGathering {
                                const PathState& state, PathRandom& random, PathTerms& terms) const;
 
   private:
-    struct Workspace;
-
     void column_to_lamp(std::size_t lamp, const Point3& x, std::span<double> column) const;
 
     const WaterOptics& optics_;
