@@ -128,7 +128,7 @@ Options sweep_options(SweepArguments& a) {
     add_part_options(options, a.parts);
     options.text("--camera", "NAME", a.camera, "which camera of a rig");
     options.integer("--frame", "N", a.frame, 0, 999'999'999, "which frame of sequences");
-    options.size(a.size, "size of the pictures; default: the scene's, or less: 480 pixels wide");
+    options.size(a.size, "of the pictures; default: the scene's, or less: 480 pixels wide");
     Option& quality = options.parsed(
         "--quality", "NAME",
         [&a](const std::string& word) {
@@ -139,7 +139,7 @@ Options sweep_options(SweepArguments& a) {
                                              alternatives(words_of(k_quality_names))));
             a.quality = known->second;
         },
-        "quality of the pictures: draft, the default, final or exact");
+        "of the pictures: draft, the default, final or exact");
     quality.value = Option::Value::word;
     for (const auto& [word, meaning] : k_quality_names) quality.words.emplace_back(word);
     options.threads(a.threads);
