@@ -101,7 +101,7 @@ void add_output_options(Options& options, DatasetArguments& a) {
                     "--exposure: expected a number above 0 or auto, found '{}'", printable(text)));
             a.exposure = factor;
         },
-        "of the images of a camera without sensor; auto: one that suits all views");
+        "expose the images of a camera without sensor by a factor; auto: one that suits all views");
     Option& bits = options.parsed(
         "--image-bits", "N",
         [&a](const std::string& text) {
@@ -110,14 +110,14 @@ void add_output_options(Options& options, DatasetArguments& a) {
                     fmt::format("--image-bits: expected 8 or 16, found '{}'", printable(text)));
             a.image.is_preview_16_bit = text == "16";
         },
-        "of the same images: 8, the default, or 16");
+        "bits of these images: 8, the default, or 16");
     bits.value = Option::Value::word;
     bits.words = {"8", "16"};
     options.number("--depth-scale", "N", a.depth_scale, 0, 1e9,
-                   "of 16-bit depth: N per metre; default 1000");
+                   "scale of 16-bit depth: N per metre; default 1000");
     options.number("--depth-far", "D", a.depth_far, 0, 1e9,
                    "leave out of 16-bit depth what is farther than D metres");
-    options.text("--licence", "TEXT", a.licence, "of the set, for its data card");
+    options.text("--licence", "TEXT", a.licence, "licence of the set, for its data card");
 }
 
 }  // namespace

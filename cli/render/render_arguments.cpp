@@ -128,20 +128,21 @@ Options render_options(RenderArguments& a) {
     options.text("--layers", "NAMES", a.layers,
                  "names separated by commas, all, or default: the image and its depth");
     accept_words(options.text("--precision", "NAME", a.precision,
-                              "of the light in the EXR: half, float, or auto: half where that is "
+                              "store light in the EXR as half, float, or auto: half where that is "
                               "enough"),
                  k_precision_names);
-    accept_words(options.text("--compression", "NAME", a.compression,
-                              "of the EXR, without loss: zip, zips (each line by itself) or none"),
-                 k_compression_names);
+    accept_words(
+        options.text("--compression", "NAME", a.compression,
+                     "compress the EXR without loss: zip, zips (each line by itself) or none"),
+        k_compression_names);
     options.parsed(
         "--exposure", "N|auto|first",
         [&a](const std::string& text) { a.exposure = exposure_in(text); },
-        "of the preview: a factor; auto: each image's own; first: the first image's for all");
+        "expose the preview by a factor; auto: each image's own; first: the first image's for all");
     accept_words(options.parsed(
                      "--preview-bits", "N",
                      [&a](const std::string& text) { a.is_preview_16_bit = is_16(text); },
-                     "of the preview: 8, the default, or 16"),
+                     "bits of the preview: 8, the default, or 16"),
                  k_preview_bits);
     options.path("--contact-sheet", "OUT.png", a.contact_sheet,
                  "write small pictures of all images, side by side");
