@@ -27,11 +27,11 @@ SceneDesc clear_scene(int side) {
     return desc;
 }
 
-struct Spot {
+struct BlurSpot {
     double sum = 0, variance_x = 0, variance_y = 0;  // [pixels^2]
 };
-Spot spot_of(const Film& film) {
-    Spot spot;
+BlurSpot blur_spot_of(const Film& film) {
+    BlurSpot spot;
     double x1 = 0, y1 = 0, x2 = 0, y2 = 0;
     for (int y = 0; y < film.height(); ++y)
         for (int x = 0; x < film.width(); ++x) {
@@ -56,9 +56,9 @@ TEST(DepthOfField, ABrightThingIsBlurredByTheCircleOfConfusion) {
         const double half = 0.01 * depth;  // 6 pixels
         desc.geometry = {box({-half, -half, depth}, {half, half, depth + 0.01})};
         desc.render.samples = 1024;
-        const Spot sharp = spot_of(backscatter_of(desc));
+        const BlurSpot sharp = blur_spot_of(backscatter_of(desc));
         desc.camera.lens = LensDesc{k_fast_f_number, k_fast_focal_length, 1, 1.0};
-        const Spot blurred = spot_of(backscatter_of(desc));
+        const BlurSpot blurred = blur_spot_of(backscatter_of(desc));
         const double circle = 600 * k_radius * std::abs(1 - 1 / depth);
         // The lamp is at the pinhole; from elsewhere on the lens the box looks as bright, as it is
         // diffuse. 1024 samples in each of 144 pixels: their variance is known to 0.26 %, which is
