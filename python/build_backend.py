@@ -1,7 +1,7 @@
 """Makes a wheel of what CMake builds and installs (PEP 517), with nothing but Python and CMake.
 
     pip install . --no-build-isolation
-    pip install . --no-build-isolation --config-settings build-dir=build/dev
+    pip install . --no-build-isolation --config-settings build-dir=build/release
 
 The second takes a build folder that has been configured with UWVDB_BUILD_PYTHON, by the interpreter
 that pip belongs to; the first builds in build/pip.

@@ -187,6 +187,10 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
     return scene;
 }
 
+AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage) {
+    return assemble_scene(desc, begin_stage, AssembledScene());
+}
+
 Slabs place_slabs(const AssembledScene& scene) {
     return place_slabs(scene.desc.render.planes, *scene.camera, scene.lit());
 }

@@ -50,12 +50,14 @@ using StageCallback = std::function<void(const std::string& stage)>;
 
 /// Loads and builds what `desc`, that of a resolved scene, names; slabs are not placed. `desc` of
 /// the result is left empty for the caller to move the description into: it is never copied.
-/// `before`, a scene assembled earlier or none, is consumed: water, volumes and surfaces with the
-/// same description are reused as they are, even if their files have changed since; the rest is
-/// freed before anything is loaded. The result is the same to the bit as without `before`. Throws
-/// InputError and IoError of one line each.
+/// `before`, a scene assembled earlier or an empty one, is consumed: water, volumes and surfaces
+/// with the same description are reused as they are, even if their files have changed since; the
+/// rest is freed before anything is loaded. The result is the same to the bit as without `before`.
+/// Throws InputError and IoError of one line each.
 AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
-                              AssembledScene before = {});
+                              AssembledScene before);
+/// The same without a scene before it.
+AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage);
 
 /// Places the slabs of an assembled scene: costs a ray through each pixel of a coarse image. Throws
 /// as place_slabs.

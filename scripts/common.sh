@@ -10,9 +10,12 @@ run_quietly() {
     fi
 }
 
-# Configures and builds a preset, e.g. `build_preset release`. Ninja shows the progress.
+# Configures and builds a preset, e.g. `build_preset release`; further arguments are those of
+# `cmake --build`. Ninja shows the progress.
 build_preset() {
-    echo "Building the $1 preset in build/$1"
-    run_quietly cmake --preset "$1"
-    cmake --build --preset "$1" --parallel "$(nproc)"
+    local preset=$1
+    shift
+    echo "Building the $preset preset"
+    run_quietly cmake --preset "$preset"
+    cmake --build --preset "$preset" --parallel "$(nproc)" "$@"
 }

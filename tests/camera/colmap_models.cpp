@@ -20,7 +20,7 @@ CameraDesc colmap_camera(const std::string& model, const std::string& parameters
     return camera;
 }
 
-CameraDesc behind_port(const std::string& model, const std::string& parameters) {
+CameraDesc colmap_port(const std::string& model, const std::string& parameters) {
     const ConfigNode name = parse_yaml(model, "c.yaml"), list = parse_yaml(parameters, "c.yaml");
     CameraDesc camera;
     const ConfigValue at(name, "port");
@@ -74,23 +74,23 @@ TEST(ColmapModels, WrittenParametersAreThoseRead) {
         colmap_camera("FULL_OPENCV", "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]");
     EXPECT_EQ(colmap_model_of(camera).values,
               (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
-    const CameraDesc dome = behind_port("DOMEPORT", "[0.1, 0.2, 0.3, 0.5, 0.01, 1, 1.5, 1.33]");
+    const CameraDesc dome = colmap_port("DOMEPORT", "[0.1, 0.2, 0.3, 0.5, 0.01, 1, 1.5, 1.33]");
     const ColmapParameters port = port_model_of(*dome.port);
     EXPECT_EQ(port.name, "DOMEPORT");
     EXPECT_EQ(port.values, (std::vector<double>{0.1, 0.2, 0.3, 0.5, 0.01, 1, 1.5, 1.33}));
 }
 
 TEST(ColmapModels, NormalsRoundedInTheFileBecomeUnit) {
-    const CameraDesc flat = behind_port("FLATPORT", "[0.6, 0, 0.8004, 0.1, 0.01, 1, 1.5, 1.33]");
+    const CameraDesc flat = colmap_port("FLATPORT", "[0.6, 0, 0.8004, 0.1, 0.01, 1, 1.5, 1.33]");
     EXPECT_NEAR(glm::length(std::get<FlatPortDesc>(*flat.port).normal), 1, 1e-15);
-    EXPECT_THROW(behind_port("FLATPORT", "[0.6, 0, 0.9, 0.1, 0.01, 1, 1.5, 1.33]"), InputError);
+    EXPECT_THROW(colmap_port("FLATPORT", "[0.6, 0, 0.9, 0.1, 0.01, 1, 1.5, 1.33]"), InputError);
 }
 
 TEST(ColmapModels, CountsAreChecked) {
     EXPECT_EQ(
         test::message_of<InputError>([] { colmap_camera("RADIAL", "[9, 2, 3, 0.1]"); }),
         "c.yaml:1:1: model: RADIAL has 5 parameters (f cx cy k1 k2), found 4; check the list");
-    EXPECT_THROW(behind_port("DOMEPORT", "[0, 0, 0.01, 0.05, 0.007, 1, 1.5]"), InputError);
+    EXPECT_THROW(colmap_port("DOMEPORT", "[0, 0, 0.01, 0.05, 0.007, 1, 1.5]"), InputError);
     const ConfigNode name = parse_yaml("FULL_OPENCV", "c.yaml");
     EXPECT_EQ(colmap_parameter_count(ConfigValue(name, "model")), 12U);
 }

@@ -11,8 +11,8 @@
 namespace uw {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
-constexpr double k_inverse_tolerance = 1e-10;  // what docs/physics.md promises
+using std::numbers::pi;
+constexpr double k_fisheye_tolerance = 1e-10;  // what docs/physics.md promises
 
 DistortionDesc fisheye(double k1 = 0, double k2 = 0, double k3 = 0, double k4 = 0) {
     return {{k1, k2, k3, k4, 0, 0}, {}, DistortionDesc::Model::fisheye};
@@ -26,7 +26,7 @@ Vector3 at_angle(double theta, double azimuth) {
 TEST(Fisheye, FollowsTheFormulaOfOpenCv) {
     // cv::fisheye::projectPoints with K = I, D = (0.1, -0.02, 0.003, -0.0004) for (0.6, -0.8, 1),
     // written out: r = 1, theta = pi/4, theta_d = theta (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8).
-    const double t = k_pi / 4;
+    const double t = pi / 4;
     const double shown = t * (1 + 0.1 * std::pow(t, 2) - 0.02 * std::pow(t, 4) +
                               0.003 * std::pow(t, 6) - 0.0004 * std::pow(t, 8));
     const auto image =
@@ -45,7 +45,7 @@ TEST(Fisheye, RoundTripBeyondTheHemisphere) {
             ASSERT_TRUE(image) << theta;
             const auto back = lens.direction(*image);
             ASSERT_TRUE(back) << theta;
-            EXPECT_LT(glm::length(*back - direction), k_inverse_tolerance) << theta;
+            EXPECT_LT(glm::length(*back - direction), k_fisheye_tolerance) << theta;
             EXPECT_NEAR(glm::length(*back), 1, 1e-14);
         }
     }
@@ -59,14 +59,14 @@ TEST(Fisheye, EndsAtItsFold) {
     EXPECT_FALSE(lens.direction({0.667, 0}));
     EXPECT_TRUE(lens.image(at_angle(0.999, 1)));
     EXPECT_FALSE(lens.image(at_angle(1.001, 1)));
-    EXPECT_EQ(Fisheye(fisheye()).largest_angle(), k_pi);
+    EXPECT_EQ(Fisheye(fisheye()).largest_angle(), pi);
     EXPECT_FALSE(Fisheye(fisheye()).image({0, 0, -1}));
 }
 
 TEST(Fisheye, ImageOfTheWholeSphereIsADisc) {
     CameraDesc desc;
     desc.width = desc.height = 400;
-    desc.intrinsics = {190 / k_pi, 190 / k_pi, 200, 200};
+    desc.intrinsics = {190 / pi, 190 / pi, 200, 200};
     desc.distortion = fisheye();
     const Camera camera(desc);
     for (int j = 0; j < 400; j += 7) {
@@ -94,10 +94,10 @@ TEST(Fisheye, FalloffKeepsTheEnergy) {
             const double r = edge * (i + 0.5) / k_steps;
             const auto direction = lens.direction({r, 0});
             ASSERT_TRUE(direction);
-            sum += lens.falloff(*direction) * 2 * k_pi * r * edge / k_steps;
+            sum += lens.falloff(*direction) * 2 * pi * r * edge / k_steps;
             last_angle = std::acos(lens.direction({edge, 0})->z);
         }
-        EXPECT_NEAR(sum, 2 * k_pi * (1 - std::cos(last_angle)), 1e-6);  // midpoint rule
+        EXPECT_NEAR(sum, 2 * pi * (1 - std::cos(last_angle)), 1e-6);  // midpoint rule
     }
 }
 

@@ -11,7 +11,7 @@
 namespace uw {
 namespace {
 
-constexpr double k_degree = std::numbers::pi / 180;
+constexpr double k_radians_per_degree = std::numbers::pi / 180;
 constexpr double k_rounding = 1e-14;  // a dozen operations on numbers near 1
 
 // Another form of Fresnel's equations, by angles: R_s = sin^2(i - t) / sin^2(i + t) and
@@ -31,9 +31,9 @@ TEST(Fresnel, NormalIncidence) {
 
 TEST(Fresnel, EqualsTheFormInAngles) {
     for (const double degrees : {1.0, 20.0, 45.0, 70.0, 89.0}) {
-        const double cosine = std::cos(degrees * k_degree);
+        const double cosine = std::cos(degrees * k_radians_per_degree);
         const FresnelTransmittance found = fresnel_transmittance(cosine, 1.0, 1.49);
-        const FresnelTransmittance truth = by_angles(degrees * k_degree, 1.0, 1.49);
+        const FresnelTransmittance truth = by_angles(degrees * k_radians_per_degree, 1.0, 1.49);
         // sin(i - t) of 1 degree loses two digits.
         EXPECT_NEAR(found.s, truth.s, 1e-12) << degrees;
         EXPECT_NEAR(found.p, truth.p, 1e-12) << degrees;
@@ -66,7 +66,7 @@ TEST(Fresnel, EqualIndicesAreNoSurface) {
 }
 
 TEST(Fresnel, TheWayBackIsTheSame) {
-    const double incidence = 50 * k_degree;
+    const double incidence = 50 * k_radians_per_degree;
     const double refracted = std::asin(std::sin(incidence) / 1.49);
     const auto in = fresnel_transmittance(std::cos(incidence), 1.0, 1.49);
     const auto out = fresnel_transmittance(std::cos(refracted), 1.49, 1.0);

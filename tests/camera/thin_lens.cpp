@@ -14,7 +14,7 @@ namespace {
 
 constexpr double k_focal_length = 0.05, k_f_number = 1.4,
                  k_radius = k_focal_length / 2 / k_f_number;
-constexpr double k_rounding = 1e-12;
+constexpr double k_lens_rounding = 1e-12;
 
 CameraDesc focused_at(double distance) {
     CameraDesc desc;
@@ -39,16 +39,16 @@ Point3 at_z(const Ray& ray, double z) {
 TEST(ThinLens, RaysOfAPixelMeetInThePlaneOfFocusAndSpreadLinearlyElsewhere) {
     const Camera camera(focused_at(1.5));
     ASSERT_TRUE(camera.has_aperture());
-    EXPECT_NEAR(camera.focus_vergence(), 1 / 1.5, k_rounding);
+    EXPECT_NEAR(camera.focus_vergence(), 1 / 1.5, k_lens_rounding);
     for (const auto& [x, y] : {std::array{320.0, 240.0}, {11.0, 400.0}, {630.0, 2.0}})
         for (const AperturePoint& point : rim()) {
             const Ray chief = camera.refracted_ray(x, y).value();
             const Ray ray = camera.aperture_ray(x, y, point).value();
-            EXPECT_NEAR(glm::length(ray.direction), 1, k_rounding);
-            EXPECT_NEAR(distance(at_z(ray, 1.5), at_z(chief, 1.5)), 0, k_rounding);
-            EXPECT_NEAR(distance(at_z(ray, 0), at_z(chief, 0)), k_radius, k_rounding);
-            EXPECT_NEAR(distance(at_z(ray, 3), at_z(chief, 3)), k_radius, k_rounding);
-            EXPECT_NEAR(distance(at_z(ray, 2), at_z(chief, 2)), k_radius / 3, k_rounding);
+            EXPECT_NEAR(glm::length(ray.direction), 1, k_lens_rounding);
+            EXPECT_NEAR(distance(at_z(ray, 1.5), at_z(chief, 1.5)), 0, k_lens_rounding);
+            EXPECT_NEAR(distance(at_z(ray, 0), at_z(chief, 0)), k_radius, k_lens_rounding);
+            EXPECT_NEAR(distance(at_z(ray, 3), at_z(chief, 3)), k_radius, k_lens_rounding);
+            EXPECT_NEAR(distance(at_z(ray, 2), at_z(chief, 2)), k_radius / 3, k_lens_rounding);
         }
 }
 
@@ -61,8 +61,8 @@ TEST(ThinLens, TheRayThroughTheMiddleIsThatOfThePinhole) {
     for (const auto& [x, y] : {std::array{320.0, 240.0}, {11.0, 400.0}}) {
         const Ray chief = camera.refracted_ray(x, y).value();
         const Ray ray = camera.aperture_ray(x, y, {}).value();
-        EXPECT_NEAR(distance(ray.origin, chief.origin), 0, k_rounding);
-        EXPECT_NEAR(glm::length(ray.direction - chief.direction), 0, k_rounding);
+        EXPECT_NEAR(distance(ray.origin, chief.origin), 0, k_lens_rounding);
+        EXPECT_NEAR(glm::length(ray.direction - chief.direction), 0, k_lens_rounding);
     }
     desc.lens->focus_distance.reset();
     const Camera sharp(desc);

@@ -16,7 +16,7 @@ constexpr const char* k_behind_glass = R"(
   port: {type: flat, normal: [0.05, -0.03, 1], distance: 0.02, thickness: 0.03}
   pose: {position: [1, 2, -3], look_at: [0.5, 1.5, 2], up: [0.1, -1, 0]}
 )";
-constexpr const char* k_rest = R"(
+constexpr const char* k_plane_in_water = R"(
 water: {preset: jerlov-II}
 geometry:
   - {type: sphere, center: [0.7, 1.6, 0.5], radius: 0.4}
@@ -71,7 +71,7 @@ TEST_F(PointsCommands, RaysOfProjectedPointsPassThroughThem) {
     for (const std::string lens : {"resolution: [640, 480]\n  intrinsics: {fx: 420, fy: 425, cx: "
                                    "322, cy: 236}",
                                    "resolution: [640, 480]\n  intrinsics: {fov_x: 50}"}) {
-        write("port.yaml", "uwvdb: 1\ncamera:\n  " + lens + k_behind_glass + k_rest);
+        write("port.yaml", "uwvdb: 1\ncamera:\n  " + lens + k_behind_glass + k_plane_in_water);
         std::mt19937_64 random(7);
         std::uniform_real_distribution<double> across(-1.2, 1.2), along(0, 40);
         std::string points = "x,y,z\n";
@@ -125,7 +125,7 @@ TEST_F(PointsCommands, RaysByHand) {
     // Snell's law at the glass: sin a = 1.334 sin w; 0.05 m of air and glass before the water.
     write("flat.yaml", std::string("uwvdb: 1\ncamera: {resolution: [200, 100], intrinsics: {fx: "
                                    "100}, port: {distance: 0.02, thickness: 0.03}}") +
-                           k_rest);
+                           k_plane_in_water);
     write("pixels.csv", "x,y\n100,50\n175,50\n200,50\n200.001,50\nnan,50\n");
     const auto result = run({"rays", "flat.yaml", "pixels.csv"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -164,7 +164,7 @@ TEST_F(PointsCommands, FilesThreadsSizesAndCamerasOfARig) {
 cameras:
   - {name: left, resolution: [40, 20], intrinsics: {fx: 40}}
   - {name: right, resolution: [40, 20], intrinsics: {fx: 40}, pose: {position: [0.4, 0, 0], look_at: [0.4, 0, 1], up: [0, -1, 0]}}
-)") + k_rest);
+)") + k_plane_in_water);
     EXPECT_EQ(table_of({"project", "rig.yaml", "one.csv", "--camera", "right"}).numbers("pixel_x"),
               std::vector<double>{20 - 40 * 0.2});
     expect_failure({"project", "rig.yaml", "one.csv"}, 2, "choose one of left, right");

@@ -116,7 +116,7 @@ class Build:
     def configure(self):
         options = ["-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=12",
                    "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O2 -D_GLIBCXX_ASSERTIONS",
-                   "-DUWVDB_WARNINGS_AS_ERRORS=ON"]
+                   "-DUWVDB_WARNINGS_AS_ERRORS=ON", "-DUWVDB_BUILD_TESTS=ON"]
         subprocess.run(["cmake", "-G", "Ninja", "-S", self.source, "-B", self.build, *options],
                        check=True, stdout=subprocess.DEVNULL)
 

@@ -172,7 +172,7 @@ def test_processes(scene, method):
     # The parent has rendered: its threads are not those of a forked child.
     expected = render_in_process(scene)
     with multiprocessing.get_context(method).Pool(2) as pool:
-        results = pool.map_async(render_in_process, [scene] * 4).get(timeout=60)
+        results = pool.map_async(render_in_process, [scene] * 4).get(timeout=600)
     for image in results:
         assert np.array_equal(image, expected)
 

@@ -18,7 +18,7 @@
 namespace uw::test {
 namespace {
 
-using Motion = std::function<Point3(const Point3& point, std::uint32_t object)>;
+using PointMotion = std::function<Point3(const Point3& point, std::uint32_t object)>;
 
 Point3 still(const Point3& point, std::uint32_t /*object*/) {
     return point;
@@ -74,7 +74,7 @@ class Flow : public testing::Test {
     /// Checks the flow from `frame` to `frame + step` pixel by pixel: the neighbour's own ray at
     /// the place that the flow names must pass through the point that `motion` makes of this
     /// frame's, to 1e-3 pixels, and see it unless the point is marked as hidden.
-    Counts check(const SceneDesc& all, int frame, int step, const Motion& motion) {
+    Counts check(const SceneDesc& all, int frame, int step, const PointMotion& motion) {
         const bool forward = step > 0;
         const Film film = render(all, {frame}, forward ? "flow,flow_occluded" : "flow_back");
         const FrameView now(all, {frame}), then(all, {frame + step});

@@ -6,18 +6,17 @@
 #include <numbers>
 
 #include "core/base/parallel.h"
+#include "tests/support/image_of.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {
 namespace {
 
-constexpr double k_focal_length = 0.05, k_f_number = 1.4,
-                 k_radius = k_focal_length / 2 / k_f_number;
+constexpr double k_fast_focal_length = 0.05, k_fast_f_number = 1.4,
+                 k_radius = k_fast_focal_length / 2 / k_fast_f_number;
 
-Film image_of(const SceneDesc& desc, const RenderOptions& options = {.layers = "backscatter"}) {
-    Renderer renderer;
-    renderer.set_scene(SceneDesc(desc));
-    return renderer.render(options);
+Film backscatter_of(const SceneDesc& desc) {
+    return image_of(desc, {.layers = "backscatter"});
 }
 
 SceneDesc clear_scene(int side) {
@@ -28,11 +27,11 @@ SceneDesc clear_scene(int side) {
     return desc;
 }
 
-struct Spot {
+struct BlurSpot {
     double sum = 0, variance_x = 0, variance_y = 0;  // [pixels^2]
 };
-Spot spot_of(const Film& film) {
-    Spot spot;
+BlurSpot blur_spot_of(const Film& film) {
+    BlurSpot spot;
     double x1 = 0, y1 = 0, x2 = 0, y2 = 0;
     for (int y = 0; y < film.height(); ++y)
         for (int x = 0; x < film.width(); ++x) {
@@ -57,9 +56,9 @@ TEST(DepthOfField, ABrightThingIsBlurredByTheCircleOfConfusion) {
         const double half = 0.01 * depth;  // 6 pixels
         desc.geometry = {box({-half, -half, depth}, {half, half, depth + 0.01})};
         desc.render.samples = 1024;
-        const Spot sharp = spot_of(image_of(desc));
-        desc.camera.lens = LensDesc{k_f_number, k_focal_length, 1, 1.0};
-        const Spot blurred = spot_of(image_of(desc));
+        const BlurSpot sharp = blur_spot_of(backscatter_of(desc));
+        desc.camera.lens = LensDesc{k_fast_f_number, k_fast_focal_length, 1, 1.0};
+        const BlurSpot blurred = blur_spot_of(backscatter_of(desc));
         const double circle = 600 * k_radius * std::abs(1 - 1 / depth);
         // The lamp is at the pinhole; from elsewhere on the lens the box looks as bright, as it is
         // diffuse. 1024 samples in each of 144 pixels: their variance is known to 0.26 %, which is
@@ -98,7 +97,7 @@ TEST(DepthOfField, IsTheMeanOverPinholesAllOverTheLens) {
             displaced.camera.world_from_camera = Affine::translation({u, v, 0});
             displaced.camera.intrinsics.cx += displaced.camera.intrinsics.fx * u / k_focus;
             displaced.camera.intrinsics.cy += displaced.camera.intrinsics.fy * v / k_focus;
-            const Film film = image_of(displaced);
+            const Film film = backscatter_of(displaced);
             std::size_t k = 0;
             for (int y = 0; y < 24; ++y)
                 for (int x = 0; x < 32; ++x)
@@ -108,12 +107,12 @@ TEST(DepthOfField, IsTheMeanOverPinholesAllOverTheLens) {
                     }
         }
     }
-    desc.camera.lens = LensDesc{k_f_number, k_focal_length, 1, k_focus};
+    desc.camera.lens = LensDesc{k_fast_f_number, k_fast_focal_length, 1, k_focus};
     desc.render.samples = 1024;
-    const Film film = image_of(desc);
+    const Film film = backscatter_of(desc);
     double squares = 0, water_squares = 0, mean = 0, water_mean = 0, blur = 0;
     desc.camera.lens.reset();
-    const Film sharp = image_of(desc);
+    const Film sharp = backscatter_of(desc);
     std::size_t k = 0;
     for (int y = 0; y < 24; ++y)
         for (int x = 0; x < 32; ++x)
@@ -142,7 +141,7 @@ TEST(DepthOfField, IsTheSameForThreadsAndCropsAndLeavesGroundTruthSharp) {
     desc.lamps = {isotropic_lamp({0.4, -0.5, 0}, 40)};
     desc.render.samples = 8;
     const Film sharp = image_of(desc, {.layers = "depth"});
-    desc.camera.lens = LensDesc{k_f_number, k_focal_length, 1, 3.0};
+    desc.camera.lens = LensDesc{k_fast_f_number, k_fast_focal_length, 1, 3.0};
     const Film whole = image_of(desc, {.layers = "depth"});
     {
         const ThreadLimit one(1);
@@ -166,7 +165,7 @@ TEST(DepthOfField, OfLightPathsIsThatOfTheOtherIntegrators) {
     SceneDesc desc = pinhole_scene(16, 12);
     desc.geometry = {plane_at_z(3), box({-0.3, -0.2, 0.5}, {-0.05, 0.25, 0.7})};
     desc.lamps = {isotropic_lamp({0.4, -0.5, 0}, 40)};
-    desc.camera.lens = LensDesc{k_f_number, k_focal_length, 1, 3.0};
+    desc.camera.lens = LensDesc{k_fast_f_number, k_fast_focal_length, 1, 3.0};
     desc.render.samples = 1024;
     const Film volume = image_of(desc, {.layers = "direct"});
     desc.render.integrator = RenderDesc::Integrator::path;

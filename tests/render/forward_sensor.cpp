@@ -14,14 +14,14 @@ namespace {
 
 using Output = RenderDesc::Output;
 
-constexpr double k_f_number = 2.8;
-constexpr double k_transmission = 0.95;
+constexpr double k_forward_f_number = 2.8;
+constexpr double k_forward_transmission = 0.95;
 // Every value is rounded to float after its factor and some before.
-constexpr double k_rounding = 4e-7;
+constexpr double k_float_rounding = 4e-7;
 
 SceneDesc seen_as(SceneDesc desc, Output output, double focal_length = 0.0085) {
     desc.render.output = output;
-    desc.camera.lens = LensDesc{k_f_number, focal_length, k_transmission};
+    desc.camera.lens = LensDesc{k_forward_f_number, focal_length, k_forward_transmission};
     return desc;
 }
 
@@ -39,7 +39,7 @@ void expect_scaled(const RenderedFilm& found, const RenderedFilm& radiance, Fact
             for (int band = 0; band < 3; ++band) {
                 const auto near = [&](double value, double unscaled) {
                     const double truth = factor(x, y) * unscaled;
-                    EXPECT_NEAR(value, truth, k_rounding * truth) << x << ' ' << y;
+                    EXPECT_NEAR(value, truth, k_float_rounding * truth) << x << ' ' << y;
                 };
                 for (const Layer layer : {Layer::direct, Layer::forward, Layer::backscatter,
                                           Layer::backscatter_first, Layer::clean})
@@ -61,8 +61,8 @@ TEST(ForwardScatterOnSensor, IsThatOfRadianceTimesTheFactorOfThePixelItLandsIn) 
     expect_scaled(sensor, radiance, [&](int x, int y) {
         const double cosine_squared = 1 / (1 + std::pow(tangent(desc.camera, x, y), 2));
         const double focus = 1 - 0.0085 / radiance.value(Layer::range, x, y, 0);
-        return std::numbers::pi / (4 * k_f_number * k_f_number) * k_transmission * focus * focus *
-               cosine_squared * cosine_squared;
+        return std::numbers::pi / (4 * k_forward_f_number * k_forward_f_number) *
+               k_forward_transmission * focus * focus * cosine_squared * cosine_squared;
     });
 }
 
@@ -116,7 +116,7 @@ TEST(ForwardScatterOnSensor, ComponentsAddUpToTheBitAndStrengthZeroIsOff) {
                     EXPECT_NEAR(lamps, static_cast<double>(sum), 1e-5 * lamps);
                     EXPECT_NEAR(image.value(Layer::direct, x, y, band),
                                 plain.value(Layer::direct, x, y, band),
-                                k_rounding * plain.value(Layer::direct, x, y, band));
+                                k_float_rounding * plain.value(Layer::direct, x, y, band));
                 }
     }
 }
@@ -164,8 +164,8 @@ class DirectSum {
                 path.push_back(r);
                 lamp.push_back(distance(at_origin_plus(z * ray), desc.lamps[0].position));
                 transmittance.push_back(std::exp(-attenuation(1) * r));
-                camera.push_back(std::numbers::pi / (4 * k_f_number) * k_transmission *
-                                 std::pow(glm::length(ray), -4) *
+                camera.push_back(std::numbers::pi / (4 * k_forward_f_number) *
+                                 k_forward_transmission * std::pow(glm::length(ray), -4) *
                                  std::pow((r - k_focal_length) / r, 2));
             }
         }
@@ -210,7 +210,7 @@ TEST_P(PaperForwardScatter, IsTheDirectSumOfItsEquations) {
         const double backscatter = value(Layer::backscatter);
         worst = std::max({worst, std::abs(signal / truth.signal[i] - 1),
                           std::abs(backscatter / truth.backscatter[i] - 1)});
-        EXPECT_NEAR(value(Layer::backscatter_first), backscatter, k_rounding * backscatter);
+        EXPECT_NEAR(value(Layer::backscatter_first), backscatter, k_float_rounding * backscatter);
     }
     std::cout << "largest relative difference " << worst << '\n';
     // Neighbouring widths of the blur are mixed: 0.25 % of the light may lie elsewhere. The slab's

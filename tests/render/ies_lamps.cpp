@@ -14,9 +14,9 @@
 namespace uw::test {
 namespace {
 
-constexpr double k_plane_z = 4;
+constexpr double k_wall_z = 4;
 // The panels aim at 1e-4; the parabolas between breaks at 1e-3 of the local intensity.
-constexpr double k_tolerance = 1e-3;
+constexpr double k_ies_tolerance = 1e-3;
 
 std::filesystem::path own(const char* name) {
     return std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/ies" / name;
@@ -64,7 +64,7 @@ TEST_P(IesLampWater, AgreesWithQuadrature) {
     const SceneFolder folder;
     const std::string name = GetParam();
     SceneDesc desc = pinhole_scene(16, 12);
-    desc.geometry = {plane_at_z(k_plane_z)};
+    desc.geometry = {plane_at_z(k_wall_z)};
     LampDesc lamp = isotropic_lamp({0.6, -0.3, 0.2}, 40);
     lamp.direction = glm::normalize(Vector3(-0.25, 0.1, 1));
     lamp.profile = IesProfileDesc{
@@ -77,7 +77,7 @@ TEST_P(IesLampWater, AgreesWithQuadrature) {
     for (int y = 0; y < 12; y += 3) {
         for (int x = 0; x < 16; x += 3) {
             const auto ray = scene.assembled().camera->refracted_ray(x + 0.5, y + 0.5);
-            const double end = k_plane_z / ray->direction.z;
+            const double end = k_wall_z / ray->direction.z;
             pairs.emplace_back(scene.pixel(x, y).backscatter[0],
                                in_scatter(scene.assembled(), *ray, end));
             brightest = std::max(brightest, pairs.back().second);
@@ -85,7 +85,7 @@ TEST_P(IesLampWater, AgreesWithQuadrature) {
     }
     // Relative to each pixel, and for those hardly lit to a hundredth of the brightest.
     for (const auto& [found, truth] : pairs)
-        EXPECT_NEAR(found, truth, k_tolerance * std::max(truth, 0.01 * brightest)) << name;
+        EXPECT_NEAR(found, truth, k_ies_tolerance * std::max(truth, 0.01 * brightest)) << name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, IesLampWater,
@@ -97,7 +97,7 @@ TEST(IesLampRendering, ALambertianFileIsTheCosineProfile) {
     // The file tabulates cos(theta) every 2.5 degrees: straight lines are within 2.4e-4 of it.
     const auto render = [](const LampProfileDesc& profile) {
         SceneDesc desc = pinhole_scene(8, 6);
-        desc.geometry = {plane_at_z(k_plane_z)};
+        desc.geometry = {plane_at_z(k_wall_z)};
         desc.lamps = {isotropic_lamp({0.6, -0.3, 0}, 40)};
         desc.lamps[0].profile = profile;
         return TestScene(desc).image();

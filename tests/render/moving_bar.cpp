@@ -9,6 +9,7 @@
 #include "render/renderer.h"
 #include "render/resolved_scene.h"
 #include "render/scene_loading.h"
+#include "tests/support/image_of.h"
 
 namespace uw::test {
 namespace {
@@ -19,13 +20,6 @@ constexpr double k_shutter = 0.04;
 
 SceneDesc frame_of(const std::string& text) {
     return scene_of_image(load_scene_text("uwvdb: 1\n" + text, "scene.yaml"), {k_frame});
-}
-
-Film image_of(SceneDesc desc, const RenderOptions& options) {
-    Renderer renderer;
-    renderer.set_scene(std::move(desc));
-    renderer.render(options);
-    return renderer.release_film();
 }
 
 /// A bar of 6 x 20 pixels at 1 m in clear water, lit evenly by a lamp far behind the camera, that

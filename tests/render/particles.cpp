@@ -8,7 +8,7 @@ namespace uw::test {
 namespace {
 
 /// Pixels off the axis look a little longer; the attenuation of all snow, added, is 1e-6 per metre.
-constexpr double k_tolerance = 1e-3;
+constexpr double k_particle_tolerance = 1e-3;
 
 TEST(SnowParticles, OneParticleIsAsBrightAsTheClosedFormSays) {
     for (const Vector3 about :
@@ -18,7 +18,7 @@ TEST(SnowParticles, OneParticleIsAsBrightAsTheClosedFormSays) {
         const Film film = image_of(desc);
         for (const std::size_t band : {0U, 1U, 2U}) {
             const Spot spot = spot_of(film, k_snow + band);
-            EXPECT_NEAR(spot.sum / sum_of(particle, desc, band), 1, k_tolerance);
+            EXPECT_NEAR(spot.sum / sum_of(particle, desc, band), 1, k_particle_tolerance);
         }
         EXPECT_NEAR(spot_of(film).x, 32, 0.05);
         EXPECT_NEAR(spot_of(film).y, 32, 0.05);
@@ -38,7 +38,7 @@ TEST(SnowParticles, DefocusSpreadsLightOverTheCircleOfConfusion) {
         const Spot spot = spot_of(image_of(desc));
         const double aperture = 0.5 * 0.05 / 2.8;
         const double blur = desc.camera.intrinsics.fx * aperture * std::abs(1 / focus - 1 / range);
-        EXPECT_NEAR(spot.sum / sum_of(particle, desc, 0), 1, k_tolerance) << focus;
+        EXPECT_NEAR(spot.sum / sum_of(particle, desc, 0), 1, k_particle_tolerance) << focus;
         // The variance of a disk is r^2/4 and that of a pixel 1/12; what is smaller than a pixel
         // fills those it touches.
         EXPECT_NEAR(spot.variance_x, 0.25 * (disk * disk + blur * blur) + 1.0 / 12,
@@ -57,7 +57,7 @@ TEST(SnowParticles, DriftDrawsParticlesOutWhileTheShutterIsOpen) {
     ASSERT_GT(length, 10);
     const double disk = 0.5 * particle.diameter / range * desc.camera.intrinsics.fx;
     const Spot spot = spot_of(image_of(desc));
-    EXPECT_NEAR(spot.sum / sum_of(particle, desc, 0), 1, k_tolerance);
+    EXPECT_NEAR(spot.sum / sum_of(particle, desc, 0), 1, k_particle_tolerance);
     EXPECT_NEAR(spot.variance_x, length * length / 12 + disk * disk / 4 + 1.0 / 12, 1);
     EXPECT_NEAR(spot.x, 32, 0.1);
 }

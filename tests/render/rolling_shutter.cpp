@@ -12,6 +12,7 @@
 #include "render/renderer.h"
 #include "render/resolved_scene.h"
 #include "render/scene_loading.h"
+#include "tests/support/image_of.h"
 #include "tests/support/message_of.h"
 
 namespace uw::test {
@@ -41,13 +42,6 @@ SceneDesc pole_scene(const std::string& camera, const std::string& render,
         "isotropic}, intensity: [10, 10, 10]}]\n"
         "render: {fps: 10, " +
         render + "}\n");
-}
-
-Film image_of(SceneDesc desc, const RenderOptions& options) {
-    Renderer renderer;
-    renderer.set_scene(std::move(desc));
-    renderer.render(options);
-    return renderer.release_film();
 }
 
 // The time of a row's middle after that of the frame [s].

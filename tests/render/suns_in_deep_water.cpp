@@ -15,7 +15,7 @@ namespace {
 
 constexpr WaterSurfaceDesc k_surface{{0, -1.2, 0}, {0, -1, 0}};
 
-double phase(double cosine) {  // of hg_water(0.9)
+double hg_phase(double cosine) {  // of hg_water(0.9)
     constexpr double g = 0.9;
     return (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
@@ -59,7 +59,7 @@ TEST_P(SunInDeepWater, IsScatteredInBandsOfAnyAttenuation) {
                 const double c = absorption[b] + scattering[b], rate = c * (1 + slope);
                 const double end = slope < 0 ? std::min(k_far, -begin / slope) : k_far;
                 const double expected = desc.lamps[0].intensity->at(b) * scattering[b] *
-                                        phase(-glm::dot(sun.direction, ray.direction)) *
+                                        hg_phase(-glm::dot(sun.direction, ray.direction)) *
                                         std::exp(-c * begin) * -std::expm1(-rate * end) / rate;
                 // Gauss panels of 1.5 optical depths, as in water of one attenuation.
                 EXPECT_NEAR(pixel.backscatter[b], expected, 2e-5 * expected)

@@ -36,7 +36,7 @@ render:
 )";
 
 /// Waits until `holds`, at most `seconds`; whether it does.
-inline bool eventually(const std::function<bool()>& holds, double seconds = 60) {
+inline bool eventually(const std::function<bool()>& holds, double seconds = 600) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     while (!holds()) {
         if (std::chrono::steady_clock::now() > end) return false;

@@ -117,7 +117,7 @@ TEST_F(DatasetCommand, IsTheSameAfterBeingKilled) {
 TEST_F(DatasetCommand, CanBeInterruptedAndContinued) {
     const std::vector<std::string> arguments = command("set", {"--size", "200x150"});
     test::Program program(arguments, {.folder = folder_.path()});
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(10);
     while (!exists("set/views/000000.json") && std::chrono::steady_clock::now() < deadline)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     program.signal(SIGINT);

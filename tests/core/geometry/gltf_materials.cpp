@@ -17,7 +17,7 @@ namespace {
 using test::build;
 using test::TexturedGltf;
 
-constexpr double k_far = 1e6;
+constexpr double k_beyond = 1e6;
 constexpr auto k_base = R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":)";
 
 class GltfMaterials : public test::MeshReading {
@@ -37,7 +37,8 @@ class GltfMaterials : public test::MeshReading {
     static SurfaceHit hit_at(const Surfaces& surfaces, double x, double y, bool behind = false) {
         SurfaceHit hit;
         const double side = behind ? -1 : 1;
-        EXPECT_TRUE(surfaces.closest_hit({Point3{x, y, side}, Vector3(0, 0, -side)}, k_far, hit));
+        EXPECT_TRUE(
+            surfaces.closest_hit({Point3{x, y, side}, Vector3(0, 0, -side)}, k_beyond, hit));
         return hit;
     }
     Rgb color_at(const std::string& texture_info, double x, double y) {
@@ -111,12 +112,12 @@ TEST_F(GltfMaterials, RaysAndShadowsPassTheHolesOfAMask) {
         }
         std::vector<SurfaceHit> hits(rays.size());
         std::vector<char> found(rays.size()), blocked(rays.size());
-        surfaces->closest_hits(rays, k_far, hits, found);
+        surfaces->closest_hits(rays, k_beyond, hits, found);
         surfaces->occluded_many(rays[0].origin, ends, blocked);
         int holes = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             SurfaceHit one;
-            ASSERT_EQ(surfaces->closest_hit(rays[i], k_far, one), found[i] != 0);
+            ASSERT_EQ(surfaces->closest_hit(rays[i], k_beyond, one), found[i] != 0);
             EXPECT_EQ(one.distance, hits[i].distance);
             EXPECT_EQ(one.object_id, hits[i].object_id);
             EXPECT_EQ(surfaces->occluded(rays[i].origin, ends[i]), blocked[i] != 0);
@@ -134,7 +135,7 @@ TEST_F(GltfMaterials, MasksMultiplyFactorTextureAndVertexAlpha) {
     gltf.colors = {1, 1, 1, .8F, 1, 1, 1, .4F, 1, 1, 1, .4F, 1, 1, 1, .8F};
     const auto surfaces = build({desc(gltf)});
     const auto is_hole = [&](double x, double y) {
-        return !(surfaces->hit_distance({Point3{x, y, 1}, Vector3(0, 0, -1)}) < k_far);
+        return !(surfaces->hit_distance({Point3{x, y, 1}, Vector3(0, 0, -1)}) < k_beyond);
     };
     EXPECT_FALSE(is_hole(0.05, 0.75));  // 0.5 * 0.784 * 0.78 = 0.306
     EXPECT_TRUE(is_hole(0.20, 0.75));   // 0.5 * 0.784 * 0.72 = 0.282
@@ -206,7 +207,8 @@ class NormalMaps : public GltfMaterials {
     void expect_normal(const GeometryDesc& entry, const Vector3& ray_origin, const Vector3& ahead,
                        const Vector3& expected) {
         SurfaceHit hit;
-        ASSERT_TRUE(build({entry})->closest_hit({at_origin_plus(ray_origin), ahead}, k_far, hit));
+        ASSERT_TRUE(
+            build({entry})->closest_hit({at_origin_plus(ray_origin), ahead}, k_beyond, hit));
         // 8-bit texels as floats.
         EXPECT_NEAR(glm::length(hit.normal - glm::normalize(expected)), 0, 1e-6)
             << hit.normal.x << " " << hit.normal.y << " " << hit.normal.z;

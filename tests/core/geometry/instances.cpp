@@ -21,11 +21,11 @@ using test::build;
 using test::bytes_of;
 using test::Random;
 
-constexpr double k_far = 1e6;
+constexpr double k_beyond_nodes = 1e6;
 constexpr std::size_t k_side = 7;  // squares of a sheet: 98 triangles, too many to be copied
 
 /// Nodes with all that transforms can do: turned, mirrored, stretched, and below one another.
-const std::vector<std::string> k_nodes{
+const std::vector<std::string> k_node_texts{
     R"({"name":"plain","mesh":0})",
     R"({"name":"turned","mesh":0,"translation":[4,0,0],"rotation":[0.2,0.4,0.1,0.8]})",
     R"({"name":"mirrored","mesh":0,"translation":[-4,0.5,0],"scale":[-1,1,1]})",
@@ -50,7 +50,7 @@ struct Buffer {
 };
 
 /// A wavy sheet with normals, tangents, texture coordinates and colours.
-Buffer sheet() {
+Buffer wavy_sheet() {
     std::vector<float> positions, normals, uvs, colors, tangents;
     std::vector<std::uint16_t> indices;
     const std::size_t row = k_side + 1;
@@ -86,12 +86,12 @@ Buffer sheet() {
 
 /// Every node shows the one mesh, or each a mesh of its own with the same data.
 std::string sheets_text(bool shared, const std::string& material) {
-    const Buffer buffer = sheet();
+    const Buffer buffer = wavy_sheet();
     const std::string mesh =
         R"({"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2,"COLOR_0":3,"TANGENT":5},"indices":4,"material":1}]})";
     std::string nodes, meshes, roots;
-    for (std::size_t k = 0; k < k_nodes.size(); ++k) {
-        std::string node = k_nodes[k];
+    for (std::size_t k = 0; k < k_node_texts.size(); ++k) {
+        std::string node = k_node_texts[k];
         const auto at = node.find(R"("mesh":0)");
         if (!shared && at != std::string::npos)
             node.replace(at, 8, R"("mesh":)" + std::to_string(k));
@@ -143,8 +143,8 @@ TEST_F(Instances, LookAsCopiesOfTheMeshDo) {
             const Point3 origin = random.point(7);
             const Vector3 direction = glm::normalize(random.point(4) - origin);
             SurfaceHit a, b;
-            const bool found = shared->closest_hit({origin, direction}, k_far, a);
-            const bool expected = copied->closest_hit({origin, direction}, k_far, b);
+            const bool found = shared->closest_hit({origin, direction}, k_beyond_nodes, a);
+            const bool expected = copied->closest_hit({origin, direction}, k_beyond_nodes, b);
             const Point3 end = origin + 6.0 * direction;
             if (found != expected || (found && a.object_id != b.object_id)) {
                 ++differ;  // at a silhouette, which the copies' rounded vertices move
@@ -218,7 +218,8 @@ TEST_F(Instances, AreNamedAndPlacedAsTheirNodes) {
     // Straight down on the middle of each node that keeps its mesh's middle there.
     const auto id_at = [&](double x, double y) {
         SurfaceHit hit;
-        const bool found = surfaces->closest_hit({Point3{x, y, 20}, Vector3(0, 0, -1)}, k_far, hit);
+        const bool found =
+            surfaces->closest_hit({Point3{x, y, 20}, Vector3(0, 0, -1)}, k_beyond_nodes, hit);
         return found ? hit.object_id : 0U;
     };
     EXPECT_EQ(id_at(0.01, 0.02), 2U);
@@ -247,11 +248,11 @@ TEST_F(Instances, PacketsEqualSingleQueriesToTheBit) {
         }
         std::vector<SurfaceHit> found(rays.size());
         std::vector<char> is_found(rays.size()), blocked(rays.size());
-        surfaces->closest_hits(rays, k_far, found, is_found);
+        surfaces->closest_hits(rays, k_beyond_nodes, found, is_found);
         surfaces->occluded_many(origin, ends, blocked);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             SurfaceHit one;
-            EXPECT_EQ(is_found[i] != 0, surfaces->closest_hit(rays[i], k_far, one));
+            EXPECT_EQ(is_found[i] != 0, surfaces->closest_hit(rays[i], k_beyond_nodes, one));
             EXPECT_EQ(found[i].distance, one.distance);
             EXPECT_EQ(found[i].normal, one.normal);
             EXPECT_EQ(found[i].object_id, one.object_id);
@@ -270,7 +271,7 @@ TEST_F(Instances, ShadowRaysDoNotHitTheSurfaceTheyEndOn) {
     for (int k = 0; k < 5000; ++k) {
         SurfaceHit hit;
         const Ray ray{lamp, random.direction()};
-        if (!surfaces->closest_hit(ray, k_far, hit)) continue;
+        if (!surfaces->closest_hit(ray, k_beyond_nodes, hit)) continue;
         ++lit;
         EXPECT_FALSE(surfaces->occluded(lamp, hit.position)) << k;
     }

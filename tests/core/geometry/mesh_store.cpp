@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 const std::vector<double> k_bands{620, 540, 450};
-const Ray k_ray{{0.2, 0.2, -1}, {0, 0, 1}};  // through the triangle of `sheet`
+const Ray k_through_sheet{{0.2, 0.2, -1}, {0, 0, 1}};  // through the triangle of `sheet`
 
 /// A triangle across the z axis.
 std::string sheet(double z) {
@@ -59,23 +59,23 @@ TEST_F(Meshes, ThatStandStillAreReadOnce) {
 }
 
 TEST_F(Meshes, OfAFileThatChangedAreReadAgain) {
-    ASSERT_EQ(build({still_})->hit_distance(k_ray), 2);
+    ASSERT_EQ(build({still_})->hit_distance(k_through_sheet), 2);
     // As many bytes at another time, and another file of the same time under the name.
     const fs::file_time_type written = fs::last_write_time(still_.file);
     folder_.write("still.obj", sheet(2));
     fs::last_write_time(still_.file, written + 5s);
-    EXPECT_EQ(build({still_})->hit_distance(k_ray), 3);
+    EXPECT_EQ(build({still_})->hit_distance(k_through_sheet), 3);
     const fs::path other = folder_.write("other.obj", sheet(3));
     fs::last_write_time(other, written + 5s);
     fs::rename(other, still_.file);
-    EXPECT_EQ(build({still_})->hit_distance(k_ray), 4);
+    EXPECT_EQ(build({still_})->hit_distance(k_through_sheet), 4);
 }
 
 TEST_F(Meshes, OfAFileWhoseMaterialsChangedAreReadAgain) {
     still_.file = folder_.write("painted.obj", "mtllib paint.mtl\nusemtl a\n" + sheet(1));
     const auto red = [&] {
         SurfaceHit hit;
-        EXPECT_TRUE(build({still_})->closest_hit(k_ray, 100, hit));
+        EXPECT_TRUE(build({still_})->closest_hit(k_through_sheet, 100, hit));
         return hit.reflectance[0];
     };
     folder_.write("paint.mtl", "newmtl a\nKd 0.2 0.2 0.2\n");
@@ -94,15 +94,15 @@ TEST_F(Meshes, ThatMoveAreWhereTheyAre) {
     for (const double z : {4.0, 0.5, 2.0, 4.0}) {
         place(z);
         const auto surfaces = build({still_, moving_});
-        EXPECT_EQ(surfaces->hit_distance(k_ray), 1 + std::min(1.0, z)) << z;
-        EXPECT_EQ(build({moving_})->hit_distance(k_ray), 1 + z);
+        EXPECT_EQ(surfaces->hit_distance(k_through_sheet), 1 + std::min(1.0, z)) << z;
+        EXPECT_EQ(build({moving_})->hit_distance(k_through_sheet), 1 + z);
     }
 }
 
 TEST_F(Meshes, HaveTheIdsOfTheirPlace) {
     SurfaceHit hit;
     const auto id_among = [&](const std::vector<GeometryDesc>& geometry) {
-        EXPECT_TRUE(build(geometry)->closest_hit(k_ray, 100, hit));
+        EXPECT_TRUE(build(geometry)->closest_hit(k_through_sheet, 100, hit));
         return hit.object_id;
     };
     const GeometryDesc far = test::sphere({0, 0, 50}, 1);

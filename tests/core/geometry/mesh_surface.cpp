@@ -22,7 +22,7 @@ using test::Random;
 using test::seabed;
 using test::sphere;
 
-constexpr double k_far = 1e6;
+constexpr double k_beyond_mesh = 1e6;
 
 struct Nearest {
     double t = std::numeric_limits<double>::infinity();
@@ -71,7 +71,7 @@ TEST(SurfacesMesh, ClosestHitOnTheSeabedEqualsBruteForce) {
                       random.direction()};
         const Nearest expected = brute_force(mesh, ray);
         SurfaceHit hit;
-        const bool found = surfaces->closest_hit(ray, k_far, hit);
+        const bool found = surfaces->closest_hit(ray, k_beyond_mesh, hit);
         // Near an edge or a silhouette, Embree's single precision may take the neighbour.
         if (expected.rim < 1e-3) continue;
         ++compared;
@@ -124,7 +124,7 @@ TEST(SurfacesMesh, ShadowRaysDoNotHitTheSurfaceTheyEndOn) {
     for (int k = 0; k < 20000; ++k) {
         SurfaceHit hit;
         const Ray ray{lamp, random.direction()};
-        if (!surfaces->closest_hit(ray, k_far, hit)) continue;
+        if (!surfaces->closest_hit(ray, k_beyond_mesh, hit)) continue;
         ++lit;
         // What the lamp's own ray met first, the lamp lights, at any grazing angle.
         EXPECT_FALSE(surfaces->occluded(lamp, hit.position)) << k;
@@ -150,7 +150,7 @@ TEST(SurfacesMesh, TransformsIncludingMirrorsKeepNormalsRight) {
         for (const double side : {1.0, -1.0}) {
             SurfaceHit hit;
             const Ray ray{middle + side * 2.0 * normal, -side * normal};
-            ASSERT_TRUE(surfaces->closest_hit(ray, k_far, hit));
+            ASSERT_TRUE(surfaces->closest_hit(ray, k_beyond_mesh, hit));
             // Vertices of up to 10 m in single precision.
             EXPECT_NEAR(hit.distance, 2.0, 2e-6);
             EXPECT_NEAR(glm::length(hit.geometric_normal - side * normal), 0.0, 2e-6);
@@ -173,12 +173,12 @@ TEST(SurfacesMesh, ColorsMultiplyFactorTextureAndVertexColor) {
     const auto surfaces = build({desc});
     SurfaceHit hit;
     const Ray behind{Point3{0.2, 0.2, -1}, Vector3(0, 0, 1)};  // one-sided, yet opaque and shaded
-    ASSERT_TRUE(surfaces->closest_hit(behind, k_far, hit));
+    ASSERT_TRUE(surfaces->closest_hit(behind, k_beyond_mesh, hit));
     EXPECT_NEAR(hit.reflectance[0], 0.5 * 1.0 * 0.5, 1e-7);  // red texel, factor, COLOR_0
     EXPECT_EQ(hit.reflectance[1], 0.0);
     EXPECT_EQ(hit.reflectance[2], 0.0);
     desc.reflectance = PerBand{0.3, 0.3, 0.3};
-    ASSERT_TRUE(build({desc})->closest_hit(behind, k_far, hit));
+    ASSERT_TRUE(build({desc})->closest_hit(behind, k_beyond_mesh, hit));
     EXPECT_EQ(hit.reflectance[1], 0.3);
 }
 

@@ -11,7 +11,7 @@
 namespace uw {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
+using std::numbers::pi;
 const Vector3 k_up(0, 0, 1);
 
 Vector3 at_angle(double theta, double phi = 0) {
@@ -32,15 +32,15 @@ TEST(Microfacet, TheMirrorDirectionHasTheClosedForm) {
         const double alpha = roughness * roughness;
         // On the normal D V = 1/(pi alpha^2) * 1/4.
         const MicrofacetLobe front = microfacet_lobe(k_up, k_up, k_up, roughness);
-        EXPECT_NEAR(front.density * 4 * k_pi * alpha * alpha, 1, 1e-12);
+        EXPECT_NEAR(front.density * 4 * pi * alpha * alpha, 1, 1e-12);
         EXPECT_EQ(front.fresnel_weight, 0);
         for (const double theta : {0.2, 0.8, 1.3}) {
             const MicrofacetLobe lobe =
-                microfacet_lobe(k_up, at_angle(theta), at_angle(theta, k_pi), roughness);
+                microfacet_lobe(k_up, at_angle(theta), at_angle(theta, pi), roughness);
             // h = n; both masking terms are alike: V = 1/(4 c sqrt(c^2 + alpha^2 s^2)).
             const double c = std::cos(theta), s = std::sin(theta);
             const double expected =
-                1 / (k_pi * alpha * alpha) / (4 * c * std::sqrt(c * c + alpha * alpha * s * s));
+                1 / (pi * alpha * alpha) / (4 * c * std::sqrt(c * c + alpha * alpha * s * s));
             EXPECT_NEAR(lobe.density / expected, 1, 1e-9) << roughness << " " << theta;
             EXPECT_NEAR(lobe.fresnel(0.04), 0.04 + 0.96 * std::pow(1 - c, 5), 1e-12);
         }
@@ -79,9 +79,9 @@ double reflected(double theta, double roughness) {
         const double theta_h = std::atan(tangent);
         const double cosine = std::cos(theta_h);
         const double spread = cosine * cosine * (alpha * alpha - 1) + 1;
-        const double density = alpha * alpha * cosine / (k_pi * spread * spread);  // D cos
+        const double density = alpha * alpha * cosine / (pi * spread * spread);  // D cos
         for (int j = 0; j < k_turns; ++j) {
-            const Vector3 half = at_angle(theta_h, 2 * k_pi * (j + 0.5) / k_turns);
+            const Vector3 half = at_angle(theta_h, 2 * pi * (j + 0.5) / k_turns);
             const double lh = glm::dot(lamp, half);
             if (lh <= 0) continue;
             const Vector3 out = 2 * lh * half - lamp;
@@ -109,7 +109,7 @@ TEST(Microfacet, AWhiteMetalReflectsNoMoreThanItGetsAndAlmostAllIfSmooth) {
 }
 
 TEST(Microfacet, SmootherThanTheLeastIsTheLeast) {
-    const Vector3 lamp = at_angle(0.3), camera = at_angle(0.31, k_pi);
+    const Vector3 lamp = at_angle(0.3), camera = at_angle(0.31, pi);
     EXPECT_EQ(microfacet_lobe(k_up, camera, lamp, 0).density,
               microfacet_lobe(k_up, camera, lamp, k_smallest_roughness).density);
     // Nothing from behind, and no NaN from anywhere.

@@ -14,7 +14,7 @@
 namespace uw {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
+using std::numbers::pi;
 
 class SurfaceFinishes : public testing::Test {
   protected:
@@ -82,7 +82,7 @@ TEST_F(SurfaceFinishes, AMetalWallMirrorsTheLampByTheClosedForm) {
         const double half = 0.5 * (to_camera + to_lamp), apart = 0.5 * (to_lamp - to_camera);
         const double ch = std::cos(half), nv = std::cos(to_camera), nl = std::cos(to_lamp);
         const double spread = ch * ch * (alpha * alpha - 1) + 1;
-        const double d = alpha * alpha / (k_pi * spread * spread);
+        const double d = alpha * alpha / (pi * spread * spread);
         const auto masked = [&](double c) {
             return std::sqrt(c * c * (1 - alpha * alpha) + alpha * alpha);
         };

@@ -13,7 +13,7 @@
 namespace uw {
 namespace {
 
-Spectrum spectrum(const std::vector<double>& values) {
+Spectrum spectrum_of(const std::vector<double>& values) {
     Spectrum s{};
     std::copy(values.begin(), values.end(), s.begin());
     return s;
@@ -21,13 +21,13 @@ Spectrum spectrum(const std::vector<double>& values) {
 
 TEST(Colour, ThreeBandsAreRgbUnchanged) {
     const std::vector<double> bands{620, 540, 450};
-    const LinearRgb rgb = BandColour(bands)(spectrum({0.1, -2.5, 1e-9}));
+    const LinearRgb rgb = BandColour(bands)(spectrum_of({0.1, -2.5, 1e-9}));
     EXPECT_EQ(rgb, (LinearRgb{0.1, -2.5, 1e-9}));
 }
 
 TEST(Colour, OneBandIsGrey) {
     const std::vector<double> bands{532};
-    EXPECT_EQ(BandColour(bands)(spectrum({0.7})), (LinearRgb{0.7, 0.7, 0.7}));
+    EXPECT_EQ(BandColour(bands)(spectrum_of({0.7})), (LinearRgb{0.7, 0.7, 0.7}));
 }
 
 TEST(Colour, EqualEnergyIsWhite) {
@@ -35,7 +35,7 @@ TEST(Colour, EqualEnergyIsWhite) {
         {480, 560}, {620, 450, 540, 500}, {400, 450, 500, 550, 600, 650, 700}, {425.5, 533.3}};
     for (const auto& bands : band_sets) {
         const BandColour colour(bands);
-        const LinearRgb rgb = colour(spectrum(std::vector<double>(bands.size(), 1.0)));
+        const LinearRgb rgb = colour(spectrum_of(std::vector<double>(bands.size(), 1.0)));
         // The matrix and the white point are given to 10 digits.
         for (const double c : rgb) EXPECT_NEAR(c, 1, 1e-6);
         EXPECT_NEAR(luminance(rgb), 1, 1e-6);
@@ -71,7 +71,7 @@ TEST(Colour, FollowsCie1931) {
         }
     }
     // Back from RGB with the forward matrix of IEC 61966-2-1; its rows sum to the D65 white.
-    const LinearRgb rgb = BandColour(bands)(spectrum(radiance));
+    const LinearRgb rgb = BandColour(bands)(spectrum_of(radiance));
     const std::array<std::array<double, 3>, 3> xyz_from_rgb{
         {{0.4123907993, 0.3575843394, 0.1804807884},
          {0.2126390059, 0.7151686788, 0.0721923154},
@@ -87,10 +87,10 @@ TEST(Colour, FollowsCie1931) {
 
 TEST(Colour, PureColoursLieOutsideTheGamutAndKeepTheirSign) {
     const std::vector<double> bands{450, 500, 550, 600, 650};
-    const LinearRgb cyan = BandColour(bands)(spectrum({0, 1, 0, 0, 0}));
+    const LinearRgb cyan = BandColour(bands)(spectrum_of({0, 1, 0, 0, 0}));
     EXPECT_LT(cyan[0], 0);
     EXPECT_GT(cyan[1], 0);
-    const LinearRgb red = BandColour(bands)(spectrum({0, 0, 0, 0, 1}));
+    const LinearRgb red = BandColour(bands)(spectrum_of({0, 0, 0, 0, 1}));
     EXPECT_GT(red[0], 0);
     EXPECT_LT(red[1], 0);
 }
@@ -100,7 +100,7 @@ TEST(Colour, NeverSilentlyBlack) {
          {std::vector<double>{850, 900}, {700, 720, 740, 760}, {550, 550}}) {
         const BandColour colour(bands);
         EXPECT_NE(colour.warning(), "");
-        for (const double c : colour(spectrum(std::vector<double>(bands.size(), 0.5)))) {
+        for (const double c : colour(spectrum_of(std::vector<double>(bands.size(), 0.5)))) {
             EXPECT_NEAR(c, 0.5, 1e-15);
         }
     }

@@ -11,8 +11,6 @@
 namespace uw {
 namespace {
 
-constexpr float k_infinity = std::numeric_limits<float>::infinity();
-
 Film grey(float value, const std::vector<std::string>& names = {"R", "G", "B", "A", "depth.Z"}) {
     Film film(4, 2, {0, 0, 4, 2}, names);
     for (int y = 0; y < 2; ++y)
@@ -70,7 +68,7 @@ TEST(ExrOptions, WhatHalfFloatsCannotHoldIsFloat) {
     film.pixel(3, 1)[4] = 1e9F;  // ground truth does not matter
     EXPECT_TRUE(half_loss(film).is_none());
     // Infinite as they are, and no reason to make all the others longer.
-    film.pixel(0, 0)[k_red] = k_infinity;
+    film.pixel(0, 0)[k_red] = std::numeric_limits<float>::infinity();
     EXPECT_EQ(half_loss(film).too_large, 0U);
 }
 

@@ -89,15 +89,15 @@ struct Decoded {
     PixelImage image;
 };
 Decoded decoded(const std::string& format, int channels, int bits = 8) {
-    constexpr int k_width = 5, k_height = 3;
+    constexpr int k_columns = 5, k_rows = 3;
     Decoded result;
-    for (int i = 0; i < k_width * k_height * channels; ++i)
+    for (int i = 0; i < k_columns * k_rows * channels; ++i)
         result.values.push_back(i * (bits == 16 ? 1091 : 4) + 1);
     const std::string bytes =
-        test::encoded_image(format, k_width, k_height, channels, result.values, bits);
+        test::encoded_image(format, k_columns, k_rows, channels, result.values, bits);
     result.image = read_image(encoded_bytes(bytes), "x." + format);
-    EXPECT_EQ(result.image.width, k_width);
-    EXPECT_EQ(result.image.height, k_height);
+    EXPECT_EQ(result.image.width, k_columns);
+    EXPECT_EQ(result.image.height, k_rows);
     return result;
 }
 

@@ -10,9 +10,9 @@
 namespace uw {
 namespace {
 
-constexpr double k_sigmas = 5;  // see random_counts.cpp
-constexpr int k_width = 512, k_height = 320;
-constexpr double k_pixels = k_width * k_height;
+constexpr double k_readout_sigmas = 5;  // see random_counts.cpp
+constexpr int k_sensor_width = 512, k_sensor_height = 320;
+constexpr double k_pixels = k_sensor_width * k_sensor_height;
 
 /// Like a machine-vision sensor of 3.45 um.
 SensorDesc usual_sensor() {
@@ -31,8 +31,8 @@ std::vector<double> image_of(const SensorDesc& desc, double electrons,
                              const ImageIdentity& identity = {}) {
     const SensorReadout readout(desc, identity);
     std::vector<double> numbers;
-    for (int y = 0; y < k_height; ++y)
-        for (int x = 0; x < k_width; ++x) numbers.push_back(readout.number(electrons, x, y));
+    for (int y = 0; y < k_sensor_height; ++y)
+        for (int x = 0; x < k_sensor_width; ++x) numbers.push_back(readout.number(electrons, x, y));
     return numbers;
 }
 
@@ -65,8 +65,9 @@ TEST(SensorReadout, ThePhotonTransferCurveHasTheSlopeOfTheGain) {
         const double excess = (electrons + dark) / (in_electrons * in_electrons);
         const double error = expected * std::sqrt((2 + excess) / k_pixels);
         const double mean = mean_of(numbers), found = variance(numbers);
-        EXPECT_NEAR(found, expected, k_sigmas * error) << electrons;
-        EXPECT_NEAR(mean, K * (electrons + dark) + 60, k_sigmas * std::sqrt(expected / k_pixels))
+        EXPECT_NEAR(found, expected, k_readout_sigmas * error) << electrons;
+        EXPECT_NEAR(mean, K * (electrons + dark) + 60,
+                    k_readout_sigmas * std::sqrt(expected / k_pixels))
             << electrons;
         const double weight = 1 / (error * error);
         weights += weight;
@@ -77,8 +78,8 @@ TEST(SensorReadout, ThePhotonTransferCurveHasTheSlopeOfTheGain) {
     }
     const double spread = squares - means * means / weights;
     const double slope = (products - means * variances / weights) / spread;
-    EXPECT_NEAR(slope, K, k_sigmas / std::sqrt(spread));
-    EXPECT_LT(k_sigmas / std::sqrt(spread), 0.01 * K);  // the bound says something
+    EXPECT_NEAR(slope, K, k_readout_sigmas / std::sqrt(spread));
+    EXPECT_LT(k_readout_sigmas / std::sqrt(spread), 0.01 * K);  // the bound says something
     const double intercept = (variances - slope * means) / weights + slope * 60;
     EXPECT_NEAR(intercept, K * K * 2.4 * 2.4 + 1.0 / 12, 0.1);
 }
@@ -112,12 +113,12 @@ TEST(SensorReadout, DarkImagesHaveTheBlackLevelAndTheDarkCurrent) {
     SensorDesc desc = usual_sensor();
     desc.dark_current = 0;
     EXPECT_NEAR(mean_of(image_of(desc, 0)), 60,
-                k_sigmas * std::sqrt((0.38 * 0.38 * 2.4 * 2.4 + 1.0 / 12) / k_pixels));
+                k_readout_sigmas * std::sqrt((0.38 * 0.38 * 2.4 * 2.4 + 1.0 / 12) / k_pixels));
     desc.dark_current = 5000;  // 100 electrons, with a shot noise of 10
     const double expected = 0.38 * 0.38 * (100 + 2.4 * 2.4) + 1.0 / 12;
-    EXPECT_NEAR(mean_of(image_of(desc, 0)), 98, k_sigmas * std::sqrt(expected / k_pixels));
+    EXPECT_NEAR(mean_of(image_of(desc, 0)), 98, k_readout_sigmas * std::sqrt(expected / k_pixels));
     EXPECT_NEAR(variance(image_of(desc, 0)), expected,
-                k_sigmas * expected * std::sqrt(2 / k_pixels));
+                k_readout_sigmas * expected * std::sqrt(2 / k_pixels));
 }
 
 /// What belongs to the pixels stays from image to image, the rest does not: the covariance of two
@@ -133,10 +134,10 @@ TEST(SensorReadout, FixedPatternsStayAndTemporalNoiseDoesNot) {
     const double all = fixed + 0.38 * 0.38 * (electrons + dark + 2.4 * 2.4) + 1.0 / 12;
     // Normal variables have var(cov) = (s1^2 s2^2 + cov^2) / n.
     EXPECT_NEAR(covariance(first, second), fixed,
-                k_sigmas * std::sqrt((all * all + fixed * fixed) / k_pixels));
-    EXPECT_NEAR(variance(first), all, k_sigmas * all * std::sqrt(2 / k_pixels));
+                k_readout_sigmas * std::sqrt((all * all + fixed * fixed) / k_pixels));
+    EXPECT_NEAR(variance(first), all, k_readout_sigmas * all * std::sqrt(2 / k_pixels));
     const auto other = image_of(desc, electrons, {"right", 1});
-    EXPECT_NEAR(covariance(first, other), 0, k_sigmas * all / std::sqrt(k_pixels));
+    EXPECT_NEAR(covariance(first, other), 0, k_readout_sigmas * all / std::sqrt(k_pixels));
 }
 
 TEST(SensorReadout, NoiseDiffersByFrameCameraSeedPixelAndColour) {
@@ -144,19 +145,20 @@ TEST(SensorReadout, NoiseDiffersByFrameCameraSeedPixelAndColour) {
     reseeded.seed = 1;
     const double electrons = 1000, all = 0.38 * 0.38 * (1002 + 2.4 * 2.4) + 1.0 / 12;
     const auto first = image_of(desc, electrons, {"left", 1});
-    const double none = k_sigmas * all / std::sqrt(k_pixels);
+    const double none = k_readout_sigmas * all / std::sqrt(k_pixels);
     EXPECT_NEAR(covariance(first, image_of(desc, electrons, {"left", 2})), 0, none);
     EXPECT_NEAR(covariance(first, image_of(desc, electrons, {"right", 1})), 0, none);
     EXPECT_NEAR(covariance(first, image_of(reseeded, electrons, {"left", 1})), 0, none);
     auto moved = first;
     std::rotate(moved.begin(), moved.begin() + 1, moved.end());
     EXPECT_NEAR(covariance(first, moved), 0, none);
-    std::rotate(moved.begin(), moved.begin() + k_width, moved.end());
+    std::rotate(moved.begin(), moved.begin() + k_sensor_width, moved.end());
     EXPECT_NEAR(covariance(first, moved), 0, none);
     const SensorReadout readout(desc, {"left", 1});
     std::vector<double> green;
-    for (int y = 0; y < k_height; ++y)
-        for (int x = 0; x < k_width; ++x) green.push_back(readout.number(electrons, x, y, 1));
+    for (int y = 0; y < k_sensor_height; ++y)
+        for (int x = 0; x < k_sensor_width; ++x)
+            green.push_back(readout.number(electrons, x, y, 1));
     EXPECT_NEAR(covariance(first, green), 0, none);
     EXPECT_EQ(first, image_of(desc, electrons, {"left", 1}));
 }

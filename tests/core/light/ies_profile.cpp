@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-std::shared_ptr<const PhotometricWeb> web_of(const test::IesWriter& writer) {
+std::shared_ptr<const PhotometricWeb> shared_web(const test::IesWriter& writer) {
     return std::make_shared<PhotometricWeb>(parse_ies(writer.text(), "lamp.ies"));
 }
 
@@ -28,7 +28,7 @@ IesProfile asymmetric_profile(const IesProfileDesc& desc, const LampPlacement& p
         if (polar != 90) return polar == 0 ? 1.0 : 0.0;
         return plane == 180 ? 0.5 : (plane == 0 || plane == 360 ? 1.0 : (plane == 90 ? 0.25 : 0.0));
     };
-    return {desc, placement, web_of(writer)};
+    return {desc, placement, shared_web(writer)};
 }
 
 TEST(IesProfile, HangsInTheFrameOfTheLamp) {
@@ -81,7 +81,7 @@ TEST(IesProfile, SolidAngleIsTheIntegral) {
     test::IesWriter writer;
     writer.polar = {0, 90};
     writer.candelas = [](double, double) { return 123.0; };
-    const IesProfile half_sphere({}, {}, web_of(writer));
+    const IesProfile half_sphere({}, {}, shared_web(writer));
     EXPECT_NEAR(half_sphere.solid_angle(), 2 * pi, 1e-12);
     EXPECT_EQ(half_sphere.peak_candelas(), 123);
     const IesProfile profile = asymmetric_profile({{}, 30, 50});

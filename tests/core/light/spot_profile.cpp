@@ -20,7 +20,7 @@ using Falloff = SpotProfileDesc::Falloff;
 constexpr Falloff k_falloffs[] = {Falloff::smooth, Falloff::gltf, Falloff::blender,
                                   Falloff::blender_3_4};
 
-constexpr double radians(double degrees) {
+constexpr double radians_of(double degrees) {
     return degrees * pi / 180;
 }
 
@@ -31,7 +31,7 @@ struct Spot {
     explicit Spot(const SpotProfileDesc& desc) : profile(desc, {}) {}
     double at(double degrees) const {
         return profile.relative_intensity(
-            {0, std::sin(radians(degrees)), std::cos(radians(degrees))});
+            {0, std::sin(radians_of(degrees)), std::cos(radians_of(degrees))});
     }
 };
 
@@ -57,13 +57,13 @@ TEST(SpotProfile, IsHalfAtTheEdgeOfItsBeam) {
 
 TEST(SpotProfile, FallsAsTheGltfExtensionSays) {
     const Spot spot({63, 7, Falloff::gltf});
-    const double inner = std::cos(radians(28)), outer = std::cos(radians(35));
+    const double inner = std::cos(radians_of(28)), outer = std::cos(radians_of(35));
     EXPECT_EQ(spot.at(27.9), 1);
     EXPECT_EQ(spot.at(35.1), 0);
     for (const double degrees : {28.5, 30.0, 33.0, 34.9}) {
         // KHR_lights_punctual: lightAngleScale and lightAngleOffset, squared.
         const double scale = 1 / std::max(0.001, inner - outer), offset = -outer * scale;
-        const double linear = std::cos(radians(degrees)) * scale + offset;
+        const double linear = std::cos(radians_of(degrees)) * scale + offset;
         EXPECT_NEAR(spot.at(degrees), linear * linear, 1e-12);
     }
 }
@@ -78,9 +78,9 @@ TEST(SpotProfile, FallsAsBlenderShadesIt) {
         const double beam = size / 2 * (2 - blend), edge = size / 2 * blend;
         const Spot spot({beam, edge, Falloff::blender});
         const Spot old({beam, edge, Falloff::blender_3_4});
-        const double outer = std::cos(radians(size / 2));
+        const double outer = std::cos(radians_of(size / 2));
         for (double degrees = 0; degrees < 90; degrees += 0.25) {
-            const double cosine = std::cos(radians(degrees));
+            const double cosine = std::cos(radians_of(degrees));
             const double t = std::clamp((cosine - outer) / ((1 - outer) * blend), 0.0, 1.0);
             const double smooth = t * t * (3 - 2 * t);
             EXPECT_NEAR(spot.at(degrees), smooth, 1e-9) << size << " " << blend << " " << degrees;
@@ -93,14 +93,15 @@ TEST(SpotProfile, FallsAsBlenderShadesIt) {
 TEST(SpotProfile, WithoutBlendBlendersEdgeIsHard) {
     const Spot spot({60, 0, Falloff::blender}), old({60, 0, Falloff::blender_3_4});
     EXPECT_EQ(spot.at(29.99), 1);
-    EXPECT_NEAR(old.at(29.99), std::cos(radians(29.99)), 1e-12);
+    EXPECT_NEAR(old.at(29.99), std::cos(radians_of(29.99)), 1e-12);
     EXPECT_EQ(spot.at(30.01), 0);
     EXPECT_EQ(old.at(30.01), 0);
 }
 
 TEST(SpotProfile, SolidAngleIsTheIntegral) {
     // A hard edge in closed form: a cone of 2 pi (1 - cos 30 deg).
-    EXPECT_NEAR(Spot({60, 0}).profile.solid_angle(), 2 * pi * (1 - std::cos(radians(30))), 1e-12);
+    EXPECT_NEAR(Spot({60, 0}).profile.solid_angle(), 2 * pi * (1 - std::cos(radians_of(30))),
+                1e-12);
     for (const Falloff falloff : k_falloffs)
         for (const auto& [beam, edge] :
              {std::pair{63.0, 7.0}, std::pair{60.0, 60.0}, std::pair{120.0, 20.0}}) {
@@ -118,7 +119,7 @@ TEST(SpotProfile, BreaksAtBothEndsOfItsEdge) {
     spot.append_breaks({{-2, 0, 1}, {1, 0, 0}}, {0, 10}, {0, 0, 0}, s);
     for (const double degrees : {-40, -20, 20, 40})
         EXPECT_TRUE(std::ranges::any_of(s, [&](double at) {
-            return std::abs(at - (2 + std::tan(radians(degrees)))) < 1e-9;
+            return std::abs(at - (2 + std::tan(radians_of(degrees)))) < 1e-9;
         })) << degrees;
 }
 

@@ -10,10 +10,10 @@
 namespace uw::test {
 namespace {
 
-constexpr std::size_t k_seeds = 200, k_batches = 32;  // for each estimate
+constexpr std::size_t k_seeds = 200, k_batches_each = 32;  // for each estimate
 
-/// Over many seeds, the deviation of a mean of k_batches batches from the truth in units of its own
-/// stated error follows Student's t with k_batches - 1 degrees of freedom.
+/// Over many seeds, the deviation of a mean of k_batches_each batches from the truth in units of
+/// its own stated error follows Student's t with k_batches_each - 1 degrees of freedom.
 void expect_honest(const std::string& what, const std::vector<BatchMeans>& runs,
                    std::optional<double> exact) {
     double truth = 0;
@@ -27,7 +27,7 @@ void expect_honest(const std::string& what, const std::vector<BatchMeans>& runs,
         square += z * z / degrees;
         sum += z / static_cast<double>(runs.size());
     }
-    constexpr double k_nu = k_batches - 1;
+    constexpr double k_nu = k_batches_each - 1;
     const double variance = k_nu / (k_nu - 2), kurtosis = 3 + 6 / (k_nu - 4);
     const double spread = variance * std::sqrt((kurtosis - 1) / static_cast<double>(runs.size()));
     std::cout << what << ": variance of the deviation " << square << ", expected " << variance
@@ -46,7 +46,7 @@ TEST(PathErrors, AreStatedRightAgainstTheTable) {
         std::vector<BatchMeans> runs;
         for (std::uint64_t seed = 0; seed < k_seeds; ++seed)
             runs.push_back(
-                means_of(ray_batches(scene, ray, 1000 + seed, k_batches, 1 << 8),
+                means_of(ray_batches(scene, ray, 1000 + seed, k_batches_each, 1 << 8),
                          [](const TermSums& sums) { return k_to_table * sums.total(0); }));
         expect_honest("psi " + std::to_string(row.psi_degrees), runs, row.total);
     }
@@ -64,7 +64,7 @@ TEST(PathErrors, AreStatedRightInTheImage) {
         std::vector<std::vector<TermSums>> all;
         for (std::uint64_t seed = 0; seed < k_seeds; ++seed)
             all.push_back(
-                ray_batches(scene, s1_ray(pixel.x, pixel.y), 1000 + seed, k_batches, 1 << 8));
+                ray_batches(scene, s1_ray(pixel.x, pixel.y), 1000 + seed, k_batches_each, 1 << 8));
         for (const std::size_t band : {0U, 2U}) {
             std::vector<BatchMeans> runs;
             for (const auto& batches : all)

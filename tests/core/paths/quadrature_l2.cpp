@@ -11,8 +11,8 @@
 namespace uw::test {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
-constexpr double k_g = 0.7;
+using std::numbers::pi;
+constexpr double k_asymmetry = 0.7;
 constexpr double k_unit = 100;  // [m]; a lamp's sphere of 1 mm is a point in comparison
 constexpr BandOptics k_water{0.3 / k_unit, 0.7 / k_unit};
 constexpr double k_c = k_water.absorption + k_water.scattering;
@@ -28,8 +28,8 @@ Ray camera_ray() {
 }
 
 double phase(double cosine) {
-    const double q = 1 + k_g * k_g - 2 * k_g * cosine;
-    return (1 - k_g * k_g) / (4 * k_pi * q * std::sqrt(q));
+    const double q = 1 + k_asymmetry * k_asymmetry - 2 * k_asymmetry * cosine;
+    return (1 - k_asymmetry * k_asymmetry) / (4 * pi * q * std::sqrt(q));
 }
 
 /// Gauss's rule with four nodes on `panels` equal parts of [a, b].
@@ -150,18 +150,18 @@ double twice_scattered(std::size_t part, const Shadow* shadow, int fineness) {
     const auto from_all_directions = [&](const Point3& x) {
         const Vector3 axis = glm::normalize(k_lamp - x);
         const Vector3 u = glm::normalize(glm::cross(axis, ray.direction)), v = glm::cross(u, axis);
-        return integrate(0, k_pi, 8 * fineness, [&](double theta) {
+        return integrate(0, pi, 8 * fineness, [&](double theta) {
             // A periodic function but for the box: equal steps.
             const int steps = 32 * fineness;
             double ring = 0;
             for (int i = 0; i < steps; ++i) {
-                const double phi = 2 * k_pi * (i + 0.5) / steps;
+                const double phi = 2 * pi * (i + 0.5) / steps;
                 const Vector3 w = std::cos(theta) * axis +
                                   std::sin(theta) * (std::cos(phi) * u + std::sin(phi) * v);
                 ring += phase(glm::dot(w, ray.direction)) *
                         once_scattered({x, w}, shadow, 2 * fineness);
             }
-            return std::sin(theta) * ring * 2 * k_pi / steps;
+            return std::sin(theta) * ring * 2 * pi / steps;
         });
     };
     // Along the ray in the angle in which it is seen from the lamp.
@@ -190,7 +190,7 @@ class Parts final : public PathTerms {
 std::vector<Parts> trace(bool with_box) {
     constexpr std::size_t k_batches = 64;
     constexpr std::uint32_t k_paths = 1 << 12;
-    PathScene scene({k_water}, k_g);
+    PathScene scene({k_water}, k_asymmetry);
     scene.add_lamp(k_lamp, 1);
     if (with_box) scene.set_surfaces({with_reflectance(box(k_min, k_max), 0, 1)});
     const PathTracer tracer(scene.lit());

@@ -87,9 +87,9 @@ class RoughSurface {
           rho_(rho) {}
 
     /// Integral of BRDF times cosine, in spherical coordinates around the mirror direction, where
-    /// the lobe is: angle k_pi t^3.
+    /// the lobe is: angle pi t^3.
     double reflectance() const {
-        constexpr double pi = std::numbers::pi;
+        using std::numbers::pi;
         const Vector3 mirror(-to_camera_.x, 0, to_camera_.z), u(to_camera_.z, 0, to_camera_.x),
             v(0, 1, 0);
         constexpr int k_rings = 1500, k_sectors = 400;

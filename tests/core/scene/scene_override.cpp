@@ -24,7 +24,7 @@ SceneDesc read_with(const std::vector<std::string>& overrides) {
     return read_scene(folder.write("scene.yaml", k_scene), overrides);
 }
 
-std::string error_of(const std::vector<std::string>& overrides) {
+std::string override_error(const std::vector<std::string>& overrides) {
     try {
         read_with(overrides);
     } catch (const InputError& error) {
@@ -92,8 +92,8 @@ TEST(SceneOverride, errorsNameTheOverrideAndTheMend) {
         {"lamps=[1, 2", "--set lamps=[1, 2: end of sequence flow not found; correct"},
     };
     for (const auto& [text, expected] : cases) {
-        EXPECT_NE(error_of({text}).find(expected), std::string::npos)
-            << text << "\n  gave:     " << error_of({text}) << "\n  expected: " << expected;
+        EXPECT_NE(override_error({text}).find(expected), std::string::npos)
+            << text << "\n  gave:     " << override_error({text}) << "\n  expected: " << expected;
     }
 }
 

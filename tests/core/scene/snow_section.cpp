@@ -8,13 +8,13 @@ namespace {
 
 const std::string k_camera = "uwvdb: 1\ncamera: {resolution: [4, 4], intrinsics: {fov_x: 60}}\n";
 
-SnowDesc read(const std::string& snow) {
+SnowDesc snow_from(const std::string& snow) {
     return read_scene_text(k_camera + "water:\n  snow: " + snow + "\n", "scene.yaml", {})
         .water.snow.value();
 }
 
 TEST(SnowSection, IsReadInTheUnitsThatItIsWrittenIn) {
-    const SnowDesc snow = read(
+    const SnowDesc snow = snow_from(
         "{number: 2000, diameter: [50 um, 1.5cm], exponent: 3.5, reflectance: [0.1, 0.2, 0.3],"
         " drift: [0.1, 0, -0.2], seed: 9, mean: added, ground_truth: held, most: 5000}");
     EXPECT_EQ(snow.number, 2000);
@@ -30,7 +30,7 @@ TEST(SnowSection, IsReadInTheUnitsThatItIsWrittenIn) {
 }
 
 TEST(SnowSection, HasDefaults) {
-    const SnowDesc snow = read("{number: 1, diameter: [0.0002, 5 mm]}");
+    const SnowDesc snow = snow_from("{number: 1, diameter: [0.0002, 5 mm]}");
     EXPECT_DOUBLE_EQ(snow.least, 2e-4);
     EXPECT_EQ(snow.exponent, 4);
     EXPECT_EQ(snow.reflectance, (PerBand{0.4, 0.4, 0.4}));
@@ -38,7 +38,7 @@ TEST(SnowSection, HasDefaults) {
     EXPECT_EQ(snow.mean, SnowDesc::Mean::included);
     EXPECT_FALSE(snow.in_ground_truth);
     EXPECT_EQ(snow.most, 1'000'000);
-    EXPECT_DOUBLE_EQ(read("{number: 1, diameter: [80 µm, 5 mm]}").least, 80e-6);
+    EXPECT_DOUBLE_EQ(snow_from("{number: 1, diameter: [80 µm, 5 mm]}").least, 80e-6);
 }
 
 using SnowErrors = SceneErrors;

@@ -9,12 +9,12 @@
 namespace uw {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A body on a circle of radius 2 m about the y axis, which it goes round once in 8 s, turned about
 /// that axis and looking along its way.
 Pose on_circle(double time) {
-    const double angle = 2 * k_pi * time / 8;
+    const double angle = 2 * pi * time / 8;
     return {{2 * std::cos(angle), 1, -2 * std::sin(angle)}, rotation_by({0, angle, 0})};
 }
 
@@ -82,7 +82,7 @@ TEST(Trajectories, GoOnBeyondTheirEndsAsTheyMoveThere) {
 }
 
 TEST(Trajectories, FollowACircleToFourthOrder) {
-    const double bound = 5.0 / 384 * 2 * std::pow(2 * k_pi / 8, 4);
+    const double bound = 5.0 / 384 * 2 * std::pow(2 * pi / 8, 4);
     EXPECT_LT(circle_error(0.5), bound * std::pow(0.5, 4));
     EXPECT_LT(circle_error(0.25), bound * std::pow(0.25, 4));
     EXPECT_NEAR(circle_error(0.5) / circle_error(0.25), 16, 1);

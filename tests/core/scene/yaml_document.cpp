@@ -10,7 +10,7 @@
 namespace uw {
 namespace {
 
-std::string error_of(std::string_view text) {
+std::string document_error(std::string_view text) {
     try {
         parse_yaml(text, "s.yaml");
     } catch (const InputError& error) {
@@ -20,7 +20,7 @@ std::string error_of(std::string_view text) {
 }
 
 void expect_error(std::string_view text, std::string_view expected) {
-    const std::string found = error_of(text);
+    const std::string found = document_error(text);
     EXPECT_NE(found.find(expected), std::string::npos)
         << "gave:     " << found << "\nexpected: " << expected;
     EXPECT_EQ(found.find('\n'), std::string::npos) << "one line";

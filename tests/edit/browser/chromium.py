@@ -85,7 +85,7 @@ class Chromium:
         os.write(self._to, json.dumps(message).encode() + b"\0")
         return self._last_id
 
-    def command(self, method, session=None, timeout=30, **params):
+    def command(self, method, session=None, timeout=300, **params):
         number = self.send(method, session, **params)
         deadline = time.monotonic() + timeout
         while number not in self._answers:
@@ -186,7 +186,7 @@ class Page:
                                 f"{answer['exceptionDetails']['exception'].get('description')}")
         return answer["result"].get("value")
 
-    def wait(self, expression, seconds=15):
+    def wait(self, expression, seconds=300):
         """Until a JavaScript expression is true."""
         deadline = time.monotonic() + seconds
         while True:

@@ -281,7 +281,7 @@ class EditingSteps(unittest.TestCase):
         self.page.click('[title^="Search a place"]')
         self.page.type_into('dialog.suggest [data-key="samples"]', "2000")
         self.page.click("dialog.suggest .dialog-buttons button:nth-child(1)")
-        self.page.wait("document.querySelector('dialog.suggest progress').value > 0", 20)
+        self.page.wait("document.querySelector('dialog.suggest progress').value > 0")
         self.page.click("dialog.suggest .dialog-buttons button:nth-child(2)")
         self.page.wait("document.querySelector('dialog.suggest [role=status]').textContent"
                        ".includes('Cancelled')", 3)
@@ -346,7 +346,7 @@ class EditingSteps(unittest.TestCase):
         other = EditorPage(self.browser, self.editor)
         other.wait_final()
         self.page.type_into('[data-key="position.1"]', "0.4")
-        other.page.wait("document.querySelector('[data-key=\"position.1\"]').value === '0.4'", 5)
+        other.page.wait("document.querySelector('[data-key=\"position.1\"]').value === '0.4'")
         other.page.close()
         self.page.click('[title="See irradiance"]')
         # The other window may know first.
@@ -361,16 +361,16 @@ class EditingSteps(unittest.TestCase):
 
     def test_file_mended(self):
         self.editor.scene.write_text(SCENE.replace("beam: 40", "beam: forty"))
-        self.page.wait("document.querySelector('[data-banner]')", 10)
+        self.page.wait("document.querySelector('[data-banner]')")
         said = self.view.text("[data-banner]")
         self.assertRegex(said, r"wall\.yaml.*")
         self.editor.scene.write_text(SCENE.replace("beam: 40", "beam: 50"))
-        self.page.wait("document.querySelector('[data-key=\"profile.beam\"]').value === '50'", 10)
-        self.page.wait("document.querySelector('[data-banner]') === null", 10)
+        self.page.wait("document.querySelector('[data-key=\"profile.beam\"]').value === '50'")
+        self.page.wait("document.querySelector('[data-banner]') === null")
 
     def test_server_gone_and_back(self):
         self.editor.stop()
-        self.page.wait("document.querySelector('[data-banner=server]')", 10)
+        self.page.wait("document.querySelector('[data-banner=server]')")
         self.assertIn("does not answer", self.view.text("[data-banner=server]"))
         self.page.complaints.clear()
 

@@ -144,7 +144,7 @@ const std::vector<Case>& changes() {
     return cases;
 }
 
-SceneText scene(const std::string& text) {
+SceneText as_scene(const std::string& text) {
     return {text, "scene.yaml"};
 }
 
@@ -156,7 +156,7 @@ TEST(SceneText, ChangeTheirValuesOnlyAndMeanWhatSetMeans) {
     };
     for (const Case& change : changes()) {
         SCOPED_TRACE(change.name);
-        SceneText edited = scene(change.text);
+        SceneText edited = as_scene(change.text);
         ASSERT_NO_THROW(edited.set(change.path, change.value));
         EXPECT_EQ(diff(change.text, edited.text()), change.difference);
         EXPECT_EQ(hash_of(edited.text(), {}),
@@ -194,21 +194,21 @@ TEST(SceneText, OfAnyNumberAreUndoneByTheOppositeEdit) {
     };
     for (const Case& change : changes()) {
         SCOPED_TRACE(change.name);
-        const SceneText all = scene(change.text);
+        const SceneText all = as_scene(change.text);
         walk(walk, all, all.tree(), "");
     }
     for (const auto& entry : std::filesystem::recursive_directory_iterator(
              std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/scenes")) {
         if (entry.path().extension() != ".yaml") continue;
         SCOPED_TRACE(entry.path());
-        const SceneText all = scene(read_text_file(entry.path(), "", 1 << 20, "scene"));
+        const SceneText all = as_scene(read_text_file(entry.path(), "", 1 << 20, "scene"));
         walk(walk, all, all.tree(), "");
     }
     EXPECT_GT(count, 300U);
 }
 
 TEST(SceneText, RoundNumbersAsTheyAreTold) {
-    SceneText edited = scene(k_commented);
+    SceneText edited = as_scene(k_commented);
     edited.set("lamps.left.position", "[0.123456, -0.0000001, 1.99999]", {.decimals = 3});
     EXPECT_EQ(edited.find("lamps.left.position")->items[0].scalar, "0.123");
     EXPECT_EQ(diff(k_commented, edited.text()),

@@ -167,11 +167,11 @@ TEST_F(HostileTest, WindowsAreBounded) {
     for (int i = 0; i < 16; ++i) {
         windows.emplace_back(server_.port());
         windows.back().send(request);
-        EXPECT_EQ(status_of(windows.back().receive(10, "hello")), 200);
+        EXPECT_EQ(status_of(windows.back().receive(300, "hello")), 200);
     }
     HttpProbe late(server_.port());
     late.send(request);
-    EXPECT_EQ(status_of(late.receive(10, "error")), 503);
+    EXPECT_EQ(status_of(late.receive(300, "error")), 503);
     EXPECT_TRUE(is_serving());
 }
 

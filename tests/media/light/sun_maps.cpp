@@ -18,7 +18,7 @@ namespace {
 
 const Sunlight k_sun{glm::normalize(Vector3(0.5, 1, 0.3)), k_sea_level};
 
-bool contains(const std::vector<Interval>& intervals, double s) {
+bool lit_at(const std::vector<Interval>& intervals, double s) {
     for (const Interval& i : intervals)
         if (s >= i.begin && s <= i.end) return true;
     return false;
@@ -74,8 +74,7 @@ double disagreement(const Surfaces& surfaces, const Point3& centre, double reach
         for (int i = 0; i < k_samples; ++i) {
             const Point3 x = ray.at(end * (i + 0.5) / k_samples);
             const bool truth = !surfaces.occluded(k_sun.entry(x), x);
-            disagreeing +=
-                truth != contains(lit, end * (i + 0.5) / k_samples) ? end / k_samples : 0;
+            disagreeing += truth != lit_at(lit, end * (i + 0.5) / k_samples) ? end / k_samples : 0;
             shadowed += truth ? 0 : end / k_samples;
         }
     }

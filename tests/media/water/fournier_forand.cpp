@@ -13,7 +13,7 @@
 namespace uw {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(FournierForand, ObeysTheLaws) {
     for (const double n : {1.01, 1.05, 1.10, 1.2, 1.5})
@@ -35,7 +35,7 @@ TEST(FournierForand, BackscatterFraction) {
     const double n = 1.10, mu = 3.5835;
     const FournierForand p(n, mu);
     const double back = test::integral_over_sphere(
-        [&](double psi) { return psi > k_pi / 2 ? p.evaluate(psi) : 0.0; });
+        [&](double psi) { return psi > pi / 2 ? p.evaluate(psi) : 0.0; });
     const double nu = (3 - mu) / 2, d = 4 / (3 * (n - 1) * (n - 1)) / 2;
     const double closed =
         1 - (1 - std::pow(d, nu + 1) - 0.5 * (1 - std::pow(d, nu))) / ((1 - d) * std::pow(d, nu));

@@ -11,7 +11,7 @@
 namespace uw {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(MolecularPhase, ObeysTheLaws) {
     test::expect_phase_function_laws(MolecularPhase());
@@ -25,9 +25,9 @@ TEST(MolecularPhase, MatchesTheTestValues) {
 // Molecules: 1/16.064 (to its digits, 2e-6 relative) at 90 degrees, 1.835 times that at 0 and 180.
 TEST(MolecularPhase, ByHand) {
     const MolecularPhase p;
-    EXPECT_NEAR(p.evaluate(k_pi / 2), 1 / 16.064, 1e-7);
-    EXPECT_NEAR(p.evaluate(0.0) / p.evaluate(k_pi / 2), 1.835, 1e-12);
-    EXPECT_NEAR(p.evaluate(k_pi) / p.evaluate(k_pi / 2), 1.835, 1e-12);
+    EXPECT_NEAR(p.evaluate(pi / 2), 1 / 16.064, 1e-7);
+    EXPECT_NEAR(p.evaluate(0.0) / p.evaluate(pi / 2), 1.835, 1e-12);
+    EXPECT_NEAR(p.evaluate(pi) / p.evaluate(pi / 2), 1.835, 1e-12);
 }
 
 }  // namespace

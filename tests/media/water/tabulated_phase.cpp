@@ -14,8 +14,8 @@
 namespace uw {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
-constexpr double k_degree = k_pi / 180;
+using std::numbers::pi;
+constexpr double k_degree = pi / 180;
 
 TEST(TabulatedPhase, PublishedTablesObeyTheLaws) {
     test::expect_phase_function_laws(KopelevichSmall());
@@ -53,7 +53,7 @@ TEST(TabulatedPhase, PetzoldTableIntegralIsIndependent) {
     // 1e-6: sin(psi) = psi was assumed below 0.1 degrees, where it is off by 5e-7
     // (Straight lines between the angles instead, as the table's own comment has it, lie above a
     // convex curve and give 1.0020.)
-    EXPECT_NEAR(PetzoldAverage().table_integral(), 2 * k_pi * (sum + cone - cut), 1e-6);
+    EXPECT_NEAR(PetzoldAverage().table_integral(), 2 * pi * (sum + cone - cut), 1e-6);
     EXPECT_NEAR(PetzoldAverage().table_integral(), 0.9926, 5e-5);
 }
 
@@ -98,9 +98,8 @@ TEST(TabulatedPhase, ContinuesBeyondItsEnds) {
 
 TEST(TabulatedPhase, ConstantTableIsIsotropic) {
     const TabulatedPhase p = read_phase_table("angle_deg,phase\n0,7\n50,7\n180,7\n", "t");
-    EXPECT_NEAR(p.table_integral(), 4 * k_pi * 7, 1e-10);
-    for (const double psi : {0.0, 0.3, 2.0, k_pi})
-        EXPECT_NEAR(p.evaluate(psi), 1 / (4 * k_pi), 1e-14);
+    EXPECT_NEAR(p.table_integral(), 4 * pi * 7, 1e-10);
+    for (const double psi : {0.0, 0.3, 2.0, pi}) EXPECT_NEAR(p.evaluate(psi), 1 / (4 * pi), 1e-14);
 }
 
 // Dense tables have many knots to a look-up bucket; each must still find its own segment.

@@ -17,8 +17,8 @@ namespace {
 
 using namespace test;
 
-constexpr double k_pi = std::numbers::pi;
-constexpr double k_degree = k_pi / 180;
+using std::numbers::pi;
+constexpr double k_radians_per_degree = pi / 180;
 
 /// Particles of both kinds in sea water, as in figure 4 of the paper.
 WaterDesc figure_water() {
@@ -36,7 +36,8 @@ void expect_same_coefficients(const CoefficientTable& table, const OpticalCoeffi
         EXPECT_DOUBLE_EQ(table.scattering(i), total_scattering(x, i));
         EXPECT_DOUBLE_EQ(table.attenuation(i), x.attenuation(static_cast<int>(i)));
         for (const double angle : {0.0, 0.3, 20.0, 90.0, 180.0})
-            EXPECT_DOUBLE_EQ(table.vsf(i, angle * k_degree), vsf(medium, x, i, angle * k_degree));
+            EXPECT_DOUBLE_EQ(table.vsf(i, angle * k_radians_per_degree),
+                             vsf(medium, x, i, angle * k_radians_per_degree));
     }
 }
 
@@ -82,9 +83,9 @@ TEST(WaterTable, ComponentsOfFigure4) {
         const double nm = table.wavelengths_nm[i];
         const double scale_small = 0.03 * std::pow(550 / nm, 1.7) * 1.34 / 1.3247;
         const double scale_large = 0.05 * std::pow(550 / nm, 0.3) * 0.312 / 0.31027;
-        EXPECT_DOUBLE_EQ(table.uniform.vsf(i, 0, k_pi / 2), water_vsf_90(nm, 35));
+        EXPECT_DOUBLE_EQ(table.uniform.vsf(i, 0, pi / 2), water_vsf_90(nm, 35));
         for (std::size_t k = 0; k < small.x.size(); ++k) {
-            const double psi = small.x[k] * k_degree;
+            const double psi = small.x[k] * k_radians_per_degree;
             const double water = 1.38e-4 * (1 + 0.3 * 35 / 37) * std::pow(500 / nm, 4.32) *
                                  (1 + 0.835 * std::cos(psi) * std::cos(psi));
             const double s = scale_small * small.y[k], l = scale_large * large.y[k];
@@ -144,18 +145,18 @@ TEST(WaterTable, MomentsOfTables) {
         std::vector<double> edges{from};
         for (const double at : p.breakpoints())
             if (at > from) edges.push_back(at);
-        edges.push_back(k_pi);
+        edges.push_back(pi);
         for (std::size_t i = 0; i + 1 < edges.size(); ++i)
             sum += AdaptiveQuadrature::integrate(
                 [&](double psi) {
-                    return 2 * k_pi * p.evaluate(psi) * std::sin(psi) *
+                    return 2 * pi * p.evaluate(psi) * std::sin(psi) *
                            (from > 0 ? 1.0 : std::cos(psi));
                 },
                 edges[i], edges[i + 1], 1e-12);
         return sum;
     };
     const auto check = [&](const PhaseFunction& p) {
-        EXPECT_NEAR(backscatter_fraction(p), quadrature(p, k_pi / 2), 1e-9) << p.description();
+        EXPECT_NEAR(backscatter_fraction(p), quadrature(p, pi / 2), 1e-9) << p.description();
         EXPECT_NEAR(mean_cosine(p), quadrature(p, 0), 1e-9) << p.description();
     };
     check(KopelevichSmall());

@@ -8,6 +8,7 @@
 #include "render/renderer.h"
 #include "render/resolved_scene.h"
 #include "render/scene_loading.h"
+#include "tests/support/image_of.h"
 
 /// A scene in which all moves while the shutter is open, and how far images of it are apart.
 namespace uw::test {
@@ -15,13 +16,6 @@ namespace uw::test {
 // Frame 10 is at 1 s; the shutter is open from 0.98 s to 1.02 s.
 inline constexpr int k_frame = 10;
 inline constexpr double k_shutter = 0.04;
-
-inline Film image_of(SceneDesc desc, const RenderOptions& options) {
-    Renderer renderer;
-    renderer.set_scene(std::move(desc));
-    renderer.render(options);
-    return renderer.release_film();
-}
 
 enum class Moves { all, camera_alone };
 

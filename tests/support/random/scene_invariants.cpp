@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <ctime>
 #include <string>
 #include <string_view>
@@ -52,20 +51,6 @@ InvariantCounts hold_invariants(std::uint64_t first, int count, Scattered scatte
         }
     }
     return counts;
-}
-
-void hold_about_a_hundred(int first) {
-    constexpr int k_seeds = 126, k_scenes = 99;
-    const InvariantCounts counts =
-        hold_invariants(static_cast<std::uint64_t>(first), k_seeds, Scattered::once);
-    std::printf("seeds %d to %d: %d rendered, %d refused, %d left out, %d pixels compared\n", first,
-                first + k_seeds - 1, counts.rendered, counts.refused, counts.left_out,
-                counts.compared);
-    // The generator is to make scenes, not errors; some volumes and lamps end up too far away.
-    EXPECT_LE(counts.refused, k_seeds / 20);
-    EXPECT_GE(counts.rendered, k_scenes);
-    EXPECT_GE(counts.compared, k_scenes);
-    EXPECT_GE(counts.bounded, k_scenes);
 }
 
 }  // namespace uw::test

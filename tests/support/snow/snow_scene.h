@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/passes/marine_snow.h"
+#include "tests/support/image_of.h"
 #include "tests/support/test_scene.h"
 
 /// Scenes of marine snow and what they show.
@@ -73,10 +74,9 @@ inline double range_of(const SnowParticle& particle, const SceneDesc& desc) {
     return distance(particle.position, centre_of(desc));
 }
 
-inline Film image_of(const SceneDesc& desc, const RenderOptions& options = {.layers = "snow"}) {
-    Renderer renderer;
-    renderer.set_scene(SceneDesc(desc));
-    return renderer.render(options);
+/// The image of what snow adds and takes away.
+inline Film image_of(const SceneDesc& desc) {
+    return image_of(desc, {.layers = "snow"});
 }
 
 /// The first band of the layer `snow` in images of nothing else.
