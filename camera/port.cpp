@@ -54,8 +54,8 @@ struct PortCosines {
     double outer_glass = 1;  // in glass, at the outer surface
 };
 
-/// As Port::transmittance. Both surfaces share their plane of incidence, so each polarisation is
-/// transmitted by itself.
+/// What Port::transmittance gives for a ray that meets the surfaces so. Both surfaces share their
+/// plane of incidence, so each polarisation is transmitted by itself.
 template <class PortDescription>
 double port_transmittance(const PortDescription& port, const PortCosines& cosines) {
     double result = 1;
@@ -277,7 +277,7 @@ std::optional<Vector3> DomePort::direction_to(const Point3& point) const {
     if (!std::isfinite(radius) || radius < (1 - k_dome_rounding) * outer) return std::nullopt;
     if (offset == 0) return target / radius;
 
-    // In the plane of centre, camera and point: `u` towards the camera, `v` across.
+    // In the plane of centre, camera and point, `u` points towards the camera.
     const Vector3 u = camera / offset;
     const double along = glm::dot(target, u);
     const Vector3 across = target - along * u;

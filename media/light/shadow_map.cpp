@@ -131,9 +131,9 @@ class LitEdges {
         return !surfaces_.occluded(origin_(x), x);
     }
 
-    // Visibility at the end of an interval; slightly inside it at the ends of the whole stretch,
-    // which may lie on a surface, since a surface occludes nothing within 1e-5 of the distance
-    // (Surfaces::occluded).
+    // Tells whether the end of an interval is lit. The ends of the whole stretch may lie on a
+    // surface, which occludes nothing within 1e-5 of the distance (Surfaces::occluded), so that
+    // visibility is decided slightly inside the interval there.
     bool visible_at_end(double s, double into) {
         if (s == last_seen_.s) return last_seen_.visible;
         const bool is_end = s == stretch_.begin || s == stretch_.end;
@@ -182,7 +182,7 @@ DepthRange bound(const DepthPyramid& pyramid, const MapPoint& a, const MapPoint&
                          cell(std::max(a.u, b.u)), cell(std::max(a.v, b.v)));
 }
 
-// Margin that contains a whole cell from any direction in it: its diagonal, doubled.
+// The margin that contains a whole cell from any direction in it is its diagonal, doubled.
 constexpr double k_beam_margin_texels = 3;
 // The map's depths are float and its texels are compared with points between their centres; a
 // decision requires this relative margin, otherwise the search falls back to exact shadow rays.
@@ -205,7 +205,7 @@ void ShadowMap::trace_face(int face_index) {
     const CubeFace face(face_index);
     const int n = resolution_;
     const int padded = n + 2;  // one texel beyond each edge, so that neighbours always exist
-    // Contains all samples of the cells that the beam touches.
+    // This contains all samples of the cells that the beam touches.
     const DirectionCone wide = beam_.widened(k_beam_margin_texels * 2.0 / n);
     Grid2D<float> depth(padded, padded, DepthPyramid::k_untraced);
     std::atomic<std::uint64_t> traced = 0;
@@ -298,7 +298,7 @@ class ShadowMap::Search {
         }
     }
 
-    // An interval of at most a texel that the map cannot decide.
+    // Appends the lit part of an interval of at most a texel that the map cannot decide.
     void resolve(double begin, double end) {
         edges_.resolve(begin, end,
                        k_edge_width * distance(map_.lamp_, ray_.at(0.5 * (begin + end))));
@@ -346,8 +346,8 @@ constexpr double k_float_rounding = 1e-6;  // of a depth
 // A shadow's edge is located to this fraction of a ray's stretch, with an average error of half of
 // it. A stretch is at most 15 attenuation lengths (VolumeIntegrator): 2e-4 of the light on it.
 constexpr double k_sun_edge_width = 3e-5;
-// Outside the squares: how finely shadows are looked for. The shadow of a single plane has one edge
-// on a ray, which is found whatever this number.
+// Outside the squares shadows are looked for in so many pieces of a stretch. The shadow of a single
+// plane has one edge on a ray, which is found whatever this number.
 constexpr int k_open_pieces = 16;
 
 constexpr int k_most_squares = 4;

@@ -118,11 +118,11 @@ class LineIntegral {
     /// `line` must outlive this object.
     explicit LineIntegral(const LatticeLine& line);
 
-    /// Over [begin, end], which lies within one cell.
+    /// The integral over [begin, end], which lies within one cell.
     double over_cell(const CellCorners& corners, const nanovdb::Coord& cell, double begin,
                      double end) const;
 
-    /// Over [begin, end], which lies within the block that `reader` has entered.
+    /// The integral over [begin, end], which lies within the block that `reader` has entered.
     double over_block(CellReader& reader, double begin, double end);
 
   private:

@@ -66,8 +66,8 @@ constexpr double k_splittable = 1.25;
 /// Makes a coarse profile as fine as a tolerance requires: intervals are halved where a sample
 /// halfway, or halfway through the next interval, differs from linear interpolation by more than
 /// the tolerance. The sample stays, so that the error left is about a quarter of the one allowed
-/// where concentrations are smooth. Sheets as thin as half an interval are not missed. Reused
-/// between rays.
+/// where concentrations are smooth. Sheets as thin as half an interval are not missed. An object is
+/// used for one ray after another.
 class ProfileRefinement {
   public:
     /// Writes the concentrations at the distances `s`, one per constituent each.
@@ -148,8 +148,8 @@ void ProfileRefinement::merge(const DepthTolerance& tolerance, std::vector<doubl
     profile.integrate();
 }
 
-// Finds the open intervals whose sample halfway refuses the interpolation; with one interval more
-// at either end.
+// Finds the open intervals whose sample halfway refuses the interpolation. The list has one
+// interval more at either end.
 void ProfileRefinement::find_refused(const DepthTolerance& tolerance) {
     const auto count = static_cast<std::size_t>(before_.constituent_count);
     refused_.assign(open_before_.size() + 2, 0);
