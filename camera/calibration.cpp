@@ -25,6 +25,9 @@ std::string number_list(std::span<const double> numbers) {
     return fmt::format("[{}]", fmt::join(numbers, ", "));
 }
 
+namespace {
+
+/// Names for a message: the first few of them.
 std::string some_names(const std::vector<std::string>& names) {
     constexpr std::size_t k_most = 8;
     std::vector<std::string> some;
@@ -32,6 +35,8 @@ std::string some_names(const std::vector<std::string>& names) {
         some.push_back(printable(names[i], 30));
     return fmt::format("{}{}", fmt::join(some, ", "), names.size() > k_most ? ", ..." : "");
 }
+
+}  // namespace
 
 std::string choose_camera(const std::vector<std::string>& names, const std::string& wanted,
                           const std::string& where) {

@@ -74,9 +74,6 @@ ConfigValue require_value(const ConfigValue& map, std::string_view key, std::str
 /// "[1, 2.5, 3]", at full precision.
 std::string number_list(std::span<const double> numbers);
 
-/// Names for a message: the first few of them.
-std::string some_names(const std::vector<std::string>& names);
-
 /// The requested one of several cameras, or the only one. Throws InputError at `where`.
 std::string choose_camera(const std::vector<std::string>& names, const std::string& wanted,
                           const std::string& where);

@@ -34,8 +34,7 @@ Ray focused_ray(const Vector3& direction, const Vector3& from, double vergence) 
 /// How far apart rays from around the aperture's centre, focused by `vergence`, are at the plane
 /// across `axis` (in water) through `focus`, relative to how far they were; 0: they meet there. NaN
 /// if one of them does not enter the water.
-double spread_at(const Point3& focus, const Ray& axis, const std::optional<Port>& port,
-                 double vergence) {
+double spread_at(const Point3& focus, const Ray& axis, const Port* port, double vergence) {
     constexpr std::array<std::array<double, 2>, 4> k_around{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
     double sum = 0;
     for (const auto& [u, v] : k_around) {
@@ -50,7 +49,7 @@ double spread_at(const Point3& focus, const Ray& axis, const std::optional<Port>
 }
 
 /// The vergence at which rays near the axis meet `focus`; the spread is nearly linear in it.
-double vergence_of(const Point3& focus, const Ray& axis, const std::optional<Port>& port) {
+double vergence_of(const Point3& focus, const Ray& axis, const Port* port) {
     double last = 0, here = 1 / focus.z;
     double last_spread = spread_at(focus, axis, port, last);
     for (int i = 0; i < 20; ++i) {
@@ -72,7 +71,7 @@ bool fits(const PortDesc& port, double radius) {
 
 }  // namespace
 
-ThinLens::ThinLens(const CameraDesc& desc, const std::optional<Port>& port)
+ThinLens::ThinLens(const CameraDesc& desc, const Port* port)
     : radius_(desc.lens->focal_length / (2 * desc.lens->f_number)) {
     const double distance = *desc.lens->focus_distance;
     if (desc.port && !fits(*desc.port, radius_))
@@ -109,11 +108,11 @@ Camera::Camera(const CameraDesc& desc)
     if (width_ <= 0 || height_ <= 0)
         throw std::logic_error("a camera without resolution: its calibration was not read");
     if (desc.port) {
-        port_.emplace(make_port(*desc.port));
+        port_ = make_port(*desc.port);
         port_dims_ = std::visit(
             [](const auto& port) { return port.fresnel || port.radiance_in_air; }, *desc.port);
     }
-    if (desc.lens && desc.lens->focus_distance) thin_lens_.emplace(desc, port_);
+    if (desc.lens && desc.lens->focus_distance) thin_lens_.emplace(desc, port_.get());
 }
 
 Camera::Camera(const CameraDesc& desc, std::shared_ptr<const CameraMotion> motion,
@@ -147,7 +146,7 @@ std::optional<Ray> Camera::aperture_ray(double x, double y, const AperturePoint&
 }
 
 std::optional<Ray> Camera::in_water(const Ray& in_housing, const Affine& world_from_camera) const {
-    const std::optional<Ray> in_camera = through_port(port_, in_housing);
+    const std::optional<Ray> in_camera = through_port(port_.get(), in_housing);
     if (!in_camera) return std::nullopt;
     return Ray{world_from_camera * in_camera->origin,
                glm::normalize(world_from_camera.apply_to_vector(in_camera->direction))};
@@ -158,9 +157,7 @@ LensRay Camera::lens_ray(double x, double y) const {
     if (!in_housing) return {0, 0};
     LensRay ray;
     ray.falloff = std::visit([&](const auto& lens) { return lens.falloff(*in_housing); }, lens_);
-    if (port_)
-        ray.port_transmittance =
-            std::visit([&](const auto& port) { return port.transmittance(*in_housing); }, *port_);
+    if (port_) ray.port_transmittance = port_->transmittance(*in_housing);
     return ray;
 }
 
@@ -200,7 +197,7 @@ std::optional<Camera::Projection> Camera::project_at_its_time(const Point3& worl
 std::optional<Camera::Projection> Camera::project_in_camera(const Point3& point) const {
     std::optional<Vector3> in_housing;
     if (port_) {
-        in_housing = std::visit([&](const auto& port) { return port.direction_to(point); }, *port_);
+        in_housing = port_->direction_to(point);
     } else if (const double range = glm::length(from_origin(point));
                range > 0 && std::isfinite(range)) {
         in_housing = from_origin(point) / range;

@@ -27,7 +27,7 @@ inline void resize_image(CameraDesc& camera, int width, int height) {
     camera.height = height;
 }
 
-/// The same for every camera of a scene.
+/// Changes the resolution of every camera of a scene as resize_image does.
 inline void resize_images(SceneDesc& scene, int width, int height) {
     resize_image(scene.camera, width, height);
     for (RigCameraDesc& entry : scene.cameras) resize_image(entry.camera, width, height);
@@ -53,13 +53,13 @@ struct RowExposure {
 
     /// The middle of the exposure at image row `y` [pixels], all of it.
     double middle(double y) const { return (y - 0.5 * height) * line_time; }
-    /// Of a row, within the part.
+    /// When image row `y` is exposed, within the part.
     TimeSpan at(double y) const {
         const double t = middle(y);
         return {std::clamp(t - 0.5 * shutter, part.begin, part.end),
                 std::clamp(t + 0.5 * shutter, part.begin, part.end)};
     }
-    /// That of the whole image, whatever the part.
+    /// When any row of the image is exposed, whatever the part.
     TimeSpan all() const { return {middle(0) - 0.5 * shutter, middle(height) + 0.5 * shutter}; }
     /// The share of the exposure of pixel row `row` that lies within the part.
     double share(int row) const {
@@ -95,7 +95,7 @@ class ThinLens {
   public:
     /// Precondition: the camera has a lens with a focus distance. Throws InputError if that lies
     /// before the water, and if the aperture does not fit into the dome.
-    ThinLens(const CameraDesc& desc, const std::optional<Port>& port);
+    ThinLens(const CameraDesc& desc, const Port* port);
 
     /// The ray in the housing (camera frame) that leaves a point of the aperture, for the image
     /// position whose ray through the aperture's centre has `direction`, direction.z > 0.
@@ -163,7 +163,7 @@ class Camera final : public RaySource {
     /// glass and water are at least as dense optically as the port's air. With a rolling shutter it
     /// is where the row shows it that is exposed when it is there.
     std::optional<ImagePoint> project(const Point3& world) const;
-    /// The same with the ray, which costs less than refracted_ray at that position.
+    /// What project() finds, with the ray, which costs less than refracted_ray at that position.
     std::optional<Sighting> sight(const Point3& world) const;
 
   private:
@@ -181,7 +181,7 @@ class Camera final : public RaySource {
     int height_;
     IntrinsicsDesc intrinsics_;
     LensModel lens_;
-    std::optional<Port> port_;
+    std::shared_ptr<const Port> port_;  // null without a port
     bool port_dims_ = false;
     std::optional<ThinLens> thin_lens_;
     Affine world_from_camera_;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -17,6 +16,14 @@
 namespace uw {
 
 namespace {
+
+/// COLMAP's camera models and those of its refractive fork, which Calibmar shares: a name and a
+/// list of numbers.
+struct ColmapModel {
+    std::string_view name;
+    std::string_view parameters;  // their names in order: "f cx cy k1"
+    bool fisheye;
+};
 
 constexpr std::array<ColmapModel, 9> k_colmap_models{{
     {"SIMPLE_PINHOLE", "f cx cy", false},
@@ -36,6 +43,10 @@ constexpr std::array<std::string_view, 6> k_others{"FOV",
                                                    "METASHAPE_FISHEYE",
                                                    "SIMPLE_DIVISION",
                                                    "DIVISION"};
+/// The number of parameters of either port, and their names.
+constexpr std::size_t k_port_parameters = 8;
+constexpr std::string_view k_flat_parameters = "Nx Ny Nz int_dist int_thick na ng nw";
+constexpr std::string_view k_dome_parameters = "Cx Cy Cz int_radius int_thick na ng nw";
 /// A normal whose length differs from 1 by more is a mistake, not rounding.
 constexpr double k_normal_tolerance = 1e-3;
 
@@ -73,12 +84,13 @@ double* parameter_of(std::string_view name, CameraDesc& camera) {
     return name[0] == 'k' ? &camera.distortion.k[index] : &camera.distortion.p[index];
 }
 
-}  // namespace
-
+/// Number of parameters of the model called `name`. Throws InputError at `name` for an unsupported
+/// one.
 std::size_t colmap_parameter_count(const ConfigValue& name) {
     return words(model_called(name).parameters).size();
 }
 
+/// Sets intrinsics and distortion from the parameters of the model called `name`.
 void read_colmap_model(const ConfigValue& name, std::span<const ConfigValue> parameters,
                        CameraDesc& camera) {
     const ColmapModel& model = model_called(name);
@@ -98,6 +110,8 @@ void read_colmap_model(const ConfigValue& name, std::span<const ConfigValue> par
     if (names.front() == "f") camera.intrinsics.fy = camera.intrinsics.fx;
 }
 
+/// Sets the port from `name`, FLATPORT or DOMEPORT, and its parameters; a wrong number of them is
+/// reported at `at`.
 void read_port_model(const ConfigValue& name, const ConfigValue& at,
                      std::span<const ConfigValue> parameters, CameraDesc& camera) {
     constexpr std::array<std::pair<std::string_view, bool>, 2> k_ports{
@@ -140,18 +154,16 @@ void read_port_model(const ConfigValue& name, const ConfigValue& at,
     camera.port = port;
 }
 
+}  // namespace
+
 ColmapParameters colmap_model_of(const CameraDesc& camera) {
     const DistortionDesc& d = camera.distortion;
-    const auto any_above = [&](std::size_t i) {
-        return std::any_of(d.k.begin() + static_cast<std::ptrdiff_t>(i), d.k.end(),
-                           [](double k) { return k != 0; });
-    };
     std::string_view wanted = "OPENCV";
     if (d.model == DistortionDesc::Model::fisheye)
         wanted = "OPENCV_FISHEYE";
-    else if (any_above(2))
+    else if (has_radial_above(d, 2))
         wanted = "FULL_OPENCV";
-    else if (!any_above(0) && d.p[0] == 0 && d.p[1] == 0)
+    else if (!is_distorted(d))
         wanted = "PINHOLE";
     const ColmapModel& model = *std::ranges::find(k_colmap_models, wanted, &ColmapModel::name);
     ColmapParameters result{model.name, model.parameters, {}};

@@ -12,7 +12,8 @@ namespace uw {
 
 /// The smallest x in (0, limit] where the polynomial sum_i coefficients[i] x^i changes sign; empty
 /// if there is none. Safe for any degree up to 16 and any finite coefficients: roots are bracketed
-/// by those of the derivative and bisected, so none is stepped over.
+/// by those of the derivative and bisected, so none is stepped over. (Declared for its tests: no
+/// lens has roots as close or numbers as large.)
 std::optional<double> first_positive_root(std::span<const double> coefficients, double limit);
 
 /// A position in the image in units of the focal length, relative to the principal point: where a

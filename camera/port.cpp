@@ -4,9 +4,23 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <variant>
 
 namespace uw {
 
+namespace {
+
+/// The fraction of energy that a smooth surface transmits, for light polarised perpendicular (s)
+/// and parallel (p) to the plane of incidence.
+struct FresnelTransmittance {
+    double s = 1;
+    double p = 1;
+};
+
+/// Fresnel's equations between two transparent media (docs/physics.md, section 3): light meets the
+/// surface from index `n1` with cosine `cos1` (0..1) to its normal and continues in index `n2`.
+/// Energy, so 1 - s and 1 - p are reflected, and the reverse path has the same values. 0 on total
+/// reflection and at grazing incidence.
 FresnelTransmittance fresnel_transmittance(double cos1, double n1, double n2) {
     const double r = n1 / n2;
     const double cos2_squared = 1 - r * r * (1 - cos1 * cos1);
@@ -19,6 +33,10 @@ FresnelTransmittance fresnel_transmittance(double cos1, double n1, double n2) {
     return {passed / (across * across), passed / (in_plane * in_plane)};
 }
 
+/// Snell's law in vector form (docs/physics.md, section 3): `direction` (unit) crosses from index
+/// `n1` to `n2` through a surface whose unit `normal` points the way the light goes (direction .
+/// normal > 0). Unit result; empty on total reflection. Nothing is singular at normal incidence,
+/// and equal indices leave the direction as it is.
 std::optional<Vector3> refract(const Vector3& direction, const Vector3& normal, double n1,
                                double n2) {
     const double r = n1 / n2;
@@ -30,6 +48,14 @@ std::optional<Vector3> refract(const Vector3& direction, const Vector3& normal, 
     return glm::normalize(r * direction + along_normal * normal);
 }
 
+/// The cosines to a port's normals at which a ray meets its surfaces.
+struct PortCosines {
+    double inner_air = 1;    // in air, at the inner surface
+    double outer_glass = 1;  // in glass, at the outer surface
+};
+
+/// What Port::transmittance gives for a ray that meets the surfaces so. Both surfaces share their
+/// plane of incidence, so each polarisation is transmitted by itself.
 template <class PortDescription>
 double port_transmittance(const PortDescription& port, const PortCosines& cosines) {
     double result = 1;
@@ -46,11 +72,6 @@ double port_transmittance(const PortDescription& port, const PortCosines& cosine
     }
     return result;
 }
-
-template double port_transmittance(const FlatPortDesc&, const PortCosines&);
-template double port_transmittance(const DomePortDesc&, const PortCosines&);
-
-namespace {
 
 constexpr int k_flat_max_iterations = 200;
 /// Newton's last step, relative. It leaves no error: of each layer's distance |u f''| <= 3 f', so
@@ -92,7 +113,17 @@ double first_slope(const Layer& water, double n, double least) {
     return rest > 0 ? std::max(least, water.index * across / std::sqrt(rest)) : least;
 }
 
-}  // namespace
+class FlatPort final : public Port {
+  public:
+    explicit FlatPort(const FlatPortDesc& desc) : desc_(desc) {}
+
+    std::optional<Ray> refracted_ray(const Point3& from, const Vector3& direction) const override;
+    double transmittance(const Vector3& direction) const override;
+    std::optional<Vector3> direction_to(const Point3& point) const override;
+
+  private:
+    FlatPortDesc desc_;
+};
 
 std::optional<Ray> FlatPort::refracted_ray(const Point3& from, const Vector3& direction) const {
     const Vector3& n = desc_.normal;
@@ -118,6 +149,9 @@ double FlatPort::transmittance(const Vector3& direction) const {
     return port_transmittance(desc_, {glm::dot(direction, n), glm::dot(*in_glass, n)});
 }
 
+// Refraction stays in the plane of the normal and the point, where the ray's distance from the
+// normal at the point's depth increases with its slope: one monotone equation (Agrawal et al.
+// 2012), solved to the last digits.
 std::optional<Vector3> FlatPort::direction_to(const Point3& point) const {
     const Vector3& normal = desc_.normal;
     const Vector3 to_point = from_origin(point);
@@ -152,8 +186,6 @@ std::optional<Vector3> FlatPort::direction_to(const Point3& point) const {
     return glm::normalize(std::sqrt(cos_squared) * normal + (sine / wanted) * across);
 }
 
-namespace {
-
 constexpr int k_dome_max_iterations = 200;
 /// Newton's last step [rad]; convergence is quadratic, so no error remains.
 constexpr double k_dome_tolerance = 1e-13;
@@ -183,7 +215,25 @@ Angle angle_at(double h, double a) {
     return {std::asin(sine), 1 / (a * std::sqrt((1 - sine) * (1 + sine)))};
 }
 
-}  // namespace
+class DomePort final : public Port {
+  public:
+    explicit DomePort(const DomePortDesc& desc) : desc_(desc) {}
+
+    std::optional<Ray> refracted_ray(const Point3& from, const Vector3& direction) const override;
+    double transmittance(const Vector3& direction) const override;
+    std::optional<Vector3> direction_to(const Point3& point) const override;
+
+  private:
+    /// The path through the glass: where a ray leaves it, and its direction in the water.
+    struct Passage {
+        Vector3 outer;  // from the spheres' centre
+        Vector3 in_water{0, 0, 1};
+        PortCosines cosines;
+    };
+    std::optional<Passage> passage(const Point3& from, const Vector3& direction) const;
+
+    DomePortDesc desc_;
+};
 
 std::optional<DomePort::Passage> DomePort::passage(const Point3& from,
                                                    const Vector3& direction) const {
@@ -200,8 +250,7 @@ std::optional<DomePort::Passage> DomePort::passage(const Point3& from,
     const auto in_water = refract(*in_glass, outer_normal, desc_.n_glass, desc_.n_water);
     if (!in_water) return std::nullopt;
     result.in_water = *in_water;
-    result.inner_air = glm::dot(direction, inner_normal);
-    result.outer_glass = glm::dot(*in_glass, outer_normal);
+    result.cosines = {glm::dot(direction, inner_normal), glm::dot(*in_glass, outer_normal)};
     return result;
 }
 
@@ -214,9 +263,12 @@ std::optional<Ray> DomePort::refracted_ray(const Point3& from, const Vector3& di
 double DomePort::transmittance(const Vector3& direction) const {
     const auto way = passage(Point3{}, direction);
     if (!way) return 0;
-    return port_transmittance(desc_, {way->inner_air, way->outer_glass});
+    return port_transmittance(desc_, way->cosines);
 }
 
+// A ray stays in the plane of the spheres' centre, the camera and the point, and n r sin(i), with i
+// its angle to the radius r, is constant along it (Bouguer's law): one equation for the angle that
+// the ray sweeps around the centre, solved to the last digits.
 std::optional<Vector3> DomePort::direction_to(const Point3& point) const {
     const Vector3 camera = -from_origin(desc_.center);
     const Vector3 target = point - desc_.center;
@@ -225,7 +277,7 @@ std::optional<Vector3> DomePort::direction_to(const Point3& point) const {
     if (!std::isfinite(radius) || radius < (1 - k_dome_rounding) * outer) return std::nullopt;
     if (offset == 0) return target / radius;
 
-    // In the plane of centre, camera and point: `u` towards the camera, `v` across.
+    // In the plane of centre, camera and point, `u` points towards the camera.
     const Vector3 u = camera / offset;
     const double along = glm::dot(target, u);
     const Vector3 across = target - along * u;
@@ -260,6 +312,14 @@ std::optional<Vector3> DomePort::direction_to(const Point3& point) const {
     }
     if (!passes) return std::nullopt;
     return std::cos(a) * u + (std::sin(a) / beside) * across;
+}
+
+}  // namespace
+
+std::shared_ptr<const Port> make_port(const PortDesc& desc) {
+    if (const auto* dome = std::get_if<DomePortDesc>(&desc))
+        return std::make_shared<DomePort>(*dome);
+    return std::make_shared<FlatPort>(std::get<FlatPortDesc>(desc));
 }
 
 }  // namespace uw

@@ -16,12 +16,12 @@ namespace {
 constexpr int k_widest = 4;
 // Samples along a ray are at most this many of the least steps apart.
 constexpr int k_longest_steps = 16;
-// What an error along a ray counts of one across rays. Columns bend the same way throughout a
-// cloud, so that those of rays beside each other are off to the same side along all that a camera
-// sees.
+// An error along a ray counts this many times as much as one across rays. Columns bend the same way
+// throughout a cloud, so that those of rays beside each other are off to the same side along all
+// that a camera sees.
 constexpr double k_along = 5;
 
-// The stretch of a profile outside which there are no particles, as knots.
+// The first and last knot of a profile's stretch outside which there are no particles.
 struct Filled {
     std::size_t first, last;
 };
@@ -205,7 +205,7 @@ bool ColumnFace::agree(int u, int v, int apart, const DepthTolerance& tolerance)
     for (std::uint32_t i = 0; i < ray.count; ++i)
         if (!agree_at(static_cast<double>(ray.begin) + i * static_cast<double>(ray.step)))
             return false;
-    // Behind all of them.
+    // The columns must agree behind all samples, too.
     return agree_at(std::numeric_limits<double>::max());
 }
 
@@ -436,7 +436,7 @@ SunColumnMap::SunColumnMap(const ConcentrationField& field, const Sunlight& sun,
          std::sqrt(rays * ColumnFace::k_bytes_per_texel / budget),
          std::max(most.u - least.u, most.v - least.v) / (fine * k_most_texels)});
     texel_ = coarsening * fine;
-    // With a border of one texel for interpolation.
+    // The map has a border of one texel for interpolation.
     first_ = {least.u - texel_, least.v - texel_, least.depth};
     width_ = static_cast<int>(std::ceil((most.u - least.u) / texel_)) + 3;
     height_ = static_cast<int>(std::ceil((most.v - least.v) / texel_)) + 3;

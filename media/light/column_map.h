@@ -29,7 +29,7 @@ class ColumnFace {
     ColumnFace(int width, int height, int constituents, double step, double reference,
                const DepthTolerance& tolerance, const March& march);
 
-    /// Of memory for each texel, beside samples.
+    /// The bytes that each texel takes, beside its samples.
     static constexpr std::size_t k_bytes_per_texel = 4 * sizeof(float);
 
     bool empty() const { return spacing_.empty(); }

@@ -14,7 +14,7 @@ namespace uw {
 template <class Shadows, class Columns>
 class SplattedLight : public DeepShadow {
   public:
-    /// Both of the same light.
+    /// Both are of the same light.
     SplattedLight(std::shared_ptr<const Shadows> shadows, std::shared_ptr<const Columns> columns)
         : shadows_(std::move(shadows)), columns_(std::move(columns)) {}
 

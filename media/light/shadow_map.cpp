@@ -14,8 +14,6 @@ namespace uw {
 
 namespace {
 
-constexpr double k_unbounded = std::numeric_limits<double>::infinity();
-
 constexpr float k_nothing = std::numeric_limits<float>::infinity();
 
 }  // namespace
@@ -88,9 +86,103 @@ std::size_t DepthPyramid::bytes() const {
     return total;
 }
 
+/// Collects the lit intervals of a stretch of a ray, in ascending order, and finds edges of shadows
+/// that a shadow map cannot decide by exact shadow rays. `Origin` tells where the light that
+/// reaches a point comes from. (Outside the anonymous namespace, as classes that the header
+/// declares hold one.)
+template <class Origin>
+class LitEdges {
+  public:
+    /// What is referred to must outlive this object.
+    LitEdges(const Surfaces& surfaces, Origin origin, const Ray& ray, std::vector<Interval>& lit)
+        : surfaces_(surfaces), origin_(origin), ray_(ray), lit_(lit) {}
+
+    /// Sets the stretch within which the intervals that follow lie.
+    void set_stretch(const Interval& stretch) { stretch_ = stretch; }
+
+    void append(const Interval& interval) {
+        if (!lit_.empty() && lit_.back().end == interval.begin)
+            lit_.back().end = interval.end;
+        else
+            lit_.push_back(interval);
+    }
+
+    /// Appends the lit part of an interval with at most one edge, which is found to within `width`
+    /// [m].
+    void resolve(double begin, double end, double width) {
+        const bool lit_at_begin = visible_at_end(begin, end);
+        const bool lit_at_end = visible_at_end(end, begin);
+        if (lit_at_begin == lit_at_end) {
+            if (lit_at_begin) append({begin, end});
+            return;
+        }
+        double a = begin, b = end;
+        while (b - a > width) {
+            const double middle = 0.5 * (a + b);
+            (visible(middle) == lit_at_begin ? a : b) = middle;
+        }
+        const double edge = 0.5 * (a + b);
+        append(lit_at_begin ? Interval{begin, edge} : Interval{edge, end});
+    }
+
+  private:
+    bool visible(double s) const {
+        const Point3 x = ray_.at(s);
+        return !surfaces_.occluded(origin_(x), x);
+    }
+
+    // Tells whether the end of an interval is lit. The ends of the whole stretch may lie on a
+    // surface, which occludes nothing within 1e-5 of the distance (Surfaces::occluded), so that
+    // visibility is decided slightly inside the interval there.
+    bool visible_at_end(double s, double into) {
+        if (s == last_seen_.s) return last_seen_.visible;
+        const bool is_end = s == stretch_.begin || s == stretch_.end;
+        const Point3 x = ray_.at(s);
+        const double inset = std::min(0.25 * std::abs(into - s), 3e-5 * distance(origin_(x), x));
+        last_seen_ = {s, visible(is_end ? s + std::copysign(inset, into - s) : s)};
+        return last_seen_.visible;
+    }
+
+    // Neighbouring intervals share an end.
+    struct Seen {
+        double s = -1;
+        bool visible = false;
+    };
+
+    const Surfaces& surfaces_;
+    Origin origin_;
+    const Ray& ray_;
+    Interval stretch_;
+    std::vector<Interval>& lit_;
+    Seen last_seen_;
+};
+
 namespace {
 
-// Margin that contains a whole cell from any direction in it: its diagonal, doubled.
+/// A point of a ray as a shadow map sees it.
+struct MapPoint {
+    double s;      // along the ray [m]
+    double depth;  // as the map's depths [m]
+    double u, v;   // in texels
+};
+
+/// How far apart two points are on the map [texels].
+double texels_between(const MapPoint& a, const MapPoint& b) {
+    return std::max(std::abs(a.u - b.u), std::abs(a.v - b.v));
+}
+
+/// The nearest and farthest surface over the cells that the interval from `a` to `b` touches. The
+/// first of the cells, of which there are `cells` along an edge, begins at -`offset` texels.
+DepthRange bound(const DepthPyramid& pyramid, const MapPoint& a, const MapPoint& b, double offset,
+                 int cells) {
+    const auto cell = [&](double t) {
+        return std::clamp(static_cast<int>(std::floor(t + offset)), 0, cells - 1);
+    };
+    return pyramid.bound(cell(std::min(a.u, b.u)), cell(std::min(a.v, b.v)),
+                         cell(std::max(a.u, b.u)), cell(std::max(a.v, b.v)));
+}
+
+// The margin that contains a whole cell from any direction in it is its diagonal, doubled.
 constexpr double k_beam_margin_texels = 3;
 // The map's depths are float and its texels are compared with points between their centres; a
 // decision requires this relative margin, otherwise the search falls back to exact shadow rays.
@@ -113,7 +205,7 @@ void ShadowMap::trace_face(int face_index) {
     const CubeFace face(face_index);
     const int n = resolution_;
     const int padded = n + 2;  // one texel beyond each edge, so that neighbours always exist
-    // Contains all samples of the cells that the beam touches.
+    // This contains all samples of the cells that the beam touches.
     const DirectionCone wide = beam_.widened(k_beam_margin_texels * 2.0 / n);
     Grid2D<float> depth(padded, padded, DepthPyramid::k_untraced);
     std::atomic<std::uint64_t> traced = 0;
@@ -176,11 +268,6 @@ class ShadowMap::Search {
         Point3 lamp;
         const Point3& operator()(const Point3& /*x*/) const { return lamp; }
     };
-    struct MapPoint {
-        double s;      // along the ray
-        double depth;  // along the face's axis
-        double u, v;   // in texels
-    };
 
     MapPoint project(double s) const {
         const Vector3 x = ray_.at(s) - map_.lamp_;
@@ -191,17 +278,18 @@ class ShadowMap::Search {
     }
 
     void descend(const MapPoint& a, const MapPoint& b) {
-        const DepthRange range = bound(a, b);
+        // The map has one texel beyond each edge, and its cells lie between the texels' centres.
+        const DepthRange range = bound(*pyramid_, a, b, 0.5, map_.resolution_ + 1);
         if (std::max(a.depth, b.depth) * (1 + k_margin) < range.nearest)
             edges_.append({a.s, b.s});
         else if (std::min(a.depth, b.depth) > range.farthest * (1 + k_margin))
             return;
-        else if (std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) <= 1.0 &&
+        else if (texels_between(a, b) <= 1 &&
                  std::max(a.depth, b.depth) < 2 * std::min(a.depth, b.depth))
             resolve(a.s, b.s);
         else {
             // Bisects on the face if the interval is long there, else in depth.
-            const bool far_on_face = std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) > 1.0;
+            const bool far_on_face = texels_between(a, b) > 1;
             const MapPoint middle =
                 project(far_on_face ? (a.s * b.depth + b.s * a.depth) / (a.depth + b.depth)
                                     : 0.5 * (a.s + b.s));
@@ -210,16 +298,7 @@ class ShadowMap::Search {
         }
     }
 
-    // Nearest and farthest surface over the texels that the interval touches.
-    DepthRange bound(const MapPoint& a, const MapPoint& b) const {
-        const auto texel = [&](double t) {  // the cell between the samples around t
-            return std::clamp(static_cast<int>(std::floor(t + 0.5)), 0, map_.resolution_);
-        };
-        return pyramid_->bound(texel(std::min(a.u, b.u)), texel(std::min(a.v, b.v)),
-                               texel(std::max(a.u, b.u)), texel(std::max(a.v, b.v)));
-    }
-
-    // An interval of at most a texel that the map cannot decide.
+    // Appends the lit part of an interval of at most a texel that the map cannot decide.
     void resolve(double begin, double end) {
         edges_.resolve(begin, end,
                        k_edge_width * distance(map_.lamp_, ray_.at(0.5 * (begin + end))));
@@ -259,6 +338,7 @@ void ShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
 
 namespace {
 
+constexpr double k_unbounded = std::numeric_limits<double>::infinity();
 // A surface between the corners of a cell may lie this many texels before or behind them before
 // exact shadow rays decide.
 constexpr double k_sun_margin_texels = 0.25;
@@ -266,8 +346,8 @@ constexpr double k_float_rounding = 1e-6;  // of a depth
 // A shadow's edge is located to this fraction of a ray's stretch, with an average error of half of
 // it. A stretch is at most 15 attenuation lengths (VolumeIntegrator): 2e-4 of the light on it.
 constexpr double k_sun_edge_width = 3e-5;
-// Outside the squares: how finely shadows are looked for. The shadow of a single plane has one edge
-// on a ray, which is found whatever this number.
+// Outside the squares shadows are looked for in so many pieces of a stretch. The shadow of a single
+// plane has one edge on a ray, which is found whatever this number.
 constexpr int k_open_pieces = 16;
 
 constexpr int k_most_squares = 4;
@@ -360,7 +440,7 @@ class SunShadowMap::Search {
         edges_.set_stretch(whole);
     }
 
-    // By the squares from this one on.
+    /// Appends the lit parts of `stretch`, by the squares from this one on.
     void run(std::size_t square, const Interval& stretch) {
         if (!(stretch.length() > 0)) return;
         if (square == map_.levels_.size()) {
@@ -385,11 +465,6 @@ class SunShadowMap::Search {
         const Sunlight& sun;
         Point3 operator()(const Point3& x) const { return sun.entry(x); }
     };
-    struct MapPoint {
-        double s;      // along the ray
-        double depth;  // from the level's first
-        double u, v;   // in texels
-    };
 
     MapPoint project(double s) const {
         const LightSquare& square = level_->square;
@@ -400,12 +475,7 @@ class SunShadowMap::Search {
     }
 
     void descend(const MapPoint& a, const MapPoint& b) {
-        const auto cell = [&](double t) {
-            return std::clamp(static_cast<int>(std::floor(t)), 0, map_.resolution_ - 1);
-        };
-        const DepthRange range =
-            level_->depths.bound(cell(std::min(a.u, b.u)), cell(std::min(a.v, b.v)),
-                                 cell(std::max(a.u, b.u)), cell(std::max(a.v, b.v)));
+        const DepthRange range = bound(level_->depths, a, b, 0, map_.resolution_);
         const double least = std::min(a.depth, b.depth), most = std::max(a.depth, b.depth);
         const double margin = k_sun_margin_texels * 2 * level_->square.half / map_.resolution_ +
                               k_float_rounding * most;
@@ -413,7 +483,7 @@ class SunShadowMap::Search {
             edges_.append({a.s, b.s});
         } else if (least - margin > range.farthest) {
             return;
-        } else if (std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)) <= 1) {
+        } else if (texels_between(a, b) <= 1) {
             edges_.resolve(a.s, b.s, edge_width_);
         } else {
             const MapPoint middle = project(0.5 * (a.s + b.s));

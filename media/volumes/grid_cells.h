@@ -45,7 +45,8 @@ class CellReader {
         constexpr int last = k_edge - 1;
         return x == last || y == last || z == last ? at_face(x, y, z) : inside(x, y, z);
     }
-    /// The same away from the faces that other blocks follow: all coordinates are less than 7.
+    /// What in_block() gives away from the faces that other blocks follow, where all coordinates
+    /// are less than 7.
     CellCorners inside(int x, int y, int z) const {
         const Block& block = blocks_[0];
         const std::uint16_t* const first = block.codes + place(x, y, z);
@@ -53,7 +54,7 @@ class CellReader {
         const Codes at_next_z{first[1], first[9], first[65], first[73]};
         return {values(block, at_z), values(block, at_next_z)};
     }
-    /// The same at one of those faces.
+    /// What in_block() gives at one of those faces.
     CellCorners at_face(int x, int y, int z) {
         const auto sides =
             static_cast<unsigned>((x + 1) >> 3 << 2 | (y + 1) >> 3 << 1 | (z + 1) >> 3);
@@ -86,14 +87,15 @@ class CellReader {
     }
     static int place(int x, int y, int z) { return x << 6 | y << 3 | z; }
 
-    // Of a voxel of the block or one of those that follow it, counted from its first.
+    // The value of a voxel of the block or of one of those that follow it; coordinates count from
+    // the block's first voxel.
     float value(int x, int y, int z) const {
         const Block& block = blocks_[static_cast<std::size_t>(x >> 3 << 2 | y >> 3 << 1 | z >> 3)];
         return static_cast<float>(block.codes[place(x & 7, y & 7, z & 7)]) * block.quantum +
                block.least;
     }
-    // Finds the block that was entered or one of those that follow it, and whether it has values of
-    // its own: constant regions look like blocks.
+    // Finds the block that was entered or one of those that follow it, and returns whether it has
+    // values of its own: constant regions look like blocks.
     bool find(unsigned side);
     CellCorners one_by_one(const Coord& cell) const;
 
@@ -116,11 +118,11 @@ class LineIntegral {
     /// `line` must outlive this object.
     explicit LineIntegral(const LatticeLine& line);
 
-    /// Over [begin, end], which lies within one cell.
+    /// The integral over [begin, end], which lies within one cell.
     double over_cell(const CellCorners& corners, const nanovdb::Coord& cell, double begin,
                      double end) const;
 
-    /// Over [begin, end], which lies within the block that `reader` has entered.
+    /// The integral over [begin, end], which lies within the block that `reader` has entered.
     double over_block(CellReader& reader, double begin, double end);
 
   private:
@@ -139,7 +141,7 @@ class LineIntegral {
     // each for x, y and z, and where they begin and end.
     std::array<unsigned, k_most_pieces> cells_;
     std::array<double, k_most_pieces + 1> knots_;
-    // Those of cells with all corners in the block, and those of others.
+    // The indices of pieces in cells with all corners in the block, and of pieces in other cells.
     std::array<std::uint8_t, k_most_pieces + 1> inside_, at_faces_;
     std::size_t inside_count_ = 0, face_count_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -62,7 +63,35 @@ namespace {
 // An interval is split if its halves are not much shorter than the least length.
 constexpr double k_splittable = 1.25;
 
-}  // namespace
+/// Makes a coarse profile as fine as a tolerance requires: intervals are halved where a sample
+/// halfway, or halfway through the next interval, differs from linear interpolation by more than
+/// the tolerance. The sample stays, so that the error left is about a quarter of the one allowed
+/// where concentrations are smooth. Sheets as thin as half an interval are not missed. An object is
+/// used for one ray after another.
+class ProfileRefinement {
+  public:
+    /// Writes the concentrations at the distances `s`, one per constituent each.
+    using Sample = std::function<void(std::span<const double> s, std::vector<double>& values)>;
+
+    /// Refines `profile`, whose knots and concentrations are given, and computes its columns.
+    /// `least[i]`: interval i is not split into any shorter than about this [m]; infinite where
+    /// nothing varies.
+    void run(const DepthTolerance& tolerance, const Sample& sample, std::vector<double>& least,
+             ConcentrationProfile& profile);
+
+  private:
+    void merge(const DepthTolerance& tolerance, std::vector<double>& least,
+               ConcentrationProfile& profile);
+    void find_refused(const DepthTolerance& tolerance);
+    bool confirmed(const DepthTolerance& tolerance, std::size_t interval, const double* middle);
+
+    std::vector<char> open_, open_before_;  // intervals that a sample halfway must confirm
+    std::vector<char> refused_;             // by interval, one more at either end
+    std::vector<double> middles_, values_;  // their midpoints, and the concentrations there
+    std::vector<double> error_;
+    ConcentrationProfile before_;
+    std::vector<double> least_before_;
+};
 
 void ProfileRefinement::run(const DepthTolerance& tolerance, const Sample& sample,
                             std::vector<double>& least, ConcentrationProfile& profile) {
@@ -119,8 +148,8 @@ void ProfileRefinement::merge(const DepthTolerance& tolerance, std::vector<doubl
     profile.integrate();
 }
 
-// Finds the open intervals whose sample halfway refuses the interpolation; with one interval more
-// at either end.
+// Finds the open intervals whose sample halfway refuses the interpolation. The list has one
+// interval more at either end.
 void ProfileRefinement::find_refused(const DepthTolerance& tolerance) {
     const auto count = static_cast<std::size_t>(before_.constituent_count);
     refused_.assign(open_before_.size() + 2, 0);
@@ -143,8 +172,6 @@ bool ProfileRefinement::confirmed(const DepthTolerance& tolerance, std::size_t i
     return tolerance.allows(error_, before_.s[interval],
                             std::span(before_.column).subspan(interval * count, count));
 }
-
-namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // The interpolant is a cubic in each cell; linear interpolation with four knots per voxel has an

@@ -19,7 +19,8 @@ namespace uw {
 
 namespace {
 
-// Of grids: a value, and what it means in ppm, or in units of its own coefficients.
+// The largest value of a grid, and the largest concentration that it may stand for [ppm, or units
+// of its own coefficients].
 constexpr double k_largest_value = 1e30, k_largest_concentration = 1e12;
 constexpr double k_smallest_voxel = 1e-9;  // m
 
@@ -197,8 +198,8 @@ namespace {
 
 constexpr double k_most_depth = 4;
 
-}  // namespace
-
+/// The optical depth of the longest edge of a grid's voxels where it is densest, in the band that
+/// it attenuates most.
 double voxel_depth(const VolumeReport& report, const Medium& medium) {
     Spectrum attenuation;
     for (const ConstituentReport& of : report.constituents)
@@ -209,6 +210,8 @@ double voxel_depth(const VolumeReport& report, const Medium& medium) {
     return attenuation.greatest(static_cast<std::size_t>(medium.band_count())) *
            std::max({edges.x, edges.y, edges.z});
 }
+
+}  // namespace
 
 std::optional<std::string> coarse_voxel_warning(const VolumeReport& report, const Medium& medium) {
     const double depth = voxel_depth(report, medium);

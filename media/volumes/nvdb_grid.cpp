@@ -11,7 +11,7 @@
 #include <fstream>
 #include <memory>
 #include <new>
-#include <unordered_set>
+#include <type_traits>
 #include <vector>
 
 #include "core/base/available_memory.h"
@@ -51,8 +51,15 @@ void unpack(ByteReader& in, const std::filesystem::path& file, bool zip, Buffer&
     }
 }
 
-}  // namespace
+/// A decompressed grid, suitably aligned for its nodes.
+struct NvdbBytes {
+    std::shared_ptr<const std::uint8_t> data;
+    std::uint64_t size = 0;
+};
 
+/// Reads and decompresses the bytes of `grid`. Of their contents, only the grid header's magic
+/// number and its claimed size are checked. Throws InputError starting with `where`; std::bad_alloc
+/// if memory does not suffice.
 NvdbBytes read_nvdb_bytes(const VdbHeader& header, const GridSummary& grid,
                           const SourceLocation& where) {
     ByteReader in(header.file, where);
@@ -74,11 +81,6 @@ NvdbBytes read_nvdb_bytes(const VdbHeader& header, const GridSummary& grid,
     return {{storage, buffer.data()}, bytes};
 }
 
-// A NanoVDB file is a memory image: nodes refer to each other by offsets. No offset is followed
-// before it is known to lead to a node of the right kind to which no other offset leads.
-
-namespace {
-
 constexpr std::size_t k_alignment = NANOVDB_DATA_ALIGNMENT;
 
 openvdb::math::Transform::Ptr to_transform(const nanovdb::GridData& data) {
@@ -91,16 +93,8 @@ openvdb::math::Transform::Ptr to_transform(const nanovdb::GridData& data) {
     return openvdb::math::Transform::createLinearTransform(m);
 }
 
-float convert(float value) {
-    return value;
-}
-double convert(double value) {
-    return value;
-}
-std::int32_t convert(std::int32_t value) {
-    return value;
-}
-std::int64_t convert(std::int64_t value) {
+template <class T>
+T convert(const T& value) {
     return value;
 }
 template <class T>
@@ -108,42 +102,40 @@ openvdb::math::Vec3<T> convert(const nanovdb::Vec3<T>& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// The nodes of one level: their valid positions, and which have been visited.
+/// The nodes of one level of a tree: where each begins, in bytes from the tree's beginning, and
+/// which have been visited.
 class Level {
   public:
-    /// `offset`: from the tree, as in the file. All nodes have the same size.
-    Level(const std::uint8_t* begin, std::uint64_t available, std::uint64_t offset,
-          std::uint64_t count, std::uint64_t size)
-        : begin_(begin + (offset <= available ? offset : 0)), size_(size) {
-        valid_ = count == 0 || (offset <= available && offset % k_alignment == 0 &&
-                                count <= (available - offset) / size);
-        if (valid_) met_.resize(count);
+    /// `at`: greater than all before.
+    void add(std::uint64_t at) {
+        begins_.push_back(at);
+        visited_.push_back(false);
     }
-    bool valid() const { return valid_; }
     /// Marks the node at `at` as visited; false if there is none, or it was visited before.
-    bool take(std::uint64_t at, const std::uint8_t* origin) {
-        const auto first = static_cast<std::uint64_t>(begin_ - origin);
-        if (at < first || (at - first) % size_ != 0) return false;
-        const std::uint64_t index = (at - first) / size_;
-        if (index >= met_.size() || met_[index]) return false;
-        met_[index] = true;
+    bool visit(std::uint64_t at) {
+        const auto found = std::ranges::lower_bound(begins_, at);
+        if (found == begins_.end() || *found != at) return false;
+        const auto index = static_cast<std::size_t>(found - begins_.begin());
+        if (visited_[index]) return false;
+        visited_[index] = true;
         return true;
     }
 
   private:
-    const std::uint8_t* begin_;
-    std::uint64_t size_;
-    bool valid_ = false;
-    std::vector<bool> met_;
+    std::vector<std::uint64_t> begins_;
+    std::vector<bool> visited_;
 };
 
+/// Delivers the active values of a grid to an OpenVDB grid, from which bricks are built as from
+/// those of VDB files. The file is a memory image, whose nodes refer to each other by offsets: none
+/// is followed before it is known to lead to a node of the right kind to which no other leads.
 template <class BuildT, class GridT>
 class Conversion {
     using Root = typename nanovdb::NanoRoot<BuildT>::DataType;
     using Upper = typename nanovdb::NanoUpper<BuildT>::DataType;
     using Lower = typename nanovdb::NanoLower<BuildT>::DataType;
     using Leaf = nanovdb::NanoLeaf<BuildT>;
-    static constexpr bool k_leaves_vary = !Leaf::DataType::FIXED_SIZE;
+    using LeafData = typename Leaf::DataType;
 
   public:
     Conversion(const NvdbBytes& bytes, ByteReader& in)
@@ -151,15 +143,12 @@ class Conversion {
           data_(*reinterpret_cast<const nanovdb::GridData*>(bytes.data.get())),
           tree_(bytes.data.get() + sizeof(nanovdb::GridData)),
           available_(bytes.size - sizeof(nanovdb::GridData)),
-          head_(*reinterpret_cast<const nanovdb::TreeData<3>*>(tree_)),
-          uppers_(tree_, available_, head_.mNodeOffset[2], head_.mNodeCount[2], sizeof(Upper)),
-          lowers_(tree_, available_, head_.mNodeOffset[1], head_.mNodeCount[1], sizeof(Lower)),
-          leaves_(tree_, available_, head_.mNodeOffset[0], k_leaves_vary ? 0 : head_.mNodeCount[0],
-                  sizeof(typename Leaf::DataType)) {}
+          head_(*reinterpret_cast<const nanovdb::TreeData<3>*>(tree_)) {}
 
     typename GridT::Ptr run() {
-        require(uppers_.valid() && lowers_.valid() && leaves_.valid());
-        if constexpr (k_leaves_vary) find_varying_leaves();
+        find_nodes<Upper>(2, uppers_);
+        find_nodes<Lower>(1, lowers_);
+        find_nodes<LeafData>(0, leaves_);
         const std::uint64_t at = head_.mNodeOffset[3];
         require(at % k_alignment == 0 && at >= sizeof head_ && at <= available_ &&
                 available_ - at >= sizeof(Root));
@@ -184,22 +173,25 @@ class Conversion {
         return at + static_cast<std::uint64_t>(
                         child);  // an invalid one wraps to a position without a node
     }
-    /// Leaves of different sizes are stored consecutively; each states its size.
-    void find_varying_leaves() {
-        std::uint64_t at = head_.mNodeOffset[0];
-        require(head_.mNodeCount[0] == 0 || (at <= available_ && at % k_alignment == 0));
-        for (std::uint32_t n = 0; n < head_.mNodeCount[0]; ++n) {
-            require(available_ - at >= sizeof(typename Leaf::DataType));
-            const auto* leaf = reinterpret_cast<const typename Leaf::DataType*>(tree_ + at);
-            constexpr unsigned k_widest = 4;  // 2^4 bits a value
-            require((leaf->mFlags >> 5U) <= k_widest && leaf->memUsage() <= available_ - at);
-            varying_.insert(at);
-            at += leaf->memUsage();
+    /// Nodes of a level are stored consecutively.
+    template <class Node>
+    void find_nodes(int level, Level& nodes) {
+        std::uint64_t at = head_.mNodeOffset[level];
+        const std::uint64_t count = head_.mNodeCount[level];
+        require(count == 0 || (at <= available_ && at % k_alignment == 0));
+        for (std::uint64_t n = 0; n < count; ++n) {
+            require(available_ - at >= sizeof(Node));
+            nodes.add(at);
+            std::uint64_t bytes = sizeof(Node);
+            if constexpr (std::is_same_v<Node, nanovdb::NanoLeaf<nanovdb::FpN>::DataType>) {
+                const auto* leaf = reinterpret_cast<const Node*>(tree_ + at);
+                constexpr unsigned k_widest = 4;  // 2^4 bits a value
+                require((leaf->mFlags >> 5U) <= k_widest);
+                bytes = leaf->memUsage();
+                require(bytes <= available_ - at);
+            }
+            at += bytes;
         }
-    }
-    bool take_leaf_offset(std::uint64_t at) {
-        if constexpr (k_leaves_vary) return varying_.erase(at) == 1;
-        return leaves_.take(at, tree_);
     }
 
     void take_root_tile(const Root& root, std::uint32_t n) {
@@ -210,11 +202,11 @@ class Conversion {
             return;
         }
         const std::uint64_t at = offset_of(root, tile.child);
-        require(uppers_.take(at, tree_));
+        require(uppers_.visit(at));
         const auto& upper = *reinterpret_cast<const Upper*>(tree_ + at);
         take_table(
             upper, origin, 5, 7, 2, [this](std::uint64_t child, const openvdb::Coord& begin) {
-                require(lowers_.take(child, tree_));
+                require(lowers_.visit(child));
                 const auto& lower = *reinterpret_cast<const Lower*>(tree_ + child);
                 take_table(
                     lower, begin, 4, 3, 1,
@@ -241,7 +233,7 @@ class Conversion {
         }
     }
     void take_leaf(std::uint64_t at, const openvdb::Coord& origin) {
-        require(take_leaf_offset(at));
+        require(leaves_.visit(at));
         const auto& leaf = *reinterpret_cast<const Leaf*>(tree_ + at);
         auto made =
             std::make_unique<typename GridT::TreeType::LeafNodeType>(origin, grid_->background());
@@ -265,7 +257,6 @@ class Conversion {
     std::uint64_t available_;
     const nanovdb::TreeData<3>& head_;
     Level uppers_, lowers_, leaves_;
-    std::unordered_set<std::uint64_t> varying_;
     typename GridT::Ptr grid_;
 };
 

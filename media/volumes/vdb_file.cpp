@@ -52,9 +52,10 @@ LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const Sou
 namespace {
 
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
-// Greatest displacement of a voxel from the middle of the exposure to its end [voxels].
+// A voxel moves no farther than this from the middle of the exposure to its end [voxels].
 constexpr double k_furthest = 64;
-// The interpolant is linear within a voxel: gives the time average to 1e-3 of its peak.
+// The interpolant is linear within a voxel, so that this many samples give the time average to 1e-3
+// of its peak.
 constexpr double k_samples_per_voxel = 4;
 
 /// A grid's density averaged over the exposure.

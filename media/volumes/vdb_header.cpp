@@ -60,7 +60,11 @@ std::string VdbHeader::describe_grids() const {
     return list;
 }
 
+namespace {
+
 constexpr std::int64_t k_window_bytes = 1 << 16;
+
+}  // namespace
 
 ByteReader::ByteReader(const std::filesystem::path& file, const SourceLocation& where)
     : file_(file), where_(where), stream_(file, std::ios::binary) {
@@ -140,7 +144,7 @@ struct NanoMetadata {
 };
 static_assert(sizeof(NanoMetadata) == 176);
 
-void set_type(GridSummary& grid, std::uint32_t type, std::uint32_t grid_class) {
+void set_nano_type(GridSummary& grid, std::uint32_t type, std::uint32_t grid_class) {
     static constexpr std::array<const char*, 20> names{
         "unknown", "float", "double", "int16",  "int32", "int64", "vec3s",
         "vec3d",   "mask",  "half",   "uint32", "bool",  "rgba8", "fp4",
@@ -167,7 +171,7 @@ std::string name_of(ByteReader& in, std::uint32_t bytes) {
     return name;
 }
 
-GridSummary read_metadata(ByteReader& in, std::uint16_t codec) {
+GridSummary read_nano_grid(ByteReader& in, std::uint16_t codec) {
     const auto metadata = in.get<NanoMetadata>();
     const auto fits = [&](std::uint64_t bytes) {
         return bytes <= static_cast<std::uint64_t>(in.size());
@@ -180,7 +184,7 @@ GridSummary read_metadata(ByteReader& in, std::uint16_t codec) {
     GridSummary grid;
     grid.base_name = name_of(in, metadata.name_bytes);
     grid.name = grid.unique_name = grid.base_name;
-    set_type(grid, metadata.type, metadata.grid_class);
+    set_nano_type(grid, metadata.type, metadata.grid_class);
     grid.compression = codec == 2 ? 4U : codec;  // as in VDB files
     grid.map_type = "AffineMap";
     grid.active_voxels = static_cast<std::int64_t>(metadata.active_voxels & ~(1ULL << 63U));
@@ -213,19 +217,20 @@ void read_segment(ByteReader& in, VdbHeader& header) {
     const auto codec = in.get<std::uint16_t>();
     if (codec > k_last_codec) in.fail_damaged();
     const std::size_t first = header.grids.size();
-    for (std::uint16_t n = 0; n < count; ++n) header.grids.push_back(read_metadata(in, codec));
+    for (std::uint16_t n = 0; n < count; ++n) header.grids.push_back(read_nano_grid(in, codec));
     for (std::size_t n = first; n < header.grids.size(); ++n) {
         header.grids[n].blocks_offset = in.position();
         in.skip(header.grids[n].stored_bytes);
     }
 }
 
-}  // namespace
-
+/// Whether a file that begins with these 8 bytes is NanoVDB's.
 bool is_nvdb_magic(std::int64_t magic) {
     return magic == k_magic_0 || magic == k_magic_1 || magic == k_magic_2;
 }
 
+/// The header of a NanoVDB file: all its segments and the metadata of its grids. Throws InputError
+/// as read_vdb_header does.
 VdbHeader read_nvdb_header(ByteReader& in, const std::filesystem::path& file) {
     VdbHeader header;
     header.file = file;
@@ -244,9 +249,8 @@ VdbHeader read_nvdb_header(ByteReader& in, const std::filesystem::path& file) {
     return header;
 }
 
-namespace {
-
 constexpr std::int64_t k_magic = 0x56444220;
+constexpr std::uint32_t k_oldest_version = 220, k_newest_version = 224;
 
 /// Names come from the file and appear in one-line messages.
 std::string replace_controls(std::string text) {
@@ -348,16 +352,16 @@ GridSummary read_grid(ByteReader& in, const VdbHeader& header) {
 }
 
 void check_version(const ByteReader& in, const VdbHeader& header) {
-    if (header.version > k_newest_vdb_version)
+    if (header.version > k_newest_version)
         in.fail(fmt::format(
             "is a VDB file of version {}, written by OpenVDB {}.{}; this build reads up to version "
             "{}: save it with OpenVDB 12 or older, with 32-bit floats",
-            header.version, header.library_major, header.library_minor, k_newest_vdb_version));
-    if (header.version < k_oldest_vdb_version)
+            header.version, header.library_major, header.library_minor, k_newest_version));
+    if (header.version < k_oldest_version)
         in.fail(
             fmt::format("is a VDB file of version {}, from before OpenVDB 1.0; this build reads "
                         "versions {} to {}: save it with a newer program",
-                        header.version, k_oldest_vdb_version, k_newest_vdb_version));
+                        header.version, k_oldest_version, k_newest_version));
 }
 
 }  // namespace

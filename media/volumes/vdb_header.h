@@ -110,16 +110,6 @@ class ByteReader {
     std::int64_t size_ = 0, position_ = 0;
 };
 
-/// Whether a file that begins with these 8 bytes is NanoVDB's.
-bool is_nvdb_magic(std::int64_t magic);
-
-/// The header of a NanoVDB file whose first 8 bytes have been read, all its segments and the
-/// metadata of its grids. Throws InputError as read_vdb_header does.
-VdbHeader read_nvdb_header(ByteReader& in, const std::filesystem::path& file);
-
-inline constexpr std::uint32_t k_oldest_vdb_version = 220;
-inline constexpr std::uint32_t k_newest_vdb_version = 224;
-
 /// Reads the header and the metadata of all grids of a VDB or NanoVDB file, distinguished by their
 /// magic numbers; sizes that the file claims are first checked against its length. Throws IoError
 /// if the file cannot be opened; InputError, starting with `where`, if it is neither, is truncated,

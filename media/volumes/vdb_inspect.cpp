@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "media/volumes/grid_bricks.h"
 #include "media/volumes/vdb_header.h"
 #include "media/volumes/vdb_stream.h"
 

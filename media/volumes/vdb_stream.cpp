@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <fstream>
+#include <istream>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -13,6 +15,7 @@
 
 #include "core/base/available_memory.h"
 #include "core/base/error.h"
+#include "media/volumes/grid_bricks.h"
 #include "media/volumes/nvdb_grid.h"
 #include "media/volumes/vdb_header.h"
 
@@ -46,6 +49,9 @@ std::int64_t bytes_of_value(const std::string& value_type) {
     return components_of(value_type) * (wide ? 8 : 4);
 }
 
+/// Traverses the tree of a grid of floats, doubles, integers or 3-vectors of them in the file
+/// without decoding it, and checks that each block of values has the size implied by its masks.
+/// OpenVDB 10 trusts the block sizes and would write past its buffers.
 class LayoutWalk {
   public:
     LayoutWalk(ByteReader& in, const VdbHeader& header, const GridSummary& grid)
@@ -141,15 +147,9 @@ class LayoutWalk {
     std::vector<std::int64_t> leaf_counts_;  // active values of each leaf, in the file's order
 };
 
-}  // namespace
-
-void check_layout(const VdbHeader& header, const GridSummary& grid, std::int64_t tree_offset,
-                  const SourceLocation& where) {
-    ByteReader in(header.file, where);
-    in.seek(tree_offset);
-    LayoutWalk(in, header, grid).walk_tree();
-}
-
+/// Checks what OpenVDB 10 believes of a frustum transform: the length of its second map's name, for
+/// which it makes room, and that this is no frustum again, which it reads by recursion. Throws
+/// InputError starting with `where`.
 void check_transform(const VdbHeader& header, const GridSummary& grid,
                      const SourceLocation& where) {
     constexpr const char* k_frustum = "NonlinearFrustumMap";
@@ -161,7 +161,97 @@ void check_transform(const VdbHeader& header, const GridSummary& grid,
     if (in.text() == k_frustum) in.fail_damaged();
 }
 
-namespace {
+/// A file whose reading ends with Interrupted once the calling thread's work is to stop.
+class StoppableFile : public std::filebuf {
+  protected:
+    std::streamsize xsgetn(char* bytes, std::streamsize count) override {
+        throw_if_stopped();
+        return std::filebuf::xsgetn(bytes, count);
+    }
+};
+
+/// One grid's part of a VDB file, as a stream set up as openvdb::io::File does it. File itself
+/// would reject the whole file for one grid of an unknown type, and clips in world space.
+class GridStream {
+  public:
+    /// `voxels`: the grid that holds the voxels of `grid`, usually itself (holder_of_voxels).
+    GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
+               const SourceLocation& where)
+        : header_(header), grid_(grid), voxels_(voxels), where_(where) {
+        if (file_.open(header.file, std::ios::in | std::ios::binary) == nullptr)
+            stream_.setstate(std::ios::failbit);
+        check_transform(header, grid, where);
+        check_transform(header, voxels, where);
+        stream_.exceptions(std::ios::failbit | std::ios::badbit);
+        metadata_->setFileVersion(header.version);
+        metadata_->setLibraryVersion({header.library_major, header.library_minor});
+        metadata_->setCompression(voxels.compression);
+        metadata_->setHalfFloat(voxels.half);
+        metadata_->setSeekable(true);
+        openvdb::io::setStreamMetadataPtr(stream_, metadata_, /*transfer=*/true);
+    }
+
+    openvdb::math::Transform::ConstPtr read_transform() {
+        const auto transform = openvdb::math::Transform::createLinearTransform();
+        stream_.seekg(grid_.transform_offset);
+        transform->read(stream_);
+        return transform;
+    }
+
+    /// A grid with its transform and tree, but no voxel values yet.
+    openvdb::GridBase::Ptr read_topology() {
+        auto grid = openvdb::GridBase::createGrid("Tree_" + voxels_.value_type + "_5_4_3");
+        grid->setSaveFloatAsHalf(voxels_.half);
+        stream_.seekg(voxels_.transform_offset);
+        grid->readTransform(stream_);
+        check_layout_once();
+        metadata_->setLeaf(0);
+        grid->readTopology(stream_);
+        const auto blocks = stream_.tellg();
+        if (&grid_ != &voxels_) {
+            stream_.seekg(grid_.transform_offset);
+            grid->readTransform(stream_);
+            stream_.seekg(blocks);
+        }
+        return grid;
+    }
+
+    void read_values(openvdb::GridBase& grid) { grid.readBuffers(stream_); }
+    /// Only the voxels within `box`; the others become inactive.
+    void read_values(openvdb::GridBase& grid, const openvdb::CoordBBox& box) {
+        grid.readBuffers(stream_, box);
+    }
+
+  private:
+    /// The tree begins where the stream is.
+    void check_layout_once() {
+        if (layout_checked_) return;
+        ByteReader in(header_.file, where_);
+        in.seek(stream_.tellg());
+        LayoutWalk(in, header_, voxels_).walk_tree();
+        layout_checked_ = true;
+    }
+
+    const VdbHeader& header_;
+    const GridSummary& grid_;
+    const GridSummary& voxels_;
+    const SourceLocation& where_;
+    bool layout_checked_ = false;
+    StoppableFile file_;
+    std::istream stream_{&file_};
+    // The stream keeps a pointer to this member.
+    openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
+};
+
+/// The grid whose voxels `grid` shares, or itself. Throws std::runtime_error if it is missing.
+const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& grid) {
+    if (grid.instance_of.empty()) return grid;
+    for (const GridSummary& other : header.grids)
+        if (other.unique_name == grid.instance_of && other.instance_of.empty() &&
+            other.tree_type == grid.tree_type)
+            return other;
+    throw std::runtime_error("the grid it shares its voxels with is missing");
+}
 
 /// Calls `take(origin)` for every leaf.
 void for_each_leaf(const openvdb::GridBase& grid,
@@ -227,72 +317,10 @@ std::vector<openvdb::CoordBBox> cut_into_slabs(const openvdb::GridBase& grid,
 
 }  // namespace
 
-GridStream::GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
-                       const SourceLocation& where)
-    : header_(header), grid_(grid), voxels_(voxels), where_(where) {
-    if (file_.open(header.file, std::ios::in | std::ios::binary) == nullptr)
-        stream_.setstate(std::ios::failbit);
-    check_transform(header, grid, where);
-    check_transform(header, voxels, where);
-    stream_.exceptions(std::ios::failbit | std::ios::badbit);
-    metadata_->setFileVersion(header.version);
-    metadata_->setLibraryVersion({header.library_major, header.library_minor});
-    metadata_->setCompression(voxels.compression);
-    metadata_->setHalfFloat(voxels.half);
-    metadata_->setSeekable(true);
-    openvdb::io::setStreamMetadataPtr(stream_, metadata_, /*transfer=*/true);
-}
-
-openvdb::math::Transform::ConstPtr GridStream::read_transform() {
-    const auto transform = openvdb::math::Transform::createLinearTransform();
-    stream_.seekg(grid_.transform_offset);
-    transform->read(stream_);
-    return transform;
-}
-
-openvdb::GridBase::Ptr GridStream::read_topology() {
-    auto grid = openvdb::GridBase::createGrid("Tree_" + voxels_.value_type + "_5_4_3");
-    grid->setSaveFloatAsHalf(voxels_.half);
-    stream_.seekg(voxels_.transform_offset);
-    grid->readTransform(stream_);
-    check_layout_once();
-    metadata_->setLeaf(0);
-    grid->readTopology(stream_);
-    const auto blocks = stream_.tellg();
-    if (&grid_ != &voxels_) {
-        stream_.seekg(grid_.transform_offset);
-        grid->readTransform(stream_);
-        stream_.seekg(blocks);
-    }
-    return grid;
-}
-
-void GridStream::read_values(openvdb::GridBase& grid) {
-    grid.readBuffers(stream_);
-}
-
-void GridStream::read_values(openvdb::GridBase& grid, const openvdb::CoordBBox& box) {
-    grid.readBuffers(stream_, box);
-}
-
-void GridStream::check_layout_once() {
-    if (!layout_checked_) check_layout(header_, voxels_, stream_.tellg(), where_);
-    layout_checked_ = true;
-}
-
 openvdb::math::Transform::ConstPtr read_transform(const VdbHeader& header, const GridSummary& grid,
                                                   const SourceLocation& where) {
     if (header.is_nano) return read_nvdb_transform(header, grid, where);
     return GridStream(header, grid, grid, where).read_transform();
-}
-
-const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& grid) {
-    if (grid.instance_of.empty()) return grid;
-    for (const GridSummary& other : header.grids)
-        if (other.unique_name == grid.instance_of && other.instance_of.empty() &&
-            other.tree_type == grid.tree_type)
-            return other;
-    throw std::runtime_error("the grid it shares its voxels with is missing");
 }
 
 void read_slabs(const VdbHeader& header, const GridSummary& grid, std::size_t slab_bytes,

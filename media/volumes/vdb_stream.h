@@ -3,79 +3,24 @@
 #include <openvdb/openvdb.h>
 
 #include <cstddef>
-#include <cstdint>
-#include <fstream>
 #include <functional>
-#include <istream>
+#include <ios>
 #include <new>
 #include <string>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/base/vector_math.h"
-#include "media/volumes/grid_bricks.h"
 #include "media/volumes/vdb_header.h"
 
 namespace uw {
 
-/// Traverses the tree of a grid of floats, doubles, integers or 3-vectors of them in the file
-/// without decoding it, and checks that each block of values has the size implied by its masks.
-/// OpenVDB 10 trusts the block sizes and would write past its buffers. `tree_offset`: where the
-/// tree begins, after the transform. Throws InputError starting with `where`.
-void check_layout(const VdbHeader& header, const GridSummary& grid, std::int64_t tree_offset,
-                  const SourceLocation& where);
-
-/// Checks what OpenVDB 10 believes of a frustum transform: the length of its second map's name, for
-/// which it makes room, and that this is no frustum again, which it reads by recursion. Throws
-/// InputError starting with `where`.
-void check_transform(const VdbHeader& header, const GridSummary& grid, const SourceLocation& where);
-
-/// Grids of a VDB file as OpenVDB objects, for the files that access voxels.
-
-/// A file whose reading ends with Interrupted once the calling thread's work is to stop.
-class StoppableFile : public std::filebuf {
-  protected:
-    std::streamsize xsgetn(char* bytes, std::streamsize count) override {
-        throw_if_stopped();
-        return std::filebuf::xsgetn(bytes, count);
-    }
-};
-
-/// One grid's part of the file, as a stream set up as openvdb::io::File does it. File itself would
-/// reject the whole file for one grid of an unknown type, and clips in world space.
-class GridStream {
-  public:
-    /// `voxels`: the grid that holds the voxels of `grid`, usually itself (holder_of_voxels).
-    GridStream(const VdbHeader& header, const GridSummary& grid, const GridSummary& voxels,
-               const SourceLocation& where);
-
-    openvdb::math::Transform::ConstPtr read_transform();
-    /// A grid with its transform and tree, but no voxel values yet.
-    openvdb::GridBase::Ptr read_topology();
-    void read_values(openvdb::GridBase& grid);
-    /// Only the voxels within `box`; the others become inactive.
-    void read_values(openvdb::GridBase& grid, const openvdb::CoordBBox& box);
-
-  private:
-    void check_layout_once();
-
-    const VdbHeader& header_;
-    const GridSummary& grid_;
-    const GridSummary& voxels_;
-    const SourceLocation& where_;
-    bool layout_checked_ = false;
-    StoppableFile file_;
-    std::istream stream_{&file_};
-    // The stream keeps a pointer to this member.
-    openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
-};
+/// The voxels of one grid of a VDB or NanoVDB file as OpenVDB objects, for the files that access
+/// them.
 
 /// The transform of a grid of either format.
 openvdb::math::Transform::ConstPtr read_transform(const VdbHeader& header, const GridSummary& grid,
                                                   const SourceLocation& where);
-
-/// The grid whose voxels `grid` shares, or itself. Throws std::runtime_error if it is missing.
-const GridSummary& holder_of_voxels(const VdbHeader& header, const GridSummary& grid);
 
 /// A linear transform as an affine map.
 Affine to_affine(const openvdb::math::Transform& transform);

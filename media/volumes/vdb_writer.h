@@ -29,7 +29,7 @@ struct VdbOutputGrid {
 /// be written is for out.commit() to report.
 void write_vdb(OutputFile& out, const std::vector<VdbOutputGrid>& grids,
                const std::vector<std::pair<std::string, std::string>>& metadata);
-/// The same as a file, which appears under its name only once it is complete.
+/// Writes them to a file, which appears under its name only once it is complete.
 void write_vdb(const std::filesystem::path& file, const std::vector<VdbOutputGrid>& grids,
                const std::vector<std::pair<std::string, std::string>>& metadata);
 

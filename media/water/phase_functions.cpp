@@ -17,6 +17,31 @@
 
 namespace uw {
 
+namespace {
+
+constexpr double k_smallest_angle = TabulatedPhase::k_smallest_angle;
+
+/// p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos psi)^1.5) (Henyey and Greenstein 1941), normalised
+/// exactly.
+class HenyeyGreenstein final : public PhaseFunction {
+  public:
+    /// `g`, the mean cosine, in (-1, 1); otherwise InputError.
+    explicit HenyeyGreenstein(double g);
+
+    using PhaseFunction::evaluate;
+    void evaluate(std::span<const double> psi, std::span<double> p) const override;
+
+    /// p is smooth, but its poles at psi = +-i ln(1/|g|) (from psi = 0, or pi for g < 0) lie so
+    /// close to the real axis that one polynomial cannot follow the peak: splits at ratios of 3
+    /// away from it, none for |g| < 0.5.
+    std::vector<double> breakpoints() const override;
+
+    std::string description() const override;
+
+  private:
+    double g_;
+};
+
 HenyeyGreenstein::HenyeyGreenstein(double g) : g_(g) {
     if (!(g > -1 && g < 1))
         throw InputError(
@@ -47,8 +72,6 @@ std::string HenyeyGreenstein::description() const {
     return fmt::format("henyey-greenstein g={}", g_);
 }
 
-namespace {
-
 /// (x^q - 1) / (x - 1), q at x = 1, without cancellation.
 double power_quotient(double x, double q) {
     const double e = x - 1;
@@ -71,7 +94,43 @@ double horner(std::span<const double> c, double x) {
     return sum;
 }
 
-}  // namespace
+/// The Fournier-Forand phase function of particles with index `n` relative to water and a
+/// hyperbolic (Junge) size distribution of slope `mu`, in the form of Fournier and Jonasz (1999),
+/// Mobley's "Light and Water" web book:
+///
+///     p = [nu(1-d) - (1-d^nu) + (d(1-d^nu) - nu(1-d)) / sin^2(psi/2)] / (4 pi (1-d)^2 d^nu)
+///         + (1-d180^nu) (3 cos^2 psi - 1) / (16 pi (d180-1) d180^nu),
+///     nu = (3-mu)/2,  d = 4 sin^2(psi/2) / (3 (n-1)^2),  d180 = d at psi = pi.
+///
+/// The first term is 0/0 at d = 1; near it the quotients are evaluated by their binomial series. p
+/// is unbounded as psi approaches 0. Below `k_smallest_angle` it is held at its mean over that cone
+/// (known in closed form), so that it is finite everywhere and the integral is still 1.
+class FournierForand final : public PhaseFunction {
+  public:
+    /// `n` in (1, 10]; `mu` in (3, 5), where the total scattering of the size distribution is
+    /// finite. Otherwise InputError.
+    FournierForand(double n, double mu);
+
+    using PhaseFunction::evaluate;
+    void evaluate(std::span<const double> psi, std::span<double> p) const override;
+
+    /// The edge of the constant cone, then splits at ratios of 4: p is nearly a power of psi there,
+    /// which no polynomial can follow over decades.
+    std::vector<double> breakpoints() const override;
+
+    std::string description() const override;
+
+  private:
+    static constexpr std::size_t k_series_terms = 12;
+
+    double value(double sin2_half) const;
+
+    double n_, mu_, nu_;
+    double delta_180_;
+    double back_;  // factor of (3 cos^2 psi - 1)
+    double core_;  // p inside k_smallest_angle
+    std::array<double, k_series_terms> series_a_{}, series_b_{};
+};
 
 FournierForand::FournierForand(double n, double mu)
     : n_(n), mu_(mu), nu_(0.5 * (3 - mu)), delta_180_(4 / (3 * (n - 1) * (n - 1))) {
@@ -135,6 +194,8 @@ std::vector<double> FournierForand::breakpoints() const {
 std::string FournierForand::description() const {
     return fmt::format("fournier-forand n={} mu={}", n_, mu_);
 }
+
+}  // namespace
 
 void MolecularPhase::evaluate(std::span<const double> psi, std::span<double> p) const {
     constexpr double k_scale = 1 / (4 * std::numbers::pi * (1 + k_anisotropy / 3));
@@ -311,7 +372,7 @@ struct Knots {
 
 /// Adds knots from 0 up to, but excluding, the first angle of the table.
 void add_low_end(Knots& knots, double psi, double p, double exponent) {
-    const double smallest = TabulatedPhase::k_smallest_angle;
+    const double smallest = k_smallest_angle;
     const auto continued = [&](double angle) { return p * std::pow(angle / psi, exponent); };
     if (psi <= smallest || p == 0) {
         knots.add(0, p, Law::linear);
@@ -396,15 +457,6 @@ std::vector<double> TabulatedPhase::breakpoints() const {
     return {psi.begin() + 1, psi.end() - 1};
 }
 
-TabulatedPhase read_phase_table(std::string_view text, const std::string& name) {
-    return {CsvTable(text, name).curve("angle_deg", "phase"), name};
-}
-
-PetzoldAverage::PetzoldAverage()
-    : TabulatedPhase(read_embedded_table("petzold_average_particle_phase.csv")
-                         .curve("angle_deg", "phase_per_sr"),
-                     "petzold average particle", -1.346) {}
-
 KopelevichSmall::KopelevichSmall()
     : TabulatedPhase(kopelevich_table("beta_s_small", Law::exponential, Law::exponential),
                      "kopelevich small") {}
@@ -425,7 +477,8 @@ std::shared_ptr<const PhaseFunction> table_phase(const TabulatedPhaseDesc& desc,
     const std::string text = read_text_file(
         desc.file, fmt::format("{}: {}", where, printable(desc.file.string(), 300)),
         k_largest_table_file, "phase function table (CSV with columns angle_deg,phase)");
-    auto phase = std::make_shared<TabulatedPhase>(read_phase_table(text, name));
+    auto phase =
+        std::make_shared<TabulatedPhase>(CsvTable(text, name).curve("angle_deg", "phase"), name);
     // Published tables integrate to 1 within a few per cent.
     const double integral = phase->table_integral();
     if (integral < 0.9 || integral > 1.1)
@@ -453,8 +506,14 @@ struct MakePhaseFunction {
     Made operator()(const FournierForandDesc& desc) const {
         return std::make_shared<FournierForand>(desc.n, desc.mu);
     }
+    /// Petzold's average particle phase function (Mobley, Gentili and Stavn 1993, table 2),
+    /// continued below 0.1 degrees as psi^-1.346. With log-log interpolation its table integrates
+    /// to 0.9926; here it is normalised to 1.
     Made operator()(const PetzoldDesc& /*desc*/) const {
-        return std::make_shared<PetzoldAverage>();
+        return std::make_shared<TabulatedPhase>(
+            read_embedded_table("petzold_average_particle_phase.csv")
+                .curve("angle_deg", "phase_per_sr"),
+            "petzold average particle", -1.346);
     }
     Made operator()(const TabulatedPhaseDesc& desc) const {
         return table_phase(desc, where, warnings);

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/base/csv_table.h"
@@ -14,69 +12,6 @@
 #include "core/scene/water_desc.h"
 
 namespace uw {
-
-/// p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos psi)^1.5) (Henyey and Greenstein 1941), normalised
-/// exactly.
-class HenyeyGreenstein final : public PhaseFunction {
-  public:
-    /// `g`, the mean cosine, in (-1, 1); otherwise InputError.
-    explicit HenyeyGreenstein(double g);
-
-    using PhaseFunction::evaluate;
-    void evaluate(std::span<const double> psi, std::span<double> p) const override;
-
-    /// p is smooth, but its poles at psi = +-i ln(1/|g|) (from psi = 0, or pi for g < 0) lie so
-    /// close to the real axis that one polynomial cannot follow the peak: splits at ratios of 3
-    /// away from it, none for |g| < 0.5.
-    std::vector<double> breakpoints() const override;
-
-    std::string description() const override;
-
-  private:
-    double g_;
-};
-
-/// The Fournier-Forand phase function of particles with index `n` relative to water and a
-/// hyperbolic (Junge) size distribution of slope `mu`, in the form of Fournier and Jonasz (1999),
-/// Mobley's "Light and Water" web book:
-///
-///     p = [nu(1-d) - (1-d^nu) + (d(1-d^nu) - nu(1-d)) / sin^2(psi/2)] / (4 pi (1-d)^2 d^nu)
-///         + (1-d180^nu) (3 cos^2 psi - 1) / (16 pi (d180-1) d180^nu),
-///     nu = (3-mu)/2,  d = 4 sin^2(psi/2) / (3 (n-1)^2),  d180 = d at psi = pi.
-///
-/// The first term is 0/0 at d = 1; near it the quotients are evaluated by their binomial series. p
-/// is unbounded as psi approaches 0. Below `k_smallest_angle` it is held at its mean over that cone
-/// (known in closed form), so that it is finite everywhere and the integral is still 1.
-class FournierForand final : public PhaseFunction {
-  public:
-    /// 1e-6 rad (0.2 arc seconds): far below any pixel, and below the diffraction angle of a
-    /// particle half a metre in size, so that no real water has a sharper peak.
-    static constexpr double k_smallest_angle = 1e-6;
-
-    /// `n` in (1, 10]; `mu` in (3, 5), where the total scattering of the size distribution is
-    /// finite. Otherwise InputError.
-    FournierForand(double n, double mu);
-
-    using PhaseFunction::evaluate;
-    void evaluate(std::span<const double> psi, std::span<double> p) const override;
-
-    /// The edge of the constant cone, then splits at ratios of 4: p is nearly a power of psi there,
-    /// which no polynomial can follow over decades.
-    std::vector<double> breakpoints() const override;
-
-    std::string description() const override;
-
-  private:
-    static constexpr std::size_t k_series_terms = 12;
-
-    double value(double sin2_half) const;
-
-    double n_, mu_, nu_;
-    double delta_180_;
-    double back_;  // factor of (3 cos^2 psi - 1)
-    double core_;  // p inside k_smallest_angle
-    std::array<double, k_series_terms> series_a_{}, series_b_{};
-};
 
 /// Scattering by the molecules of water and its salts, Einstein-Smoluchowski (Morel 1974):
 /// p = (1 + 0.835 cos^2 psi) / (4 pi (1 + 0.835/3)), normalised exactly.
@@ -142,7 +77,8 @@ class PiecewiseFunction {
 /// `k_smallest_angle`, and held constant from there to 0. Beyond the last angle its value is held.
 class TabulatedPhase : public PhaseFunction {
   public:
-    /// 1e-6 rad: see FournierForand::k_smallest_angle.
+    /// 1e-6 rad (0.2 arc seconds): far below any pixel, and below the diffraction angle of a
+    /// particle half a metre in size, so that no real water has a sharper peak.
     static constexpr double k_smallest_angle = 1e-6;
 
     /// `table`: angles in degrees, in [0, 180], and values >= 0 up to a common factor.
@@ -178,18 +114,6 @@ class TabulatedPhase : public PhaseFunction {
     PiecewiseFunction f_;
     double table_integral_ = 0;
     double extrapolated_fraction_ = 0;
-};
-
-/// Reads a phase function from CSV text with columns angle_deg and phase; `name` (a file name)
-/// begins every message. InputError as CsvTable and TabulatedPhase.
-TabulatedPhase read_phase_table(std::string_view text, const std::string& name);
-
-/// Petzold's average particle phase function (Mobley, Gentili and Stavn 1993, table 2), continued
-/// below 0.1 degrees as psi^-1.346. With log-log interpolation its table integrates to 0.9926; here
-/// it is normalised to 1.
-class PetzoldAverage final : public TabulatedPhase {
-  public:
-    PetzoldAverage();
 };
 
 /// Small particles of Kopelevich's model (1983; Mobley 1994, table 3.13): ln beta linear in psi.

@@ -337,7 +337,7 @@ ParticleDerivative particle_derivative(const WaterDesc& water,
         preset_ppm = is_small ? preset.small_ppm : preset.large_ppm;
     }
     const double step = linear_step(water, ppm, preset_ppm);
-    // Both above the concentration, which may be 0: then the medium lacks the phase function.
+    // Both lie above the concentration, which may be 0: then the medium lacks the phase function.
     const auto with = [&](double more) {
         WaterDesc changed = water;
         (is_small ? changed.small_ppm : changed.large_ppm) = ppm + more;

@@ -42,9 +42,10 @@ enum class WaterParticles : std::uint8_t { small, large };
 
 /// What more of the water's own particles changes.
 struct ParticleDerivative {
-    /// Those of the water's medium, and the particles' own.
+    /// The phase functions of the water's medium, and the particles' own.
     std::vector<std::shared_ptr<const PhaseFunction>> phase_functions;
-    /// Of the uniform coefficients, by concentration [1/m per ppm]: scattering by phase function.
+    /// The derivative of the uniform coefficients by concentration [1/m per ppm]; scattering is
+    /// listed by phase function.
     OpticalCoefficients per_ppm;
 };
 

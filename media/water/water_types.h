@@ -10,6 +10,9 @@
 
 namespace uw {
 
+// Tests hold each of these formulas against its paper by itself; a scene's absorption is put
+// together of them by uniform_absorption.
+
 /// Wavelengths covered by a table [nm].
 struct WavelengthRange {
     double first_nm, last_nm;

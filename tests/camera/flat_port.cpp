@@ -42,7 +42,7 @@ void expect_closed_form(const FlatPortDesc& port, double angle_air) {
     for (int i = 0; i < 7; ++i) {
         const Vector3 u = std::cos(0.9 * i) * e1 + std::sin(0.9 * i) * e2;
         const Vector3 in_air = std::cos(angle_air) * n + std::sin(angle_air) * u;
-        const auto ray = FlatPort(port).refracted_ray(in_air);
+        const auto ray = make_port(port)->refracted_ray(in_air);
         ASSERT_TRUE(ray);
         const ClosedForm truth = closed_form(port, n, u, angle_air);
         expect_near(from_origin(ray->origin), from_origin(truth.origin));
@@ -75,7 +75,7 @@ TEST(FlatPort, OpticalAxisThroughTiltedPort) {
     const double tilt = 25 * k_degree;
     FlatPortDesc port = thick_port();
     port.normal = {std::sin(tilt), 0, std::cos(tilt)};
-    const auto ray = FlatPort(port).refracted_ray({0, 0, 1});
+    const auto ray = make_port(port)->refracted_ray({0, 0, 1});
     ASSERT_TRUE(ray);
     const double glass = std::asin(std::sin(tilt) / 1.49);
     const double water = std::asin(std::sin(tilt) / 1.334);
@@ -95,7 +95,7 @@ TEST(FlatPort, EqualIndicesContinueThePinhole) {
     port.normal = glm::normalize(Vector3(-0.1, 0.3, 1));
     for (const Vector3& v : {Vector3(0, 0, 1), Vector3(0.8, -0.5, 1), Vector3(-0.2, 1.1, 1)}) {
         const Vector3 direction = glm::normalize(v);
-        const auto ray = FlatPort(port).refracted_ray(direction);
+        const auto ray = make_port(port)->refracted_ray(direction);
         ASSERT_TRUE(ray);
         expect_near(ray->direction, direction);
         expect_near(glm::cross(from_origin(ray->origin), direction), Vector3(0.0));
@@ -109,18 +109,18 @@ TEST(FlatPort, TotalReflectionBeyondTheCriticalAngle) {
     port.n_water = 1.0;
     const double critical = std::asin(1 / 1.334);
     const auto towards = [](double angle) { return Vector3(std::sin(angle), 0, std::cos(angle)); };
-    EXPECT_TRUE(FlatPort(port).refracted_ray(towards(critical - 1e-6)));
-    EXPECT_FALSE(FlatPort(port).refracted_ray(towards(critical + 1e-6)));
+    EXPECT_TRUE(make_port(port)->refracted_ray(towards(critical - 1e-6)));
+    EXPECT_FALSE(make_port(port)->refracted_ray(towards(critical + 1e-6)));
     port.n_glass = 1.1;  // reflected by the inner surface already
-    EXPECT_FALSE(FlatPort(port).refracted_ray(towards(std::asin(1.1 / 1.334) + 1e-6)));
+    EXPECT_FALSE(make_port(port)->refracted_ray(towards(std::asin(1.1 / 1.334) + 1e-6)));
 }
 
 TEST(FlatPort, MissesBehindAndAlongTheGlass) {
     FlatPortDesc port = thick_port();
-    EXPECT_FALSE(FlatPort(port).refracted_ray({0, 0, -1}));
-    EXPECT_FALSE(FlatPort(port).refracted_ray({1, 0, 0}));
+    EXPECT_FALSE(make_port(port)->refracted_ray({0, 0, -1}));
+    EXPECT_FALSE(make_port(port)->refracted_ray({1, 0, 0}));
     port.normal = glm::normalize(Vector3(1, 0, 0.1));
-    EXPECT_FALSE(FlatPort(port).refracted_ray(glm::normalize(Vector3(-1, 0, 1))));
+    EXPECT_FALSE(make_port(port)->refracted_ray(glm::normalize(Vector3(-1, 0, 1))));
 }
 
 }  // namespace

@@ -28,12 +28,6 @@ TEST(CalibrationFormats, NumbersKeepAllOfTheirDigits) {
     EXPECT_EQ(number_list(std::array{1.0 / 3}), "[0.3333333333333333]");
 }
 
-TEST(CalibrationFormats, ListsOfNamesAreShort) {
-    EXPECT_EQ(some_names({"left", "right"}), "left, right");
-    EXPECT_EQ(some_names(CameraNames(9, "a")), "a, a, a, a, a, a, a, a, ...");
-    EXPECT_EQ(some_names({std::string(40, 'x') + "\n"}), std::string(30, 'x') + "...");
-}
-
 TEST(CalibrationFormats, OneCameraIsChosen) {
     EXPECT_EQ(choose_camera({"only"}, "", "c.yaml"), "only");
     EXPECT_EQ(choose_camera({"a", "b"}, "b", "c.yaml"), "b");
@@ -44,6 +38,11 @@ TEST(CalibrationFormats, OneCameraIsChosen) {
     EXPECT_NE(refused({"a", "b"}, "").find("c.yaml: has 2 cameras (a, b); choose one"),
               std::string::npos);
     EXPECT_EQ(refused({"a", "b"}, "c"), "c.yaml: has no camera 'c'; it has a, b");
+    // Lists of names are short.
+    EXPECT_EQ(refused(CameraNames(9, "a"), "c"),
+              "c.yaml: has no camera 'c'; it has a, a, a, a, a, a, a, a, ...");
+    EXPECT_EQ(refused({std::string(40, 'x') + "\n"}, "c"),
+              "c.yaml: has no camera 'c'; it has " + std::string(30, 'x') + "...");
 }
 
 TEST(CalibrationFormats, DistortionIsAnyCoefficient) {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "core/light/medium.h"
-#include "media/water/phase_functions.h"
+#include "tests/support/described_phase.h"
 
 namespace uw::test {
 
@@ -25,7 +25,7 @@ inline Medium hg_medium(double g, std::initializer_list<double> absorption,
     Medium medium;
     for (std::size_t b = 0; b < absorption.size(); ++b)
         medium.wavelengths_nm.push_back(550 - 50 * static_cast<double>(b));
-    medium.phase_functions = {std::make_shared<HenyeyGreenstein>(g)};
+    medium.phase_functions = {henyey_greenstein(g)};
     medium.uniform = one_phase_coefficients(absorption, scattering);
     return medium;
 }

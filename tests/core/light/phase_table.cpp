@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "media/water/phase_functions.h"
+#include "tests/support/described_phase.h"
 
 namespace uw::test {
 namespace {
@@ -27,11 +27,11 @@ bool bends_near(const PhaseFunction& phase, double half_tangent) {
 }
 
 TEST(PhaseTable, EqualsEachFunctionButForTheCellsInWhichItBends) {
-    const Medium medium = medium_of(
-        {std::make_shared<MolecularPhase>(), std::make_shared<KopelevichSmall>(),
-         std::make_shared<KopelevichLarge>(), std::make_shared<PetzoldAverage>(),
-         std::make_shared<HenyeyGreenstein>(0.924), std::make_shared<HenyeyGreenstein>(-0.99),
-         std::make_shared<FournierForand>(1.1, 3.5835)});
+    const Medium medium =
+        medium_of({std::make_shared<MolecularPhase>(), std::make_shared<KopelevichSmall>(),
+                   std::make_shared<KopelevichLarge>(), test::petzold_average(),
+                   test::henyey_greenstein(0.924), test::henyey_greenstein(-0.99),
+                   test::fournier_forand(1.1, 3.5835)});
     const PhaseTable table(medium);
     const std::size_t phases = medium.phase_functions.size();
     std::vector<double> half_tangents;

@@ -8,7 +8,6 @@
 #include <memory>
 #include <numbers>
 
-#include "media/water/phase_functions.h"
 #include "tests/support/hg_medium.h"
 #include "tests/support/test_scene.h"
 
@@ -48,14 +47,14 @@ class PointSpreads : public testing::Test {
 // at the peak of p.
 double exponent_of(double depth, double k) {
     constexpr int k_angles = 2000, k_places = 60;
-    const HenyeyGreenstein phase(k_g);
+    const auto phase = henyey_greenstein(k_g);
     double sum = 0;
     for (int i = 0; i < k_angles; ++i) {
         const double root = (i + 0.5) / k_angles, psi = root * root;
         double mean = 0;
         for (int j = 0; j < k_places; ++j)
             mean += std::cyl_bessel_j(0.0, k * psi * (j + 0.5) / k_places) / k_places;
-        sum += phase.PhaseFunction::evaluate(psi) * mean * psi * 2 * root / k_angles;
+        sum += phase->evaluate(psi) * mean * psi * 2 * root / k_angles;
     }
     return depth * 2 * std::numbers::pi * sum;
 }

@@ -117,7 +117,7 @@ TEST_F(AdaptiveDomainTest, TheCachesConfigurationSetsItRight) {
     EXPECT_NO_THROW(check.take(desc));
     desc.voxel_size = 0.1;
     EXPECT_NEAR(load(desc).reports[0].bounds.min.x, 2.5, 1e-9);
-    // A configuration of other grids is none.
+    // A configuration of other grids does not count.
     EXPECT_FALSE(find(write("data/fluid_data_0002.vdb", {20, 19, 19})));
 }
 

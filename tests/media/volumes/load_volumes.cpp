@@ -49,10 +49,10 @@ TEST_F(LoadVolumes, TellOfVoxelsOfManyOpticalDepths) {
     Medium medium = test::hg_medium(0, {0.1, 0.1}, {0.2, 0.2});
     test::add_particles(medium, {1, 2}, {3, 4});
     fixture_.file_from_index = Affine::scale({0.05, 0.1, 0.02});
-    // At most 0.5 per unit, 6 1/m per ppm, 0.1 m.
-    const LoadedVolume thin = load(13), dense = load(14);
-    EXPECT_NEAR(voxel_depth(thin.reports.at(0), medium), 0.5 * 13 * 6 * 0.1, 1e-5);
-    EXPECT_FALSE(coarse_voxel_warning(thin.reports[0], medium));
+    // At most 0.5 per unit, 6 1/m per ppm, 0.1 m: 0.3 optical depths per unit.
+    const LoadedVolume thin = load(13.33), dense = load(14);
+    EXPECT_FALSE(coarse_voxel_warning(thin.reports.at(0), medium));
+    EXPECT_TRUE(coarse_voxel_warning(load(13.34).reports.at(0), medium));
     EXPECT_EQ(coarse_voxel_warning(dense.reports.at(0), medium)
                   .value_or("")
                   .find("cloud.vdb: grid 'density': its densest voxels are 4.2 optical depths"),

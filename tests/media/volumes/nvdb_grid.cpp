@@ -1,6 +1,4 @@
 // ctest labels: unit
-#include "media/volumes/nvdb_grid.h"
-
 //
 // NanoVDB files hold what the VDB files do that they were made from; damaged ones are refused.
 #include <gtest/gtest.h>
@@ -9,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "media/volumes/vdb_file.h"
 #include "media/volumes/vdb_inspect.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temp_dir.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "tests/support/described_phase.h"
 #include "tests/support/phase_function_laws.h"
 #include "tests/support/phase_test_values.h"
 
@@ -18,14 +19,14 @@ using std::numbers::pi;
 TEST(FournierForand, ObeysTheLaws) {
     for (const double n : {1.01, 1.05, 1.10, 1.2, 1.5})
         for (const double mu : {3.1, 3.5835, 4.0, 4.9})
-            test::expect_phase_function_laws(FournierForand(n, mu));
+            test::expect_phase_function_laws(*test::fournier_forand(n, mu));
     // delta = 1 at psi = pi exactly, at and beside the second quotient's own 0/0
     for (const double n : {1 + 2 / std::sqrt(3.0), 2.15, 2.16})
-        test::expect_phase_function_laws(FournierForand(n, 3.5));
+        test::expect_phase_function_laws(*test::fournier_forand(n, 3.5));
 }
 
 TEST(FournierForand, MatchesTheTestValues) {
-    test::expect_phase_column(FournierForand(1.10, 3.5835),
+    test::expect_phase_column(*test::fournier_forand(1.10, 3.5835),
                               test::phase_test_table("phase_function_test_values.csv"),
                               "FF_1p10_3p5835");
 }
@@ -33,7 +34,8 @@ TEST(FournierForand, MatchesTheTestValues) {
 // Backscattered fraction in closed form (Fournier and Jonasz 1999), 0.0183 for these parameters.
 TEST(FournierForand, BackscatterFraction) {
     const double n = 1.10, mu = 3.5835;
-    const FournierForand p(n, mu);
+    const auto phase = test::fournier_forand(n, mu);
+    const PhaseFunction& p = *phase;
     const double back = test::integral_over_sphere(
         [&](double psi) { return psi > pi / 2 ? p.evaluate(psi) : 0.0; });
     const double nu = (3 - mu) / 2, d = 4 / (3 * (n - 1) * (n - 1)) / 2;
@@ -48,7 +50,8 @@ TEST(FournierForand, BackscatterFraction) {
 TEST(FournierForand, IsSmoothThroughDeltaOne) {
     for (const double n : {1.02, 1.10, 1.3})
         for (const double mu : {3.2, 3.5835, 4.5}) {
-            const FournierForand p(n, mu);
+            const auto phase = test::fournier_forand(n, mu);
+            const PhaseFunction& p = *phase;
             const auto at_delta = [&](double delta) {
                 return p.evaluate(2 * std::asin(std::sqrt(0.75 * delta) * (n - 1)));
             };
@@ -65,10 +68,10 @@ TEST(FournierForand, IsSmoothThroughDeltaOne) {
 }
 
 TEST(FournierForand, RefusesImpossibleParameters) {
-    EXPECT_THROW(FournierForand(1.0, 3.5), InputError);
-    EXPECT_THROW(FournierForand(std::nan(""), 3.5), InputError);
-    EXPECT_THROW(FournierForand(1.1, 3.0), InputError);
-    EXPECT_THROW(FournierForand(1.1, 5.0), InputError);
+    EXPECT_THROW(test::fournier_forand(1.0, 3.5), InputError);
+    EXPECT_THROW(test::fournier_forand(std::nan(""), 3.5), InputError);
+    EXPECT_THROW(test::fournier_forand(1.1, 3.0), InputError);
+    EXPECT_THROW(test::fournier_forand(1.1, 5.0), InputError);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "media/water/phase_functions.h"
 #include "media/water/water_types.h"
 #include "tests/support/adaptive_quadrature.h"
+#include "tests/support/described_phase.h"
 #include "tests/support/water_descs.h"
 
 namespace uw {
@@ -128,7 +129,8 @@ TEST(WaterTable, AnyNumberOfWavelengths) {
 // panels where p varies by a small factor.
 TEST(WaterTable, MomentsOfClosedForms) {
     for (const double g : {-0.9, -0.3, 0.2, 0.5, 0.8, 0.924, 0.99, 0.999}) {
-        const HenyeyGreenstein p(g);
+        const auto phase = henyey_greenstein(g);
+        const PhaseFunction& p = *phase;
         const double back = (1 - g) / (2 * g) * ((1 + g) / std::sqrt(1 + g * g) - 1);
         EXPECT_NEAR(backscatter_fraction(p), back, 1e-11) << g;
         EXPECT_NEAR(mean_cosine(p), g, 1e-11) << g;
@@ -161,9 +163,9 @@ TEST(WaterTable, MomentsOfTables) {
     };
     check(KopelevichSmall());
     check(KopelevichLarge());
-    check(PetzoldAverage());
-    check(FournierForand(1.1, 3.5835));
-    EXPECT_NEAR(backscatter_fraction(PetzoldAverage()), 0.0183, 2e-4);
+    check(*petzold_average());
+    check(*fournier_forand(1.1, 3.5835));
+    EXPECT_NEAR(backscatter_fraction(*petzold_average()), 0.0183, 2e-4);
 }
 
 TEST(WaterTable, RatiosOfNothingHaveNoValue) {

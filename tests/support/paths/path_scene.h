@@ -8,7 +8,7 @@
 #include "core/geometry/geometry_scene.h"
 #include "core/light/integrator.h"
 #include "media/volumes/grid_field.h"
-#include "media/water/phase_functions.h"
+#include "tests/support/described_phase.h"
 
 /// Scenes for light paths, made by hand: no file, no camera, any number of bands.
 namespace uw::test {
@@ -28,7 +28,7 @@ struct PathScene {
     /// Uniform water with a Henyey-Greenstein phase function, one entry of `bands` per band.
     PathScene(const std::vector<BandOptics>& bands, double g)
         : field(std::make_unique<GridField>(std::vector<GridVolume>(), 0)) {
-        medium.phase_functions = {std::make_shared<HenyeyGreenstein>(g)};
+        medium.phase_functions = {henyey_greenstein(g)};
         medium.uniform.scattering.resize(1);
         for (std::size_t b = 0; b < bands.size(); ++b) {
             medium.wavelengths_nm.push_back(450 + 10 * static_cast<double>(b));
@@ -42,7 +42,7 @@ struct PathScene {
     void set_field(std::unique_ptr<const ConcentrationField> new_field,
                    const std::vector<BandOptics>& bands, double g) {
         field = std::move(new_field);
-        medium.phase_functions.push_back(std::make_shared<HenyeyGreenstein>(g));
+        medium.phase_functions.push_back(henyey_greenstein(g));
         medium.uniform.scattering.emplace_back();
         Constituent particles{"particles", "1", {}};
         particles.per_unit.scattering.resize(2);
