@@ -56,7 +56,7 @@ class StopScope {
     StopScope(StopScope&&) = delete;
     StopScope& operator=(StopScope&&) = delete;
 
-    /// That of the calling thread; null if there is none.
+    /// The flag of the calling thread; null if there is none.
     static const std::atomic<bool>* of_this_thread();
 
   private:

@@ -196,7 +196,7 @@ struct Input {
     FileStamp stamp;
 };
 
-/// Of the whole program: what one part of it reads no other part may replace.
+/// The inputs of the whole program: what one part of it reads no other part may replace.
 struct Registry {
     std::mutex mutex;
     std::multimap<Identity, Input> inputs;

@@ -48,7 +48,7 @@ struct FileStamp {
     friend bool operator==(const FileStamp&, const FileStamp&) = default;
 };
 
-/// Of the file that a name leads to; none if there is none.
+/// The stamp of the file that a name leads to; none if there is no such file.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 
 /// Remembers, until the program ends, that `file` was opened to be read for the user: AtomicFile

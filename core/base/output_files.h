@@ -37,7 +37,7 @@ class AtomicFile {
 
     /// Removes what runs on this machine that were killed left in `folder`: temporary files that
     /// nobody is writing any more. `of_others_too`: and those of other machines that share it,
-    /// of which that cannot be known.
+    /// of which it cannot be known whether they still run.
     static void remove_left_overs(const std::filesystem::path& folder, bool of_others_too = false);
 
     /// Renames the temporary file to the target, replacing any existing file, which is there until

@@ -8,6 +8,18 @@ namespace uw {
 
 namespace {
 
+/// By which the state of splitmix64 grows from number to number.
+constexpr std::uint64_t k_bit_mixing_step = 0x9e3779b97f4a7c15U;
+
+/// splitmix64 (Steele, Lea and Flood 2014): the number that follows the state `x`. Every bit of the
+/// result depends on all of `x`, and no two states have the same.
+constexpr std::uint64_t mixed_bits(std::uint64_t x) {
+    x += k_bit_mixing_step;
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
+    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
+    return x ^ (x >> 31U);
+}
+
 // Cools, Kuo and Nuyens: "lattice-32001-1024-1048576.3600", an extensible rank-1 lattice for up to
 // 2^20 points; the rule's first components.
 constexpr std::array<std::uint32_t, 24> k_generator{
@@ -114,5 +126,4 @@ NormalPair standard_normals(PathRandom& random) {
     const double angle = 2 * std::numbers::pi * random.next();
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
-
 }  // namespace uw

@@ -20,6 +20,21 @@ namespace uw {
 
 namespace {
 
+/// Passed to the callbacks as their context: the queries in progress. The id of each Embree ray is
+/// the index of its query.
+struct QueryContext {
+    embree::Context context;  // first, so that a pointer to one is a pointer to the other
+    Query* queries = nullptr;
+    const SceneObjects* objects = nullptr;
+    /// Whether occluders hit near the edge of a triangle count (trace_edges); otherwise they are
+    /// skipped.
+    bool edges_count = false;
+
+    QueryContext(const TracedScene& traced, Query* first)
+        : context(embree::make_context()), queries(first), objects(traced.objects) {}
+};
+static_assert(std::is_standard_layout_v<QueryContext>);
+
 /// How far behind the nearest candidate Embree continues to search, as a fraction of the distance:
 /// more than the rounding of its boxes, so that it finds all candidates of a tie, whatever their
 /// order and however many rays it traces at once.
@@ -103,16 +118,17 @@ void take_occluder(const RTCFilterFunctionNArguments* args) {
     }
 }
 
-}  // namespace
-
+/// Triangle filter for the closest hit; resolves ties.
 void filter_closest(const RTCFilterFunctionNArguments* args) {
     take_closest<false>(args);
 }
 
+/// The same for meshes with holes (MeshObject::has_holes), which cost a texture look-up each.
 void filter_closest_with_holes(const RTCFilterFunctionNArguments* args) {
     take_closest<true>(args);
 }
 
+/// Triangle filter for shadow rays.
 void filter_occluder(const RTCFilterFunctionNArguments* args) {
     take_occluder<false>(args);
 }
@@ -121,6 +137,7 @@ void filter_occluder_with_holes(const RTCFilterFunctionNArguments* args) {
     take_occluder<true>(args);
 }
 
+// The user geometry of spheres; its user data is a std::vector<SphereObject>.
 void sphere_bounds(const RTCBoundsFunctionArguments* args) {
     const auto& spheres = *static_cast<const std::vector<SphereObject>*>(args->geometryUserPtr);
     const Bounds bounds = spheres[args->primID].world_bounds();
@@ -165,8 +182,6 @@ void occlude_sphere(const RTCOccludedFunctionNArguments* args) {
         }
     }
 }
-
-namespace {
 
 /// Slightly too far, so that nothing is lost to rounding; the double-precision distance decides.
 float embree_end(double end) {
@@ -275,7 +290,7 @@ unsigned occluded_packet(const TracedScene& traced, std::span<Query> queries) {
 
 namespace {
 
-// Of a triangle in Embree's structure, measured with 10^7 of them while it is built.
+// The memory of a triangle in Embree's structure, measured with 10^7 of them while it is built.
 constexpr double k_bytes_per_triangle = 100;
 
 void check_memory(const SceneObjects& objects) {
@@ -405,5 +420,4 @@ void EmbreeScene::attach_spheres() const {
     rtcAttachGeometry(scene_.get(), geometry.get());
     check("taking over the spheres");
 }
-
 }  // namespace uw

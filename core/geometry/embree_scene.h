@@ -54,34 +54,6 @@ struct TracedScene {
     const SceneObjects* objects = nullptr;
 };
 
-/// Passed to the callbacks as their context: the queries in progress. The id of each Embree ray is
-/// the index of its query.
-struct QueryContext {
-    embree::Context context;  // first, so that a pointer to one is a pointer to the other
-    Query* queries = nullptr;
-    const SceneObjects* objects = nullptr;
-    /// Whether occluders hit near the edge of a triangle count (embree_rays.h); otherwise they are
-    /// skipped.
-    bool edges_count = false;
-
-    QueryContext(const TracedScene& traced, Query* first)
-        : context(embree::make_context()), queries(first), objects(traced.objects) {}
-};
-static_assert(std::is_standard_layout_v<QueryContext>);
-
-/// Triangle filter for the closest hit; resolves ties.
-void filter_closest(const RTCFilterFunctionNArguments* args);
-/// Triangle filter for shadow rays.
-void filter_occluder(const RTCFilterFunctionNArguments* args);
-/// The same for meshes with holes (MeshObject::has_holes), which cost a texture look-up each.
-void filter_closest_with_holes(const RTCFilterFunctionNArguments* args);
-void filter_occluder_with_holes(const RTCFilterFunctionNArguments* args);
-
-// The user geometry of spheres; its user data is a std::vector<SphereObject>.
-void sphere_bounds(const RTCBoundsFunctionArguments* args);
-void intersect_sphere(const RTCIntersectFunctionNArguments* args);
-void occlude_sphere(const RTCOccludedFunctionNArguments* args);
-
 /// Traces queries with Embree, one at a time or as packets of coherent rays; for embree_*.cpp only.
 ///
 /// All variants find every triangle that a ray hits well inside (TriangleCrossing), with
@@ -96,14 +68,17 @@ inline constexpr std::size_t k_packet_size = 8;
 
 /// Finds the nearest candidate of `query` between the parameters `begin` and `end`.
 void trace(const TracedScene& traced, Query& query, float begin, double end);
+
 /// The same as a packet of one.
 void trace_edges(const TracedScene& traced, Query& query, float begin, double end);
+
 /// The same for a packet, from 0 to the end of each.
 void trace_packet(const TracedScene& traced, std::span<Query> queries,
                   std::span<const double> ends);
 
 /// Whether a mesh or sphere lies between the parameters 0 and 1, with hits near edges resolved.
 bool is_occluded(const TracedScene& traced, Query& query);
+
 /// The same for a packet: bit i of the result is that of query i.
 unsigned occluded_packet(const TracedScene& traced, std::span<Query> queries);
 
@@ -136,5 +111,4 @@ class EmbreeScene {
     Device device_;
     Scene scene_;
 };
-
 }  // namespace uw

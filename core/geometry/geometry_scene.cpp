@@ -28,8 +28,7 @@ bool has_more_than_color(const MeshMaterial& material) {
     return material.alpha_cutoff > 0 || material.normal_map || material.emission != Rgb{0, 0, 0};
 }
 
-}  // namespace
-
+/// Transforms a mesh to world space, in place: it may have tens of millions of vertices.
 void place_mesh(TriangleMesh& mesh, const Affine& world_from_object) {
     if (is_identity(world_from_object)) return;
     for (std::size_t at = 0; at + 2 < mesh.positions.size(); at += 3) {
@@ -63,6 +62,7 @@ void place_mesh(TriangleMesh& mesh, const Affine& world_from_object) {
     }
 }
 
+/// Bounds of the referenced vertices; a file may have invalid vertices that no triangle uses.
 Bounds bounds_of(const TriangleMesh& mesh) {
     Bounds bounds;
     for (const std::uint32_t vertex : mesh.triangles) {
@@ -72,6 +72,8 @@ Bounds bounds_of(const TriangleMesh& mesh) {
     return bounds;
 }
 
+/// What is traced of a mesh, as `desc` says; its ids are still to be set. `reflectance`: the one
+/// given in the scene, if any.
 std::shared_ptr<MeshObject> make_mesh_object(const GeometryDesc& desc, TriangleMesh mesh,
                                              const std::optional<Spectrum>& reflectance) {
     auto object = std::make_shared<MeshObject>();
@@ -90,8 +92,6 @@ std::shared_ptr<MeshObject> make_mesh_object(const GeometryDesc& desc, TriangleM
     object->mesh.positions.resize(object->mesh.positions.size() + 4);  // Embree's padding
     return object;
 }
-
-namespace {
 
 /// `desc` without what changes as it moves.
 GeometryDesc without_pose(const GeometryDesc& desc) {
@@ -186,8 +186,11 @@ std::shared_ptr<const FileSurfaces> MeshStore::load(const GeometryDesc& desc,
 namespace {
 
 constexpr std::uint64_t k_most_probes = 1 << 16;
-// Of a cube's face. A lawn of 10^5 blades of grass to a square metre comes to a hundredth of it.
+
+// How many times triangles may cover a cube's face. A lawn of 10^5 blades of grass to a square
+// metre comes to a hundredth of it.
 constexpr double k_most_coverage = 4096;
+
 // From fewer of its triangles, little is known of a cube.
 constexpr std::size_t k_least_samples = 64;
 
@@ -225,7 +228,7 @@ Sample sample_of(const Corners& corners) {
     return {cube, area / (edge * edge), 0, 0};
 }
 
-/// Of one of `stride` triangles each, not always the same one: objects repeat.
+/// Takes one of every `stride` triangles, and not always the same one, since objects repeat.
 std::vector<Sample> samples_of(const SceneObjects& objects, std::uint64_t stride) {
     std::vector<Sample> samples;
     samples.reserve(k_most_probes);
@@ -477,5 +480,4 @@ std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geomet
     MeshStore meshes;
     return build_surfaces(geometry, wavelengths_nm, warnings, meshes);
 }
-
 }  // namespace uw

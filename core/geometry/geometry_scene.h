@@ -17,17 +17,6 @@
 
 namespace uw {
 
-/// Transforms a mesh to world space, in place: it may have tens of millions of vertices.
-void place_mesh(TriangleMesh& mesh, const Affine& world_from_object);
-
-/// Bounds of the referenced vertices; a file may have invalid vertices that no triangle uses.
-Bounds bounds_of(const TriangleMesh& mesh);
-
-/// What is traced of a mesh, as `desc` says; its ids are still to be set. `reflectance`: the one
-/// given in the scene, if any.
-std::shared_ptr<MeshObject> make_mesh_object(const GeometryDesc& desc, TriangleMesh mesh,
-                                             const std::optional<Spectrum>& reflectance);
-
 /// How many objects and materials of a scene are numbered before those of an entry.
 struct IdsBefore {
     std::uint32_t objects = 0, materials = 0;
@@ -108,10 +97,10 @@ std::optional<TriangleOverlap> find_overlap(const SceneObjects& objects);
 std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
                                          const std::vector<double>& wavelengths_nm,
                                          std::vector<std::string>& warnings);
+
 /// The same with the meshes of `meshes`, as far as they are there, which becomes those of this
 /// scene.
 std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
                                          const std::vector<double>& wavelengths_nm,
                                          std::vector<std::string>& warnings, MeshStore& meshes);
-
 }  // namespace uw

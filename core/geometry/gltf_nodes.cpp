@@ -194,7 +194,7 @@ class Sampler {
     }
 
   private:
-    /// Of a cubic spline part 0 is the tangent in, 1 the value, 2 the tangent out.
+    /// In a cubic spline, part 0 is the tangent in, 1 the value and 2 the tangent out.
     Value key(std::size_t index, std::size_t part) const {
         Value value{};
         for (std::size_t i = 0; i < N; ++i)

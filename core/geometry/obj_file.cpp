@@ -172,7 +172,7 @@ class ObjText {
     ObjFile result_;
     NameList objects_, materials_;
     bool has_objects_ = false;
-    // Of the faces to come.
+    // What the faces to come belong to.
     std::string object_name_, material_name_;
     bool is_object_known_ = false, is_material_known_ = false;
     std::uint32_t object_ = 0, material_ = ObjFile::k_none;

@@ -14,7 +14,8 @@
 namespace uw {
 namespace {
 
-/// Of a polygon whose rest may become a fan: its triangles overlap, which rays have to pay for.
+/// The most corners of a polygon whose rest may become a fan: its triangles overlap, and rays have
+/// to pay for that.
 constexpr std::size_t k_most_fan_corners = 1000;
 /// Steps of the search for ears, of some 15 ns. Outlines of what was made, not spun, need some 20
 /// per corner; small ones may need what they like.

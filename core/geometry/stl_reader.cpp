@@ -24,7 +24,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are read as they lie");
 
 constexpr std::uint64_t k_header_bytes = 84;  // any text, and the number of triangles
-// Of a triangle: its normal, three vertices, and two bytes that some programs use for a colour.
+// A triangle has a normal, three vertices, and two bytes that some programs use for a colour.
 constexpr std::uint64_t k_triangle_bytes = 50;
 constexpr std::size_t k_normal_bytes = 12, k_vertices_bytes = 36;
 constexpr std::uint64_t k_triangles_per_read = 4096;

@@ -176,7 +176,7 @@ double SensorReadout::number(double photoelectrons, int x, int y, std::size_t co
 }
 
 std::size_t colour_at(SensorMosaic mosaic, int x, int y) {
-    // Of (0, 0), (1, 0), (0, 1), (1, 1).
+    // The colours at (0, 0), (1, 0), (0, 1), (1, 1).
     constexpr std::size_t r = 0, g = 1, b = 2;
     using Pattern = std::array<std::size_t, 4>;
     constexpr Pattern rggb{r, g, g, b}, bggr{b, g, g, r}, grbg{g, r, b, g}, gbrg{g, b, r, g};

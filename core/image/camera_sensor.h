@@ -22,9 +22,9 @@ namespace uw {
 /// behind the lens.
 class Photoelectrons {
   public:
-    /// Of the camera of a scene that complete_sensors has checked. Throws InputError for a table of
-    /// efficiencies that is not valid or in which a colour sees none of the bands; IoError if it
-    /// cannot be read.
+    /// Describes the camera of a scene whose sensors the scene reader has checked. Throws
+    /// InputError for a table of efficiencies that is not valid or in which a colour sees none of
+    /// the bands; IoError if it cannot be read.
     explicit Photoelectrons(const SceneDesc& scene);
 
     /// Irradiance on the sensor per radiance in water [sr], for the pixel that `lens_ray` belongs
@@ -83,7 +83,8 @@ std::size_t colour_at(SensorMosaic mosaic, int x, int y);
 /// The sensor of a scene's camera: turns the light of an image into digital numbers.
 class CameraSensor {
   public:
-    /// Of frame `frame`. Throws as Photoelectrons. Precondition: the camera has a sensor.
+    /// The noise is that of frame `frame`. Throws as Photoelectrons. Precondition: the camera has a
+    /// sensor.
     CameraSensor(const SceneDesc& scene, std::int64_t frame);
 
     /// Fills the layer `sensor` of all pixels from the light of every band: `plan` has that layer

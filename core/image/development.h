@@ -17,7 +17,7 @@ class ResponseCurve {
     /// if it cannot be read.
     explicit ResponseCurve(const ResponseCurveDesc& desc);
 
-    /// Of any value; those outside 0..1 become 0 or 1 first, NaN 0.
+    /// Maps any value; those outside 0..1 become 0 or 1 first, NaN becomes 0.
     double operator()(double value) const;
 
   private:

@@ -227,7 +227,7 @@ class ExrLines {
         }
     }
 
-    /// Of the lines from `begin` on; valid until the next call.
+    /// The frame buffer of the lines from `begin` on; it is valid until the next call.
     Imf::FrameBuffer from(int begin, int end) {
         convert(begin, end);
         const PixelWindow& window = film_.window();

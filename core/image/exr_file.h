@@ -28,9 +28,10 @@ struct ExrChannel {
 
 /// How an image is stored as an EXR.
 struct ExrOptions {
-    /// Of the channels of light (is_light); all others are 32-bit floats. Automatic: half floats,
-    /// whose 11 bits are finer than the image is exact, where R G B A and `total` are its only
-    /// light and half floats can hold it (half_loss); else 32-bit floats, whose layers add up.
+    /// How the channels of light (is_light) are stored; all others are 32-bit floats. Automatic
+    /// means half floats, whose 11 bits are finer than the image is exact, where R G B A and
+    /// `total` are its only light and half floats can hold it (half_loss); else 32-bit floats,
+    /// whose layers add up.
     enum class Precision { automatic, half, single };
     Precision precision = Precision::automatic;
     ExrCompression compression = ExrCompression::zip;

@@ -54,7 +54,7 @@ class Film {
     void clear() { values_.assign(values_.width(), values_.height()); }
 
   private:
-    // Of column x, within a row.
+    // The index of the first channel of column x within a row.
     std::size_t first_channel(int x) const {
         return static_cast<std::size_t>(x - window_.x0) * channel_names_.size();
     }

@@ -59,7 +59,7 @@ void write_png(const std::filesystem::path& file, const Preview& image,
 void write_png(const std::filesystem::path& file, const Preview16& image,
                const ImageMetadata& metadata);
 
-/// The same of a camera's image.
+/// Writes the image that a camera stores in the same way.
 void write_png(const std::filesystem::path& file, const DigitalImage& image,
                const ImageMetadata& metadata);
 

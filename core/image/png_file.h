@@ -29,7 +29,7 @@ std::optional<PngHeader> read_png_header(const std::filesystem::path& file);
 /// refuses, and Interrupted; what cannot be written is for out.commit() to report.
 void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata);
 void write_png_file(OutputFile& out, const Preview16& image, const ImageMetadata& metadata);
-/// The same of a camera's image; it says to be sRGB if the image is.
+/// Writes the image that a camera stores in the same way; the file says that it is sRGB if it is.
 void write_png_file(OutputFile& out, const DigitalImage& image, const ImageMetadata& metadata);
 
 /// What a number of the metadata is as a text.

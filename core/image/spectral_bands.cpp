@@ -15,6 +15,13 @@
 
 namespace uw {
 
+namespace {
+
+/// Luminous efficacy of light at 555 nm, by which the SI defines the candela [lm/W].
+constexpr double k_lumens_per_watt = 683;
+
+}  // namespace
+
 std::vector<BandInterval> band_intervals(std::span<const double> bands_nm) {
     const std::size_t count = bands_nm.size();
     std::vector<std::size_t> order(count);
@@ -92,6 +99,7 @@ constexpr std::array<Xyz, 95> k_table{{
     {2.522525e-06, 9.1093e-07, 0}, {1.776509e-06, 6.4153e-07, 0},
     {1.251141e-06, 4.5181e-07, 0},
 }};
+
 // clang-format on
 
 }  // namespace
@@ -257,5 +265,4 @@ PerBand band_values(const LampSpectrum& spectrum, double total,
                          width / band.width());
     return values;
 }
-
 }  // namespace uw

@@ -46,9 +46,6 @@ Xyz cie1931_matching_functions(double wavelength_nm);
 /// Their means over a wavelength interval, `begin_nm` < `end_nm`.
 Xyz mean_matching_functions(double begin_nm, double end_nm);
 
-/// Luminous efficacy of light at 555 nm, by which the SI defines the candela [lm/W].
-inline constexpr double k_lumens_per_watt = 683;
-
 /// A relative spectral distribution.
 struct LampSpectrum {
     SampledCurve density;  // per nm; zero outside the curve
@@ -73,5 +70,4 @@ double luminous_efficacy(const LampSpectrum& spectrum);
 /// spectrum; see band_intervals.
 PerBand band_values(const LampSpectrum& spectrum, double total,
                     std::span<const BandInterval> intervals);
-
 }  // namespace uw

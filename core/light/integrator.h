@@ -67,7 +67,7 @@ class DeepShadow {
     /// Column concentrations from the lamp to each point, [i * constituent_count + k], [unit m].
     virtual void columns(std::span<const Point3> x, std::span<double> column) const = 0;
 
-    /// Of memory.
+    /// How much memory it takes.
     virtual std::size_t bytes() const = 0;
 };
 

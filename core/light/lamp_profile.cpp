@@ -172,7 +172,8 @@ void SpotProfile::append_breaks(const Ray& ray, const Interval& stretch, const P
     if (cos_dark_ == cos_full_) return;
     const AxisApproach nearest = approach_to_axis(ray, stretch, apex, axis_);
     if (nearest.cosine <= cos_dark_) return;
-    // Of the edge, what the ray comes to: one that grazes the beam sees only a narrow peak.
+    // The edge begins where the ray comes nearest to the axis: a ray that grazes the beam sees only
+    // a narrow peak.
     double begin = full_angle_;
     if (nearest.cosine < cos_full_) {
         begin = std::acos(nearest.cosine);

@@ -73,7 +73,7 @@ struct AxisApproach {
     double cosine = -1;  // of the angle, seen from the beam's apex
 };
 
-/// That of `stretch` to `axis` (unit), seen from `apex`.
+/// Finds where `stretch` comes nearest to `axis` (unit), seen from `apex`.
 AxisApproach approach_to_axis(const Ray& ray, const Interval& stretch, const Point3& apex,
                               const Vector3& axis);
 

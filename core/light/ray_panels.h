@@ -13,7 +13,7 @@ namespace uw {
 struct LampPassage {
     double foot = 0;      // distance along the ray of the point nearest to the lamp [m]; may be < 0
     double distance = 0;  // from that point to the lamp [m]
-    // Of a sun, which the ray does not pass:
+    // Members for a sun, which the ray does not pass:
     bool parallel = false;
     double begin_length = 0;  // of the way of the light to the ray's origin [m]
     double slope = 0;         // by how much it grows per metre

@@ -15,7 +15,7 @@ namespace {
 
 // Light whose path exceeds the least optical depth by this much adds less than 1e-6.
 constexpr double k_negligible_optical_depth = 15;
-// Of steps among particles [optical depths], as a multiple of the step that is given: a tenth.
+// Steps among particles are a tenth of an optical depth: this many times the step that is given.
 constexpr double k_depth_of_steps = 20;
 // What is behind this optical depth adds less than 1e-17 of all light.
 constexpr double k_dark = 40;

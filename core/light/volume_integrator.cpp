@@ -313,8 +313,9 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     append_octaves(passage, interval, w.marks);
     for (const double s : w.marks)
         w.breaks.add_mark(s, fineness_.least_relative_panel * passage.radius(s));
-    // Of parallel light, octaves of the distance from the interval's brighter end: the light of the
-    // densest bands ends in the first, and of ever fewer others in each of the next.
+    // Parallel light is divided by octaves of the distance from the interval's brighter end: the
+    // light of the densest bands ends in the first, and that of ever fewer others in each of the
+    // next.
     if (passage.parallel)
         for (double u = k_negligible_optical_depth / (largest_attenuation_ * passage.rate());
              u < interval.length(); u *= 2)
@@ -359,7 +360,7 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         for (std::size_t k = 0; k < largest_per_unit_.size(); ++k)
             attenuation +=
                 largest_per_unit_[k] * profile.concentration[knot * largest_per_unit_.size() + k];
-        // Of the light path s + R.
+        // The optical depth along the light's path, s + R.
         const double depth = passage.rate() * attenuation * panel.length();
         const int pieces =
             static_cast<int>(std::min(64.0, std::ceil(depth / k_panel_optical_depth)));

@@ -83,7 +83,7 @@ double DistanceIntervals::share(std::size_t interval, std::size_t band, double d
 
 namespace {
 
-// Of the concentrations along a ray.
+// How closely optical depths along a ray are resolved.
 constexpr double k_depth_tolerance = 5e-3;
 
 // int_0^1 e^-(t x) dt, where e^-x is `transmittance`.

@@ -44,10 +44,11 @@ class IntervalWeights {
 
     /// Whether they differ from ray to ray.
     bool vary() const { return !scene_.field->bounds().empty(); }
-    /// Of all water along a ray, whatever surfaces it meets: [interval * bands + band]. Of an
-    /// interval that a surface cuts, DistanceIntervals::share lies before it. Thread safe.
+    /// Finds the weights of all water along a ray, whatever surfaces it meets:
+    /// [interval * bands + band]. Where a surface cuts an interval, DistanceIntervals::share of it
+    /// lies before the surface. Thread safe.
     void find(const Ray& ray, std::vector<float>& weights) const;
-    /// Those of uniform water, which are the same on all rays.
+    /// The weights of uniform water, which are the same on all rays.
     const std::vector<float>& of_uniform_water() const { return whole_; }
 
   private:

@@ -1,10 +1,13 @@
 #include "core/paths/lamp_gathering.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/geometry/surface_reflection.h"
 #include "core/light/integrator.h"
+#include "core/light/ray_panels.h"
 #include "core/paths/scattering_tables.h"
 
 namespace uw {
@@ -14,7 +17,27 @@ namespace {
 // Over a smaller change the light counts as even.
 constexpr double k_even_depth = 1e-6;
 
-}  // namespace
+/// Where on a line the parallel light of a sun is scattered along it: distances drawn as its way
+/// through uniform water attenuates it.
+class ParallelStretch {
+  public:
+    ParallelStretch() = default;
+    /// `lit`: what the sun illuminates of the line; may be infinite only if the light falls along
+    /// it. `attenuation`: of the water [1/m].
+    ParallelStretch(const LampPassage& passage, const Interval& lit, double attenuation)
+        : lit_(lit), rate_(attenuation * (1 + passage.slope)) {}
+
+    /// The length over which light as bright as at the beginning would be scattered as much [m].
+    double effective_length() const;
+    /// The distance up to which a `share` (0..1) of all lie.
+    double draw(double share) const;
+    /// The density of what is drawn at `s` [1/m].
+    double density(double s) const;
+
+  private:
+    Interval lit_;
+    double rate_ = 0;  // of e^(-rate s) [1/m]
+};
 
 double ParallelStretch::effective_length() const {
     const double depth = rate_ * lit_.length();
@@ -35,12 +58,68 @@ double ParallelStretch::density(double s) const {
     return std::exp(-rate_ * (s - lit_.begin)) / effective_length();
 }
 
-namespace {
+/// Where on a segment a lamp's light is scattered once.
+struct ScatterPlace {
+    std::size_t lamp = 0;
+    double s = 0;             // along the segment
+    double half_tangent = 0;  // of the scattering angle
+    double radius = 0;        // from the light's origin
+    double density = 0;       // Lamp::spread times that of choosing it, per metre
+};
+
+/// The lamps' parts in the light that the water of a segment scatters, for choosing one of them and
+/// a place: around a lamp by the scattering angle, in a sun's light by its attenuation. Reused
+/// storage.
+class WaterShares {
+  public:
+    /// `weights`: a factor for each lamp, or none.
+    void find(const WaterOptics& optics, const ScatteringTables& tables,
+              const WaterSegment& segment, std::span<const double> weights, const PathState& state);
+
+    /// By three random numbers, 0..1, on the segment of this `length`; none where nothing is lit.
+    /// Once after each `find`, with the same tables.
+    std::optional<ScatterPlace> choose(const ScatteringTables& tables, double length,
+                                       double of_lamp, double of_phase, double of_angle);
+
+  private:
+    // One lamp's part.
+    struct Share {
+        // An interval of h = tan(psi / 2).
+        struct HalfTangents {
+            double begin = 0, end = 0;
+        };
+
+        std::size_t lamp = 0;
+        double foot = 0, distance = 0;      // LampPassage
+        std::array<HalfTangents, 2> parts;  // outside the lamp's sphere and within its beam
+        std::size_t part_count = 0;
+        double mass = 0;               // of the weighted phase functions on them
+        std::size_t first_masses = 0;  // of masses_
+        // Members for a sun, whose mass is that of the weighted phase functions at its one angle:
+        bool parallel = false;
+        ParallelStretch stretch;
+        LampPassage passage;
+    };
+    // HalfTangentDensity::mass_to at both ends of a part.
+    struct Masses {
+        double from = 0, to = 0;
+    };
+
+    Share parallel_share(const WaterOptics& optics, const ScatteringTables& tables,
+                         const WaterSegment& segment, std::size_t lamp, const LampPassage& passage,
+                         const Interval& lit);
+    static ScatterPlace place_in_parallel(const Share& share, double u);
+    std::optional<ScatterPlace> place_around(const ScatteringTables& tables, const Share& share,
+                                             double length, double of_phase, double of_angle);
+
+    std::vector<double> phase_weights_;  // of the phase functions on this segment
+    std::vector<Share> shares_;
+    std::vector<Masses> masses_;  // by share, part and phase function
+    std::vector<double> cumulative_, phase_;
+};
 
 // The share of what a field may scatter, typically, in the choice of a phase function.
 constexpr double k_field_share = 0.25;
-
-}  // namespace
 
 void WaterShares::find(const WaterOptics& optics, const ScatteringTables& tables,
                        const WaterSegment& segment, std::span<const double> weights,
@@ -154,7 +233,7 @@ WaterShares::Share WaterShares::parallel_share(const WaterOptics& optics,
     phase_.resize(tables.phase_count());
     tables.phase(passage.tangent, phase_);
     for (std::size_t m = 0; m < phase_.size(); ++m) share.mass += phase_weights_[m] * phase_[m];
-    // Of the clearest band that scatters at all; if none does, only the field.
+    // The clearest band that scatters at all decides; if none does, only the field counts.
     const AttenuationTable& attenuation = optics.attenuation();
     double least = k_far;
     for (std::size_t b = 0; b < optics.bands(); ++b)
@@ -217,7 +296,7 @@ std::optional<ScatterPlace> WaterShares::place_around(const ScatteringTables& ta
                         0.5 * (1 + h * h) * share.distance * density};
 }
 
-struct LampGathering::Workspace {
+struct GatheringWorkspace {
     // One lamp's light on a surface.
     struct SurfaceShare {
         std::size_t lamp = 0;
@@ -231,6 +310,8 @@ struct LampGathering::Workspace {
     WaterPoint point;
     Spectrum radiance, brdf;
 };
+
+}  // namespace
 
 LampGathering::LampGathering(const WaterOptics& optics, const ScatteringTables& tables,
                              std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
@@ -248,7 +329,7 @@ void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
 void LampGathering::gather_from_water(const WaterSegment& segment, std::span<const double> weights,
                                       const PathState& state, PathRandom& random,
                                       PathTerms& terms) const {
-    thread_local Workspace w;
+    thread_local GatheringWorkspace w;
     const double of_lamp = random.next(), of_phase = random.next(), of_angle = random.next();
     const std::size_t phases = tables_.phase_count();
     if (phases == 0) return;
@@ -288,7 +369,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
 double LampGathering::gather_from_surface(const WaterSegment& segment,
                                           const Spectrum& transmittance, const PathState& state,
                                           PathRandom& random, PathTerms& terms) const {
-    thread_local Workspace w;
+    thread_local GatheringWorkspace w;
     double u = random.next();
     const std::size_t bands = optics_.bands();
     const std::vector<Lamp>& lamps = *optics_.scene().emitters;
@@ -330,7 +411,7 @@ double LampGathering::gather_from_surface(const WaterSegment& segment,
     }
     if (w.of_surface.empty()) return seen;
     const auto [chosen, probability] = choose(w.cumulative, u);
-    const Workspace::SurfaceShare& share = w.of_surface[chosen];
+    const GatheringWorkspace::SurfaceShare& share = w.of_surface[chosen];
     const Lamp& lamp = lamps[share.lamp];
     const Point3 origin = lamp.origin(hit.position);
     if (optics_.scene().surfaces->occluded(origin, hit.position)) return seen;

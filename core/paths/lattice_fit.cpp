@@ -44,7 +44,7 @@ constexpr std::array<int, 5> k_reaches{0, 1, 2, 4, LatticeFit::k_reach};
 // In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
 // light less well.
 constexpr double k_agreement = 2.2;
-// Of normal equations, relative.
+// The least pivot of normal equations, relative to the largest.
 constexpr double k_least_pivot = 1e-6;
 
 using Terms = std::array<double, k_most_terms>;
@@ -100,7 +100,7 @@ std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, doubl
     std::array<Accepted, k_reaches.size()> accepted{};
     std::size_t count = 0;
     for (const int reach : k_reaches) {
-        // Of the highest degree that the nodes determine.
+        // The polynomial has the highest degree that the nodes determine.
         bool found = false;
         for (const int terms : {6, 3, 1}) {
             if (reach < 2 && terms == 6) continue;

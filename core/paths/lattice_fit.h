@@ -44,7 +44,7 @@ struct FitWeight {
 /// (Lepski 1991): features of the light are kept, noise is not. Reused storage.
 class LatticeFit {
   public:
-    /// Of the neighbourhoods, in steps of the lattice; a caller passes the nodes within.
+    /// The radius of neighbourhoods in steps of the lattice; a caller passes the nodes within it.
     static constexpr int k_reach = 8;
 
     /// The weights with which the nodes make up the fitted value at (0, 0), the sum of which is 1.

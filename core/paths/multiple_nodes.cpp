@@ -272,7 +272,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
     node.surface_seen /= static_cast<double>(bands);
     hit.reflectance = per_band(bands, [](std::size_t) { return 1.0; });
     hit.has_material = false;
-    // Of what the camera sees, so that paths end as they would in a pixel.
+    // Weights are those of what the camera sees, so that paths end as they would in a pixel.
     const double share = std::max(node.surface_seen, k_least_seen);
     std::ranges::fill(w.surface_segment.transmittance, share);
     double sum = 0, squares = 0;

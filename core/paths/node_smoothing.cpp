@@ -117,7 +117,7 @@ double limit_of(const NodeQuantity& quantity, const Grid2D<MultipleNode>& nodes,
 }
 
 void share(const NodeQuantity& quantity, std::size_t bands, Grid2D<MultipleNode>& nodes) {
-    // Of the light of each half.
+    // The share of each half's light that the node keeps.
     std::vector<std::array<double, 2>> kept(nodes.size(), {1, 1});
     parallel_for(nodes.size(), [&](std::size_t at) {
         if (!quantity.is_alike(nodes[at], nodes[at])) return;

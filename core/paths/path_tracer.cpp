@@ -3,13 +3,59 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/base/numerics.h"
-#include "core/light/integrator.h"
+#include "core/light/lamp.h"
 #include "core/light/ray_panels.h"
+#include "core/paths/lamp_gathering.h"
+#include "core/paths/path_vertex.h"
 #include "core/paths/scattering_tables.h"
 
 namespace uw {
+
+/// A scene's lamps as a light path sees them: each as one point, whatever its extent. The mean over
+/// all views is the light of the lamps, so that a path that chooses one at random costs what it
+/// does among point lamps.
+struct LampView {
+    std::vector<Lamp> lamps;            // one per lamp
+    std::vector<std::size_t> emitters;  // which of the scene's each of them is
+};
+
+/// What all paths through a scene look up that see its lamps alike (LampView).
+struct PathTables {
+    WaterOptics optics;
+    const ScatteringTables& scattering;
+    LampGathering lamps;
+    LampGlow glow;
+    VertexTables vertices;
+    Spectrum light;   // of all lamps on their axes, or 1 without lamps
+    Spectrum albedo;  // the greatest of all the water may hold, at least 0.1: guides paths
+
+    /// `scene`: with one emitter per lamp. `deep_shadows`: as LampGathering takes them. What is
+    /// referred to must outlive this object.
+    PathTables(const LitScene& scene, const ScatteringTables& tables,
+               std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
+        : optics(scene),
+          scattering(tables),
+          lamps(optics, scattering, std::move(deep_shadows)),
+          glow(optics, scattering),
+          vertices{&optics, &scattering, &glow} {
+        for (const Lamp& lamp : *scene.emitters) light += lamp.axis_intensity();
+        for (std::size_t b = 0; b < optics.bands(); ++b) {
+            const auto include = [&](const OpticalCoefficients& coefficients) {
+                const double c = coefficients.attenuation(b);
+                if (c > 0) albedo[b] = std::max(albedo[b], coefficients.total_scattering()[b] / c);
+            };
+            include(scene.medium->uniform);
+            for (const Constituent& constituent : scene.medium->constituents)
+                include(constituent.per_unit);
+            albedo[b] = std::max(albedo[b], 0.1);
+        }
+        if (scene.emitters->empty())
+            for (std::size_t b = 0; b < optics.bands(); ++b) light[b] = 1;
+    }
+};
 
 namespace {
 
@@ -22,8 +68,8 @@ std::vector<std::size_t> first_emitters(const std::vector<Lamp>& emitters) {
     return first;
 }
 
-}  // namespace
-
+/// As many views as the lamp with most emitters has, and one without lamps. `emitters`: as
+/// LitScene::emitters.
 std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters) {
     const std::vector<std::size_t> first = first_emitters(emitters);
     std::size_t most = 1;
@@ -46,8 +92,6 @@ std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters) {
     return views;
 }
 
-namespace {
-
 // The probability to go on for what may still arrive, relative to the light of the path's pixel,
 // and its limits: below, spared paths would outweigh the rest.
 constexpr double k_thoroughness = 3;
@@ -56,7 +100,7 @@ constexpr double k_least_survival = 0.25, k_least_lobe_survival = 0.2, k_most_su
 // a lamp, a path splits: into these many branches relative to it, each with its share of the light.
 // In all it has no more than the limit, or the paths of a black pixel might never end.
 constexpr double k_splitting = 0.3, k_most_branches = 16;
-// Of a surface, as far as paths head for it.
+// The least reflectance that a surface counts with when paths head for it.
 constexpr double k_least_reflectance = 0.1;
 // How far rays begin above the surface they leave, relative to the coordinates and to the last
 // segment: above the rounding of single precision, in which surfaces are found.
@@ -68,7 +112,49 @@ Point3 above(const SurfaceHit& hit) {
     return hit.position + (k_offset * scale) * hit.geometric_normal;
 }
 
-}  // namespace
+/// One path, from its first vertex to its end.
+class PathWalk {
+  public:
+    PathWalk(const PathTables& tables, const CameraSegment::Light& light, PathRandom& random,
+             PathTerms& terms)
+        : tables_(tables), light_(light), random_(random), terms_(terms) {}
+
+    PathState& state() { return state_; }
+
+    /// Begins with a scattering at `point` of `segment`, or with a reflection at its end.
+    void from_water(const WaterSegment& segment, const WaterPoint& point);
+    void from_surface(const WaterSegment& segment);
+    /// What the surface at the end of `segment` reflects of light that was scattered or reflected
+    /// once before, and no more.
+    void mirror(const WaterSegment& segment);
+
+  private:
+    struct Continuation;
+    struct Workspace;
+
+    static Workspace& workspace_of_thread();
+
+    // Gathers the light that arrives at the workspace's vertex, and finds the path's next segment;
+    // false if it ends there, as it does anyhow if this `is_last`.
+    bool leave(const Point3& origin, bool is_last = false);
+    void gather_along(const DrawnLobe& lobe, const Continuation& along, const Point3& origin);
+    void continuation(const Vector3& direction, Continuation& along) const;
+    double survival(const Continuation& along, double least) const;
+    double branches(double value, double by_own, double by_lobe) const;
+    PathState continued(const Continuation& along, double survival) const;
+    void trace(const Ray& ray);
+    void follow(bool goes_on);
+    // Each moves to the next vertex and on from there; false if the path ends.
+    bool advance();
+    bool reflect_at_end(double probability);
+    bool scatter_on_the_way(double u);
+
+    const PathTables& tables_;
+    const CameraSegment::Light& light_;
+    PathRandom& random_;
+    PathTerms& terms_;
+    PathState state_;
+};
 
 /// A direction in which a path may go on from a vertex.
 struct PathWalk::Continuation {
@@ -315,8 +401,6 @@ bool PathWalk::scatter_on_the_way(double u) {
     ++state_.scatterings;
     return leave(x);
 }
-
-namespace {
 
 // Paths are not followed beyond this optical depth of the camera ray: e^-20 = 2e-9.
 constexpr double k_reach = 20;

@@ -244,7 +244,7 @@ namespace {
 // Against weights that grow by cancelling one another.
 constexpr double k_ridge = 1e-4;
 
-// Of a mean over pixels, twice.
+// The transfer function of a mean over pixels that is taken twice.
 double transfer_of_pixels(double omega) {
     const double sinc = std::sin(0.5 * omega) / (0.5 * omega);
     return sinc * sinc;
@@ -258,7 +258,7 @@ BlurFit::BlurFit(int levels, double pixel) : levels_(static_cast<std::size_t>(le
         const double omega = PointSpread::frequency(frequencies_) * pixel;
         shares_.push_back(transfer_of_pixels(omega));
         const double alias = 2 * std::numbers::pi - omega;
-        // Of images so fine that the table ends before their own frequencies do: its last one.
+        // The table ends before the frequencies of very fine images do: they use its last entry.
         std::size_t index = std::min(frequencies_, PointSpread::k_frequencies - 2);
         while (index + 2 < PointSpread::k_frequencies &&
                PointSpread::frequency(index + 1) * pixel < alias)

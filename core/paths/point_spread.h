@@ -56,7 +56,7 @@ class PointSpread {
 /// values there. Reused storage.
 class BlurPyramid {
   public:
-    /// Of level `level`, in pixels: 0, 0.7, 1.9, 4.0, …
+    /// The standard deviation of level `level` [pixels]: 0, 0.7, 1.9, 4.0, …
     static double deviation(int level);
     /// The transfer function of `level` along an axis at the frequency `omega` [rad per pixel].
     static double transfer(int level, double omega);

@@ -26,7 +26,7 @@ std::vector<double> make_nodes() {
     return nodes;
 }
 
-// Whose nodes are `cell` and `cell` + 1. Precondition: h < k_most.
+// The cell that holds `h`; its nodes are `cell` and `cell` + 1. Precondition: h < k_most.
 std::size_t cell_of(double h) {
     if (h < k_least) return 0;
     return static_cast<std::size_t>((std::bit_cast<std::uint64_t>(h) >> k_offset_bits) - k_first) +

@@ -66,7 +66,8 @@ class HalfTangentDensity {
 /// The phase functions of a medium and the densities that random paths are drawn from.
 struct ScatteringTables {
     PhaseTable phases;
-    /// Of each phase function in all that the water may hold, roughly; their sum is 1.
+    /// The rough share of each phase function in the scattering of all that the water may hold;
+    /// their sum is 1.
     std::vector<double> shares;
 
     // One per phase function m of the medium:

@@ -229,7 +229,7 @@ void SurfaceGlow::add(double x, double y, double distance, double weight,
     if (intervals_ == 0) return;
     std::array<Corner, 4> corners;
     find_corners(x, y, corners);
-    // Of the cells that see the same surface, if there are any.
+    // Only the cells that see the same surface count, if there are any.
     double total = 0;
     std::array<double, 4> same{};
     for (std::size_t k = 0; k < corners.size(); ++k) {

@@ -18,6 +18,29 @@ namespace uw {
 
 namespace {
 
+/// One line of a file of poses, for messages.
+struct PoseLine {
+    const std::string& origin;  // the scene entry and the file
+    std::size_t number = 0;     // from 1
+
+    /// Throws InputError "<origin>:<number>: <what>".
+    [[noreturn]] void fail(const std::string& what) const;
+    /// A finite number; `name` is the column's.
+    double parsed(std::string_view cell, std::string_view name) const;
+    /// The rotation of a quaternion of length 1 to within 1e-3.
+    Rotation rotation(double w, double x, double y, double z) const;
+};
+
+/// The largest number in a file of poses.
+constexpr double k_largest_pose_number = 1e12;
+
+/// A pose and the name of its image.
+struct NamedPose {
+    std::string name;
+    Pose pose;
+    std::size_t line = 0;  // of the file, from 1; or its place in a list
+};
+
 // Files have four digits and more.
 constexpr double k_unit_tolerance = 1e-3;
 constexpr double k_last_frame = 999'999'999;
@@ -55,8 +78,6 @@ bool number_by_names(const std::vector<NamedPose>& named, std::vector<TimedPose>
     return std::ranges::adjacent_find(poses, {}, &TimedPose::time) == poses.end();
 }
 
-}  // namespace
-
 void PoseLine::fail(const std::string& what) const {
     throw InputError(fmt::format("{}:{}: {}", origin, number, what));
 }
@@ -77,6 +98,7 @@ Rotation PoseLine::rotation(double w, double x, double y, double z) const {
     return normalised({w, x, y, z});
 }
 
+/// The poses by frame (PoseFile::poses). Throws InputError for names that are the same.
 std::vector<TimedPose> by_frame(std::vector<NamedPose> named, const std::string& origin) {
     std::ranges::sort(named, {}, &NamedPose::name);
     const auto twin = std::ranges::adjacent_find(named, {}, &NamedPose::name);
@@ -90,8 +112,6 @@ std::vector<TimedPose> by_frame(std::vector<NamedPose> named, const std::string&
     std::vector<TimedPose> by_number = poses;
     return number_by_names(named, by_number) ? by_number : poses;
 }
-
-namespace {
 
 /// Takes the next line from the beginning of `text`, without blanks at its ends.
 std::string_view take_line(std::string_view& text) {
@@ -133,8 +153,8 @@ void check_time(const PoseLine& line, const std::vector<TimedPose>& poses, doubl
                   : "its time is before that of the pose before; sort the file by time");
 }
 
-}  // namespace
-
+// The formats whose poses are lines of a table. `origin` names the scene entry and the file in
+// messages.
 PoseFile read_tum(std::string_view text, const std::string& origin) {
     PoseFile file;
     for (PoseLine line{origin, 1}; !text.empty(); ++line.number) {
@@ -219,8 +239,6 @@ PoseFile read_colmap_images(std::string_view text, const std::string& origin) {
     return file;
 }
 
-namespace {
-
 // Files have six digits and more, some after a scale was taken out.
 constexpr double k_rigid_tolerance = 1e-3;
 
@@ -293,8 +311,7 @@ class NerfstudioFrame {
     const std::string& origin_;
 };
 
-}  // namespace
-
+// nerfstudio's transforms.json.
 PoseFile read_nerfstudio(std::string_view text, const std::string& origin) {
     Json json;
     try {
@@ -318,9 +335,7 @@ PoseFile read_nerfstudio(std::string_view text, const std::string& origin) {
     return file;
 }
 
-namespace {
-
-// Of COLMAP's images.txt nearly all is points.
+// COLMAP's images.txt consists almost entirely of points, so that it may be large.
 constexpr std::size_t k_most_bytes = std::size_t{1} << 30;
 
 PoseFile read_text(std::string_view text, PoseFormat format, const std::string& origin) {
@@ -388,5 +403,4 @@ std::string load_trajectory(TrajectoryDesc& desc, double fps) {
     desc.trajectory = std::make_shared<Trajectory>(poses, desc.interpolation, desc.pacing);
     return file.hash;
 }
-
 }  // namespace uw

@@ -13,9 +13,9 @@ namespace uw {
 /// The poses of a file, world_from_body in the file's own world and units; a camera's axes are x
 /// right, y down, z forward.
 struct PoseFile {
-    /// Of files with times: seconds after `first_time`. Of others, frame numbers: those at the end
-    /// of the images' names if these are otherwise the same, else their places from 0, in the order
-    /// of the names.
+    /// The times are seconds after `first_time` where the file has times, and frame numbers where
+    /// it has none: those at the end of the images' names if these are otherwise the same, else
+    /// their places from 0, in the order of the names.
     std::vector<TimedPose> poses;  // at least one, strictly ascending
     bool counts_frames = false;    // as said above
     double first_time = 0;         // [s]
@@ -24,42 +24,6 @@ struct PoseFile {
 
 /// The most poses that a file may have.
 inline constexpr std::size_t k_most_poses = 1'000'000;
-
-/// One line of a file of poses, for messages; for the readers of this folder.
-struct PoseLine {
-    const std::string& origin;  // the scene entry and the file
-    std::size_t number = 0;     // from 1
-
-    /// Throws InputError "<origin>:<number>: <what>".
-    [[noreturn]] void fail(const std::string& what) const;
-    /// A finite number; `name` is the column's.
-    double parsed(std::string_view cell, std::string_view name) const;
-    /// The rotation of a quaternion of length 1 to within 1e-3.
-    Rotation rotation(double w, double x, double y, double z) const;
-};
-
-/// The largest number in a file of poses.
-inline constexpr double k_largest_pose_number = 1e12;
-
-/// A pose and the name of its image.
-struct NamedPose {
-    std::string name;
-    Pose pose;
-    std::size_t line = 0;  // of the file, from 1; or its place in a list
-};
-
-/// The poses by frame (PoseFile::poses). Throws InputError for names that are the same.
-std::vector<TimedPose> by_frame(std::vector<NamedPose> poses, const std::string& origin);
-
-/// The formats whose poses are lines of a table, as read_pose_file says; `origin` names the scene
-/// entry and the file in messages.
-PoseFile read_tum(std::string_view text, const std::string& origin);
-PoseFile read_euroc(std::string_view text, const std::string& origin);
-PoseFile read_colmap_images(std::string_view text, const std::string& origin);
-
-/// nerfstudio's transforms.json, as read_pose_file says; `origin` names the scene entry and the
-/// file in messages.
-PoseFile read_nerfstudio(std::string_view text, const std::string& origin);
 
 /// Reads a file of poses. `subject` is what messages begin with: the scene entry that names the
 /// file. Quaternions and matrices are normalised; they may be off by 1e-3 from rounding. Throws
@@ -78,5 +42,4 @@ PoseFile read_pose_file(const std::filesystem::path& file, PoseFormat format,
 /// empty for keyframes. Throws as read_pose_file does, and InputError for poses at the same place
 /// that a constant speed leaves no time for.
 std::string load_trajectory(TrajectoryDesc& desc, double fps);
-
 }  // namespace uw

@@ -86,7 +86,7 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
 /// names are relative to the current folder. Throws as read_scene.
 WaterDesc read_water_overrides(const std::vector<std::string>& overrides);
 
-/// The same of a tree whose only section is `water`.
+/// Reads the water of a tree whose only section is `water`.
 WaterDesc water_of_tree(const ConfigNode& root);
 
 }  // namespace uw

@@ -16,6 +16,30 @@ namespace uw {
 
 namespace {
 
+/// The largest tangent of the angle between a ray of the image and the optical axis: 89.99 degrees.
+constexpr double k_largest_slope = 1e4;
+
+/// The smallest width of a pixel, as such a tangent: single precision does not tell narrower ones
+/// apart.
+constexpr double k_narrowest_pixel = 1e-9;
+
+/// The narrowest beam of a lamp [degrees].
+constexpr double k_narrowest_beam = 0.01;
+
+/// The greatest angle in the water between any light of a sun and the normal of the water's surface
+/// [degrees].
+constexpr double k_lowest_sun = 89;
+
+/// The largest intensity [W/sr], power [W] or flux [lm] of a lamp.
+constexpr double k_largest_brightness = 1e12;
+
+/// The largest concentration [ppm] or coefficient [1/m] per unit of a grid's value.
+constexpr double k_largest_per_unit = 1e12;
+
+/// The smallest and largest number of a sensor or of snow that is not 0: no real one is beyond, and
+/// single precision holds their products.
+constexpr double k_least_number = 1e-12, k_greatest_number = 1e12;
+
 /// One entry of the scene, for its messages.
 class Checked {
   public:
@@ -30,7 +54,7 @@ class Checked {
     /// Neither so large nor, unless it is 0, so small that nothing real is meant.
     void number(std::string_view name, double value) const {
         constexpr std::string_view k_mend = "check its unit";
-        at_most(k_largest_number, name, {value}, k_mend);
+        at_most(k_greatest_number, name, {value}, k_mend);
         if (value != 0 && std::abs(value) < k_least_number)
             fail(fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_least_number,
                              k_mend));
@@ -206,5 +230,4 @@ void check_limits(const SceneDesc& scene) {
     for (const GeometryDesc& geometry : scene.geometry) check(geometry);
     for (const VolumeDesc& volume : scene.volumes) check(volume);
 }
-
 }  // namespace uw

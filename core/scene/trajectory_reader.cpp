@@ -16,6 +16,7 @@ namespace {
 
 constexpr double k_rigid_tolerance = 1e-6;
 constexpr double k_smallest_scale = 1e-9;
+
 /// Closer to the view direction than this angle [rad], `up` leaves the roll undefined.
 constexpr double k_smallest_up_angle = 1e-6;
 
@@ -88,8 +89,9 @@ Affine read_matrix(const ConfigValue& value) {
     return {linear, Vector3(rows[0][3], rows[1][3], rows[2][3])};
 }
 
-}  // namespace
-
+/// The same from the keys `position`, `look_at` and `up`, `rotate`, or `matrix` of `map`, of which
+/// all others must have been read. `is_view`: one of look_at, rotate and matrix is required; else
+/// the axes are those of the world without them.
 Affine read_pose_keys(ConfigMap& map, bool is_view) {
     if (const auto matrix = map.find("matrix")) {
         map.finish("a pose with 'matrix'");
@@ -106,6 +108,8 @@ Affine read_pose_keys(ConfigMap& map, bool is_view) {
     }
     return read_look_at(map, position);
 }
+
+}  // namespace
 
 Affine read_pose(const ConfigValue& value) {
     ConfigMap map(value, {"position", "look_at", "up", "rotate", "matrix"},
@@ -271,5 +275,4 @@ TrajectoryDesc read_trajectory(const ConfigValue& value, const SceneContext& con
     }
     return trajectory;
 }
-
 }  // namespace uw

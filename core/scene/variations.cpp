@@ -25,6 +25,9 @@ namespace uw {
 
 namespace {
 
+/// What messages advise where a distribution is missing.
+constexpr std::string_view k_distribution_mend = "give a distribution, such as {uniform: [0, 1]}";
+
 // Less than 1e-33 of a normal distribution lies beyond.
 constexpr double k_farthest = 12;
 
@@ -33,7 +36,14 @@ double above(double x) {
     return 0.5 * std::erfc(x / std::numbers::sqrt2);
 }
 
-/// Of the standard normal distribution within [low, high].
+/// The probability of a standard normal number within [low, high], to full relative precision
+/// wherever the interval lies.
+double normal_probability(double low, double high) {
+    if (low + high < 0) return normal_probability(-high, -low);
+    return above(low) - above(high);
+}
+
+/// The quantile `u` of the standard normal distribution cut off at [low, high].
 double normal_quantile(double low, double high, double u) {
     if (low + high > 0) return -normal_quantile(-high, -low, 1 - u);  // the left tail is precise
     low = std::clamp(low, -k_farthest, k_farthest);
@@ -69,11 +79,6 @@ double quantile_of(const IntegerDistribution& d, double u) {
 }
 
 }  // namespace
-
-double normal_probability(double low, double high) {
-    if (low + high < 0) return normal_probability(-high, -low);
-    return above(low) - above(high);
-}
 
 double quantile(const NumberDistribution& distribution, double u) {
     return std::visit([u](const auto& d) { return quantile_of(d, u); }, distribution);
@@ -182,17 +187,8 @@ NormalDistribution normal(const ConfigValue& value, const std::optional<ConfigVa
     return d;
 }
 
-ChoiceOfTexts choice(const ConfigValue& value, const std::optional<ConfigValue>& weights) {
-    ChoiceOfTexts result;
-    for (const ConfigValue& one : value.list("give a list of values"))
-        result.texts.push_back(flow_text(one.node()));
-    if (result.texts.empty()) value.fail("is an empty list; give values to choose from");
-    result.shares = read_shares(result.texts.size(), weights, value);
-    return result;
-}
-
-}  // namespace
-
+/// The shares of `count` > 0 things with these weights >= 0, or without any all alike. Throws
+/// InputError at `where` if no weight is above 0.
 Shares shares_of(std::size_t count, std::vector<double> weights, const ConfigValue& where) {
     if (weights.empty()) weights.assign(count, 1);
     Shares shares;
@@ -207,6 +203,8 @@ Shares shares_of(std::size_t count, std::vector<double> weights, const ConfigVal
     return shares;
 }
 
+/// Reads the shares of `count` things from the weights that the scene gives them, or makes them
+/// equal if it gives none. `of` is the list of the things, for messages.
 Shares read_shares(std::size_t count, const std::optional<ConfigValue>& weights,
                    const ConfigValue& of) {
     if (!weights) return shares_of(count, {}, of);
@@ -216,10 +214,21 @@ Shares read_shares(std::size_t count, const std::optional<ConfigValue>& weights,
     return shares_of(count, std::move(numbers), *weights);
 }
 
+ChoiceOfTexts choice(const ConfigValue& value, const std::optional<ConfigValue>& weights) {
+    ChoiceOfTexts result;
+    for (const ConfigValue& one : value.list("give a list of values"))
+        result.texts.push_back(flow_text(one.node()));
+    if (result.texts.empty()) value.fail("is an empty list; give values to choose from");
+    result.shares = read_shares(result.texts.size(), weights, value);
+    return result;
+}
+
+/// Whether a value names a distribution, rather than being one that stays as it is.
 bool is_distribution(const ConfigNode& node) {
     return std::ranges::any_of(k_kinds, [&](auto kind) { return node.find(kind) != nullptr; });
 }
 
+/// Reads a distribution (docs/scene-file.md). Throws InputError.
 DrawnFrom read_distribution(const ConfigValue& value) {
     ConfigMap map(value,
                   {"uniform", "log-uniform", "normal", "integer", "choice", "within", "weights"},
@@ -245,8 +254,6 @@ DrawnFrom read_distribution(const ConfigValue& value) {
     map.finish(fmt::format("'{}'", *kind));
     return result;
 }
-
-namespace {
 
 void check_path(const std::string& key, const ConfigPosition& position) {
     if (parse_key_path(key).empty())
@@ -381,5 +388,4 @@ std::optional<VariationsDesc> read_variations(const ConfigNode& scene,
                         printable(pair->first), printable(pair->second)));
     return variations;
 }
-
 }  // namespace uw

@@ -20,16 +20,19 @@ namespace uw {
 struct UniformDistribution {
     double low = 0, high = 1;
 };
+
 /// The logarithm is uniform: every ratio between 0 < `low` and `high` is as likely.
 struct LogUniformDistribution {
     double low = 1, high = 10;
 };
+
 /// Normal, of which only what lies within [low, high] is drawn.
 struct NormalDistribution {
     double mean = 0, deviation = 1;
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
 };
+
 /// Every whole number from `low` to `high`, both included, is as likely.
 struct IntegerDistribution {
     int low = 0, high = 1;
@@ -38,10 +41,6 @@ struct IntegerDistribution {
 /// How a number is distributed.
 using NumberDistribution = std::variant<UniformDistribution, LogUniformDistribution,
                                         NormalDistribution, IntegerDistribution>;
-
-/// The probability of a standard normal number within [low, high], to full relative precision
-/// wherever the interval lies.
-double normal_probability(double low, double high);
 
 /// The number below which the part `u`, in (0, 1), of the distribution lies: of a `u` that is
 /// uniform the result is distributed so. Normal numbers are exact to 1e-12 standard deviations.
@@ -109,27 +108,10 @@ std::vector<DrawnValue> draw(const VariationsDesc& variations, int variation);
 /// "lamps.left.power=21.5, water.preset=jerlov-II", for messages.
 std::string values_text(const std::vector<DrawnValue>& values);
 
-/// What messages advise where a distribution is missing.
-inline constexpr std::string_view k_distribution_mend =
-    "give a distribution, such as {uniform: [0, 1]}";
-
-/// The shares of `count` > 0 things with these weights >= 0, or without any all alike. Throws
-/// InputError at `where` if no weight is above 0.
-Shares shares_of(std::size_t count, std::vector<double> weights, const ConfigValue& where);
-/// The same of weights in the scene, of which there may be none; `of` are the things.
-Shares read_shares(std::size_t count, const std::optional<ConfigValue>& weights,
-                   const ConfigValue& of);
-
-/// Whether a value names a distribution, rather than being one that stays as it is.
-bool is_distribution(const ConfigNode& node);
-/// Reads a distribution (docs/scene-file.md). Throws InputError.
-DrawnFrom read_distribution(const ConfigValue& value);
-
 /// The section `variations` of a scene's tree; none if it has none. `file` is the scene's, to whose
 /// folder the names of tables are relative. Whether the scene has the keys that are drawn shows
 /// when they are set. Throws InputError "file:line:column: key path: what; mend", and as
 /// read_csv_file.
 std::optional<VariationsDesc> read_variations(const ConfigNode& scene,
                                               const std::filesystem::path& file);
-
 }  // namespace uw

@@ -55,7 +55,7 @@ struct ConfigNode::Entry {
 /// 64-bit FNV-1a hash of the tree's meaning, as 16 hex digits: comments, layout, the order of keys
 /// and the spelling of numbers (1, 1.0, 1e0) do not affect it.
 std::string config_hash(const ConfigNode& root);
-/// The same of the text of another file, which counts as it is.
+/// The hash of the text of another file, taken as it is.
 std::string text_hash(std::string text);
 
 /// Limits on a document's size: generous for any real scene, yet safe against hostile ones.

@@ -81,7 +81,7 @@ TEST(ThinLens, BehindAFlatPortTheFocusIsInTheWater) {
         desc.port = port;
         const Camera camera(desc);
         const double apparent = 0.02 + 0.04 / 1.49 + (focus - 0.06) / 1.334;
-        // Of the rays 10 um beside the axis: their aberration is 1e-9 of it.
+        // These are the rays 10 um beside the axis, whose aberration is 1e-9 of the distance.
         EXPECT_NEAR(camera.focus_vergence() * apparent, 1, 1e-8);
         // Rays of the whole aperture, which the port's aberration keeps apart: their cubes of the
         // angle, a/z, times the path.

@@ -47,7 +47,7 @@ TEST(MemoryLimit, EndsAnAllocation) {
     EXPECT_EXIT(
         {
             limit_memory();
-            // Of which half is left.
+            // Half of the memory is left.
             const std::uint64_t all = available_memory_bytes();
             try {
                 for (int n = 0; n < 4; ++n) static_cast<void>(::operator new(all / 2));

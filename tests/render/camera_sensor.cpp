@@ -51,8 +51,8 @@ TEST_F(CameraSensors, CountWhatTheRadianceOfEachBandMakes) {
     const Film image = film();
     const auto& bands = desc_.water.bands_nm;
     ASSERT_EQ(bands, (std::vector<double>{620, 540, 450}));
-    // Of each band's interval, 580 to 660, 495 to 580 and 405 to 495 nm: the share of power and
-    // the middle.
+    // The bands' intervals are 580 to 660, 495 to 580 and 405 to 495 nm: their shares of the power
+    // and their middles.
     const double share[] = {80.0 / 85, 1, 90.0 / 85}, middle[] = {620, 537.5, 450};
     const IntrinsicsDesc& k = desc_.camera.intrinsics;
     double most = 0;

@@ -115,7 +115,7 @@ TEST(MovingBar, IsCountedBySensorsAsItIsBlurred) {
     ASSERT_EQ(blurred.channel_names()[k], "sensor.V");
     const double bright = static_cast<double>(sharp.pixel(24, 16)[k]);
     ASSERT_GT(bright, 100);
-    // Of 20 pixels' way a bar of 6 covers 0.3 of the time; two numbers are rounded.
+    // A bar of 6 pixels on a way of 20 covers a pixel for 0.3 of the time; two numbers are rounded.
     EXPECT_NEAR(static_cast<double>(blurred.pixel(24, 16)[k]) / bright, 0.3, 0.02);
 }
 

@@ -39,7 +39,8 @@ TEST(SnowParticles, DefocusSpreadsLightOverTheCircleOfConfusion) {
         const double aperture = 0.5 * 0.05 / 2.8;
         const double blur = desc.camera.intrinsics.fx * aperture * std::abs(1 / focus - 1 / range);
         EXPECT_NEAR(spot.sum / sum_of(particle, desc, 0), 1, k_tolerance) << focus;
-        // Of a disk r^2/4, of a pixel 1/12; what is smaller than a pixel fills those it touches.
+        // The variance of a disk is r^2/4 and that of a pixel 1/12; what is smaller than a pixel
+        // fills those it touches.
         EXPECT_NEAR(spot.variance_x, 0.25 * (disk * disk + blur * blur) + 1.0 / 12,
                     0.02 * blur * blur + 0.1);
     }

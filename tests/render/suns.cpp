@@ -20,7 +20,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double k_wall = 4;
-// Of hg_water.
+// The coefficients of hg_water.
 constexpr std::array k_attenuation{0.55, 0.30, 0.30};
 constexpr std::array k_scattering{0.20, 0.22, 0.25};
 constexpr double k_g = 0.9;

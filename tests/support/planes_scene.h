@@ -43,7 +43,7 @@ inline SceneDesc ported(SceneDesc desc) {
     return desc;
 }
 
-/// Of the backscatter of two images.
+/// The difference between the backscatter of two images.
 struct Difference {
     double rms = 0, worst = 0;  // relative, per pixel and band
 };

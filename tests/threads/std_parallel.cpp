@@ -24,7 +24,7 @@ namespace uw {
 
 namespace {
 
-// Those of oneTBB's loops in libraries run on the calling thread alone.
+// The loops of oneTBB within libraries run on the calling thread alone.
 const tbb::global_control no_tbb_threads(tbb::global_control::max_allowed_parallelism, 1);
 
 // Fewer processors make as many races as there are threads.

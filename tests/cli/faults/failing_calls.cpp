@@ -6,7 +6,7 @@
 namespace uw::test {
 namespace {
 
-/// Of `render`, with all that it writes, over files that were there before.
+/// Calls of `render`, with all that it writes, over files that were there before.
 class FailingCalls : public FailingCallsTest {
   protected:
     const FaultyRun k_render{{"render", "scene.yaml", "-o", "out.exr", "--stats", "out.json",
@@ -35,7 +35,7 @@ TEST_F(FailingCalls, AStopLeavesAllFilesOrNone) {
     EXPECT_GE(fail_each(with_light, "stop", {0, 130}), 10);
 }
 
-// Of files that replace others, before they do.
+// Files that replace others are flushed before they do.
 TEST_F(FailingCalls, NothingIsLostWhereTheDiskFails) {
     EXPECT_EQ(fail_each(k_render, "fsync", {4}), 5);
 }

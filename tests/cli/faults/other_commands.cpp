@@ -14,7 +14,7 @@ struct NamedRun {
 
 class FailingCommand : public FailingCallsTest, public testing::WithParamInterface<NamedRun> {
   protected:
-    /// Of each kind of call as many as there are files, at least.
+    /// Each kind of call fails at least as often as there are files.
     void expect_no_harm(const std::string& kind) const {
         const FaultyRun& faulty = GetParam().run;
         const int calls = fail_each(faulty, kind, {4});

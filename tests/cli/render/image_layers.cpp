@@ -156,7 +156,8 @@ TEST_F(ImageLayers, DraftsAreWithinThreePerCentAndFinalImagesCloseToExact) {
         return render(options);
     };
     const ImageFile exact = render_as("exact");
-    // Of the mean, RMS: what `--help` says of drafts; what the lattice of rays allows (design).
+    // The RMS relative to the mean: what `--help` says of drafts, and what the lattice of rays
+    // allows (docs/design.md).
     for (const auto& [quality, tolerance] : {std::pair("draft", 0.03), std::pair("final", 1e-3)}) {
         const ImageFile image = render_as(quality);
         double squares = 0, mean = 0;

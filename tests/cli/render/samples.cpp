@@ -46,7 +46,7 @@ std::ostream& operator<<(std::ostream& out, const VolumeSample& sample) {
 
 constexpr const char* k_blender = "centering cell (automatic), up z (automatic)";
 constexpr const char* k_others = "centering node (automatic), up y (automatic)";
-// Of the domain of 6 x 3 x 2.4 m, the third nearest its inlet.
+// Moves to the third of the domain (6 x 3 x 2.4 m) that is nearest its inlet.
 constexpr const char* k_in_domain = "{translate: [-2, -0.5, 1.5]}";
 
 const std::vector<VolumeSample> k_volumes{

@@ -160,7 +160,8 @@ TEST_F(AtomicFileTest, FolderWithoutPermission) {
     EXPECT_NE(error.find("no permission to write"), std::string::npos) << error;
 }
 
-// Of a process that was killed; those of a machine that shares the folder are in other hands.
+// Files of a process that was killed are removed; those of another machine that shares the folder
+// are in other hands.
 TEST_F(AtomicFileTest, RemovesWhatNobodyWritesAnyMore) {
     const AtomicFile file(target_);
     fs::path left = folder_ / AtomicFile(target_).temporary_path().filename();

@@ -58,7 +58,7 @@ TEST_F(FreeMemory, IsWhatTheControlGroupLeaves) {
     write("sys/fs/cgroup/user.slice/job/memory.stat",
           "anon 300000000\ninactive_file 500000000\nactive_file 100000000\n");
     EXPECT_EQ(available(), 1'700'000'000U);
-    // That of a group above may leave less, and more may be used than a limit set since.
+    // The limit of a group above may leave less, and more may be used than a limit set since.
     write("sys/fs/cgroup/user.slice/memory.max", "1500000000\n");
     EXPECT_EQ(available(), 1'500'000'000U);
     write("sys/fs/cgroup/user.slice/memory.current", "1600000000\n");

@@ -165,7 +165,7 @@ TEST_F(GltfImport, LensShiftIsTakenFromCustomProperties) {
     EXPECT_NEAR(vertical.cx, 150 - 20, 1e-12);
     EXPECT_NEAR(vertical.cy, 100 - 10, 1e-12);
     EXPECT_NEAR(camera_with(R"({"shift_y":0.1,"sensor_fit":"HORIZONTAL"})").cy, 100 + 30, 1e-12);
-    // Of the object, if both have one; what is no number is somebody else's.
+    // The object's shift counts if both have one; what is no number belongs to somebody else.
     EXPECT_NEAR(camera_with(R"({"shift_x":0.1})", R"({"shift_x":0.2})").cx, 150 - 60, 1e-12);
     EXPECT_EQ(camera_with(R"({"shift_x":"0.1","sensor_fit":7})", "[]").cx, 150);
     EXPECT_EQ(camera_with("3").cx, 150);

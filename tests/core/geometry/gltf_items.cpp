@@ -14,7 +14,7 @@ namespace {
 
 class GltfItemsTest : public testing::Test {
   protected:
-    /// Of one node each, with `light` of the extension or `camera`.
+    /// The items of a file of one node, with `light` of the extension or `camera`.
     GltfItems with_light(const std::string& light) const {
         return read(R"("nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}],
                     "extensions":{"KHR_lights_punctual":{"lights":[)" +

@@ -15,7 +15,7 @@ namespace {
 
 class GltfNodes : public testing::Test {
   protected:
-    /// Of a file with these nodes and, if any, this key with its scenes.
+    /// The nodes of a file with this list of them and, if any, this key with its scenes.
     std::vector<GltfNode> nodes(const std::string& list, const std::string& scenes = "") {
         document_.emplace(folder_.write("m.gltf", R"({"asset":{"version":"2.0"},"nodes":)" + list +
                                                       (scenes.empty() ? "" : "," + scenes) + "}"));

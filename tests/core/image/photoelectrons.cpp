@@ -109,7 +109,7 @@ TEST_F(PhotoelectronsTest, OfATableAreTheIntegralOverEachBand) {
         expected += value[band] / 85 * integral;
     }
     expected *= k_photons * 3.45e-6 * 3.45e-6 * 0.01;
-    // Of the midpoint rule at the table's end within the interval of 620 nm: a step of 1e-5.
+    // The midpoint rule steps by 1e-5 at the table's end, within the interval of 620 nm.
     EXPECT_NEAR(Photoelectrons(scene_).mean(light({0.3, 0.5, 0.9}), 0) / expected, 1, 2e-5);
 }
 

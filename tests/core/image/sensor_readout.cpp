@@ -131,7 +131,7 @@ TEST(SensorReadout, FixedPatternsStayAndTemporalNoiseDoesNot) {
                second = image_of(desc, electrons, {"", 2});
     const double fixed = 0.38 * 0.38 * (std::pow(0.02 * electrons, 2) + 12.0 * 12.0);
     const double all = fixed + 0.38 * 0.38 * (electrons + dark + 2.4 * 2.4) + 1.0 / 12;
-    // Of normal variables: var(cov) = (s1^2 s2^2 + cov^2) / n.
+    // Normal variables have var(cov) = (s1^2 s2^2 + cov^2) / n.
     EXPECT_NEAR(covariance(first, second), fixed,
                 k_sigmas * std::sqrt((all * all + fixed * fixed) / k_pixels));
     EXPECT_NEAR(variance(first), all, k_sigmas * all * std::sqrt(2 / k_pixels));

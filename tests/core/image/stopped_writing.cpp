@@ -83,7 +83,8 @@ TEST_F(StoppedWriting, OfAPngEndsWithARow) {
     EXPECT_EQ(file_count(), 0);
 }
 
-// Whose bytes are written once there are all of them; and what is made of films before.
+// The bytes of these files are written once there are all of them; what is made of films before
+// stops as well.
 TEST_F(StoppedWriting, DoesNotBeginWhereItIsToStop) {
     const Film film = noisy_film(300, 300);
     const auto preview = make_preview(film, 0.3);

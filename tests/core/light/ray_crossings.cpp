@@ -17,7 +17,7 @@ Ray random_ray(std::mt19937& rng) {
     return {{offset(rng), offset(rng), offset(rng)}, random_direction(rng)};
 }
 
-/// Of the angle to `axis` under which `x` is seen from `apex`.
+/// The cosine of the angle to `axis` under which `x` is seen from `apex`.
 double cosine_at(const Point3& x, const Point3& apex, const Vector3& axis) {
     const Vector3 v = x - apex;
     return glm::dot(v, axis) / glm::length(v);

@@ -101,7 +101,7 @@ TEST(ReferenceIntegrator, StepsByTenthsOfAnOpticalDepthInDenseClouds) {
     for (std::size_t i = 0; i < 2; ++i) {
         const double expected = k_b / (4 * std::numbers::pi) * std::exp(-k_c * k_above) *
                                 -std::expm1(-k_c * k_distances[i]) / k_c;
-        // Of the midpoint rule: 0.1^2 / 24.
+        // The error of the midpoint rule: 0.1^2 / 24.
         EXPECT_NEAR(result.at(i, 0)[0], expected, 5e-4 * expected);
     }
 }

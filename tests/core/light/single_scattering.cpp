@@ -212,7 +212,7 @@ class SecondOfTwo : public ConcentrationField {
     }
 };
 
-/// Of a lamp in it, without surfaces.
+/// The shadow of a lamp in that water, without surfaces.
 class ClearShadow : public DeepShadow {
   public:
     ClearShadow(const ConcentrationField& field, const Point3& lamp) : field_(field), lamp_(lamp) {}

@@ -13,7 +13,7 @@ struct Moments {
     double sum = 0, x = 0, y = 0, variance_x = 0, variance_y = 0, most = 0;
 };
 
-/// Of the shares of pixels, at their centres.
+/// The moments of the pixels' shares, taken at their centres.
 Moments moments_of(const Footprint& footprint) {
     const PixelWindow& bounds = footprint.bounds();
     Grid2D<double> shares(bounds.width(), bounds.height());

@@ -52,7 +52,7 @@ TEST(BlurFit, BlursAnEdgeAsTheTransferFunctionDoes) {
         }
         const Grid2D<float>& blurred = pyramid.sum();
         for (const int i : {-40, -12, -5, -2, -1, 0, 1, 4, 11, 39})
-            // Of the step, for what coarse pixels show of frequencies beyond theirs.
+            // A share of the step, for what coarse pixels show of frequencies beyond theirs.
             EXPECT_NEAR(blurred(edge + i, 0), step_at(i + 0.5), 0.01) << edge << " " << i;
         // The step from pixel to pixel, which is the sharpest there is: a tenth steeper where the
         // edge is one of all coarser pixels.

@@ -25,7 +25,7 @@ TEST(BlurPyramid, LeavesEvenImagesEven) {
     }
 }
 
-// Of a point far from the edges: its light is kept, its centre stays, and its variance is that of
+// The light of a point far from the edges is kept, its centre stays, and its variance is that of
 // the level, wherever the point lies relative to the coarser levels' pixels.
 TEST(BlurPyramid, BlursByTheWidthOfItsLevel) {
     constexpr int k_size = 192;
@@ -57,7 +57,7 @@ TEST(BlurPyramid, BlursByTheWidthOfItsLevel) {
     }
 }
 
-// Of a wave, averaged over its positions relative to the coarser levels' pixels.
+// The transfer of a wave is averaged over its positions relative to the coarser levels' pixels.
 TEST(BlurPyramid, HasTheTransferFunctionOfItsLevel) {
     constexpr int k_size = 256;
     for (int level = 0; level <= 4; ++level) {

@@ -83,7 +83,8 @@ TEST(LatticeFit, StatesTheVarianceOfWhatItFits) {
     // the fit differ, which makes tails: four times that. The mean: 4 standard errors.
     EXPECT_NEAR(squares / stated, 1, 0.13);
     EXPECT_LT(std::abs(sum), 4 * std::sqrt(stated));
-    // Of a single node it is 1, of the widest fit 0.03; in one of eight cases noise stops before.
+    // A single node has 1, the widest fit 0.03; noise stops the fit before that in one of eight
+    // cases.
     EXPECT_LT(stated / k_trials, 0.25);
 }
 

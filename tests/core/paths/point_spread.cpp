@@ -69,8 +69,8 @@ TEST_F(PointSpreads, HaveTheTransferFunctionOfSmallAngles) {
         for (const std::size_t i : {8U, 20U, 24U, 28U, 32U, 36U, 40U, 48U}) {
             const double k = PointSpread::frequency(i);
             const double exponent = exponent_of(b(band) * k_farthest, k);
-            // Of the whole, for frequencies a quarter of an octave apart and four places in each
-            // interval.
+            // The tolerance is a share of the whole, at frequencies a quarter of an octave apart
+            // and four places in each interval.
             EXPECT_NEAR(transfer(spread, 0, band, last, i), std::expm1(exponent), 0.002 * all)
                 << "k " << k << ", band " << band;
         }

@@ -103,7 +103,7 @@ TEST(ViewGeometry, AimedLampsHaveTheirAxisWhereItWasDragged) {
         ASSERT_TRUE(seen);
         EXPECT_NEAR(seen->x, pixel.x, 2e-6);
         EXPECT_NEAR(seen->y, pixel.y, 2e-6);
-        // There are two directions: it takes the one that needs the lesser turn.
+        // It is the one of the two directions that needs the lesser turn.
         EXPECT_GT(direction.z, 0);
     }
 }

@@ -40,8 +40,8 @@ DepthRange range_of(const Grid2D<float>& samples, int u0, int v0, int u1, int v1
     return range;
 }
 
-// Of squares of 1, 2, 4... cells, at most two by two that cover the cells asked for: their depths
-// and no others.
+// At most two by two squares of 1, 2, 4... cells cover the cells that are asked for: bounds are
+// those of their depths and of no others.
 TEST(DepthPyramid, BoundsAreThoseOfTheSquaresAroundTheCells) {
     for (const int cells : {1, 2, 5, 16}) {
         const Grid2D<float> samples = random_depths(cells);

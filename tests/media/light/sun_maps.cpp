@@ -2,6 +2,7 @@
 // A sun's light splatted into a scene: shadows of a sphere and columns of a cloud in closed form.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "media/light/deep_shadow_map.h"
@@ -145,7 +146,8 @@ const Sunlight k_noon{{0, 1, 0}, k_sea_level};
 
 TEST(SunShadowMap, AShadowsEdgeInTheOutermostTexelsIsFound) {
     const Roof roof([](double x, double z) {
-        return std::max(std::abs(x), std::abs(z)) < 3.5 ? 0 : k_infinity;
+        return std::max(std::abs(x), std::abs(z)) < 3.5 ? 0
+                                                        : std::numeric_limits<double>::infinity();
     });
     const SunShadowMap map(roof, k_noon, k_roof_square, k_roof_texels);
     for (const Vector3& outwards : {Vector3(1, 0, 0), {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {

@@ -29,7 +29,7 @@ class BatchMeans {
         const auto n = static_cast<double>(means_.size());
         return std::sqrt(central_moment(2) / (n - 1));
     }
-    /// Of the batches: 3 for normal ones.
+    /// The kurtosis of the batches: 3 for normal ones.
     double kurtosis() const {
         const double variance = central_moment(2);
         return central_moment(4) / (variance * variance);

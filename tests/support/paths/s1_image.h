@@ -23,7 +23,7 @@ struct LightKind {
         return std::min(s, PlainPaths::k_scatterings - 1) == scatterings &&
                std::min(r, PlainPaths::k_reflections - 1) == reflections && water == from_water;
     }
-    /// Of single scattering: the image without light paths.
+    /// Whether it is single scattering: the image without light paths.
     bool is_once() const { return scatterings + reflections == 1; }
 
     static std::vector<LightKind> all() {

@@ -47,7 +47,7 @@ class TermSums final : public PathTerms {
     double total(std::size_t band) const {
         return sum(band, [](int, int, bool) { return true; });
     }
-    /// Of light scattered `scatterings` times, whatever else.
+    /// The sum of light that was scattered `scatterings` times, whatever else happened to it.
     double order(std::size_t band, int scatterings) const {
         return sum(band, [&](int s, int, bool) { return s == scatterings; });
     }

@@ -235,8 +235,9 @@ class HeldImage {
         if (scattering_of(desc_.render) != RenderDesc::Scattering::single) return;
         // What comes from behind 32 optical depths is left out.
         constexpr double k_darkest = 1e-14;
-        // Of the light that there would be without shadows, at their edges and on what is lit from
-        // behind: edges are at most 3e-4 of the distance from where they should be (ShadowMap).
+        // The share of the light that there would be without shadows, at their edges and on what is
+        // lit from behind: edges are at most 3e-4 of the distance from where they should be
+        // (ShadowMap).
         constexpr double k_edges = 1e-4;
         // Which its warning tells (voxel_depth.h).
         const double share = has_coarse_voxels_ ? 5 : 1;

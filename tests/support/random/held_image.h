@@ -13,7 +13,7 @@ struct InvariantCounts {
     int left_out = 0;  // as `Scattered` says
     int compared = 0;  // pixels held against the reference integrator
     int bounded = 0;   // pixels and bands whose in-scatter has a bound (light_bounds.h)
-    // Of the scene that took the most, to be printed, not judged:
+    // The scene that took the most time, to be printed, not judged:
     std::uint64_t slowest_seed = 0;
     double slowest_cpu_seconds = 0;
 };

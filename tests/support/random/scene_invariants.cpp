@@ -17,7 +17,7 @@
 namespace uw::test {
 namespace {
 
-// Of all threads.
+// The time of all threads.
 double cpu_seconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
