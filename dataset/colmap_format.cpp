@@ -91,7 +91,7 @@ std::vector<Track> tracks_of(const CompleteSequence& sequence,
     return tracks;
 }
 
-/// Image by image: of thousands the observations would fill the memory.
+/// One image is read at a time: the observations of thousands would fill the memory.
 void write_colmap_images(const CompleteSequence& sequence, const std::vector<Track>& tracks,
                          const SetFiles& files, const std::filesystem::path& file) {
     std::size_t observed = 0;

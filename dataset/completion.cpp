@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <system_error>
 #include <vector>
 
 #include "core/base/csv_table.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
 #include "core/image/contact_sheet.h"
@@ -20,6 +25,31 @@
 #include "dataset/view.h"
 
 namespace uw {
+
+namespace {
+
+/// The list of a set's views, row by row, as CSV and JSON lines of one array.
+class Manifest {
+  public:
+    explicit Manifest(const DatasetDefinition& definition);
+
+    void add(const ViewRecord& record);
+
+    const std::string& csv() const { return csv_; }
+    /// The lists of all views added.
+    std::string json() const;
+
+  private:
+    const DatasetDefinition& definition_;
+    std::string csv_;
+    std::string views_;  // of JSON, separated by commas
+};
+
+/// What a page shows of a view.
+struct PageView {
+    std::string label;                  // "frame 12, left"
+    std::vector<std::string> pictures;  // files relative to the set's folder
+};
 
 Manifest::Manifest(const DatasetDefinition& definition)
     : definition_(definition),
@@ -61,8 +91,6 @@ std::string Manifest::json() const {
                        views_);
 }
 
-namespace {
-
 std::string html_text(const std::string& text) {
     std::string escaped;
     for (const char c : text) {
@@ -100,8 +128,7 @@ constexpr const char* k_page_head =
     "figcaption {{ font-size: 13px; color: #9ab; }}\n"
     "</style>\n</head>\n<body>\n<h1>{0}</h1>\n";
 
-}  // namespace
-
+/// A page with the pictures of a set, in HTML that needs nothing but the files beside it.
 std::string dataset_page(const DatasetDefinition& definition, const std::vector<PageView>& views) {
     std::string page = fmt::format(k_page_head, html_text("Data set of " + definition.scene));
     page += fmt::format("<p>{} views", definition.view_count());
@@ -121,8 +148,6 @@ std::string dataset_page(const DatasetDefinition& definition, const std::vector<
     }
     return page + "</main>\n</body>\n</html>\n";
 }
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -158,7 +183,7 @@ class Completion {
         if (!progress_(share)) throw Interrupted();
     }
 
-    /// All views' files by content.
+    /// Checks all views' files by their content.
     void check_files() {
         std::mutex mutex;
         std::vector<std::size_t> faulty;
@@ -196,7 +221,7 @@ class Completion {
                         faulty.size() > k_named ? ", ..." : ""));
     }
 
-    /// What AtomicFile could not remove because its process was killed. Nothing of other machines
+    /// Removes what AtomicFile could not because its process was killed. Nothing of other machines
     /// works on the set any more, since all views are there.
     void remove_left_overs() const {
         std::error_code error;
@@ -282,7 +307,7 @@ class Completion {
         files_.add_bytes("page", "index.html", dataset_page(definition_, page_));
     }
 
-    /// As sha256sum writes and checks them, by name.
+    /// Writes the checksums by name, as sha256sum writes and checks them.
     void write_checksums() const {
         std::vector<SetFile> all = files_.written();
         std::ranges::sort(all, {}, &SetFile::path);

@@ -10,10 +10,12 @@
 namespace uw {
 
 /// What a data card says of a scene: water, lamps, cameras, what is in it and how it is rendered.
-/// `first`: of the set's first view, resolved.
+/// `first` is the resolved
+/// scene of the set's first view.
 Json facts_of(const SceneDesc& first);
 
-/// The data card of a set, README.md in Markdown. `bytes`: of the files of all views.
+/// The data card of a set, README.md in Markdown. `bytes` is the size of the files of
+/// all views.
 std::string data_card(const DatasetFile& set, std::uint64_t bytes);
 
 }  // namespace uw

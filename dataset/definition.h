@@ -46,7 +46,7 @@ struct DatasetDefinition {
     std::string licence;              // empty: not stated
 
     std::size_t view_count() const { return draws.size() * frames.size() * cameras.size(); }
-    /// By draws, then frames, then cameras.
+    /// The places of a view in the order of draws, then frames, then cameras.
     View view(std::size_t index) const;
     std::size_t index(const View& view) const;
     /// The place of the frame with this number; none if the set does not have it.
@@ -80,8 +80,8 @@ Json definition_json(const DatasetDefinition& definition);
 /// definition_json's.
 DatasetDefinition definition_from_json(const Json& json, const std::string& subject);
 
-/// What differs between two, for a message: "its frames are 0-48 there, 0-20 here"; empty: nothing
-/// but, perhaps, the spelling of the command.
+/// What differs between two, for a message: "its frames are 0-48 there, 0-20 here"; empty if
+/// nothing differs but, perhaps, the spelling of the command.
 std::string difference(const DatasetDefinition& there, const DatasetDefinition& here);
 
 /// What the file `dataset.json` says, by which every process that works on a set has the same.
@@ -97,7 +97,7 @@ inline constexpr const char* k_dataset_file = "dataset.json";
 
 std::string dataset_text(const DatasetFile& file);
 
-/// That of the set in a folder; none if the folder does not exist or has nothing in it. Throws
+/// The file of the set in a folder; none if the folder does not exist or has nothing in it. Throws
 /// UsageError for a folder with other files and no set; InputError for one that is damaged.
 std::optional<DatasetFile> read_dataset_file(const std::filesystem::path& folder);
 

@@ -52,8 +52,8 @@ struct DatasetFormat {
     std::string_view layers = {};
     bool needs_points = false;  // ViewImages::points
     bool needs_images = false;  // those of png, which is then written as well
-    /// Throws UsageError of one line for a set that it cannot express. `scene`: of the first view,
-    /// with its rig. May be null.
+    /// Throws UsageError of one line for a set that it cannot express. `scene` is that of the first
+    /// view, with its rig. May be null.
     void (*check)(const DatasetDefinition& definition, const SceneDesc& scene) = nullptr;
     /// Writes the files of one view; called from several threads for different views. May be null.
     void (*write_view)(const ViewImages& images, SetFiles& files) = nullptr;
@@ -61,7 +61,7 @@ struct DatasetFormat {
     void (*complete)(const CompleteSequence& sequence, SetFiles& files) = nullptr;
 };
 
-/// One format per file. Private to this folder.
+/// Each format is in the file of its family. Private to this folder.
 
 DatasetFormat png_format();
 DatasetFormat depth_format();

@@ -21,7 +21,8 @@ class Sha256 {
   public:
     void add(std::span<const std::byte> bytes);
     void add(std::string_view text) { add(std::as_bytes(std::span(text))); }
-    /// Of all bytes so far, as 64 lower-case hexadecimal digits. Nothing may be added afterwards.
+    /// The sum of all bytes so far, as 64 lower-case hexadecimal digits. Nothing may be added
+    /// afterwards.
     std::string digest();
 
   private:
@@ -33,10 +34,10 @@ class Sha256 {
     std::uint64_t size_ = 0;             // of all [bytes]
 };
 
-/// Of a text.
+/// The sum of a text.
 std::string sha256_of(std::string_view text);
 
-/// Of a file's content. Throws IoError if it cannot be read.
+/// The sum of a file's content. Throws IoError if it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& file);
 
 static_assert(std::endian::native == std::endian::little);

@@ -130,7 +130,7 @@ std::string camera_yaml(const CameraDesc& camera, const Affine& body_from_camera
     return text;
 }
 
-/// Of the first camera, by the differences of the positions in the frames around.
+/// The velocity of the first camera, from the differences of its positions in the frames around.
 Vector3 velocity_at(const CompleteSequence& sequence, std::size_t frame) {
     const std::size_t last = sequence.definition.frames.size() - 1;
     const ViewRecord& a = sequence.at(frame == 0 ? 0 : frame - 1, 0);

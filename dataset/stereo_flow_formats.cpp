@@ -1,5 +1,3 @@
-#include "dataset/stereo_flow_formats.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -20,7 +18,7 @@ namespace uw {
 
 namespace {
 
-// Of a rig typed with six digits.
+// The cameras of a rig whose numbers were typed with six digits are parallel to within this.
 constexpr double k_parallel = 1e-6;
 
 bool is_pinhole(const CameraDesc& camera) {
@@ -28,8 +26,9 @@ bool is_pinhole(const CameraDesc& camera) {
     return !camera.port && camera.distortion == none;
 }
 
-}  // namespace
-
+/// Whether the rig's first two cameras are a rectified pair, the first on the left: they are equal
+/// and have neither distortion nor port, and their axes are parallel and across the line between
+/// them.
 bool is_rectified(const SceneDesc& scene) {
     if (scene.cameras.size() < 2) return false;
     const CameraDesc& left = scene.cameras[0].camera;
@@ -47,6 +46,7 @@ bool is_rectified(const SceneDesc& scene) {
     return t.x > 0 && std::abs(t.y) <= k_parallel * t.x && std::abs(t.z) <= k_parallel * t.x;
 }
 
+/// Throws UsageError of one line for a scene whose disparity is not one number per pixel.
 void check_rectified(const DatasetDefinition& definition, const SceneDesc& scene) {
     if (definition.cameras.size() < 2)
         throw UsageError(
@@ -58,6 +58,7 @@ void check_rectified(const DatasetDefinition& definition, const SceneDesc& scene
             "is not one number per pixel; use --format npy --layers disparity");
 }
 
+/// Throws InputError if the disparity of an image is not along its rows.
 void check_disparity(const ViewImages& images) {
     // 1e-3 px is what disparity is exact to.
     constexpr double k_along_rows = 1e-3;
@@ -71,9 +72,7 @@ void check_disparity(const ViewImages& images) {
     });
 }
 
-namespace {
-
-/// Where nothing is known; readers take what is above 1e9 for it.
+/// What stands where nothing is known: readers take values above 1e9 for that.
 constexpr float k_unknown_flow = 1e10F;
 
 /// The .flo of Middlebury's flow benchmark (Baker et al. 2011): 202021.25, width, height, then u
@@ -108,7 +107,7 @@ std::string pfm_text(const ViewImages& images, Layer layer) {
     return text;
 }
 
-/// 255 where the other image does not see the point, or there is none.
+/// Writes an image that is 255 where the other image does not see the point, or there is none.
 void write_occluded(const ViewImages& images, SetFiles& files, Layer layer,
                     const std::string& role) {
     DigitalImage image{images.width(), images.height(), 1, 8, false, {}};
@@ -170,7 +169,7 @@ namespace {
 
 constexpr std::string_view k_kitti = "kitti/training/";
 
-/// A file by its pair of frames, whose first has this number.
+/// The file of a pair of frames whose first has this number.
 std::string kitti_file(const DatasetDefinition& definition, const View& view,
                        std::string_view folder, int number, std::string_view ending) {
     return fmt::format("{}{}{}/{:06}{}", definition.folder(view.draw), k_kitti, folder, number,

@@ -24,8 +24,8 @@ std::vector<SurfacePoint> read_points(const std::filesystem::path& file);
 inline constexpr std::size_t k_most_points = 4096;
 
 /// Points on the surfaces that never move, evenly over the images of up to 64 views of a draw, as
-/// they are seen past the surfaces of its first frame. `scene`: the draw's, as it was read;
-/// `surfaces`: of its first frame.
+/// they are seen past the surfaces of its first frame. `scene` is the draw's, as it was
+/// read, and `surfaces` are those of its first frame.
 std::vector<SurfacePoint> point_seeds(const DatasetDefinition& definition, std::size_t draw,
                                       const SceneDesc& scene, const Surfaces& surfaces);
 

@@ -92,7 +92,7 @@ struct ViewRecord {
     const SetFile* file(std::string_view role) const;
 };
 
-/// By which records know their set.
+/// The sum by which records know their set.
 std::string sum_of(const DatasetDefinition& definition);
 
 /// The name of a view's record, relative to the set's folder.

@@ -1,10 +1,9 @@
 #include "edit/document/scene_text.h"
-#include "edit/server/http_server.h"
 #include "fuzz/fuzzing.h"
 
-// What windows of the editor send: a request's head; and changes of a scene's text, lines
-// "set PATH VALUE", "remove PATH", "append PATH VALUE", "duplicate PATH NAME", "rename PATH NAME",
-// up to a line "%%" after which the scene follows.
+// What windows of the editor send: changes of a scene's text, lines "set PATH VALUE",
+// "remove PATH", "append PATH VALUE", "duplicate PATH NAME", "rename PATH NAME", up to a line "%%"
+// after which the scene follows.
 namespace {
 
 constexpr std::string_view k_scene = R"(uwvdb: 1
@@ -38,7 +37,6 @@ void change(uw::SceneText& scene, std::string_view line) {
 UWVDB_FUZZ(data, size) {
     using namespace uw;
     std::string_view text = fuzz::text_of(data, size);
-    read_http_head(text);
     fuzz::parse([&] {
         constexpr std::string_view k_border = "%%\n";
         const std::size_t border = text.find(k_border);

@@ -4,7 +4,7 @@
 
 namespace uw {
 
-/// The parts of the compiled module, each in a file of its name.
+/// The parts of the compiled module.
 
 void bind_errors(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);

@@ -39,7 +39,7 @@ def install(build, prefix):
 
 
 def numpy_requirement():
-    """Of the module that is built here: before pybind11 2.12 it cannot read NumPy 2's arrays."""
+    """The module that is built here cannot read NumPy 2's arrays before pybind11 2.12."""
     found = subprocess.run(["pkg-config", "--modversion", "pybind11"], capture_output=True, text=True)
     version = re.match(r"(\d+)\.(\d+)", found.stdout)
     return "numpy<2" if version and tuple(map(int, version.groups())) < (2, 12) else "numpy"

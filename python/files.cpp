@@ -38,7 +38,7 @@ py::tuple read_vdb(const std::filesystem::path& file, const std::string& name) {
                             [](void* values) { delete static_cast<std::vector<float>*>(values); });
     const std::vector<py::ssize_t> shape(array.size.begin(), array.size.end());
     const py::array_t<float> values(shape, owned->data(), owner);
-    // As a scene places it that does not say how.
+    // Where a scene places it that does not say how.
     const Placement placement = decide_placement(header, {});
     const double shift = placement.centering == Centering::cell ? 0.5 : 0.0;
     const Vector3 first = Vector3(array.first[0], array.first[1], array.first[2]) + shift;

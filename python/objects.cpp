@@ -117,10 +117,6 @@ std::shared_ptr<const TriangleMesh> mesh_of_state(const py::tuple& state) {
     return mesh;
 }
 
-}  // namespace uw
-
-namespace uw {
-
 namespace {
 
 using Kind = ConfigNode::Kind;
@@ -198,7 +194,7 @@ ConfigNode node_of(py::handle object) {
     if (py::isinstance<py::bool_>(object))
         return scalar(object.cast<bool>() ? "true" : "false", false);
     if (py::isinstance<py::str>(object)) return scalar(object.cast<std::string>(), true);
-    // Of other types than Python's own, as NumPy's float64, repr() names the type, too.
+    // For types that are not Python's own, such as NumPy's float64, repr() names the type, too.
     if (py::isinstance<py::int_>(object))
         return number(py::reinterpret_steal<py::object>(PyNumber_Long(object.ptr())));
     if (py::isinstance<py::float_>(object)) return number(py::float_(object.cast<double>()));

@@ -33,7 +33,7 @@ std::shared_ptr<const TriangleMesh> mesh_of_state(const pybind11::tuple& state);
 /// empty. Throws TypeError for others.
 ConfigNode node_of(pybind11::handle object);
 
-/// The other way round: text that is no number is str, true and false are bool.
+/// A key's value as Python's objects: text that is no number is str, true and false are bool.
 pybind11::object object_of(const ConfigNode& node);
 
 /// A tree with all that it is made of, positions included, as tuples; and back.

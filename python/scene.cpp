@@ -21,6 +21,8 @@
 #include "render/resolved_scene.h"
 #include "render/scene_loading.h"
 
+namespace py = pybind11;
+
 namespace uw {
 
 namespace {
@@ -130,12 +132,6 @@ SceneObject::Changes SceneObject::variation_values(int number) const {
     return values;
 }
 
-}  // namespace uw
-
-namespace py = pybind11;
-
-namespace uw {
-
 namespace {
 
 using ScenePointer = std::unique_ptr<SceneObject>;
@@ -204,7 +200,8 @@ void add_mesh(SceneObject& scene, const std::string& name, const DoubleRows& ver
               const Corners& faces, const py::dict& entry, const std::string& where) {
     auto mesh = std::make_shared<TriangleMesh>();
     mesh->positions.assign(vertices.data(), vertices.data() + vertices.size());
-    // An index that is no vertex's becomes one that is none either: it is counted as missing.
+    // An index beyond the vertices, or negative, becomes one that no vertex has: it is counted as
+    // missing.
     const auto count = static_cast<std::int64_t>(mesh->vertex_count());
     for (py::ssize_t i = 0; i < faces.size(); ++i) {
         const std::int64_t corner = faces.data()[i];

@@ -22,8 +22,8 @@ class TextHistory {
 
     /// Makes `text` the text, as a step called `label`; the steps that had been undone are
     /// forgotten. A change of the same `group`, unless that is empty, as the one before belongs to
-    /// its step: a lamp that was dragged is back at its place with one undo. A step that changes
-    /// nothing is none.
+    /// its step: a lamp that was dragged is back at its place with one undo. A change
+    /// that leaves the text as it is makes no step.
     void record(const std::string& text, std::string label, std::string group = {});
     /// Ends the group: the next change is a step of its own.
     void end_group() { is_group_open_ = false; }

@@ -35,8 +35,9 @@ bool has_entry(const ConfigNode* list, std::string_view name) {
     return false;
 }
 
-}  // namespace
-
+/// Throws InputError, one line with the reason, if the scene takes the lamp, the pose or the
+/// intrinsics at `path` from a glTF file: they are not in the scene file, and cannot be changed
+/// there.
 void check_not_of_gltf(const ConfigNode& root, std::string_view path) {
     const std::vector<KeyStep> steps = parse_key_path(path);
     if (steps.size() < 2 || steps[1].index) return;
@@ -58,8 +59,6 @@ void check_not_of_gltf(const ConfigNode& root, std::string_view path) {
         source->position.text(), steps[0].key, printable(key), asked,
         file != nullptr ? printable(file->scalar) : "its glTF file"));
 }
-
-namespace {
 
 /// The way to the node at `path`; empty if there is none, or for the root.
 NodeRoute route_to(const ConfigNode& root, std::string_view path) {

@@ -7,11 +7,6 @@
 
 namespace uw {
 
-/// Throws InputError, one line with the reason, if the scene takes the lamp, the pose or the
-/// intrinsics at `path` from a glTF file: they are not in the scene file, and cannot be changed
-/// there. `root` is a scene's tree.
-void check_not_of_gltf(const ConfigNode& root, std::string_view path);
-
 class YamlDraft;
 
 /// The text of a scene file, edited in place: comments, order, layout, quotes and line ends stay as

@@ -66,8 +66,9 @@ SharedAnchor shared_anchor(const YamlSource& source, const std::vector<const Con
     return {};
 }
 
-}  // namespace
-
+/// Hands on the anchors of all values on the way to `route`, and of all below it if
+/// `with_all_below`, that aliases elsewhere stand for: the first alias becomes the anchor, with the
+/// value as it is now. A change there then changes nothing else. The document means the same.
 void release_anchors(YamlSource& source, const NodeRoute& route, bool with_all_below) {
     while (true) {
         const TextSpan own = with_all_below ? source.span(route) : TextSpan{};
@@ -87,8 +88,6 @@ void release_anchors(YamlSource& source, const NodeRoute& route, bool with_all_b
             {{from, to - from, ""}, {shared.first_alias, name.size(), name + " " + value}});
     }
 }
-
-namespace {
 
 /// A block below its key becomes a value beside it.
 std::vector<TextChange> replaced_block(const YamlSource& source, const ConfigNode::Entry& entry,
@@ -110,7 +109,7 @@ std::vector<TextChange> removed_from_flow(const YamlSource& source,
     const std::string_view between =
         std::string_view(source.text()).substr(before, own.begin - before);
     if (between.find('#') == std::string_view::npos) return {{before, own.end - before, ""}};
-    // A comment behind the one before stays.
+    // A comment behind the entry before stays.
     const std::size_t comma = source.layout().skip_blanks(before);
     return {{comma, 1, ""}, {own.begin, own.size(), ""}};
 }
@@ -128,8 +127,7 @@ std::vector<TextChange> removed_from_block(const YamlSource& source, TextSpan ow
     return {{own.begin, std::min(next, text.size()) - own.begin, ""}};
 }
 
-}  // namespace
-
+/// Puts another value at `route`, on one line. A text stays in its quotes, an anchor in its place.
 std::vector<TextChange> replaced_value(const YamlSource& source, const NodeRoute& route,
                                        const ConfigNode& value) {
     const ConfigNode& old = source.node(route);
@@ -151,6 +149,7 @@ std::vector<TextChange> replaced_value(const YamlSource& source, const NodeRoute
     return {{span.begin, span.size(), text}};
 }
 
+/// Takes one of several entries out of the map or list at `parent`. Comments around it stay.
 std::vector<TextChange> removed_child(const YamlSource& source, const NodeRoute& parent,
                                       std::size_t child) {
     const YamlLayout& layout = source.layout();
@@ -165,14 +164,12 @@ std::vector<TextChange> removed_child(const YamlSource& source, const NodeRoute&
     return is_flow ? removed_from_flow(source, all, child) : removed_from_block(source, all[child]);
 }
 
-namespace {
-
 std::string indented(std::string_view line_break, std::size_t column) {
     return std::string(line_break) + std::string(column, ' ');
 }
 
-/// Within brackets, behind the entry that ends at `after`. A comment behind the last entry stays
-/// with it: what follows then begins below the one at `like_begin`.
+/// Inserts `text` within brackets, behind the entry that ends at `after`. A comment behind the last
+/// entry stays with it: what follows then begins below the one at `like_begin`.
 std::vector<TextChange> inserted_in_flow(const YamlSource& source, std::size_t after, bool is_last,
                                          std::size_t like_begin, std::string_view separator,
                                          const std::string& text) {
@@ -214,8 +211,7 @@ bool is_below_empty_line(const YamlLayout& layout, std::size_t offset) {
     return line > 0 && layout.line_end(line - 1) == layout.line_begin(line - 1);
 }
 
-}  // namespace
-
+/// Adds a key with its value to the map at `route`, behind the keys that usually come before it.
 std::vector<TextChange> added_entry(const YamlSource& source, const NodeRoute& route,
                                     const std::string& key, const ConfigNode& value) {
     const YamlLayout& layout = source.layout();
@@ -240,6 +236,7 @@ std::vector<TextChange> added_entry(const YamlSource& source, const NodeRoute& r
     return inserted_in_flow(source, end, before + 1 == map.entries.size(), first, ", ", text);
 }
 
+/// As YamlDraft::append.
 std::vector<TextChange> added_item(const YamlSource& source, const NodeRoute& route,
                                    const ConfigNode& value, std::size_t like, bool is_copy) {
     const YamlLayout& layout = source.layout();
@@ -271,6 +268,7 @@ std::vector<TextChange> added_item(const YamlSource& source, const NodeRoute& ro
     return {{end_of_item(source, last, column), 0, (is_spaced ? line_break : "") + text}};
 }
 
+/// As YamlDraft::start_list.
 std::vector<TextChange> started_list(const YamlSource& source, std::string_view key,
                                      const ConfigNode& value) {
     const YamlLayout& layout = source.layout();
@@ -289,8 +287,6 @@ std::vector<TextChange> started_list(const YamlSource& source, std::string_view 
     const std::size_t end = layout.line_end(layout.entry(entries[before]).end);
     return {{end, 0, line_break + std::string(key) + ":" + text}};
 }
-
-namespace {
 
 struct Difference {
     enum class Kind { replace, add_entry, add_item, remove } kind;

@@ -200,7 +200,8 @@ std::size_t YamlLayout::end_of_quoted(std::size_t begin) const {
     return text_.size();
 }
 
-// Lines that are indented deeper than their key, or blank; blank ones at the end are not taken.
+// A block has the lines that are indented deeper than its key, and blank ones but for those at its
+// end.
 std::size_t YamlLayout::end_of_text_block(std::size_t begin, std::size_t indent) const {
     std::size_t end = line_end(begin);
     for (std::size_t line = next_line(begin); line < text_.size(); line = next_line(line)) {
@@ -236,12 +237,12 @@ std::size_t YamlLayout::end_of_collection(const ConfigNode& node, std::size_t be
 
 namespace {
 
-/// In the order of `like` as far as it has them, then by rank.
+/// The entries of `map` in the order of `like` as far as it has them, then by rank.
 std::vector<const ConfigNode::Entry*> in_order(const ConfigNode& map, const ConfigNode* like) {
     const auto place = [like](const ConfigNode::Entry* entry) {
         const std::size_t rank = key_rank(entry->key);
         if (like == nullptr) return rank;
-        // Next to the nearest key of lower rank that is there.
+        // The entry goes next to the nearest key of lower rank that is there.
         std::size_t best = 0;
         for (std::size_t i = 0; i < like->entries.size(); ++i) {
             if (like->entries[i].key == entry->key) return 2 * i + 1;

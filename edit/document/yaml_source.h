@@ -31,7 +31,7 @@ class YamlLayout {
     TextSpan entry(const ConfigNode::Entry& entry) const;
     /// The key alone.
     TextSpan key(const ConfigNode::Entry& entry) const;
-    /// Behind the colon of a key.
+    /// Where the colon of a key ends.
     std::size_t after_colon(const ConfigNode::Entry& entry) const;
     /// The value of an entry or the item of a list, with its anchor or as an alias. An empty value
     /// is an empty span behind the colon.
@@ -40,7 +40,8 @@ class YamlLayout {
     /// The dash of the item of a block list.
     std::size_t dash(const ConfigNode& item) const;
 
-    /// Whether a map or list that is no alias is written with brackets. A span of it as above.
+    /// Whether a map or list that is no alias is written with brackets; `span` is its span as
+    /// above.
     bool is_flow(TextSpan span) const;
     /// The span without the anchor that it may begin with.
     TextSpan without_anchor(TextSpan span) const;
@@ -79,7 +80,7 @@ class YamlLayout {
 /// How new values are written.
 struct WriteStyle {
     bool is_json = false;                 // keys and texts in double quotes
-    const YamlLayout* aliases = nullptr;  // of a copied value: aliases in it stay aliases
+    const YamlLayout* aliases = nullptr;  // if it is set, aliases in a copied value stay aliases
 };
 
 /// A value on one line (core/scene/yaml_document.h).
@@ -123,13 +124,13 @@ class YamlSource {
     const ConfigNode& tree() const { return tree_; }
     const YamlLayout& layout() const { return layout_; }
 
-    /// Changes that do not overlap. Throws InputError as parse_yaml.
+    /// Makes changes that do not overlap. Throws InputError as parse_yaml.
     void apply(std::vector<TextChange> changes);
 
     const ConfigNode& node(const NodeRoute& route) const { return node_at(tree_, route); }
     /// The entry of a map that a route leads to; nullptr if it leads to a list's item or the root.
     const ConfigNode::Entry* entry(const NodeRoute& route) const;
-    /// Of the value or item, as YamlLayout; of the root the rest of the text.
+    /// Where the value or item lies, as YamlLayout says; the root has the rest of the text.
     TextSpan span(const NodeRoute& route) const;
     /// Whether a map or list is written with brackets.
     bool is_flow(const NodeRoute& route) const;

@@ -1,36 +1,56 @@
 #include "edit/server/edit_server.h"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/random.h>
+#include <sys/socket.h>
 
 #include <fmt/format.h>
+#include <httplib.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <functional>
+#include <map>
+#include <new>
+#include <optional>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/text.h"
 #include "edit/server/page_files.h"
-#include "edit/session/edit_session.h"
+#include "edit/session/session_measures.h"
 
 namespace uw {
 
 namespace {
 
+using httplib::Request;
+using httplib::Response;
+
+// Each window that follows the events keeps a thread; the others answer.
+constexpr std::size_t k_threads = 32, k_most_windows = 16;
+constexpr std::size_t k_most_body_bytes = 256 * 1024, k_longest_target = 2000;
+constexpr int k_read_seconds = 2, k_write_seconds = 5;  // without a byte
+constexpr int k_silent_seconds = 60;  // that the kernel keeps a connection before its first byte
+constexpr double k_heartbeat_seconds = 15;
+constexpr int k_most_json_depth = 16;
 constexpr std::int64_t k_most_pixels = 1 << 20;  // along a side
 
-}  // namespace
-
-std::int64_t integer_parameter(const HttpRequest& request, const std::string& name,
-                               std::int64_t otherwise) {
-    const std::string text = request.parameter(name);
+// A parameter of an address, "?min=3"; `otherwise` where there is none.
+std::int64_t integer_parameter(const Request& request, const char* name, std::int64_t otherwise) {
+    const std::string text = request.get_param_value(name);
     if (text.empty()) return otherwise;
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -39,19 +59,19 @@ std::int64_t integer_parameter(const HttpRequest& request, const std::string& na
     return value;
 }
 
-double number_parameter(const HttpRequest& request, const std::string& name, double otherwise) {
-    const std::string text = request.parameter(name);
+double number_parameter(const Request& request, const char* name, double otherwise) {
+    const std::string text = request.get_param_value(name);
     double value = otherwise;
     if (!text.empty() && parse_number(text, value) != NumberText::number)
         throw UsageError(fmt::format("{}: expected a number", name));
     return value;
 }
 
-NumbersRequest numbers_request(const HttpRequest& request) {
+NumbersRequest numbers_request(const Request& request) {
     NumbersRequest wanted;
     wanted.ratio = number_parameter(request, "ratio", wanted.ratio);
     wanted.with_curves = integer_parameter(request, "curves", 0) != 0;
-    if (request.parameter("x0").empty()) return wanted;
+    if (request.get_param_value("x0").empty()) return wanted;
     const auto pixel = [&](const char* name) {
         const std::int64_t value = integer_parameter(request, name, -1);
         if (value < 0 || value > k_most_pixels)
@@ -60,56 +80,6 @@ NumbersRequest numbers_request(const HttpRequest& request) {
     };
     wanted.part = PixelWindow{pixel("x0"), pixel("y0"), pixel("x1"), pixel("y1")};
     return wanted;
-}
-
-namespace {
-
-constexpr std::size_t k_most_body_bytes = 256 * 1024, k_most_windows = 16;
-constexpr int k_most_json_depth = 16;
-constexpr double k_heartbeat_seconds = 15;
-
-std::string random_token() {
-    std::array<std::uint8_t, 16> bytes{};
-    for (std::size_t at = 0; at < bytes.size();) {
-        const ssize_t count = getrandom(bytes.data() + at, bytes.size() - at, 0);
-        if (count < 0 && errno != EINTR) throw IoError("no random numbers for the address");
-        if (count > 0) at += static_cast<std::size_t>(count);
-    }
-    std::string token;
-    for (const std::uint8_t byte : bytes) token += fmt::format("{:02x}", byte);
-    return token;
-}
-
-// In a time that does not depend on where they differ.
-bool is_equal(std::string_view a, std::string_view b) {
-    if (a.size() != b.size()) return false;
-    unsigned difference = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
-    return difference == 0;
-}
-
-// The path below "/TOKEN", with its slash; empty for any other.
-std::string_view path_within(std::string_view path, std::string_view token) {
-    if (path.size() < token.size() + 2 || path[0] != '/' || path[token.size() + 1] != '/')
-        return "";
-    return is_equal(path.substr(1, token.size()), token) ? path.substr(token.size() + 1) : "";
-}
-
-std::string dump(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-HttpResponse json_response(const Json& json) {
-    HttpResponse response;
-    response.body = dump(json);
-    return response;
-}
-
-HttpResponse error_response(int status, std::string_view message) {
-    HttpResponse response = json_response({{"error", printable(message, 2000)}});
-    response.status = status;
-    return response;
 }
 
 // Refuses what is nested so deeply that reading it would need much of the stack.
@@ -128,93 +98,268 @@ Json read_json(const std::string& body) {
     }
 }
 
-HttpResponse page_file(std::string_view name) {
+// A body is sent as it is: set_content() would compress it, which takes longer than the way to
+// this machine.
+void send_body(Response& response, std::string body, const std::string& type) {
+    const std::size_t size = body.size();
+    if (size == 0) return;
+    response.set_content_provider(
+        size, type,
+        [body = std::move(body)](std::size_t at, std::size_t count, httplib::DataSink& sink) {
+            if (at >= body.size()) return false;  // a range that somebody has asked for
+            sink.write(body.data() + at, std::min(count, body.size() - at));
+            return true;
+        });
+}
+
+void send_json(Response& response, const Json& json) {
+    send_body(response, json.dump(-1, ' ', false, Json::error_handler_t::replace),
+              "application/json");
+}
+
+void refuse(Response& response, int status, std::string_view message) {
+    response.status = status;
+    send_json(response, {{"error", printable(message, 2000)}});
+}
+
+// Sends what a browser saves as a file of this name.
+void send_file(Response& response, std::string body, const std::string& type,
+               const std::string& name) {
+    response.set_header("Content-Disposition", "attachment; filename=\"" + name + "\"");
+    send_body(response, std::move(body), type);
+}
+
+void send_page_file(Response& response, std::string_view name) {
     const PageFile* file = find_page_file(name);
-    if (!file) return error_response(404, "there is no such file");
-    HttpResponse response;
-    response.type = content_type(file->name);
-    response.body = file->text;
-    return response;
+    if (!file) return refuse(response, 404, "there is no such file");
+    send_body(response, std::string(file->text), std::string(content_type(file->name)));
 }
 
 std::string event_text(const Event& event) {
     return fmt::format("id: {}\nevent: {}\ndata: {}\n\n", event.number, event.name, event.data);
 }
 
+std::string random_token() {
+    std::array<std::uint8_t, 16> bytes{};
+    for (std::size_t at = 0; at < bytes.size();) {
+        const ssize_t count = getrandom(bytes.data() + at, bytes.size() - at, 0);
+        if (count < 0 && errno != EINTR) throw IoError("no random numbers for the address");
+        if (count > 0) at += static_cast<std::size_t>(count);
+    }
+    std::string token;
+    for (const std::uint8_t byte : bytes) token += fmt::format("{:02x}", byte);
+    return token;
+}
+
+// Compares in a time that does not depend on where they differ.
+bool is_equal(std::string_view a, std::string_view b) {
+    if (a.size() != b.size()) return false;
+    unsigned difference = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+    return difference == 0;
+}
+
+// The path below "/TOKEN", with its slash; empty for any other.
+std::string_view path_within(std::string_view path, std::string_view token) {
+    if (path.size() < token.size() + 2 || path[0] != '/' || path[token.size() + 1] != '/')
+        return "";
+    return is_equal(path.substr(1, token.size()), token) ? path.substr(token.size() + 1) : "";
+}
+
+// Answers a request that failed.
+void refuse_for(Response& response, const std::exception_ptr& failure) {
+    try {
+        std::rethrow_exception(failure);
+    } catch (const UsageError& error) {
+        refuse(response, 400, error.what());
+    } catch (const InputError& error) {
+        refuse(response, 422, error.what());
+    } catch (const ConflictError& error) {
+        refuse(response, 409, error.what());
+    } catch (const IoError& error) {
+        refuse(response, 422, error.what());
+    } catch (const std::exception& error) {
+        refuse(response, 500, line_of(error));
+    }
+}
+
+// Threads that answer. A request that needs more memory than there is ends alone.
+class Workers final : public httplib::TaskQueue {
+  public:
+    // What it returns depends on the library's version.
+    auto enqueue(std::function<void()> serve) -> decltype(TaskQueue::enqueue({})) override {
+        return pool_.enqueue([serve = std::move(serve)] {
+            try {
+                serve();
+            } catch (const std::bad_alloc&) {
+            }
+        });
+    }
+    void shutdown() override { pool_.shutdown(); }
+
+  private:
+    httplib::ThreadPool pool_{k_threads};
+};
+
+// Binds the server to 127.0.0.1; returns the port.
+//
+// A connection keeps a thread from when it is accepted until it ends, so the kernel is told to
+// accept none before its first byte has come, and each is closed after one answer: those that say
+// nothing wait in the kernel's queue. The library would make that queue 5 long, and would let
+// other programs share the port.
+int bind_to_loopback(httplib::Server& server, int port) {
+    int listening = -1;
+    server.set_socket_options([&](socket_t socket) {
+        listening = socket;
+        const int on = 1;
+        setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+        setsockopt(socket, IPPROTO_TCP, TCP_DEFER_ACCEPT, &k_silent_seconds,
+                   sizeof k_silent_seconds);
+    });
+    const char* const host = "127.0.0.1";
+    const int bound = port == 0                         ? server.bind_to_any_port(host)
+                      : server.bind_to_port(host, port) ? port
+                                                        : -1;
+    if (bound < 0 || listen(listening, SOMAXCONN) != 0)
+        throw IoError(
+            fmt::format("port {} of 127.0.0.1: {}; choose another with --port, or leave "
+                        "it out for a free one",
+                        port, std::strerror(errno)));
+    return bound;
+}
+
 }  // namespace
 
-EditServer::EditServer(EditSession& session, int port, HttpLimits limits)
-    : session_(session),
-      measures_(session),
-      token_(random_token()),
-      listener_(port, limits),
-      protocol_([this](const HttpRequest& request) { return answer(request); },
-                listener_.is_stopping()) {
-    listener_.start(
-        [this](const HttpHead& head) {
-            // Whoever is to be refused sends no body.
-            return path_within(head.target, token_).empty() ? 0 : k_most_body_bytes;
-        },
-        [this](int socket, std::string request) {
-            return protocol_.answer(socket, std::move(request));
+class EditServer::Page {
+  public:
+    Page(EditSession& session, int port);
+    ~Page();
+    Page(const Page&) = delete;
+    Page& operator=(const Page&) = delete;
+    Page(Page&&) = delete;
+    Page& operator=(Page&&) = delete;
+
+    int port() const { return port_; }
+    const std::string& token() const { return token_; }
+
+  private:
+    bool is_from_here(const Request& request) const;
+    bool is_refused(const Request& request, Response& response) const;
+    void answer(const Request& request, Response& response);
+    void send_events(Response& response);
+    void send_image(const Request& request, Response& response) const;
+
+    EditSession& session_;
+    SessionMeasures measures_;
+    std::string token_ = random_token();
+    std::atomic<std::size_t> windows_ = 0;  // that follow the events
+    httplib::Server server_;
+    int port_ = 0;
+    std::thread thread_;
+};
+
+EditServer::Page::Page(EditSession& session, int port) : session_(session), measures_(session) {
+    server_.new_task_queue = [] { return new Workers; };
+    server_.set_keep_alive_max_count(1);
+    server_.set_keep_alive_timeout(0);  // the first byte is there
+    server_.set_read_timeout(k_read_seconds);
+    server_.set_write_timeout(k_write_seconds);
+    server_.set_payload_max_length(k_most_body_bytes);
+    server_.set_tcp_nodelay(true);
+    server_.set_default_headers({
+        {"Content-Security-Policy",
+         "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; "
+         "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+        {"X-Content-Type-Options", "nosniff"},
+        {"X-Frame-Options", "DENY"},
+        {"Referrer-Policy", "no-referrer"},
+        {"Cross-Origin-Resource-Policy", "same-origin"},
+        {"Cross-Origin-Opener-Policy", "same-origin"},
+        {"Cache-Control", "no-store"},
+    });
+    server_.set_pre_routing_handler([this](const Request& request, Response& response) {
+        return is_refused(request, response) ? httplib::Server::HandlerResponse::Handled
+                                             : httplib::Server::HandlerResponse::Unhandled;
+    });
+    const auto answer_it = [this](const Request& request, Response& response) {
+        answer(request, response);
+    };
+    server_.Get(".*", answer_it);
+    server_.Post(".*", answer_it);
+    server_.set_exception_handler(
+        [](const Request&, Response& response, const std::exception_ptr& failure) {
+            refuse_for(response, failure);
         });
+    // What the library itself refuses has no body yet.
+    server_.set_error_handler([](const Request&, Response& response) {
+        if (!response.has_header("Content-Type"))
+            refuse(response, response.status, "this is not a request that the editor understands");
+    });
+    port_ = bind_to_loopback(server_, port);
+    thread_ = std::thread([this] { server_.listen_after_bind(); });
+    // A server that does not run yet cannot be stopped.
+    while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-EditServer::~EditServer() {
+EditServer::Page::~Page() {
     session_.events().close();
-    listener_.stop();
-}
-
-std::string EditServer::address() const {
-    return fmt::format("http://127.0.0.1:{}/{}/", port(), token_);
+    server_.stop();
+    thread_.join();
 }
 
 // A name that another page has made point here has another Host; a request that another page makes
 // has another Origin.
-bool EditServer::is_from_here(const HttpRequest& request) const {
-    const std::array hosts{fmt::format("127.0.0.1:{}", port()),
-                           fmt::format("localhost:{}", port())};
-    const std::string host = request.header("host"), origin = request.header("origin");
-    const std::string site = request.header("sec-fetch-site");
+bool EditServer::Page::is_from_here(const Request& request) const {
+    const std::array hosts{fmt::format("127.0.0.1:{}", port_), fmt::format("localhost:{}", port_)};
+    const std::string host = request.get_header_value("Host"),
+                      origin = request.get_header_value("Origin"),
+                      site = request.get_header_value("Sec-Fetch-Site");
     const bool is_other_site = !site.empty() && site != "same-origin" && site != "none";
     if ((host != hosts[0] && host != hosts[1]) || is_other_site) return false;
     return origin.empty() || origin == "http://" + host;
 }
 
-HttpResponse EditServer::answer(const HttpRequest& request) {
-    try {
-        if (!is_from_here(request))
-            return error_response(403, "this address is not for other pages");
-        const std::string path(path_within(request.path, token_));
-        if (path.empty())
-            return error_response(403, "open the address that uwvdb edit has printed");
-        return answer_within(request, path);
-    } catch (const UsageError& error) {
-        return error_response(400, error.what());
-    } catch (const InputError& error) {
-        return error_response(422, error.what());
-    } catch (const ConflictError& error) {
-        return error_response(409, error.what());
-    } catch (const IoError& error) {
-        return error_response(422, error.what());
-    } catch (const std::exception& error) {
-        return error_response(500, line_of(error));
-    }
+// Answers what is refused before its body is read.
+bool EditServer::Page::is_refused(const Request& request, Response& response) const {
+    const bool has_length = request.has_header("Content-Length");
+    if (request.target.size() > k_longest_target)
+        refuse(response, 414, "the address is too long");
+    else if (!is_from_here(request))
+        refuse(response, 403, "this address is not for other pages");
+    else if (path_within(request.path, token_).empty())
+        refuse(response, 403, "open the address that uwvdb edit has printed");
+    else if (request.method != "GET" && request.method != "POST")
+        refuse(response, 405, "this address is not for that method");
+    else if (request.has_header("Transfer-Encoding") || (request.method == "POST" && !has_length))
+        refuse(response, 411, "the length of the request is missing");
+    else
+        return false;
+    return true;
 }
 
-HttpResponse EditServer::answer_within(const HttpRequest& request, const std::string& path) {
-    using Get = std::function<HttpResponse()>;
+void EditServer::Page::answer(const Request& request, Response& response) {
+    using Get = std::function<void()>;
     using Post = std::function<Json(const Json& body)>;
     const std::map<std::string_view, Get> gets{
-        {"/", [] { return page_file("index.html"); }},
-        {"/api/state", [&] { return json_response(session_.state()); }},
-        {"/api/outlines", [&] { return json_response(session_.outlines()); }},
-        {"/api/events", [&] { return events(); }},
-        {"/api/image", [&] { return image(request); }},
-        {"/api/numbers",
-         [&] { return json_response(measures_.numbers(numbers_request(request))); }},
-        {"/api/export/numbers.csv", [&] { return numbers_csv(request); }},
-        {"/api/export/picture.png", [&] { return picture_png(request); }},
+        {"/", [&] { send_page_file(response, "index.html"); }},
+        {"/api/state", [&] { send_json(response, session_.state()); }},
+        {"/api/outlines", [&] { send_json(response, session_.outlines()); }},
+        {"/api/events", [&] { send_events(response); }},
+        {"/api/image", [&] { send_image(request, response); }},
+        {"/api/numbers", [&] { send_json(response, measures_.numbers(numbers_request(request))); }},
+        {"/api/export/numbers.csv",
+         [&] {
+             send_file(response, measures_.numbers_csv(numbers_request(request)),
+                       "text/csv; charset=utf-8", "numbers.csv");
+         }},
+        {"/api/export/picture.png",
+         [&] {
+             std::optional<double> exposure;
+             if (!request.get_param_value("exposure").empty())
+                 exposure = number_parameter(request, "exposure", 1);
+             send_file(response, measures_.picture_png(exposure), "image/png", "picture.png");
+         }},
     };
     const auto then_state = [&](auto&& change) {
         change();
@@ -235,78 +380,79 @@ HttpResponse EditServer::answer_within(const HttpRequest& request, const std::st
              return Json::object();
          }},
     };
+    const std::string_view path = path_within(request.path, token_);
     const auto get = gets.find(path);
     const auto post = posts.find(path);
     const bool is_file = path.starts_with("/page/");
     if (get == gets.end() && post == posts.end() && !is_file)
-        return error_response(404, "there is nothing at this address");
-    if (request.method == "POST" && post != posts.end()) {
-        // A form, which other pages can send without being asked, is none.
-        if (!request.header("content-type").starts_with("application/json"))
-            return error_response(415, "expected application/json");
-        return json_response(post->second(read_json(request.body)));
-    }
-    if (request.method != "GET" || post != posts.end())
-        return error_response(405, "this address is not for that method");
-    return is_file ? page_file(std::string_view(path).substr(6)) : get->second();
+        return refuse(response, 404, "there is nothing at this address");
+    if ((request.method == "POST") != (post != posts.end()))
+        return refuse(response, 405, "this address is not for that method");
+    if (is_file) return send_page_file(response, path.substr(6));
+    if (get != gets.end()) return get->second();
+    // Other pages can send forms without being asked, but not this type.
+    if (!request.get_header_value("Content-Type").starts_with("application/json"))
+        return refuse(response, 415, "expected application/json");
+    send_json(response, post->second(read_json(request.body)));
 }
 
-HttpResponse EditServer::events() {
+void EditServer::Page::send_events(Response& response) {
     if (++windows_ > k_most_windows) {
         --windows_;
-        return error_response(503, "too many windows; close one");
+        return refuse(response, 503, "too many windows; close one");
     }
-    HttpResponse response;
-    response.type = "text/event-stream";
-    response.stream = [this](const HttpSend& send) {
-        EventLog& log = session_.events();
-        std::uint64_t last = log.last();
-        bool is_open = send("retry: 1000\nevent: hello\ndata: {}\n\n");
-        while (is_open && !log.is_closed()) {
-            const std::vector<Event> events = log.wait(last, k_heartbeat_seconds);
-            if (events.empty()) is_open = send(": still here\n\n");
-            for (const Event& event : events) {
-                is_open = is_open && send(event_text(event));
-                last = event.number;
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [this](std::size_t /*at*/, httplib::DataSink& sink) {
+            const auto send_text = [&](const std::string& text) {
+                sink.write(text.data(), text.size());
+                return sink.is_writable();
+            };
+            EventLog& log = session_.events();
+            std::uint64_t last = log.last();
+            bool is_open = send_text("retry: 1000\nevent: hello\ndata: {}\n\n");
+            while (is_open && !log.is_closed()) {
+                const std::vector<Event> events = log.wait(last, k_heartbeat_seconds);
+                if (events.empty()) is_open = send_text(": still here\n\n");
+                for (const Event& event : events) {
+                    is_open = is_open && send_text(event_text(event));
+                    last = event.number;
+                }
             }
-        }
-        --windows_;
-    };
-    return response;
+            return false;
+        },
+        [this](bool /*success*/) { --windows_; });
 }
 
-HttpResponse EditServer::image(const HttpRequest& request) const {
-    const std::string type = request.parameter("type");
+void EditServer::Page::send_image(const Request& request, Response& response) const {
+    const std::string type = request.get_param_value("type");
     if (!type.empty() && type != "f16" && type != "f32")
         throw UsageError("type: expected f16 or f32");
     const std::int64_t least = integer_parameter(request, "min", 0);
     const std::shared_ptr<const Picture> picture = session_.picture();
-    HttpResponse response;
     if (!picture || picture->number < least) {
         response.status = 204;
-        return response;
+        return;
     }
-    response.type = "application/octet-stream";
-    response.body = picture_bytes(*picture, type == "f16" ? SampleType::f16 : SampleType::f32);
-    return response;
+    send_body(response, picture_bytes(*picture, type == "f16" ? SampleType::f16 : SampleType::f32),
+              "application/octet-stream");
 }
 
-HttpResponse EditServer::numbers_csv(const HttpRequest& request) {
-    HttpResponse response;
-    response.type = "text/csv; charset=utf-8";
-    response.file_name = "numbers.csv";
-    response.body = measures_.numbers_csv(numbers_request(request));
-    return response;
+EditServer::EditServer(EditSession& session, int port)
+    : page_(std::make_unique<Page>(session, port)) {}
+
+EditServer::~EditServer() = default;
+
+int EditServer::port() const {
+    return page_->port();
 }
 
-HttpResponse EditServer::picture_png(const HttpRequest& request) {
-    std::optional<double> exposure;
-    if (!request.parameter("exposure").empty()) exposure = number_parameter(request, "exposure", 1);
-    HttpResponse response;
-    response.type = "image/png";
-    response.file_name = "picture.png";
-    response.body = measures_.picture_png(exposure);
-    return response;
+const std::string& EditServer::token() const {
+    return page_->token();
+}
+
+std::string EditServer::address() const {
+    return fmt::format("http://127.0.0.1:{}/{}/", port(), token());
 }
 
 }  // namespace uw

@@ -102,6 +102,13 @@ void FileWatch::run() const {
     }
 }
 
+namespace {
+
+constexpr std::chrono::milliseconds k_progress_interval{100};
+constexpr std::size_t k_most_changes = 100;
+
+// A message about a scene file as {"message", "line", "column"}, the last two null where it does
+// not say "scene.yaml:14:7: ...".
 Json located_message(const std::string& message, const std::string& file_name) {
     Json located = {{"message", message}, {"line", nullptr}, {"column", nullptr}};
     const std::string begin = file_name + ":";
@@ -118,11 +125,6 @@ Json located_message(const std::string& message, const std::string& file_name) {
     }
     return located;
 }
-
-namespace {
-
-constexpr std::chrono::milliseconds k_progress_interval{100};
-constexpr std::size_t k_most_changes = 100;
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
     return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -183,7 +185,7 @@ void EditSession::file_changed() {
     announce();
 }
 
-// The scene from now on. Its revision is the next one.
+// Makes `scene`, whose revision is the next one, the scene from now on.
 void EditSession::take(std::shared_ptr<const EditedScene> scene) {
     scene_ = std::move(scene);
     revision_ = scene_->revision;
@@ -192,7 +194,7 @@ void EditSession::take(std::shared_ptr<const EditedScene> scene) {
     announce();
 }
 
-// After the document's text has changed by itself: undo, redo.
+// Reads the scene again after undo or redo has changed the document's text.
 void EditSession::read_document() {
     all_touched_ = revision_ + 1;
     take(make_edited_scene(document().scene().text(), document().scene().tree(), file_, off_,

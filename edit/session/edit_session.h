@@ -24,7 +24,7 @@
 
 namespace uw {
 
-/// A request that was right, but not for the scene as it has become. One line.
+/// Reports, in one line, a request that was right, but not for the scene as it has become.
 class ConflictError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -78,14 +78,10 @@ class FileWatch {
     std::thread thread_;
 };
 
-/// A message about a scene file as {"message", "line", "column"}, the last two null where it does
-/// not say "scene.yaml:14:7: ...".
-Json located_message(const std::string& message, const std::string& file_name);
-
 /// A scene that is being edited, by any number of windows: its document, its pictures, and what the
 /// windows are told. Thread safe; changes are made one after the other.
 ///
-/// A scene that cannot be read is no end: the state says why, and it is read again when its file
+/// A scene that cannot be read ends nothing: the state says why, and it is read again when its file
 /// has changed. Once it has been read, the last good one stays.
 class EditSession {
   public:

@@ -34,7 +34,7 @@ std::string hash_without(ConfigNode map, std::span<const std::string_view> keys)
     return config_hash(map);
 }
 
-// The bands' proportions, which an image in colours that are not the bands cannot be freed of.
+// The proportions of the bands, which remain in an image whose colours are not the bands.
 std::string proportions(const Spectrum& brightness, std::size_t bands) {
     double most = 0;
     for (std::size_t b = 0; b < bands; ++b) most = std::max(most, brightness[b]);
@@ -134,7 +134,7 @@ void check_files(const Json& value, bool is_file) {
         for (const auto& [key, item] : value.items()) check_files(item, names_a_file(key));
 }
 
-// "left" for "right" and so on; else the name itself.
+// The name with "left" for "right" and so on; else the name itself.
 std::string mirrored_name(const std::string& name) {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 4> k_sides{
         {{"left", "right"}, {"right", "left"}, {"port", "starboard"}, {"starboard", "port"}}};

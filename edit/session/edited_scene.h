@@ -48,7 +48,7 @@ struct EditedScene {
     /// The lamp of this name; none if there is none.
     std::optional<std::size_t> find_lamp(std::string_view name) const;
     /// What the three planes of a lamp's image are multiplied by when its brightness per band is
-    /// `brightness` instead of 1: with plain colour the bands, else the brightest band thrice.
+    /// `brightness` instead of 1: the bands where colour is plain, else the brightest band thrice.
     std::array<double, 3> colour_scale(const Spectrum& brightness) const;
 };
 

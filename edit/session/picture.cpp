@@ -16,7 +16,8 @@ namespace uw {
 
 namespace {
 
-// Pixels of the first picture while a lamp is dragged, and of the last: more than a page shows.
+// The first picture while a lamp is dragged, and the last, have so many pixels: the latter is more
+// than a page shows.
 constexpr double k_small_pixels = 160 * 90, k_most_pixels = 1920 * 1200;
 constexpr double k_draft_width = 480, k_draft_height = 270;
 
@@ -29,8 +30,8 @@ std::string_view layer_name(Layer layer) {
     return k_layers[static_cast<std::size_t>(layer)].name;
 }
 
-// The nearest IEEE 754 half, to even, of a value of magnitude up to 1. Rounding is left to the
-// addition of floats where halves are subnormal, and to that of integers elsewhere.
+// The IEEE 754 half that is nearest (ties to even) to a value of magnitude up to 1. Rounding is
+// left to the addition of floats where halves are subnormal, and to that of integers elsewhere.
 std::uint16_t half_bits(float value) {
     constexpr std::uint32_t k_normal = 0x38800000U;  // 2^-14, the least normal half
     constexpr float k_subnormal = 0.5F;              // whose last bit is worth 2^-24
@@ -111,7 +112,7 @@ class PlaneWriter {
             append(values_.data(), sizeof(float) * values_.size());
             return;
         }
-        // What is not finite cannot be scaled either, and is shown as none.
+        // What is not finite cannot be scaled either, and is shown as 0.
         halves_.resize(values_.size());
         const float scale = 1 / factor;
         std::ranges::transform(values_, halves_.begin(), [scale](float value) {
@@ -195,7 +196,7 @@ std::string picture_bytes(const Picture& picture, SampleType type) {
 
 namespace {
 
-// By which the light of a lamp, rendered with `rendered`, is multiplied.
+// What the light of a lamp that was rendered with the brightness `rendered` is multiplied by.
 Spectrum gain_of(const EditedLamp& lamp, const Spectrum& rendered, std::size_t bands) {
     if (!lamp.on) return {};
     return per_band(bands, [&](std::size_t b) {
@@ -249,40 +250,6 @@ PictureLayers mixed_layers(const Picture& picture, const EditedScene& now) {
                 gain_of(now.lamps[i], picture.lamps[i]->brightness, layers.bands));
     mix.add(*picture.unlit, per_band(layers.bands, [](std::size_t) { return 1.0; }));
     return layers;
-}
-
-Json numbers_json(const PictureNumbers& numbers) {
-    const auto optional = [](const std::optional<double>& value) {
-        return value ? number_json(*value) : Json(nullptr);
-    };
-    Json evenness;
-    if (const auto& e = numbers.evenness)
-        evenness = {{"mean", number_json(e->mean)},
-                    {"least", number_json(e->least)},
-                    {"greatest", number_json(e->greatest)},
-                    {"percentile5", number_json(e->percentile5)},
-                    {"median", number_json(e->median)},
-                    {"percentile95", number_json(e->percentile95)},
-                    {"least_to_mean", number_json(e->least_to_mean)},
-                    {"percentile5_to_mean", number_json(e->percentile5_to_mean)},
-                    {"pixels", e->pixels}};
-    return {{"signal", number_json(numbers.signal)},
-            {"backscatter", number_json(numbers.backscatter)},
-            {"signal_to_backscatter", number_json(numbers.signal_to_backscatter)},
-            {"contrast", number_json(numbers.contrast)},
-            {"clean_contrast", optional(numbers.clean_contrast)},
-            {"share_above", number_json(numbers.share_above)},
-            {"lost_to_water", optional(numbers.lost_to_water)},
-            {"evenness", std::move(evenness)}};
-}
-
-Json target_numbers_json(const TargetNumbers& numbers) {
-    return {{"distance", number_json(numbers.distance)},
-            {"contrast", number_json(numbers.contrast)},
-            {"signal", number_json(numbers.signal)},
-            {"backscatter", number_json(numbers.backscatter)},
-            {"signal_to_backscatter", number_json(numbers.signal_to_backscatter)},
-            {"irradiance", number_json(numbers.irradiance)}};
 }
 
 }  // namespace uw

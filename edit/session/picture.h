@@ -2,18 +2,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "core/base/json.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
 #include "edit/session/edited_scene.h"
 #include "render/measures/picture_numbers.h"
-#include "render/measures/target_probe.h"
 
 namespace uw {
 
@@ -56,9 +53,5 @@ bool is_same_picture(const EditedScene& a, const EditedScene& b);
 /// The layers of a picture with its lamps as bright as they are in `now`, off where they are off.
 /// Refers to the picture. Precondition: is_same_picture(*picture.scene, now).
 PictureLayers mixed_layers(const Picture& picture, const EditedScene& now);
-
-/// {"signal", "backscatter", ...}, docs/edit-api.md.
-Json numbers_json(const PictureNumbers& numbers);
-Json target_numbers_json(const TargetNumbers& numbers);
 
 }  // namespace uw

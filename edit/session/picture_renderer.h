@@ -20,7 +20,7 @@ struct PictureCallbacks {
     std::function<void(const Picture& picture)> done;
     std::function<void(PictureQuality quality, double fraction)> progress;
     std::function<void(const std::string& message)> failed;
-    /// After the first picture of a scene whose surroundings are new.
+    /// Called after the first picture of a scene whose surroundings are new.
     std::function<void(const Renderer& renderer)> assembled;
 };
 
@@ -71,7 +71,7 @@ class PictureRenderer {
     std::atomic<std::size_t> rendered_ = 0;
     std::atomic<PictureQuality> quality_ = PictureQuality::small;  // being rendered
 
-    // Of the thread alone.
+    // What follows belongs to the thread alone.
     Renderer renderer_;
     std::string surrounding_;  // of what is known
     bool is_announced_ = false;

@@ -21,6 +21,7 @@
 #include "edit/session/edit_session.h"
 #include "edit/session/picture.h"
 #include "edit/session/request_members.h"
+#include "render/measures/picture_numbers.h"
 
 namespace uw {
 
@@ -62,8 +63,8 @@ Json lamp_place_json(const LampDesc& lamp) {
             {"direction", vector_json(lamp.direction)}};
 }
 
-}  // namespace
-
+// What a window asks of the search for a lamp's place (docs/edit-api.md). Throws UsageError where
+// the request is malformed, or names lamps that are not in `scene`.
 SuggestRequest suggest_request(const Json& request, const ResolvedScene& scene) {
     SuggestRequest wanted;
     wanted.lamp = lamp_member(request, "lamp", scene);
@@ -83,6 +84,42 @@ SuggestRequest suggest_request(const Json& request, const ResolvedScene& scene) 
     return wanted;
 }
 
+// {"signal", "backscatter", ...}, as docs/edit-api.md says.
+Json numbers_json(const PictureNumbers& numbers) {
+    const auto optional = [](const std::optional<double>& value) {
+        return value ? number_json(*value) : Json(nullptr);
+    };
+    Json evenness;
+    if (const auto& e = numbers.evenness)
+        evenness = {{"mean", number_json(e->mean)},
+                    {"least", number_json(e->least)},
+                    {"greatest", number_json(e->greatest)},
+                    {"percentile5", number_json(e->percentile5)},
+                    {"median", number_json(e->median)},
+                    {"percentile95", number_json(e->percentile95)},
+                    {"least_to_mean", number_json(e->least_to_mean)},
+                    {"percentile5_to_mean", number_json(e->percentile5_to_mean)},
+                    {"pixels", e->pixels}};
+    return {{"signal", number_json(numbers.signal)},
+            {"backscatter", number_json(numbers.backscatter)},
+            {"signal_to_backscatter", number_json(numbers.signal_to_backscatter)},
+            {"contrast", number_json(numbers.contrast)},
+            {"clean_contrast", optional(numbers.clean_contrast)},
+            {"share_above", number_json(numbers.share_above)},
+            {"lost_to_water", optional(numbers.lost_to_water)},
+            {"evenness", std::move(evenness)}};
+}
+
+Json target_numbers_json(const TargetNumbers& numbers) {
+    return {{"distance", number_json(numbers.distance)},
+            {"contrast", number_json(numbers.contrast)},
+            {"signal", number_json(numbers.signal)},
+            {"backscatter", number_json(numbers.backscatter)},
+            {"signal_to_backscatter", number_json(numbers.signal_to_backscatter)},
+            {"irradiance", number_json(numbers.irradiance)}};
+}
+
+// A place that was tried: where it is, what it is worth, and its numbers.
 Json suggest_point_json(const SuggestPoint& point) {
     return {{"position", point_json(point.position)},
             {"value", number_json(point.value)},
@@ -90,6 +127,8 @@ Json suggest_point_json(const SuggestPoint& point) {
             {"numbers", target_numbers_json(point.numbers)}};
 }
 
+// What the search found: the map of the objective, the places before and best, and the lamps
+// there.
 Json suggestion_json(const Suggestion& found) {
     Json map = Json::array();
     for (const SuggestPoint& point : found.map)
@@ -105,9 +144,7 @@ Json suggestion_json(const Suggestion& found) {
             {"tried", found.tried}};
 }
 
-namespace {
-
-// A part of the image that is not chosen: this share of its shorter side.
+// Unless a window chooses one, the part has this share of the image's shorter side.
 constexpr double k_patch_share = 0.2;
 
 // The scene without the lamps that are off.
@@ -281,7 +318,7 @@ void SessionMeasures::search(std::int64_t id, const ResolvedScene& scene,
         std::size_t told = 0;
         const Suggestion found =
             suggest_position(probe, scene, request, [&](const Suggestion& so_far) {
-                // Some twenty times, each with the map so far.
+                // Windows are told some twenty times.
                 if (so_far.tried >= told + std::max<std::size_t>(1, request.samples / 20)) {
                     told = so_far.tried;
                     Json progress = event;

@@ -8,24 +8,12 @@
 #include <thread>
 
 #include "core/base/json.h"
-#include "core/base/ray.h"
 #include "edit/session/edit_session.h"
 #include "edit/session/suggest.h"
 #include "render/measures/target_probe.h"
 #include "render/resolved_scene.h"
 
 namespace uw {
-
-/// What a window asks of the search for a lamp's place (docs/edit-api.md). Throws UsageError where
-/// the request is not one, or names lamps that are not in `scene`.
-SuggestRequest suggest_request(const Json& request, const ResolvedScene& scene);
-
-/// What the search found: the map of the objective, the places before and best, and the lamps
-/// there.
-Json suggestion_json(const Suggestion& found);
-
-/// A place that was tried: where, what it is worth, and its numbers.
-Json suggest_point_json(const SuggestPoint& point);
 
 /// What a window asks of the numbers of the picture.
 struct NumbersRequest {
@@ -45,14 +33,14 @@ class SessionMeasures {
     SessionMeasures(SessionMeasures&&) = delete;
     SessionMeasures& operator=(SessionMeasures&&) = delete;
 
-    /// Of the newest picture, and what a target at 0.5 to 10 m looks like, as docs/edit-api.md
-    /// says. Throws UsageError for a part outside the image, ConflictError before the first picture
-    /// and, with curves, if a newer request has come.
+    /// The numbers of the newest picture, and what a target at 0.5 to 10 m looks like, as
+    /// docs/edit-api.md says. Throws UsageError for a part outside the image, ConflictError before
+    /// the first picture and, with curves, if a newer request has come.
     Json numbers(const NumbersRequest& request);
     /// All of that as CSV.
     std::string numbers_csv(const NumbersRequest& request);
-    /// The whole scene as uwvdb render makes it, without the lamps that are off: a PNG. An exposure
-    /// of none is its automatic one.
+    /// The whole scene as uwvdb render makes it, without the lamps that are off: a PNG. Without
+    /// `exposure` it has its automatic one.
     std::string picture_png(std::optional<double> exposure);
 
     /// Begins a search, ends one under way; events tell of it. Throws UsageError.

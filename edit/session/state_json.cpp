@@ -160,8 +160,8 @@ class Outlines {
         }
     }
 
-    // For each vertex the first one at its place: files repeat vertices where normals or textures
-    // differ.
+    // Maps each vertex to the first one at its place: files repeat vertices where normals or
+    // textures differ.
     static std::vector<std::uint32_t> joined_vertices(const TriangleMesh& mesh) {
         std::map<std::array<float, 3>, std::uint32_t> first;
         std::vector<std::uint32_t> joined;
@@ -203,8 +203,8 @@ Json scalar_json(const ConfigNode& node) {
     return node.scalar;
 }
 
-}  // namespace
-
+/// Part of a scene file as JSON, with its scalars as YAML means them: numbers, true and false, or
+/// text.
 Json config_json(const ConfigNode& node) {
     switch (node.kind) {
         case ConfigNode::Kind::scalar:
@@ -225,8 +225,6 @@ Json config_json(const ConfigNode& node) {
     }
     return nullptr;
 }
-
-namespace {
 
 Json pixel_json(const ImagePoint& pixel) {
     return Json::array({number_json(pixel.x), number_json(pixel.y)});
@@ -301,8 +299,8 @@ std::string_view frame_of(const SceneDesc& desc, const LampDesc& lamp, const Con
     return frame || desc.cameras.empty() ? "camera" : "rig";
 }
 
-}  // namespace
-
+/// One lamp of the state (docs/edit-api.md): what the file says of it, where it is in the world and
+/// in the image. `tree` is the scene file's.
 Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& tree) {
     const SceneDesc& desc = edited.scene.desc();
     const LampDesc& lamp = desc.lamps[index];
@@ -337,6 +335,7 @@ Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& t
             {"cone", std::move(cone)}};
 }
 
+/// The lamp spectra that a scene can name without a file, as values of `spectrum`.
 Json lamp_spectrum_names_json() {
     Json names = Json::array(
         {{{"type", "flat"}}, {{"type", "d65"}}, {{"type", "blackbody"}, {"temperature", 3200}}});
@@ -347,9 +346,7 @@ Json lamp_spectrum_names_json() {
     return names;
 }
 
-namespace {
-
-// Deeper and more, a folder is not one of lamps' files.
+// A folder that is deeper, or has more of them, is not one of lamps' files.
 constexpr int k_folder_depth = 2;
 constexpr std::size_t k_most_files = 200;
 
@@ -371,7 +368,8 @@ Json port_values_json(const DomePortDesc& port) {
             {"n_water", port.n_water}, {"fresnel", port.fresnel}};
 }
 
-// With the path under which it can be edited; null where a calibration or a rig holds it.
+// The port, with the path under which it can be edited, which is null where a calibration or a rig
+// holds it.
 Json port_json(const CameraDesc& camera, const ConfigNode& tree) {
     if (!camera.port) return nullptr;
     Json port = std::visit([](const auto& desc) { return port_values_json(desc); }, *camera.port);

@@ -18,23 +18,12 @@ struct OutlineSegment {
     std::array<float, 3> from{}, to{};
 };
 
-/// Edges by which the shapes of a scene can be recognised in a plan: of meshes those at their rims
-/// and where faces meet at more than 30 degrees; of boxes all; of spheres three great circles; of
-/// planes, which have no end, none. The longest, if there are more than `most`. Meshes that cannot
-/// be read have none: rendering reports that.
+/// Edges by which the shapes of a scene can be recognised in a plan. A mesh has those at its rims
+/// and where faces meet at more than 30 degrees, a box all, a sphere three great circles, and a
+/// plane, which has no end, none. If there are more than `most`, the longest are kept. A mesh that
+/// cannot be read has none: rendering reports that.
 std::vector<OutlineSegment> scene_outlines(const std::vector<GeometryDesc>& geometry,
                                            std::size_t most = 20000);
-
-/// Part of a scene file as JSON, with its scalars as YAML means them: numbers, true and false, or
-/// text.
-Json config_json(const ConfigNode& node);
-
-/// One lamp of the state (docs/edit-api.md): what the file says of it, where it is in the world and
-/// in the image. `tree` is the scene file's.
-Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& tree);
-
-/// The lamp spectra that a scene can name without a file, as values of `spectrum`.
-Json lamp_spectrum_names_json();
 
 /// What is known of a scene once it has been assembled.
 struct SceneShapes {

@@ -11,7 +11,7 @@
 namespace uw {
 namespace {
 
-/// Position in the request's line or box: 0..1 along each axis; of a line, along the first.
+/// A position in the request's box, 0..1 along each axis, or on its line, 0..1 in the first.
 using Place = std::array<double, 3>;
 
 constexpr double k_finest_step = 0.01;  // [m]
@@ -44,14 +44,14 @@ Point3 position_at(const SuggestRequest& request, const Place& place) {
     return position;
 }
 
-/// The lengths of the axes of a Place [m]; 0: there is but one value.
+/// The lengths of the axes of a Place [m]; an axis of length 0 has but one value.
 std::array<double, 3> axis_lengths(const SuggestRequest& request) {
     const Vector3 diagonal = request.to - request.from;
     if (!request.in_box) return {glm::length(diagonal), 0, 0};
     return {std::abs(diagonal.x), std::abs(diagonal.y), std::abs(diagonal.z)};
 }
 
-/// As evenly spaced as `most` points allow.
+/// The numbers of points along each axis of a grid that is as evenly spaced as `most` points allow.
 std::array<std::size_t, 3> grid_counts(const std::array<double, 3>& lengths, std::size_t most) {
     std::array<std::size_t, 3> counts{1, 1, 1};
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -78,7 +78,8 @@ bool is_better(const SuggestPoint& a, const SuggestPoint& b) {
     return a.allowed != b.allowed ? a.allowed : a.value > b.value;
 }
 
-/// From the camera's frame to that of a lamp; exactly nothing for a lamp fixed to the camera.
+/// The map from the camera's frame to that of a lamp; exactly the identity for a lamp that is fixed
+/// to the camera.
 Affine lamp_from_camera(const LampDesc& lamp, const Affine& world_from_camera) {
     if (lamp.fixed_to_camera) return {};
     return lamp.world_from_mount.inverse() * world_from_camera;
@@ -130,7 +131,7 @@ class Search {
                                  scene_.desc().camera.world_from_camera);
     }
 
-    /// Of the light as it is in `light_`.
+    /// Judges the light as it is in `light_`.
     SuggestPoint point(const Point3& position) const {
         SuggestPoint result;
         result.position = position;

@@ -47,7 +47,7 @@ struct SuggestPoint {
 
 /// What was found.
 struct Suggestion {
-    std::array<std::size_t, 3> counts{};  // of the grid along x, y, z; of a line, along it, 1, 1
+    std::array<std::size_t, 3> counts{};  // of the grid along x, y, z; a line has its own, 1, 1
     std::vector<SuggestPoint> map;        // of the grid, x fastest
     /// The lamp where it is, its partner where that is; and the best place found, which is not
     /// allowed only if none is.

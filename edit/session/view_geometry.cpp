@@ -38,7 +38,8 @@ Ray ray_at(const Camera& camera, const ImagePoint& pixel) {
     return *ray;
 }
 
-// Where the ray is `distance` from `centre`; of two, the farther along. NaN if nowhere.
+// Where the ray is `distance` from `centre`, the farther along if there are two such places; NaN if
+// there is none.
 double farther_crossing(const Ray& ray, const Point3& centre, double distance) {
     const Vector3 to_origin = ray.origin - centre;
     const double b = glm::dot(to_origin, ray.direction);

@@ -29,8 +29,8 @@ PlacedLamp placed_lamp(const LampDesc& lamp, const CameraDesc& camera);
 inline constexpr double k_axis_length = 1;
 Point3 axis_point(const PlacedLamp& lamp);
 
-/// The outline of a lamp's beam, of half its axis intensity and up to its axis' handle, in the
-/// image [pixels]: convex, without what the camera cannot see; empty for a lamp without a beam.
+/// The outline of a lamp's beam in the image [pixels], where it has half its axis intensity, up to
+/// its axis' handle: convex, without what the camera cannot see; empty for a lamp without a beam.
 std::vector<ImagePoint> beam_outline(const Camera& camera, const LampDesc& lamp,
                                      const PlacedLamp& placed);
 /// Half the angle between the directions of half intensity [degrees]; none for a lamp without a
@@ -44,8 +44,8 @@ enum class DragKeeps { distance, depth };  // from the camera's centre; along it
 /// Throws UsageError of one line if there is none in the water.
 Point3 dragged_point(const Camera& camera, const ImagePoint& pixel, const Point3& from,
                      DragKeeps keeps);
-/// The point seen where `from` is, at another distance from the camera's centre [m]; of a point
-/// that is not seen, on the straight line to it. Throws as dragged_point.
+/// The point seen where `from` is, at another distance from the camera's centre [m]; if `from` is
+/// not seen, the point lies on the straight line to it. Throws as dragged_point.
 Point3 point_at_distance(const Camera& camera, const Point3& from, double distance);
 /// The direction, unit, in which a lamp shines whose axis' handle is seen at `pixel`: of two the
 /// one closer to its present one; towards the ray that is seen there if that is out of reach.
