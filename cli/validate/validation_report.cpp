@@ -8,12 +8,12 @@
 #include <iterator>
 
 #include "cli/svg_plot.h"
-#include "cli/validate/validation_methods.h"
 #include "core/base/error.h"
 #include "core/base/output_files.h"
 #include "core/base/version.h"
 #include "core/image/colour.h"
 #include "core/image/image_file.h"
+#include "validation/validation_methods.h"
 
 namespace uw {
 

@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/validate/light_validation.h"
-#include "cli/validate/validation.h"
 #include "core/base/output_files.h"
 #include "core/image/pixel_image.h"
+#include "validation/validation.h"
 
 namespace uw {
 
