@@ -27,8 +27,8 @@ TEST(LightTable, SaysHowFarApartTheMethodsAre) {
     const std::string text = light_table(light_with(0.002), false);
     for (const char* part :
          {"scene, all light", "a note", "volume - path", "multiple.surface, 540 nm", "+0.200 %",
-          "0.100 %", "2.0", "1.00 %", "0.90", "2.5", "passed", "multiple.volume 25.0 %",
-          "all light / single scattering 4.000"})
+          "0.100 %", "2.0", "1.00 %", "0.90", "2.5", "passed",
+          "multiple.volume                25.0 %", "all light / single scattering   4.000"})
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
     EXPECT_EQ(text.find('\033'), std::string::npos);
 }
