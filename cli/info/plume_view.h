@@ -72,9 +72,8 @@ SceneProposal propose_scene(const Bounds& bounds);
 /// The scene file without its volumes: `uwvdb: 1`, camera, water, geometry and lamps.
 std::string proposal_yaml(const SceneProposal& proposal);
 
-/// A length, or three, as text: to a thousandth of `size`, however far from the origin.
+/// A length as text: to a thousandth of `size`, however large it is.
 std::string length_text(double length, double size);
-std::string point_text(const Point3& point, double size);
 
 /// A proposed scene and how well it shows its volume.
 struct PlumeView {

@@ -38,19 +38,6 @@ std::string lower_case(std::string text);
 /// which a concentration can be guessed (heat, flames), 2 unknown, 3 likely, 4 a density.
 int concentration_likelihood(const std::string& name);
 
-/// Whether a grid's values can be concentrations, whatever its name.
-bool can_be_mapped(const GridInspection& grid);
-
-/// The likeliest concentration of those that can be mapped; nullptr if there is none.
-const GridInspection* likeliest_grid(const VdbInspection& inspection);
-
-/// Decides `advice.map`, sets `advice.bounds` to what these grids hold, and says why and what else
-/// there is.
-void choose_grids(const VdbInspection& inspection, VdbAdvice& advice);
-
-/// Says what is wrong with each grid's values.
-void say_what_is_wrong(const VdbInspection& inspection, VdbAdvice& advice);
-
 /// One frame of a sequence, with what is in it.
 struct SampledFrame {
     int frame = 0;
@@ -72,17 +59,6 @@ FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vecto
 
 /// The largest value of the grid likeliest to be a concentration, per sampled frame.
 std::vector<double> largest_values(const FrameSurvey& survey);
-
-/// Says which way is up and where values lie, by the program that wrote the file, and decides
-/// `advice.voxel_size`. Precondition of all three: `advice.map` is decided.
-void say_placement(const VdbInspection& inspection, VdbAdvice& advice);
-
-/// Says whether the size is plausible, by `advice.bounds`, and decides `advice.scale` and
-/// `advice.translate`.
-void say_units(const VdbInspection& inspection, VdbAdvice& advice);
-
-/// Says how to blur it by its motion, if the file has velocities.
-void say_motion(const VdbInspection& inspection, VdbAdvice& advice);
 
 /// Chooses `small_ppm` and `large_ppm` of the grids in `advice.map`, at `advice.scale`, such that
 /// the optical depth is 1.5 at 540 nm, with small and large particles each contributing about half
