@@ -174,18 +174,18 @@ ConfigPosition position_of(const py::tuple& state, Origins& origins) {
     return {origin, state[1].cast<int>(), state[2].cast<int>()};
 }
 
-ConfigNode node_of_state(const py::tuple& state, Origins& origins) {
+ConfigNode node_with_origins(const py::tuple& state, Origins& origins) {
     ConfigNode node;
     node.kind = static_cast<Kind>(state[0].cast<int>());
     node.quoted = state[1].cast<bool>();
     node.scalar = state[2].cast<std::string>();
     for (const py::handle item : state[3])
-        node.items.push_back(node_of_state(item.cast<py::tuple>(), origins));
+        node.items.push_back(node_with_origins(item.cast<py::tuple>(), origins));
     for (const py::handle handle : state[4]) {
         const auto entry = handle.cast<py::tuple>();
         node.entries.push_back({entry[0].cast<std::string>(),
                                 position_of(entry[1].cast<py::tuple>(), origins),
-                                node_of_state(entry[2].cast<py::tuple>(), origins)});
+                                node_with_origins(entry[2].cast<py::tuple>(), origins)});
     }
     node.position = position_of(state[5].cast<py::tuple>(), origins);
     return node;
@@ -254,7 +254,7 @@ py::object state_of(const ConfigNode& node) {
 
 ConfigNode node_of_state(const py::tuple& state) {
     Origins origins;
-    return node_of_state(state, origins);
+    return node_with_origins(state, origins);
 }
 
 }  // namespace uw
