@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <numbers>
-#include <ostream>
 
 #include "camera/camera.h"
 #include "cli/console.h"
@@ -309,7 +307,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     return std::filesystem::equivalent(a, b, error);
 }
 
-void run_calibration(const CalibrationArguments& a, std::ostream& out) {
+void run_calibration(const CalibrationArguments& a) {
     if (a.json && a.format && a.output.empty())
         throw UsageError(
             "--json: --to already writes to standard output; give -o for the file, or leave one of "
@@ -324,11 +322,7 @@ void run_calibration(const CalibrationArguments& a, std::ostream& out) {
         for (const std::string& line : calibration_omissions(*a.format, calibration.desc))
             print_message(fmt::format("warning: {}: {}\n", word_of(*a.format), line));
         const std::string text = write_calibration(*a.format, calibration.desc);
-        if (a.output.empty()) {
-            out << text << std::flush;
-            if (!out) throw IoError("standard output: cannot write; is the disk full?");
-            return;
-        }
+        if (a.output.empty()) return print_output(text);
         const bool plain = *a.format == CalibrationFormat::colmap && calibration.desc.port;
         for (const auto& path : {a.output, plain ? plain_name(a.output) : a.output})
             if (same_file(path, a.file))
@@ -342,9 +336,7 @@ void run_calibration(const CalibrationArguments& a, std::ostream& out) {
             write_text(plain_name(a.output), write_calibration(*a.format, bare));
         }
     }
-    out << report_on_calibration(survey_calibration(a.file, calibration)).printed(a.json)
-        << std::flush;
-    if (!out) throw IoError("standard output: cannot write; is the disk full?");
+    print_output(report_on_calibration(survey_calibration(a.file, calibration)).printed(a.json));
 }
 
 }  // namespace
@@ -353,7 +345,7 @@ Command calibration_command() {
     const auto arguments = std::make_shared<CalibrationArguments>();
     return {"calibration", "show what a camera calibration says, and convert it",
             k_calibration_examples, calibration_options(*arguments), [arguments] {
-                run_calibration(*arguments, std::cout);
+                run_calibration(*arguments);
                 return k_exit_done;
             }};
 }

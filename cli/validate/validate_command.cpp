@@ -2,8 +2,6 @@
 
 #include <unistd.h>
 
-#include <fmt/format.h>
-
 #include <iostream>
 #include <memory>
 #include <ostream>
@@ -94,8 +92,9 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out) {
     if (!a.report.empty()) {
         begin_orderly_stop();  // or a temporary file might stay
         const StopScope scope(stop_flag());
-        write_validation_report(a.report, results, lights);
-        if (!a.quiet) print_message(fmt::format("wrote {}\n", a.report.string()));
+        TextFiles files;
+        files.add(a.report, validation_page(results, lights));
+        files.commit(a.quiet);
     }
     if (!a.quiet || !passed) out << (passed ? "validation passed\n" : "validation FAILED\n");
     if (!out.flush()) throw IoError("standard output: cannot write; is the disk full?");

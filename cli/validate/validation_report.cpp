@@ -10,7 +10,6 @@
 
 #include "cli/report.h"
 #include "cli/svg_plot.h"
-#include "core/base/error.h"
 #include "core/base/output_files.h"
 #include "core/base/version.h"
 #include "core/image/colour.h"
@@ -378,9 +377,8 @@ std::string validation_table(const SceneValidation& scene, bool colour) {
     return text;
 }
 
-void write_validation_report(const std::filesystem::path& file,
-                             const std::vector<SceneValidation>& scenes,
-                             const std::vector<LightValidation>& lights) {
+std::string validation_page(const std::vector<SceneValidation>& scenes,
+                            const std::vector<LightValidation>& lights) {
     ReportPictures pictures;
     std::string html = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>uwvdb validate"
@@ -390,13 +388,7 @@ void write_validation_report(const std::filesystem::path& file,
         k_report_style, program_version());
     for (const SceneValidation& scene : scenes) html += section_of(scene, pictures);
     for (const LightValidation& light : lights) html += light_section(light, pictures);
-    html += "</body></html>\n";
-    AtomicFile target(file);
-    std::ofstream out(target.temporary_path(), std::ios::binary);
-    out << html;
-    out.close();
-    if (!out) throw IoError(fmt::format("{}: cannot write; is the disk full?", file.string()));
-    target.commit();
+    return html + "</body></html>\n";
 }
 
 }  // namespace uw

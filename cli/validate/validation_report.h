@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,10 +14,9 @@ std::string light_table(const LightValidation& light, bool colour);
 /// The checks of one scene as lines of text; failed ones are red if `colour` is set.
 std::string validation_table(const SceneValidation& scene, bool colour);
 
-/// Writes one self-contained HTML page: the tables, the pictures of every method, maps of their
+/// One self-contained HTML page: the tables, the pictures of every method, maps of their
 /// differences, the convergence of the planes, and what is said of all light. Throws IoError.
-void write_validation_report(const std::filesystem::path& file,
-                             const std::vector<SceneValidation>& scenes,
-                             const std::vector<LightValidation>& lights);
+std::string validation_page(const std::vector<SceneValidation>& scenes,
+                            const std::vector<LightValidation>& lights);
 
 }  // namespace uw

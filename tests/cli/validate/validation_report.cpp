@@ -3,11 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
-
-#include "tests/support/temp_dir.h"
-
 namespace uw::test {
 namespace {
 
@@ -40,10 +35,7 @@ TEST(LightTable, IsRedWhereAnErrorIsExceeded) {
 }
 
 TEST(ValidationReport, ShowsTheLightOnOnePage) {
-    const TempDir dir;
-    write_validation_report(dir / "report.html", {}, {light_with(0.002)});
-    std::ifstream in(dir / "report.html");
-    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    const std::string html = validation_page({}, {light_with(0.002)});
     for (const char* part : {"scene, all light: <span class=passed>", "data:image/png;base64,",
                              "<svg", "<td>multiple.volume</td>"})
         EXPECT_NE(html.find(part), std::string::npos) << part;
