@@ -105,7 +105,8 @@ constexpr int k_samples = 16;
 // The fast form smooths neighbouring nodes together, so that its errors are alike around them. At
 // least so many parts of an image have errors of their own.
 constexpr double k_independent_parts = 20;
-// Of the mean over the pixels, relative to all light, beyond which the comparison says nothing.
+// The standard error of the mean over the pixels, relative to all light, beyond which the
+// comparison says nothing.
 constexpr double k_most_error = 0.02;
 
 constexpr std::array<Layer, 4> k_part_layers{Layer::direct, Layer::backscatter,
@@ -127,7 +128,7 @@ constexpr std::array<Light, 3> k_lights{{{"multiple.volume", true, false},
 
 struct Pixel {
     int x, y;
-    /// By light and band, over the rounds.
+    /// Their means over the rounds, by light and band.
     std::array<std::vector<LightMean>, k_lights.size()> lights;
 };
 

@@ -174,7 +174,7 @@ class SceneTrial {
         render_forward_scatter(trial, transport, result_.images[method]);
     }
 
-    // Likewise by an integrator that uses no splatted light or columns.
+    // Does so by an integrator that uses no splatted light or columns.
     void scatter_without_splats(const std::string& method, TrialScene& trial,
                                 RenderDesc::Integrator which) {
         trial.renderer.edit([&](AssembledScene& parts) { parts.desc.render.integrator = which; });

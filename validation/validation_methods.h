@@ -53,7 +53,7 @@ Slabs planes_of(const TrialScene& trial, int count);
 MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
                           const std::function<bool()>& proceed);
 
-/// Likewise with forward scatter, as `uwvdb render` does it: fills the other two components of
+/// Renders it with forward scatter, as `uwvdb render` does it: fills the other two components of
 /// `image`.
 void render_forward_scatter(TrialScene& trial, const LightTransport& transport, MethodImage& image);
 

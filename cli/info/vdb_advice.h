@@ -20,8 +20,8 @@ struct VdbAdvice {
     Vector3 translate{0};  // to apply: 0, or what brings a faraway volume to the origin [m]
     double small_ppm = 0, large_ppm = 0;  // per unit of grid value
     std::vector<double> bands_nm;
-    /// Of the mapped grids alone, with these concentrations, per band: through their densest part,
-    /// along the world axis with the median value of this.
+    /// How opaque the mapped grids alone are with these concentrations, per band: through their
+    /// densest part, along the world axis with the median value of this.
     std::vector<double> optical_depth;
     /// YAML, ready to paste into a scene; empty where nothing can be mapped.
     std::string volumes;
@@ -49,9 +49,6 @@ struct FrameSurvey {
     std::vector<int> empty;             // by their headers hold nothing that could be mapped
     std::vector<SampledFrame> sampled;  // some of the others, spread evenly from first to last
     std::vector<std::string> faults;    // of frames that cannot be read, one line each
-
-    /// The first of the sampled frames; nullptr if none holds anything.
-    const SampledFrame* first() const { return sampled.empty() ? nullptr : &sampled.front(); }
 };
 
 /// Reads the headers of all `frames` that exist of the sequence, and all of a few of them.

@@ -13,7 +13,7 @@ struct SequenceReport {
     std::string pattern;              // empty: it is one file
     int frame = 0;                    // the one inspected
     std::vector<int> found, missing;  // missing: between the first and the last found
-    // Of a sequence of volumes:
+    // What sequences of volumes have, too:
     std::vector<int> empty;       // frames that hold nothing to map
     std::vector<int> sampled;     // frames of which all was read
     std::vector<double> largest;  // largest value of the grid to map, of each of these
