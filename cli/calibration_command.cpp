@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <numbers>
-#include <ostream>
 
 #include "camera/camera.h"
 #include "cli/console.h"
@@ -24,6 +22,8 @@
 
 namespace uw {
 
+namespace {
+
 const char* const k_calibration_examples = R"(Examples:
   uwvdb calibration calibration.yaml                       what was understood of it
   uwvdb calibration camchain.yaml --camera cam1 --to scene  a scene's camera, to paste
@@ -34,7 +34,14 @@ Reads OpenCV and ROS YAML, Kalibr's camchain, Calibmar's calibration.yaml, COLMA
 their models and conventions. Fields of view are through the image's principal point.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
 
-namespace {
+/// `uwvdb calibration` as typed.
+struct CalibrationArguments {
+    std::filesystem::path file;               // a calibration, or a scene
+    std::string camera;                       // --camera: which of several
+    std::optional<CalibrationFormat> format;  // --to
+    std::filesystem::path output;             // -o; empty: standard output
+    bool json = false;
+};
 
 CalibrationFormat format_called(const std::string& word) {
     std::vector<std::string_view> words;
@@ -45,8 +52,6 @@ CalibrationFormat format_called(const std::string& word) {
     throw UsageError(
         fmt::format("--to {}: unknown format; {}", printable(word), suggestion(word, words)));
 }
-
-}  // namespace
 
 Options calibration_options(CalibrationArguments& a) {
     Options options;
@@ -64,8 +69,6 @@ Options calibration_options(CalibrationArguments& a) {
     options.flag("--json", a.json, "print what was understood as JSON");
     return options;
 }
-
-namespace {
 
 /// The fraction of covered pixels is sampled at this many positions along each side.
 constexpr int k_looks = 256;
@@ -103,21 +106,21 @@ FieldOfView field_of_view(const CameraDesc& camera, const Direction& direction) 
     return {across({0, c.y}, {w, c.y}), across({c.x, 0}, {c.x, h}), across({0, 0}, {w, h})};
 }
 
-void find_fold(const CameraDesc& camera, CalibrationReport& report) {
+void find_fold(const CameraDesc& camera, CalibrationSurvey& survey) {
     if (camera.distortion.model == DistortionDesc::Model::fisheye) {
         const Fisheye lens(camera.distortion);
-        report.fold_angle = lens.largest_angle();
+        survey.fold_angle = lens.largest_angle();
         const auto edge = lens.image(
-            {std::sin(0.999999 * *report.fold_angle), 0, std::cos(0.999999 * *report.fold_angle)});
-        if (edge) report.fold_radius = camera.intrinsics.fx * edge->x;
+            {std::sin(0.999999 * *survey.fold_angle), 0, std::cos(0.999999 * *survey.fold_angle)});
+        if (edge) survey.fold_radius = camera.intrinsics.fx * edge->x;
         return;
     }
     const Distortion lens(camera.distortion);
     if (!std::isfinite(lens.fold_radius())) return;
-    report.fold_angle = std::atan(lens.fold_radius());
+    survey.fold_angle = std::atan(lens.fold_radius());
     DistortionDesc radial = camera.distortion;
     radial.p = {};
-    report.fold_radius =
+    survey.fold_radius =
         camera.intrinsics.fx * Distortion(radial).distort({lens.fold_radius(), 0}).x;
 }
 
@@ -132,9 +135,17 @@ double covered(const Camera& camera) {
     return static_cast<double>(with) / (k_looks * k_looks);
 }
 
-std::string degrees(const FieldOfView& field) {
+std::string field_text(const FieldOfView& field) {
     return fmt::format("{:.2f} x {:.2f} deg, diagonal {:.2f}", field.horizontal / k_degree,
                        field.vertical / k_degree, field.diagonal / k_degree);
+}
+
+constexpr double k_degrees = 180 / std::numbers::pi;
+
+Json field_json(const FieldOfView& field) {
+    return {{"horizontal", field.horizontal * k_degrees},
+            {"vertical", field.vertical * k_degrees},
+            {"diagonal", field.diagonal * k_degrees}};
 }
 
 std::string glass(const auto& port) {
@@ -158,13 +169,8 @@ std::string port_text(const PortDesc& port) {
         angle_between(flat.normal, {0, 0, 1}) / k_degree, flat.distance, glass(flat));
 }
 
-std::string title(const CalibrationReport& report) {
-    const Calibration& c = report.calibration;
-    std::string text =
-        fmt::format("{}: {}", printable(report.file.filename().string(), 200), title_of(c.format));
-    if (!c.camera.empty()) text += fmt::format(", camera {}", printable(c.camera));
-    if (c.cameras.size() > 1) text += fmt::format(" of {}", c.cameras.size());
-    return text + "\n";
+const char* word_of_lens(const CameraDesc& camera) {
+    return camera.distortion.model == DistortionDesc::Model::fisheye ? "fisheye" : "brown-conrady";
 }
 
 std::string lens_text(const CameraDesc& camera) {
@@ -179,106 +185,89 @@ std::string lens_text(const CameraDesc& camera) {
 
 }  // namespace
 
-CalibrationReport report_on(const std::filesystem::path& file, const Calibration& calibration) {
-    CalibrationReport report;
-    report.file = file;
-    report.calibration = calibration;
+CalibrationSurvey survey_calibration(const std::filesystem::path& file,
+                                     const Calibration& calibration) {
+    CalibrationSurvey survey;
+    survey.file = file;
+    survey.calibration = calibration;
     CameraDesc desc = calibration.desc;
     desc.world_from_camera = Affine{};
     const Camera camera(desc);
-    report.in_lens =
+    survey.in_lens =
         field_of_view(desc, [&](double x, double y) { return camera.lens_direction(x, y); });
     if (desc.port)
-        report.in_water = field_of_view(desc, [&](double x, double y) -> std::optional<Vector3> {
+        survey.in_water = field_of_view(desc, [&](double x, double y) -> std::optional<Vector3> {
             const auto ray = camera.refracted_ray(x, y);
             if (!ray) return std::nullopt;
             return ray->direction;
         });
-    find_fold(desc, report);
-    report.covered = covered(camera);
+    find_fold(desc, survey);
+    survey.covered = covered(camera);
     for (const CalibrationFormat format : calibration_formats())
-        report.targets.push_back({format, calibration_obstacle(format, desc)});
-    return report;
+        survey.targets.push_back({format, calibration_obstacle(format, desc)});
+    return survey;
 }
 
-std::string calibration_text(const CalibrationReport& report) {
-    const CameraDesc& camera = report.calibration.desc;
+Report report_on_calibration(const CalibrationSurvey& survey) {
+    const Calibration& calibration = survey.calibration;
+    const CameraDesc& camera = calibration.desc;
     const IntrinsicsDesc& i = camera.intrinsics;
-    std::string text = title(report);
-    const auto row = [&text](std::string_view name, const std::string& value) {
-        text += fmt::format("  {:<17}{}\n", name, value);
+    std::string title = fmt::format("{}: {}", printable(survey.file.filename().string(), 200),
+                                    title_of(calibration.format));
+    if (!calibration.camera.empty()) title += ", camera " + printable(calibration.camera);
+    if (calibration.cameras.size() > 1) title += fmt::format(" of {}", calibration.cameras.size());
+    Report report(title);
+    const auto row = [&report](std::string_view name, const std::string& value) {
+        report.say(fmt::format("{:<17}{}", name, value));
     };
-    row("model", printable(report.calibration.model));
+    report.set({{"uwvdb", program_version()},
+                {"file", survey.file.string()},
+                {"format", word_of(calibration.format)},
+                {"model", calibration.model},
+                {"camera", calibration.camera},
+                {"cameras", calibration.cameras},
+                {"warnings", calibration.warnings},
+                {"units", "pixels from the image's corner, metres, degrees"}});
+    row("model", printable(calibration.model));
     row("resolution", fmt::format("{} x {}", camera.width, camera.height));
+    report.set({{"resolution", {camera.width, camera.height}}});
     row("focal length", fmt::format("{:.6f}, {:.6f} pixels", i.fx, i.fy));
     row("principal point",
         fmt::format("{:.6f}, {:.6f} pixels from the image's corner", i.cx, i.cy));
+    report.set({{"intrinsics", {{"fx", i.fx}, {"fy", i.fy}, {"cx", i.cx}, {"cy", i.cy}}}});
     row("distortion", lens_text(camera));
-    if (report.fold_angle)
-        row("lens shows",
-            fmt::format("up to {:.3f} deg off the axis{}", *report.fold_angle / k_degree,
-                        report.fold_radius ? fmt::format(", {:.1f} pixels from the principal point",
-                                                         *report.fold_radius)
-                                           : std::string()));
+    report.set({{"distortion",
+                 {{"model", word_of_lens(camera)},
+                  {"k", camera.distortion.k},
+                  {"p", camera.distortion.p}}}});
     if (camera.port) row("port", port_text(*camera.port));
-    row("field of view", degrees(report.in_lens) + (camera.port ? " in the housing" : ""));
-    if (report.in_water) row("", degrees(*report.in_water) + " in the water");
-    if (report.covered < 1)
-        row("", fmt::format("{:.1f} % of the pixels have a ray", 100 * report.covered));
+    report.set({{"port", camera.port ? port_json(*camera.port) : Json(nullptr)}});
+    row("field of view", field_text(survey.in_lens) + (camera.port ? " in the housing" : ""));
+    if (survey.in_water) row("", field_text(*survey.in_water) + " in the water");
+    report.set({{"field_of_view_in_housing", field_json(survey.in_lens)},
+                {"field_of_view_in_water", field_json(survey.in_water.value_or(survey.in_lens))}});
+    if (survey.fold_angle)
+        row("lens shows",
+            fmt::format("up to {:.3f} deg off the axis{}", *survey.fold_angle / k_degree,
+                        survey.fold_radius ? fmt::format(", {:.1f} pixels from the principal point",
+                                                         *survey.fold_radius)
+                                           : std::string()));
+    if (survey.covered < 1)
+        row("", fmt::format("{:.1f} % of the pixels have a ray", 100 * survey.covered));
+    report.set(
+        {{"fold_angle", survey.fold_angle ? Json(*survey.fold_angle * k_degrees) : Json(nullptr)},
+         {"fold_radius", survey.fold_radius ? Json(*survey.fold_radius) : Json(nullptr)},
+         {"pixels_with_a_ray", survey.covered}});
     std::vector<std::string_view> words;
-    for (const auto& target : report.targets)
-        if (target.obstacle.empty()) words.push_back(word_of(target.format));
-    row("--to", fmt::format("{}", fmt::join(words, ", ")));
     std::map<std::string, std::vector<std::string_view>> obstacles;
-    for (const auto& target : report.targets)
-        if (!target.obstacle.empty()) obstacles[target.obstacle].push_back(word_of(target.format));
+    for (const auto& target : survey.targets)
+        (target.obstacle.empty() ? words : obstacles[target.obstacle])
+            .push_back(word_of(target.format));
+    row("--to", fmt::format("{}", fmt::join(words, ", ")));
     for (const auto& [obstacle, formats] : obstacles)
         row("", fmt::format("not {}: {}", fmt::join(formats, ", "), obstacle));
-    return text;
-}
-
-namespace {
-
-constexpr double k_degrees = 180 / std::numbers::pi;
-
-Json field(const FieldOfView& field) {
-    return {{"horizontal", field.horizontal * k_degrees},
-            {"vertical", field.vertical * k_degrees},
-            {"diagonal", field.diagonal * k_degrees}};
-}
-
-}  // namespace
-
-std::string calibration_json(const CalibrationReport& report) {
-    const Calibration& calibration = report.calibration;
-    const CameraDesc& camera = calibration.desc;
-    const IntrinsicsDesc& i = camera.intrinsics;
-    const bool fisheye = camera.distortion.model == DistortionDesc::Model::fisheye;
-    Json json;
-    json["uwvdb"] = program_version();
-    json["file"] = report.file.string();
-    json["format"] = word_of(calibration.format);
-    json["model"] = calibration.model;
-    json["camera"] = calibration.camera;
-    json["cameras"] = calibration.cameras;
-    json["warnings"] = calibration.warnings;
-    json["units"] = "pixels from the image's corner, metres, degrees";
-    json["resolution"] = {camera.width, camera.height};
-    json["intrinsics"] = {{"fx", i.fx}, {"fy", i.fy}, {"cx", i.cx}, {"cy", i.cy}};
-    json["distortion"] = {{"model", fisheye ? "fisheye" : "brown-conrady"},
-                          {"k", camera.distortion.k},
-                          {"p", camera.distortion.p}};
-    json["port"] = camera.port ? port_json(*camera.port) : Json(nullptr);
-    json["field_of_view_in_housing"] = field(report.in_lens);
-    json["field_of_view_in_water"] = field(report.in_water.value_or(report.in_lens));
-    json["fold_angle"] = report.fold_angle ? Json(*report.fold_angle * k_degrees) : Json(nullptr);
-    json["fold_radius"] = report.fold_radius ? Json(*report.fold_radius) : Json(nullptr);
-    json["pixels_with_a_ray"] = report.covered;
-    json["to"] = Json::array();
-    for (const auto& target : report.targets)
-        if (target.obstacle.empty()) json["to"].push_back(word_of(target.format));
-    // Names come from users' files and need not be UTF-8.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    report.set({{"to", words}});
+    return report;
 }
 
 namespace {
@@ -302,9 +291,7 @@ Calibration read_subject(const CalibrationArguments& a) {
     const SceneDesc scene = load_scene(a.file, {});
     Calibration result;
     result.format = CalibrationFormat::scene;
-    result.model = scene.camera.distortion.model == DistortionDesc::Model::fisheye
-                       ? "fisheye"
-                       : "brown-conrady";
+    result.model = word_of_lens(scene.camera);
     result.desc = scene.camera;
     return result;
 }
@@ -320,9 +307,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     return std::filesystem::equivalent(a, b, error);
 }
 
-}  // namespace
-
-void run_calibration(const CalibrationArguments& a, std::ostream& out) {
+void run_calibration(const CalibrationArguments& a) {
     if (a.json && a.format && a.output.empty())
         throw UsageError(
             "--json: --to already writes to standard output; give -o for the file, or leave one of "
@@ -337,11 +322,7 @@ void run_calibration(const CalibrationArguments& a, std::ostream& out) {
         for (const std::string& line : calibration_omissions(*a.format, calibration.desc))
             print_message(fmt::format("warning: {}: {}\n", word_of(*a.format), line));
         const std::string text = write_calibration(*a.format, calibration.desc);
-        if (a.output.empty()) {
-            out << text << std::flush;
-            if (!out) throw IoError("standard output: cannot write; is the disk full?");
-            return;
-        }
+        if (a.output.empty()) return print_output(text);
         const bool plain = *a.format == CalibrationFormat::colmap && calibration.desc.port;
         for (const auto& path : {a.output, plain ? plain_name(a.output) : a.output})
             if (same_file(path, a.file))
@@ -355,16 +336,16 @@ void run_calibration(const CalibrationArguments& a, std::ostream& out) {
             write_text(plain_name(a.output), write_calibration(*a.format, bare));
         }
     }
-    const CalibrationReport report = report_on(a.file, calibration);
-    out << (a.json ? calibration_json(report) : calibration_text(report)) << std::flush;
-    if (!out) throw IoError("standard output: cannot write; is the disk full?");
+    print_output(report_on_calibration(survey_calibration(a.file, calibration)).printed(a.json));
 }
+
+}  // namespace
 
 Command calibration_command() {
     const auto arguments = std::make_shared<CalibrationArguments>();
     return {"calibration", "show what a camera calibration says, and convert it",
             k_calibration_examples, calibration_options(*arguments), [arguments] {
-                run_calibration(*arguments, std::cout);
+                run_calibration(*arguments);
                 return k_exit_done;
             }};
 }

@@ -2,29 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "core/light/medium.h"
-
 namespace uw {
 
-namespace {
-
-std::string describe_bounds(const Bounds& b) {
+std::string bounds_text(const Bounds& b) {
     return fmt::format("x {:.4g}..{:.4g}, y {:.4g}..{:.4g}, z {:.4g}..{:.4g} m", b.min.x, b.max.x,
                        b.min.y, b.max.y, b.min.z, b.max.z);
 }
-
-std::string describe_depth(const VolumeReport& report, const Medium& medium, std::size_t axis) {
-    const std::vector<double> depth = depth_through_middle(report, medium, axis);
-    std::string text;
-    for (std::size_t b = 0; b < depth.size(); ++b)
-        text += fmt::format("{}{:.3g} ({:g} nm)", b == 0 ? "" : ", ", depth[b],
-                            medium.wavelengths_nm[b]);
-    return text;
-}
-
-}  // namespace
 
 std::vector<double> depth_through_middle(const VolumeReport& report, const Medium& medium,
                                          std::size_t axis) {
@@ -37,31 +20,61 @@ std::vector<double> depth_through_middle(const VolumeReport& report, const Mediu
     return depth;
 }
 
-std::string describe_grid(const VolumeReport& report, const Medium& medium) {
-    const Vector3& h = report.metres_per_voxel;
-    const Placement& p = report.placement;
-    std::string text = fmt::format(
-        "{}: grid '{}': {:.4g} x {:.4g} x {:.4g} m per voxel, {} active voxels, {:.1f} MB\n",
-        report.file.filename().string(), report.grid, h.x, h.y, h.z,
-        report.statistics.active_voxels, static_cast<double>(report.bytes) / 1e6);
-    text +=
-        fmt::format("  centering {}{}, up {}{}\n", p.centering == Centering::cell ? "cell" : "node",
-                    p.automatic_centering ? " (automatic)" : "", p.up == UpAxis::z ? "z" : "y",
-                    p.automatic_up ? " (automatic)" : "");
-    if (report.bounds.empty()) return text + "  no values above 0\n";
-    text += "  bounds " + describe_bounds(report.bounds) + "\n";
-    for (const ConstituentReport& c : report.constituents) {
+Report report_on_grid(const VolumeReport& volume, const Medium& medium) {
+    const Vector3& h = volume.metres_per_voxel;
+    Report report(fmt::format(
+        "{}: grid '{}': {:.4g} x {:.4g} x {:.4g} m per voxel, {} active voxels, {:.1f} MB",
+        volume.file.filename().string(), volume.grid, h.x, h.y, h.z,
+        volume.statistics.active_voxels, static_cast<double>(volume.bytes) / 1e6));
+    const Placement& p = volume.placement;
+    const char* const up = p.up == UpAxis::z ? "z" : "y";
+    const char* const centering = p.centering == Centering::cell ? "cell" : "node";
+    report.say(fmt::format("centering {}{}, up {}{}", centering,
+                           p.automatic_centering ? " (automatic)" : "", up,
+                           p.automatic_up ? " (automatic)" : ""));
+    report.set({{"file", volume.file.string()},
+                {"grid", volume.grid},
+                {"metres_per_voxel", vector_json(h)},
+                {"world_bounds", bounds_json(volume.bounds)},
+                {"active_voxels", volume.statistics.active_voxels},
+                {"up", up},
+                {"centering", centering}});
+    const bool is_empty = volume.bounds.empty();
+    report.say(is_empty ? "no values above 0" : "bounds " + bounds_text(volume.bounds));
+    std::vector<Report> constituents;
+    for (const ConstituentReport& c : volume.constituents) {
         const Constituent& constituent =
             medium.constituents[static_cast<std::size_t>(c.constituent)];
-        text +=
-            fmt::format("  {}: min {:.4g}, mean {:.4g}, max {:.4g}{}\n", constituent.name, c.min,
-                        c.mean, c.max, constituent.unit == "1" ? "" : " " + constituent.unit);
+        const std::string unit = constituent.unit == "1" ? "" : " " + constituent.unit;
+        Report& part = constituents.emplace_back();
+        if (!is_empty)
+            part.say(fmt::format("{}: min {:.4g}, mean {:.4g}, max {:.4g}{}", constituent.name,
+                                 c.min, c.mean, c.max, unit));
+        part.set({{"name", constituent.name},
+                  {"unit", constituent.unit},
+                  {"min", number_json(c.min)},
+                  {"mean", number_json(c.mean)},
+                  {"max", number_json(c.max)}});
     }
-    const char* const axes = "xyz";
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        text += fmt::format("  optical depth through the middle along {}: {}\n", axes[axis],
-                            describe_depth(report, medium, axis));
-    return text;
+    report.add("constituents", constituents);
+    Report depths;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::string name(1, "xyz"[axis]);
+        const std::vector<double> depth = depth_through_middle(volume, medium, axis);
+        depths.set({{name, list_json(depth)}});
+        std::string text;
+        for (std::size_t b = 0; b < depth.size(); ++b)
+            text += fmt::format("{}{:.3g} ({:g} nm)", b == 0 ? "" : ", ", depth[b],
+                                medium.wavelengths_nm[b]);
+        if (!is_empty)
+            depths.say(fmt::format("optical depth through the middle along {}: {}", name, text));
+    }
+    report.add("optical_depth", depths);
+    return report;
+}
+
+std::string describe_grid(const VolumeReport& volume, const Medium& medium) {
+    return report_on_grid(volume, medium).text();
 }
 
 }  // namespace uw

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -24,6 +25,8 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "render/exposure.h"
+#include "render/resolved_scene.h"
+#include "render/scene_assembly.h"
 #include "render/scene_loading.h"
 #include "render/view_matcher.h"
 
@@ -155,12 +158,28 @@ std::string CoordinateTable::with_columns(
     return table;
 }
 
+namespace {
+
+/// Reads a file of at most 1 GiB. Throws as CoordinateTable, and IoError.
 CoordinateTable read_coordinates(const std::filesystem::path& file,
                                  CoordinateTable::NameSets names) {
     constexpr std::size_t k_largest_file = std::size_t{1} << 30;
     const std::string subject = printable(file.string(), 300);
     return {read_text_file(file, subject, k_largest_file, "table"), subject, names};
 }
+
+/// `uwvdb project` and `uwvdb rays` as typed.
+struct PointsArguments {
+    std::filesystem::path scene;
+    std::filesystem::path table;             // the CSV that is read
+    std::filesystem::path output;            // -o; empty: standard output
+    std::string camera;                      // --camera: of a rig
+    std::optional<int> frame;                // --frame: of meshes that are sequences
+    std::optional<std::array<int, 2>> size;  // --size WxH
+    std::vector<std::string> overrides;      // --set key.path=value
+    int threads = 0;                         // 0: all
+    bool quiet = false;
+};
 
 const char* const k_project_examples = R"(Examples:
   uwvdb project plume.yaml points.csv                    to standard output
@@ -210,6 +229,8 @@ Options points_options(PointsArguments& a, std::string table_name, std::string t
     return options;
 }
 
+/// The scene that the arguments name as one camera sees it, without what neither refracts nor
+/// occludes: volumes and lamps.
 ResolvedScene observed_scene(const PointsArguments& a) {
     SceneDesc desc = load_scene(a.scene, a.overrides);
     desc.volumes.clear();
@@ -256,18 +277,6 @@ void run_project(const PointsArguments& a) {
         points.row_count() - visible - occluded - outside));
 }
 
-Command project_command() {
-    const auto arguments = std::make_shared<PointsArguments>();
-    return {"project", "where the camera sees points of the world: a table of pixels",
-            k_project_examples,
-            points_options(*arguments, "POINTS.csv", "a table with the columns x, y, z [m]"),
-            [arguments] {
-                install_stop_signal();
-                run_project(*arguments);
-                return k_exit_done;
-            }};
-}
-
 void run_rays(const PointsArguments& a) {
     const ThreadLimit limit(a.threads);
     const ResolvedScene scene = observed_scene(a);
@@ -294,6 +303,20 @@ void run_rays(const PointsArguments& a) {
     if (a.quiet) return;
     print_message(fmt::format("{} pixels: {} outside the image, {} without a ray into the water\n",
                               pixels.row_count(), outside.load(), without_ray.load()));
+}
+
+}  // namespace
+
+Command project_command() {
+    const auto arguments = std::make_shared<PointsArguments>();
+    return {"project", "where the camera sees points of the world: a table of pixels",
+            k_project_examples,
+            points_options(*arguments, "POINTS.csv", "a table with the columns x, y, z [m]"),
+            [arguments] {
+                install_stop_signal();
+                run_project(*arguments);
+                return k_exit_done;
+            }};
 }
 
 Command rays_command() {

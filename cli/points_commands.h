@@ -1,18 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "cli/command.h"
-#include "render/resolved_scene.h"
-#include "render/scene_assembly.h"
 
 namespace uw {
 
@@ -61,49 +56,11 @@ class CoordinateTable {
     std::vector<double> coordinates_;
 };
 
-/// Reads a file of at most 1 GiB. Throws as CoordinateTable, and IoError.
-CoordinateTable read_coordinates(const std::filesystem::path& file,
-                                 CoordinateTable::NameSets names);
-
-/// `uwvdb project` and `uwvdb rays` as typed.
-struct PointsArguments {
-    std::filesystem::path scene;
-    std::filesystem::path table;             // the CSV that is read
-    std::filesystem::path output;            // -o; empty: standard output
-    std::string camera;                      // --camera: of a rig
-    std::optional<int> frame;                // --frame: of meshes that are sequences
-    std::optional<std::array<int, 2>> size;  // --size WxH
-    std::vector<std::string> overrides;      // --set key.path=value
-    int threads = 0;                         // 0: all
-    bool quiet = false;
-};
-
-/// What `uwvdb project --help` and `uwvdb rays --help` end with.
-extern const char* const k_project_examples;
-extern const char* const k_rays_examples;
-
-/// Their options, written to `arguments`; `table_name` is that of the CSV in help.
-Options points_options(PointsArguments& arguments, std::string table_name, std::string table_help);
-
-/// The scene that the arguments name as one camera sees it, without what neither refracts nor
-/// occludes: volumes and lamps. Throws UsageError, InputError and IoError.
-ResolvedScene observed_scene(const PointsArguments& arguments);
-
-/// It with its surfaces; prints the warnings about them. Throws InputError and IoError.
-AssembledScene with_surfaces(const ResolvedScene& scene);
-
 /// `uwvdb project`: where a scene's camera sees points of the world, as a table on standard output
 /// or in a file. Counts go to stderr. Throws UsageError, InputError and IoError.
-void run_project(const PointsArguments& arguments);
-
-/// `uwvdb project` as the command line knows it.
 Command project_command();
 
-/// `uwvdb rays`: the rays in the water of positions in a scene's image, as a table on standard
-/// output or in a file. Counts go to stderr. Throws UsageError, InputError and IoError.
-void run_rays(const PointsArguments& arguments);
-
-/// `uwvdb rays` as the command line knows it.
+/// `uwvdb rays`: the rays in the water of positions in a scene's image, likewise.
 Command rays_command();
 
 }  // namespace uw

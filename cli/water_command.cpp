@@ -85,6 +85,8 @@ std::vector<double> parse_bands(const std::string& text) {
     return bands;
 }
 
+namespace {
+
 const char* const k_water_examples = R"(Examples:
   uwvdb water                                    pure sea water
   uwvdb water jerlov-II --bands 400:700:10 --csv out/jerlov-II
@@ -96,6 +98,8 @@ by component. --set water.* needs no scene. docs/water.md explains the tables an
 sources.
 Presets: jerlov-IB, jerlov-II, jerlov-III, jerlov-1C, jerlov-3C, jerlov-5C.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
+
+}  // namespace
 
 Options water_options(WaterArguments& a) {
     Options options;
@@ -134,18 +138,18 @@ std::string preset_called(const std::string& subject) {
 }
 
 /// Fills in title, water and volumes.
-void read_subject(const WaterArguments& a, WaterReport& report) {
+void read_subject(const WaterArguments& a, WaterSurvey& survey) {
     const std::string preset = preset_called(a.subject);
     if (a.subject.empty() || !preset.empty()) {
         std::vector<std::string> overrides = a.overrides;
         if (!preset.empty()) overrides.insert(overrides.begin(), "water.preset=" + preset);
-        report.water = read_water_overrides(overrides);
+        survey.water = read_water_overrides(overrides);
         if (preset.empty())
-            report.title = a.overrides.empty() ? "pure sea water" : "sea water";
+            survey.title = a.overrides.empty() ? "pure sea water" : "sea water";
         else
-            report.title = preset;
+            survey.title = preset;
         for (const std::string& text : a.overrides)
-            report.title += (&text == &a.overrides.front() ? " with " : ", ") + text;
+            survey.title += (&text == &a.overrides.front() ? " with " : ", ") + text;
         return;
     }
     const std::filesystem::path file = a.subject;
@@ -155,30 +159,30 @@ void read_subject(const WaterArguments& a, WaterReport& report) {
             fmt::format("'{}' is neither a preset nor a scene file; the presets are {}", a.subject,
                         fmt::join(jerlov_preset_names(), ", ")));
     SceneDesc scene = read_scene(file, a.overrides);
-    report.title = file.filename().string();
-    report.water = std::move(scene.water);
-    report.volumes = std::move(scene.volumes);
+    survey.title = file.filename().string();
+    survey.water = std::move(scene.water);
+    survey.volumes = std::move(scene.volumes);
 }
 
-void replace_bands(const WaterArguments& a, WaterReport& report) {
+void replace_bands(const WaterArguments& a, WaterSurvey& survey) {
     if (a.bands_nm.empty()) return;
-    if (is_given_per_band(report.water, report.volumes))
+    if (is_given_per_band(survey.water, survey.volumes))
         throw UsageError(
             "--bands: this scene gives coefficients per band, which say nothing about other bands; "
             "leave --bands out, or give the scene a preset or particles instead");
-    report.water.bands_nm = a.bands_nm;
+    survey.water.bands_nm = a.bands_nm;
 }
 
 /// Chooses the wavelengths of the VSF tables and of the VSF plot.
-void choose_vsf_bands(const WaterArguments& a, WaterReport& report) {
-    const std::vector<double>& bands = report.table.wavelengths_nm;
+void choose_vsf_bands(const WaterArguments& a, WaterSurvey& survey) {
+    const std::vector<double>& bands = survey.table.wavelengths_nm;
     const double wanted = a.band_nm.value_or(k_reference_nm);
     const auto nearest = std::min_element(bands.begin(), bands.end(), [&](double x, double y) {
         return std::abs(x - wanted) < std::abs(y - wanted);
     });
-    report.plot_band = static_cast<std::size_t>(nearest - bands.begin());
+    survey.plot_band = static_cast<std::size_t>(nearest - bands.begin());
     if (!a.band_nm) {
-        for (std::size_t i = 0; i < bands.size(); ++i) report.vsf_bands.push_back(i);
+        for (std::size_t i = 0; i < bands.size(); ++i) survey.vsf_bands.push_back(i);
         return;
     }
     if (std::abs(*nearest - wanted) > 1e-6 * wanted)
@@ -186,7 +190,7 @@ void choose_vsf_bands(const WaterArguments& a, WaterReport& report) {
             fmt::format("--band {:g}: not one of the bands; the nearest is {:g} nm; "
                         "choose others with --bands",
                         wanted, *nearest));
-    report.vsf_bands = {report.plot_band};
+    survey.vsf_bands = {survey.plot_band};
 }
 
 /// `prefix` with `-tail.csv` appended, without the prefix's own extension .csv if it has one.
@@ -201,25 +205,25 @@ std::filesystem::path csv_path(std::filesystem::path prefix, const char* tail) {
 }  // namespace
 
 void run_water(const WaterArguments& a, std::ostream& out) {
-    WaterReport report;
-    read_subject(a, report);
-    replace_bands(a, report);
-    report.table = tabulate_water(report.water, report.volumes);
-    report.sources =
-        water_sources(report.water, report.volumes, report.table.small_ppm, report.table.large_ppm);
-    choose_vsf_bands(a, report);
+    WaterSurvey survey;
+    read_subject(a, survey);
+    replace_bands(a, survey);
+    survey.table = tabulate_water(survey.water, survey.volumes);
+    survey.sources =
+        water_sources(survey.water, survey.volumes, survey.table.small_ppm, survey.table.large_ppm);
+    choose_vsf_bands(a, survey);
 
     TextFiles files;
     if (!a.csv.empty()) {
-        files.add(csv_path(a.csv, "coefficients"), water_coefficients_csv(report));
-        files.add(csv_path(a.csv, "vsf"), water_vsf_csv(report));
+        files.add(csv_path(a.csv, "coefficients"), water_coefficients_csv(survey));
+        files.add(csv_path(a.csv, "vsf"), water_vsf_csv(survey));
     }
-    if (!a.svg.empty()) files.add(a.svg, svg_document(water_figure(report)));
-    for (const std::string& warning : report.table.warnings)
+    if (!a.svg.empty()) files.add(a.svg, svg_document(water_figure(survey)));
+    for (const std::string& warning : survey.table.warnings)
         print_message(fmt::format("warning: {}\n", warning));
     // Files first: whoever reads the tables may stop reading, which ends the program.
     files.commit();
-    out << (a.json ? water_json(report) : water_text(report)) << std::flush;
+    out << report_on_water(survey).printed(a.json) << std::flush;
     if (!out) throw IoError("standard output: cannot write; is the disk full?");
 }
 

@@ -25,9 +25,6 @@ struct WaterArguments {
     bool json = false;
 };
 
-/// What `uwvdb water --help` ends with.
-extern const char* const k_water_examples;
-
 /// The options of `uwvdb water`, written to `arguments`.
 Options water_options(WaterArguments& arguments);
 

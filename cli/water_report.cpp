@@ -1,6 +1,7 @@
 #include "cli/water_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +11,6 @@
 #include <utility>
 
 #include "core/base/json.h"
-#include "core/base/vector_math.h"
 #include "core/base/version.h"
 #include "media/water/water_types.h"
 
@@ -36,120 +36,219 @@ const std::vector<double>& file_angles() {
 
 namespace {
 
-constexpr std::size_t k_narrowest = 9;
+using CurveValue = std::function<double(const CoefficientTable&, std::size_t)>;
 
-/// Columns of right-aligned cells, each as wide as its widest cell.
-class TextTable {
-  public:
-    void add_column(std::string name, std::string unit) {
-        columns_.push_back({std::move(name), std::move(unit)});
-    }
-    void add(std::size_t column, double value) {
-        // Column 0 is the wavelength or angle, printed with the digits given.
-        const int digits = column == 0 ? 8 : 4;
-        columns_[column].push_back(std::isfinite(value) ? fmt::format("{:.{}g}", value, digits)
-                                                        : "-");
-    }
-    std::string text() const {
-        std::string out;
-        for (std::size_t row = 0; row < columns_[0].size(); ++row) {
-            for (const std::vector<std::string>& column : columns_) {
-                std::size_t width = k_narrowest;
-                for (const std::string& cell : column) width = std::max(width, cell.size());
-                out += fmt::format("  {:>{}}", column[row], width);
-            }
-            out += "\n";
-        }
-        return out;
-    }
-
-  private:
-    std::vector<std::vector<std::string>> columns_;
+const CurveValue k_a = [](const CoefficientTable& t, std::size_t i) { return t.absorption[i]; };
+const CurveValue k_b = [](const CoefficientTable& t, std::size_t i) { return t.scattering(i); };
+const CurveValue k_c = [](const CoefficientTable& t, std::size_t i) { return t.attenuation(i); };
+const CurveValue k_bb = [](const CoefficientTable& t, std::size_t i) {
+    return t.backscattering(i);
 };
 
-std::string heading(const std::string& text) {
-    return "\n" + text + "\n";
+/// One quantity at some wavelengths or angles, under the names that it has in JSON, in text, and in
+/// CSV files.
+struct Column {
+    std::string key, label, unit, csv;
+    std::vector<double> values;
+};
+using Columns = std::vector<Column>;
+
+void append(Columns& columns, const Columns& more) {
+    columns.insert(columns.end(), more.begin(), more.end());
 }
 
-/// Unit of a coefficient per unit of concentration: "1/m", "1/m/ppm", "1/m per 1".
+/// Unit of a coefficient per unit of concentration: "[1/m]", "[1/m per ppm]", "[1/m per unit]".
 std::string per(const std::string& coefficient, const CoefficientTable& table) {
     if (table.unit.empty()) return fmt::format("[{}]", coefficient);
     return fmt::format("[{} per {}]", coefficient, table.unit == "1" ? "unit" : table.unit);
 }
 
-std::string coefficients(const WaterTable& water, const CoefficientTable& table) {
-    TextTable text;
-    const std::string per_metre = per("1/m", table);
-    text.add_column("band", "[nm]");
-    for (const char* name : {"a", "b", "c", "b_b"}) text.add_column(name, per_metre);
-    for (const char* name : {"b_b/b", "b/c", "<cos psi>"}) text.add_column(name, "");
-    const bool uniform = table.unit.empty();
-    if (uniform) text.add_column("1/c", "[m]");
-    const bool split = table.parts.size() > 1;
-    if (split)
-        for (const ScatteringPart& part : table.parts) text.add_column("b " + part.name, per_metre);
-    for (std::size_t i = 0; i < water.wavelengths_nm.size(); ++i) {
-        std::vector<double> row{water.wavelengths_nm[i], table.absorption[i],
-                                table.scattering(i),     table.attenuation(i),
-                                table.backscattering(i), table.backscatter_fraction(i),
-                                table.albedo(i),         table.mean_cosine(i)};
-        if (uniform) row.push_back(1 / table.attenuation(i));
-        if (split)
-            for (const ScatteringPart& part : table.parts) row.push_back(part.b[i]);
-        for (std::size_t column = 0; column < row.size(); ++column) text.add(column, row[column]);
-    }
-    return text.text();
+/// "_per_m", "_per_m_per_ppm", "_per_m_per_unit".
+std::string unit_suffix(const CoefficientTable& table, const std::string& per) {
+    if (table.unit.empty()) return per;
+    return per + (table.unit == "1" ? "_per_unit" : "_per_" + table.unit);
 }
 
-std::string vsf_text(const WaterReport& report, std::size_t band) {
-    const CoefficientTable& uniform = report.table.uniform;
-    TextTable text;
-    text.add_column("psi", "[deg]");
-    text.add_column("total", "[1/(m sr)]");
-    const bool split = uniform.parts.size() > 1;
-    if (split)
-        for (const ScatteringPart& part : uniform.parts) text.add_column(part.name, "[1/(m sr)]");
-    for (const CoefficientTable& constituent : report.table.constituents)
-        text.add_column(constituent.name + "*", per("1/(m sr)", constituent));
-    for (const double angle : printed_angles()) {
-        const double psi = angle * k_degree;
-        std::vector<double> row{angle, uniform.vsf(band, psi)};
-        if (split)
-            for (std::size_t part = 0; part < uniform.parts.size(); ++part)
-                row.push_back(uniform.vsf(band, part, psi));
-        for (const CoefficientTable& constituent : report.table.constituents)
-            row.push_back(constituent.vsf(band, psi));
-        for (std::size_t column = 0; column < row.size(); ++column) text.add(column, row[column]);
+/// The coefficients of one table, and their ratios.
+Columns coefficient_columns(const CoefficientTable& table) {
+    const std::string before = table.name.empty() ? "" : table.name + "_";
+    const std::string unit = per("1/m", table), suffix = unit_suffix(table, "_per_m");
+    Columns columns;
+    const auto add = [&](const std::string& key, const char* label, bool is_ratio,
+                         const CurveValue& value) {
+        columns.push_back(
+            {key, label, is_ratio ? "" : unit, before + key + (is_ratio ? "" : suffix), {}});
+        for (std::size_t i = 0; i < table.absorption.size(); ++i)
+            columns.back().values.push_back(value(table, i));
+    };
+    add("a", "a", false, k_a);
+    add("b", "b", false, k_b);
+    add("c", "c", false, k_c);
+    add("bb", "b_b", false, k_bb);
+    add("bb_over_b", "b_b/b", true,
+        [](const auto& t, auto i) { return t.backscatter_fraction(i); });
+    add("albedo", "b/c", true, [](const auto& t, auto i) { return t.albedo(i); });
+    add("mean_cosine", "<cos psi>", true, [](const auto& t, auto i) { return t.mean_cosine(i); });
+    return columns;
+}
+
+Column wavelength_column(const WaterTable& water) {
+    return {"", "band", "[nm]", "wavelength_nm", water.wavelengths_nm};
+}
+
+Column attenuation_length_column(const CoefficientTable& table) {
+    Column column{"attenuation_length", "1/c", "[m]", "attenuation_length_m", {}};
+    for (std::size_t i = 0; i < table.absorption.size(); ++i)
+        column.values.push_back(1 / table.attenuation(i));
+    return column;
+}
+
+Columns part_columns(const CoefficientTable& table) {
+    Columns columns;
+    for (const ScatteringPart& part : table.parts)
+        columns.push_back(
+            {"", "b " + part.name, per("1/m", table), "b_" + part.name + "_per_m", part.b});
+    return columns;
+}
+
+/// The scattering function of the water everywhere at some angles [deg], that of its components,
+/// and what grids add.
+struct VsfColumns {
+    Column total;
+    Columns parts, constituents;
+};
+
+VsfColumns vsf_columns(const WaterTable& water, std::size_t band,
+                       const std::vector<double>& angles) {
+    const auto values = [&](const auto& beta) {
+        std::vector<double> list;
+        for (const double angle : angles) list.push_back(beta(angle * std::numbers::pi / 180));
+        return list;
+    };
+    const CoefficientTable& uniform = water.uniform;
+    const char* const unit = "[1/(m sr)]";
+    VsfColumns columns{{"", "total", unit, "total_per_m_per_sr",
+                        values([&](double psi) { return uniform.vsf(band, psi); })},
+                       {},
+                       {}};
+    for (std::size_t part = 0; part < uniform.parts.size(); ++part) {
+        const std::string& name = uniform.parts[part].name;
+        columns.parts.push_back({"", name, unit, name + "_per_m_per_sr",
+                                 values([&](double psi) { return uniform.vsf(band, part, psi); })});
     }
-    return text.text();
+    for (const CoefficientTable& constituent : water.constituents)
+        columns.constituents.push_back(
+            {"", constituent.name + "*", per("1/(m sr)", constituent),
+             constituent.name + unit_suffix(constituent, "_grid_per_m_per_sr"),
+             values([&](double psi) { return constituent.vsf(band, psi); })});
+    return columns;
+}
+
+/// Names, units, and a row for each value of the first column, which has the digits given.
+std::string columns_text(const Columns& columns) {
+    std::vector<std::vector<std::string>> rows(2 + columns[0].values.size());
+    for (const Column& column : columns) {
+        const int digits = &column == &columns[0] ? 8 : 4;
+        rows[0].push_back(column.label);
+        rows[1].push_back(column.unit);
+        for (std::size_t i = 0; i < column.values.size(); ++i) {
+            const double value = column.values[i];
+            rows[2 + i].push_back(std::isfinite(value) ? fmt::format("{:.{}g}", value, digits)
+                                                       : "-");
+        }
+    }
+    constexpr std::size_t k_narrowest = 9;
+    return fmt::format("{}", fmt::join(aligned_rows(rows, 0, k_narrowest), "\n"));
+}
+
+Report report_on_coefficients(const std::string& heading, const WaterTable& water,
+                              const CoefficientTable& table) {
+    Report report(heading);
+    const bool is_uniform = table.unit.empty();
+    if (is_uniform && table.parts.size() == 1)
+        report.say(fmt::format("(all scattering is that of: {})", table.parts[0].name));
+    if (!is_uniform) report.set({{"name", table.name}, {"unit", table.unit}});
+    Columns columns = coefficient_columns(table);
+    for (const Column& column : columns) report.set({{column.key, list_json(column.values)}});
+    Json parts = Json::array();
+    for (const ScatteringPart& part : table.parts)
+        parts.push_back({{"name", part.name},
+                         {"phase_function", part.phase->description()},
+                         {"b", part.b},
+                         {"bb_over_b", part.backscatter_fraction},
+                         {"mean_cosine", part.mean_cosine}});
+    report.set({{"components", std::move(parts)}});
+    if (is_uniform) {
+        columns.push_back(attenuation_length_column(table));
+        report.set({{columns.back().key, list_json(columns.back().values)}});
+    }
+    if (table.parts.size() > 1) append(columns, part_columns(table));
+    columns.insert(columns.begin(), wavelength_column(water));
+    report.say(columns_text(columns));
+    return report;
+}
+
+Report report_on_vsf(const WaterTable& water, std::size_t band) {
+    Report report(
+        fmt::format("\nVolume scattering function beta(psi) at {:g} nm; psi is the change of "
+                    "direction: 0 forward, 180 backward",
+                    water.wavelengths_nm[band]));
+    const VsfColumns printed = vsf_columns(water, band, printed_angles());
+    Columns columns{{"", "psi", "[deg]", "", printed_angles()}, printed.total};
+    if (printed.parts.size() > 1) append(columns, printed.parts);
+    append(columns, printed.constituents);
+    report.say(columns_text(columns));
+
+    const VsfColumns all = vsf_columns(water, band, file_angles());
+    // Lists in the order of the tables' components and constituents: names need not be unique.
+    const auto lists = [](const Columns& of) {
+        Json json = Json::array();
+        for (const Column& column : of) json.push_back(list_json(column.values));
+        return json;
+    };
+    report.set({{"wavelength_nm", water.wavelengths_nm[band]},
+                {"total", list_json(all.total.values)},
+                {"components", lists(all.parts)},
+                {"constituents", lists(all.constituents)}});
+    return report;
 }
 
 }  // namespace
 
-std::string water_text(const WaterReport& report) {
-    const WaterTable& water = report.table;
-    std::string out = report.title + "\n";
-    for (const std::string& line : report.sources) out += "  " + line + "\n";
-    out += heading(
-        "Coefficients of the water everywhere: absorption a, scattering b, attenuation c = a + b, "
-        "backscattering b_b");
-    if (water.uniform.parts.size() == 1)
-        out += fmt::format("(all scattering is that of: {})\n", water.uniform.parts[0].name);
-    out += coefficients(water, water.uniform);
-    for (const CoefficientTable& constituent : water.constituents) {
-        out += heading(
-            fmt::format("What grids add: '{}', per {}", constituent.name,
-                        constituent.unit == "1" ? "unit of the grid's value" : constituent.unit));
-        out += coefficients(water, constituent);
-    }
-    for (const std::size_t band : report.vsf_bands) {
-        out += heading(fmt::format(
-            "Volume scattering function beta(psi) at {:g} nm; psi is the change of direction: 0 "
-            "forward, 180 backward",
-            water.wavelengths_nm[band]));
-        out += vsf_text(report, band);
-    }
-    return out;
+Report report_on_water(const WaterSurvey& survey) {
+    const WaterTable& water = survey.table;
+    Report report;
+    report.say(survey.title);
+    for (const std::string& line : survey.sources) report.say("  " + line);
+    report.set({{"uwvdb", program_version()},
+                {"water", survey.title},
+                {"sources", survey.sources},
+                {"warnings", water.warnings},
+                {"units",
+                 {{"coefficients", "1/m; of constituents 1/m per unit of concentration"},
+                  {"vsf", "1/(m sr); of constituents per unit of concentration"},
+                  {"attenuation_length", "m"},
+                  {"angles", "degrees; 0 is forward"}}},
+                {"wavelengths_nm", water.wavelengths_nm},
+                {"small_ppm", water.small_ppm},
+                {"large_ppm", water.large_ppm}});
+    report.add("uniform", report_on_coefficients("\nCoefficients of the water everywhere: "
+                                                 "absorption a, scattering b, attenuation c = a + "
+                                                 "b, backscattering b_b",
+                                                 water, water.uniform));
+    std::vector<Report> constituents, bands;
+    for (const CoefficientTable& constituent : water.constituents)
+        constituents.push_back(report_on_coefficients(
+            fmt::format("\nWhat grids add: '{}', per {}", constituent.name,
+                        constituent.unit == "1" ? "unit of the grid's value" : constituent.unit),
+            water, constituent));
+    report.add("constituents", constituents);
+    Report vsf;
+    vsf.set({{"angles_deg", file_angles()}});
+    for (const std::size_t band : survey.vsf_bands) bands.push_back(report_on_vsf(water, band));
+    vsf.add("bands", bands);
+    report.add("vsf", vsf);
+    return report;
 }
 
 namespace {
@@ -162,192 +261,68 @@ std::string field(const std::string& text) {
     return out + "\"";
 }
 
-void add(std::string& row, const std::string& text) {
-    row += (row.empty() ? "" : ",") + field(text);
-}
-
-void add(std::string& row, double value) {
-    add(row, std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string());
-}
-
-std::string comment(const WaterReport& report, const std::string& what) {
-    std::string out = fmt::format("# {}: {}", report.title, what);
-    for (const std::string& source : report.sources) out += " | " + source;
-    for (char& c : out)
+std::string csv_header(const WaterSurvey& survey, const std::string& what, const Columns& columns) {
+    std::string comment = fmt::format("# {}: {}", survey.title, what);
+    for (const std::string& source : survey.sources) comment += " | " + source;
+    for (char& c : comment)
         if (c == '\n' || c == '\r') c = ' ';
-    return out + fmt::format(" | uwvdb {}\n", program_version());
+    std::vector<std::string> names;
+    for (const Column& column : columns) names.push_back(field(column.csv));
+    return fmt::format("{} | uwvdb {}\n{}\n", comment, program_version(), fmt::join(names, ","));
 }
 
-/// "_per_m", "_per_m_per_ppm", "_per_m_per_unit".
-std::string unit_suffix(const CoefficientTable& table, const std::string& per) {
-    if (table.unit.empty()) return per;
-    return per + (table.unit == "1" ? "_per_unit" : "_per_" + table.unit);
-}
-
-void name_coefficients(const CoefficientTable& table, std::string& header) {
-    const std::string before = table.name.empty() ? "" : table.name + "_";
-    const std::string after = unit_suffix(table, "_per_m");
-    for (const char* name : {"a", "b", "c", "bb"})
-        add(header, fmt::format("{}{}{}", before, name, after));
-    for (const char* name : {"bb_over_b", "albedo", "mean_cosine"}) add(header, before + name);
-}
-
-void add_coefficients(const CoefficientTable& table, std::size_t i, std::string& row) {
-    add(row, table.absorption[i]);
-    add(row, table.scattering(i));
-    add(row, table.attenuation(i));
-    add(row, table.backscattering(i));
-    add(row, table.backscatter_fraction(i));
-    add(row, table.albedo(i));
-    add(row, table.mean_cosine(i));
-}
-
-}  // namespace
-
-std::string water_coefficients_csv(const WaterReport& report) {
-    const WaterTable& water = report.table;
-    std::string header;
-    add(header, std::string("wavelength_nm"));
-    name_coefficients(water.uniform, header);
-    add(header, std::string("attenuation_length_m"));
-    for (const ScatteringPart& part : water.uniform.parts) add(header, "b_" + part.name + "_per_m");
-    for (const CoefficientTable& constituent : water.constituents)
-        name_coefficients(constituent, header);
-    std::string out = comment(report,
-                              "coefficients of the water everywhere, then of what grids "
-                              "add, per unit of its concentration") +
-                      header + "\n";
-    for (std::size_t i = 0; i < water.wavelengths_nm.size(); ++i) {
-        std::string row;
-        add(row, water.wavelengths_nm[i]);
-        add_coefficients(water.uniform, i, row);
-        add(row, 1 / water.uniform.attenuation(i));
-        for (const ScatteringPart& part : water.uniform.parts) add(row, part.b[i]);
-        for (const CoefficientTable& constituent : water.constituents)
-            add_coefficients(constituent, i, row);
-        out += row + "\n";
-    }
-    return out;
-}
-
-std::string water_vsf_csv(const WaterReport& report) {
-    const WaterTable& water = report.table;
-    std::string header = "wavelength_nm,angle_deg,total_per_m_per_sr";
-    for (const ScatteringPart& part : water.uniform.parts) add(header, part.name + "_per_m_per_sr");
-    for (const CoefficientTable& constituent : water.constituents)
-        add(header, constituent.name + unit_suffix(constituent, "_grid_per_m_per_sr"));
-    std::string out = comment(report,
-                              "volume scattering function of the water everywhere and of "
-                              "its components, then of what grids add") +
-                      header + "\n";
-    for (const std::size_t band : report.vsf_bands)
-        for (const double angle : file_angles()) {
-            const double psi = angle * std::numbers::pi / 180;
-            std::string row;
-            add(row, water.wavelengths_nm[band]);
-            add(row, angle);
-            add(row, water.uniform.vsf(band, psi));
-            for (std::size_t part = 0; part < water.uniform.parts.size(); ++part)
-                add(row, water.uniform.vsf(band, part, psi));
-            for (const CoefficientTable& constituent : water.constituents)
-                add(row, constituent.vsf(band, psi));
-            out += row + "\n";
+std::string csv_rows(const Columns& columns) {
+    std::string out;
+    for (std::size_t i = 0; i < columns[0].values.size(); ++i)
+        for (const Column& column : columns) {
+            if (&column != &columns[0]) out += ',';
+            if (std::isfinite(column.values[i])) out += fmt::format("{:.9g}", column.values[i]);
+            if (&column == &columns.back()) out += '\n';
         }
     return out;
 }
 
-namespace {
-
-template <class F>
-Json list(std::size_t count, F value) {
-    Json out = Json::array();
-    for (std::size_t i = 0; i < count; ++i) out.push_back(number_json(value(i)));
-    return out;
-}
-
-Json coefficients(const CoefficientTable& table) {
-    const std::size_t n = table.absorption.size();
-    Json out;
-    if (!table.unit.empty()) {
-        out["name"] = table.name;
-        out["unit"] = table.unit;
-    }
-    out["a"] = list(n, [&](std::size_t i) { return table.absorption[i]; });
-    out["b"] = list(n, [&](std::size_t i) { return table.scattering(i); });
-    out["c"] = list(n, [&](std::size_t i) { return table.attenuation(i); });
-    out["bb"] = list(n, [&](std::size_t i) { return table.backscattering(i); });
-    out["bb_over_b"] = list(n, [&](std::size_t i) { return table.backscatter_fraction(i); });
-    out["albedo"] = list(n, [&](std::size_t i) { return table.albedo(i); });
-    out["mean_cosine"] = list(n, [&](std::size_t i) { return table.mean_cosine(i); });
-    out["components"] = Json::array();
-    for (const ScatteringPart& part : table.parts)
-        out["components"].push_back({{"name", part.name},
-                                     {"phase_function", part.phase->description()},
-                                     {"b", part.b},
-                                     {"bb_over_b", part.backscatter_fraction},
-                                     {"mean_cosine", part.mean_cosine}});
-    return out;
-}
-
-Json vsf_json(const WaterReport& report, std::size_t band) {
-    const std::vector<double>& angles = file_angles();
-    const auto over_angle = [&](auto value) {
-        return list(angles.size(),
-                    [&](std::size_t i) { return value(angles[i] * std::numbers::pi / 180); });
-    };
-    const CoefficientTable& uniform = report.table.uniform;
-    Json out;
-    out["wavelength_nm"] = report.table.wavelengths_nm[band];
-    out["total"] = over_angle([&](double psi) { return uniform.vsf(band, psi); });
-    // Lists in the order of `components` and `constituents`: names need not be unique.
-    out["components"] = Json::array();
-    for (std::size_t part = 0; part < uniform.parts.size(); ++part)
-        out["components"].push_back(
-            over_angle([&](double psi) { return uniform.vsf(band, part, psi); }));
-    out["constituents"] = Json::array();
-    for (const CoefficientTable& constituent : report.table.constituents)
-        out["constituents"].push_back(
-            over_angle([&](double psi) { return constituent.vsf(band, psi); }));
-    return out;
-}
-
 }  // namespace
 
-std::string water_json(const WaterReport& report) {
-    const WaterTable& water = report.table;
-    Json json;
-    json["uwvdb"] = program_version();
-    json["water"] = report.title;
-    json["sources"] = report.sources;
-    json["warnings"] = water.warnings;
-    json["units"] = {{"coefficients", "1/m; of constituents 1/m per unit of concentration"},
-                     {"vsf", "1/(m sr); of constituents per unit of concentration"},
-                     {"attenuation_length", "m"},
-                     {"angles", "degrees; 0 is forward"}};
-    json["wavelengths_nm"] = water.wavelengths_nm;
-    json["small_ppm"] = water.small_ppm;
-    json["large_ppm"] = water.large_ppm;
-    json["uniform"] = coefficients(water.uniform);
-    json["uniform"]["attenuation_length"] = list(water.wavelengths_nm.size(), [&](std::size_t i) {
-        return 1 / water.uniform.attenuation(i);
-    });
-    json["constituents"] = Json::array();
+std::string water_coefficients_csv(const WaterSurvey& survey) {
+    const WaterTable& water = survey.table;
+    Columns columns{wavelength_column(water)};
+    append(columns, coefficient_columns(water.uniform));
+    columns.push_back(attenuation_length_column(water.uniform));
+    append(columns, part_columns(water.uniform));
     for (const CoefficientTable& constituent : water.constituents)
-        json["constituents"].push_back(coefficients(constituent));
-    json["vsf"]["angles_deg"] = file_angles();
-    json["vsf"]["bands"] = Json::array();
-    for (const std::size_t band : report.vsf_bands)
-        json["vsf"]["bands"].push_back(vsf_json(report, band));
-    // Names of grids come from users' files and need not be UTF-8.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+        append(columns, coefficient_columns(constituent));
+    return csv_header(survey,
+                      "coefficients of the water everywhere, then of what grids add, per unit of "
+                      "its concentration",
+                      columns) +
+           csv_rows(columns);
+}
+
+std::string water_vsf_csv(const WaterSurvey& survey) {
+    const WaterTable& water = survey.table;
+    std::string out;
+    for (const std::size_t band : survey.vsf_bands) {
+        const VsfColumns vsf = vsf_columns(water, band, file_angles());
+        Columns columns{
+            wavelength_column(water), {"", "psi", "[deg]", "angle_deg", file_angles()}, vsf.total};
+        columns[0].values.assign(file_angles().size(), water.wavelengths_nm[band]);
+        append(columns, vsf.parts);
+        append(columns, vsf.constituents);
+        if (out.empty())
+            out = csv_header(survey,
+                             "volume scattering function of the water everywhere and of its "
+                             "components, then of what grids add",
+                             columns);
+        out += csv_rows(columns);
+    }
+    return out;
 }
 
 namespace {
 
 /// More bands than this are so close that their dots would hide the curve.
 constexpr std::size_t k_most_dots = 40;
-
-using CurveValue = std::function<double(const CoefficientTable&, std::size_t)>;
 
 struct LineStyle {
     const char* colour;
@@ -380,34 +355,34 @@ struct FineCurves {
 };
 
 /// First and last wavelength [nm] of the plots: the visible range, extended to the bands.
-std::pair<double, double> plotted_range(const WaterReport& report) {
-    const std::vector<double>& bands = report.table.wavelengths_nm;
+std::pair<double, double> plotted_range(const WaterSurvey& survey) {
+    const std::vector<double>& bands = survey.table.wavelengths_nm;
     const auto [low, high] = std::minmax_element(bands.begin(), bands.end());
     return {std::floor(std::min(400.0, *low)), std::ceil(std::max(700.0, *high))};
 }
 
-FineCurves fine_curves(const WaterReport& report) {
-    FineCurves fine{{}, !report.water.absorption, !report.water.scattering};
-    WaterDesc water = report.water;
+FineCurves fine_curves(const WaterSurvey& survey) {
+    FineCurves fine{{}, !survey.water.absorption, !survey.water.scattering};
+    WaterDesc water = survey.water;
     water.absorption.reset();
     water.scattering.reset();
-    std::vector<VolumeDesc> volumes = report.volumes;
+    std::vector<VolumeDesc> volumes = survey.volumes;
     for (VolumeDesc& volume : volumes)
         std::erase_if(volume.grids,
                       [](const GridMappingDesc& grid) { return grid.optics.has_value(); });
     const WavelengthRange known = pure_water_absorption_range();
-    const double first = std::max(known.first_nm, plotted_range(report).first);
-    const double last = std::min(known.last_nm, plotted_range(report).second);
+    const double first = std::max(known.first_nm, plotted_range(survey).first);
+    const double last = std::min(known.last_nm, plotted_range(survey).second);
     water.bands_nm.clear();
     for (double nm = first; nm <= last; nm += 2) water.bands_nm.push_back(nm);
     fine.table = tabulate_water(water, volumes);
     return fine;
 }
 
-PlotPanel spectral_panel(const WaterReport& report, const std::string& title,
+PlotPanel spectral_panel(const WaterSurvey& survey, const std::string& title,
                          const std::string& y_label) {
     PlotPanel panel{title, {"wavelength [nm]", {}}, {y_label, {}}, {}};
-    const auto [first, last] = plotted_range(report);
+    const auto [first, last] = plotted_range(survey);
     panel.x.request.min = first;
     panel.x.request.max = last;
     panel.y.request.scale = AxisScale::log;
@@ -434,18 +409,11 @@ CurveValue b_of_part(std::size_t part) {
     return [part](const CoefficientTable& t, std::size_t i) { return t.parts[part].b[i]; };
 }
 
-const CurveValue k_a = [](const CoefficientTable& t, std::size_t i) { return t.absorption[i]; };
-const CurveValue k_b = [](const CoefficientTable& t, std::size_t i) { return t.scattering(i); };
-const CurveValue k_c = [](const CoefficientTable& t, std::size_t i) { return t.attenuation(i); };
-const CurveValue k_bb = [](const CoefficientTable& t, std::size_t i) {
-    return t.backscattering(i);
-};
-
-PlotPanel coefficient_panel(const WaterReport& report, const FineCurves& fine) {
-    PlotPanel panel = spectral_panel(report, "Coefficients", "coefficient [1/m]");
+PlotPanel coefficient_panel(const WaterSurvey& survey, const FineCurves& fine) {
+    PlotPanel panel = spectral_panel(survey, "Coefficients", "coefficient [1/m]");
     const CoefficientTable* const table = &fine.table.uniform;
     const auto add = [&](const char* label, LineStyle style, bool known, const CurveValue& value) {
-        add_spectrum(panel, label, style, report.table, report.table.uniform, fine.table,
+        add_spectrum(panel, label, style, survey.table, survey.table.uniform, fine.table,
                      known ? table : nullptr, value);
     };
     add("c = a + b", {plot_colour::k_black, ""}, fine.absorption && fine.scattering, k_c);
@@ -455,32 +423,32 @@ PlotPanel coefficient_panel(const WaterReport& report, const FineCurves& fine) {
     return panel;
 }
 
-PlotPanel scattering_panel(const WaterReport& report, const FineCurves& fine) {
-    PlotPanel panel = spectral_panel(report, "Scattering by component", "b [1/m]");
-    const CoefficientTable& uniform = report.table.uniform;
+PlotPanel scattering_panel(const WaterSurvey& survey, const FineCurves& fine) {
+    PlotPanel panel = spectral_panel(survey, "Scattering by component", "b [1/m]");
+    const CoefficientTable& uniform = survey.table.uniform;
     const bool split = uniform.parts.size() != 1;
     const CoefficientTable* const table = fine.scattering ? &fine.table.uniform : nullptr;
     if (split)
-        add_spectrum(panel, "total", style_of("total"), report.table, uniform, fine.table, table,
+        add_spectrum(panel, "total", style_of("total"), survey.table, uniform, fine.table, table,
                      k_b);
     for (std::size_t part = 0; part < uniform.parts.size(); ++part)
         add_spectrum(panel, uniform.parts[part].name, style_of(uniform.parts[part].name),
-                     report.table, uniform, fine.table, table, b_of_part(part));
+                     survey.table, uniform, fine.table, table, b_of_part(part));
     return panel;
 }
 
 /// What grids add; particles are known at all wavelengths, a grid's own coefficients at the bands.
-PlotPanel constituent_panel(const WaterReport& report, const FineCurves& fine) {
-    PlotPanel panel = spectral_panel(report, "What grids add: attenuation", "c* [1/m per unit]");
-    for (std::size_t k = 0; k < report.table.constituents.size(); ++k) {
-        const CoefficientTable& constituent = report.table.constituents[k];
+PlotPanel constituent_panel(const WaterSurvey& survey, const FineCurves& fine) {
+    PlotPanel panel = spectral_panel(survey, "What grids add: attenuation", "c* [1/m per unit]");
+    for (std::size_t k = 0; k < survey.table.constituents.size(); ++k) {
+        const CoefficientTable& constituent = survey.table.constituents[k];
         const CoefficientTable* known = nullptr;
         for (const CoefficientTable& other : fine.table.constituents)
             if (constituent.unit == "ppm" && other.name == constituent.name) known = &other;
         add_spectrum(panel,
                      fmt::format("{} (per {})", constituent.name,
                                  constituent.unit == "1" ? "grid unit" : constituent.unit),
-                     style_of(k), report.table, constituent, fine.table, known, k_c);
+                     style_of(k), survey.table, constituent, fine.table, known, k_c);
     }
     return panel;
 }
@@ -509,11 +477,11 @@ PlotPanel angular_panel(const std::string& title, const std::string& y_label, Ax
     return panel;
 }
 
-PlotPanel vsf_panel(const WaterReport& report, AxisScale scale) {
-    const std::size_t band = report.plot_band;
-    const CoefficientTable& uniform = report.table.uniform;
+PlotPanel vsf_panel(const WaterSurvey& survey, AxisScale scale) {
+    const std::size_t band = survey.plot_band;
+    const CoefficientTable& uniform = survey.table.uniform;
     PlotPanel panel = angular_panel(
-        fmt::format("Volume scattering function at {:g} nm{}", report.table.wavelengths_nm[band],
+        fmt::format("Volume scattering function at {:g} nm{}", survey.table.wavelengths_nm[band],
                     scale == AxisScale::log ? ", log-log" : ""),
         "β [1/(m sr)]", scale);
     if (uniform.parts.size() != 1)
@@ -525,13 +493,13 @@ PlotPanel vsf_panel(const WaterReport& report, AxisScale scale) {
     return panel;
 }
 
-PlotPanel constituent_vsf_panel(const WaterReport& report) {
-    const std::size_t band = report.plot_band;
+PlotPanel constituent_vsf_panel(const WaterSurvey& survey) {
+    const std::size_t band = survey.plot_band;
     PlotPanel panel = angular_panel(
-        fmt::format("What grids add: VSF at {:g} nm", report.table.wavelengths_nm[band]),
+        fmt::format("What grids add: VSF at {:g} nm", survey.table.wavelengths_nm[band]),
         "β* [1/(m sr) per unit]", AxisScale::log);
-    for (std::size_t k = 0; k < report.table.constituents.size(); ++k) {
-        const CoefficientTable& constituent = report.table.constituents[k];
+    for (std::size_t k = 0; k < survey.table.constituents.size(); ++k) {
+        const CoefficientTable& constituent = survey.table.constituents[k];
         add_angular(panel, constituent.name, style_of(k), 1.8,
                     [&](double psi) { return constituent.vsf(band, psi); });
     }
@@ -540,16 +508,16 @@ PlotPanel constituent_vsf_panel(const WaterReport& report) {
 
 }  // namespace
 
-PlotFigure water_figure(const WaterReport& report) {
-    const FineCurves fine = fine_curves(report);
+PlotFigure water_figure(const WaterSurvey& survey) {
+    const FineCurves fine = fine_curves(survey);
     PlotFigure figure;
-    figure.title = "Water: " + report.title;
-    figure.caption = report.sources;
-    figure.panels = {coefficient_panel(report, fine), scattering_panel(report, fine),
-                     vsf_panel(report, AxisScale::linear), vsf_panel(report, AxisScale::log)};
-    if (!report.table.constituents.empty()) {
-        figure.panels.push_back(constituent_panel(report, fine));
-        figure.panels.push_back(constituent_vsf_panel(report));
+    figure.title = "Water: " + survey.title;
+    figure.caption = survey.sources;
+    figure.panels = {coefficient_panel(survey, fine), scattering_panel(survey, fine),
+                     vsf_panel(survey, AxisScale::linear), vsf_panel(survey, AxisScale::log)};
+    if (!survey.table.constituents.empty()) {
+        figure.panels.push_back(constituent_panel(survey, fine));
+        figure.panels.push_back(constituent_vsf_panel(survey));
     }
     return figure;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/report.h"
 #include "cli/svg_plot.h"
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
@@ -12,7 +13,7 @@
 namespace uw {
 
 /// What `uwvdb water` reports on, and how.
-struct WaterReport {
+struct WaterSurvey {
     std::string title;  // "jerlov-II", "plume.yaml", "pure sea water"
     WaterDesc water;
     std::vector<VolumeDesc> volumes;
@@ -27,23 +28,20 @@ const std::vector<double>& printed_angles();
 /// Scattering angles of the VSF in files [deg]: 0, steps of 0.01 to 0.1, of 0.1 to 1, of 1 to 180.
 const std::vector<double>& file_angles();
 
-/// The tables for people, ASCII, with units and sources.
-std::string water_text(const WaterReport& report);
+/// The tables with units and sources. Undefined ratios (0/0) are dashes in text and null in JSON.
+Report report_on_water(const WaterSurvey& survey);
 
 /// CSV (RFC 4180, preceded by one comment line with units and sources): one row per wavelength.
 /// Undefined ratios (0/0) are blank.
-std::string water_coefficients_csv(const WaterReport& report);
+std::string water_coefficients_csv(const WaterSurvey& survey);
 /// CSV: one row per wavelength and angle, total first, then each component, then per unit of each
 /// constituent.
-std::string water_vsf_csv(const WaterReport& report);
-
-/// Everything as one JSON object; undefined ratios are null.
-std::string water_json(const WaterReport& report);
+std::string water_vsf_csv(const WaterSurvey& survey);
 
 /// Coefficients over wavelength, scattering by component, and the VSF of the plotted band with its
 /// components over angle on a linear and a logarithmic axis (figure 4 of Sedlazeck and Koch 2011);
 /// if grids add constituents, the same per unit of these. Fine curves where models provide them,
 /// dots at the wavelengths of the table.
-PlotFigure water_figure(const WaterReport& report);
+PlotFigure water_figure(const WaterSurvey& survey);
 
 }  // namespace uw

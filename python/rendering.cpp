@@ -18,7 +18,6 @@
 #include <thread>
 #include <utility>
 
-#include "cli/validate/validation.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
@@ -30,6 +29,7 @@
 #include "render/image_header.h"
 #include "render/resolved_scene.h"
 #include "render/scene_loading.h"
+#include "validation/validation.h"
 
 namespace uw {
 

@@ -74,28 +74,45 @@ std::optional<PathSurvey> survey_path(const SceneDesc& scene, const Surfaces& su
     return path;
 }
 
-std::string path_text(const PathSurvey& path) {
+Report report_on_path(const PathSurvey& path) {
     const PathPoint& first = path.points.front();
     const PathPoint& last = path.points.back();
-    std::string text = fmt::format(
-        "path of the camera\n  frames {}-{}, {:.4g} to {:.4g} s: {:.4g} m, at most {:.3g} m/s\n",
-        path.frames.first, path.frames.last, first.time, last.time, path.length, path.top_speed);
-    const auto by_height = std::ranges::minmax_element(path.points, {}, &PathPoint::height);
-    if (std::isfinite(by_height.min->height))
-        text += fmt::format(
-            "  {:.4g}{} m above the surface below, lowest in {}\n", by_height.min->height,
-            std::isfinite(by_height.max->height) ? fmt::format(" to {:.4g}", by_height.max->height)
-                                                 : " or more",
-            frame_text(*by_height.min));
-    else
-        text += "  no surface is below it\n";
+    const auto frame = [&](const std::optional<std::size_t>& index) {
+        return index ? Json(path.points[*index].frame) : Json(nullptr);
+    };
+    Report report("path of the camera");
+    report.say(fmt::format("frames {}-{}, {:.4g} to {:.4g} s: {:.4g} m, at most {:.3g} m/s",
+                           path.frames.first, path.frames.last, first.time, last.time, path.length,
+                           path.top_speed));
+    report.set({{"first_frame", path.frames.first},
+                {"last_frame", path.frames.last},
+                {"length", path.length},
+                {"top_speed", path.top_speed}});
+    const auto [lowest, highest] = std::ranges::minmax_element(path.points, {}, &PathPoint::height);
+    report.say(std::isfinite(lowest->height)
+                   ? fmt::format("{:.4g}{} m above the surface below, lowest in {}", lowest->height,
+                                 std::isfinite(highest->height)
+                                     ? fmt::format(" to {:.4g}", highest->height)
+                                     : " or more",
+                                 frame_text(*lowest))
+                   : "no surface is below it");
     if (path.leaves_floor)
-        text += fmt::format("  it leaves the floor: no surface is below it in {}\n",
-                            frame_text(path.points[*path.leaves_floor]));
+        report.say(fmt::format("it leaves the floor: no surface is below it in {}",
+                               frame_text(path.points[*path.leaves_floor])));
     if (path.enters)
-        text += fmt::format("  it enters a surface: '{}', by {}\n", printable(path.entered),
-                            frame_text(path.points[*path.enters]));
-    return text;
+        report.say(fmt::format("it enters a surface: '{}', by {}", printable(path.entered),
+                               frame_text(path.points[*path.enters])));
+    report.set({{"leaves_floor", frame(path.leaves_floor)},
+                {"enters", frame(path.enters)},
+                {"entered", path.entered}});
+    Json points = Json::array();
+    for (const PathPoint& point : path.points)
+        points.push_back({{"frame", point.frame},
+                          {"time", point.time},
+                          {"position", point_json(point.position)},
+                          {"height", number_json(point.height)}});
+    report.set({{"points", std::move(points)}});
+    return report;
 }
 
 namespace {

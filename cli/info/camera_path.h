@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/report.h"
 #include "core/base/vector_math.h"
 #include "core/geometry/surfaces.h"
 #include "core/scene/scene_desc.h"
@@ -37,8 +38,8 @@ struct PathSurvey {
 /// nothing moves, or there is no frame in which everything that moves has a pose.
 std::optional<PathSurvey> survey_path(const SceneDesc& scene, const Surfaces& surfaces);
 
-/// In words, a line each, with the heading of its part.
-std::string path_text(const PathSurvey& path);
+/// Its length and speed, its heights, and where it leaves the floor or enters a surface.
+Report report_on_path(const PathSurvey& path);
 
 /// A map of the camera's path over the outlines of the surfaces as seen from above, and its height
 /// over what is below, as an SVG document. `title`: the scene's name.

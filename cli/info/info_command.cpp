@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -26,6 +27,21 @@
 #include "render/scene_loading.h"
 
 namespace uw {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `uwvdb info` as typed.
+struct InfoArguments {
+    fs::path subject;                    // a VDB file, a sequence of them, or a scene
+    std::vector<std::string> overrides;  // --set key.path=value, of a scene
+    std::optional<int> frame;            // --frame, of a sequence; else the first that exists
+    bool json = false;
+    bool scene = false;  // --scene: print a whole scene instead, of a VDB file
+    fs::path picture;    // --picture: a thumbnail of that scene; empty: none
+    fs::path svg;        // --svg: the camera's path over a scene; empty: none
+};
 
 const char* const k_info_examples = R"(Examples:
   uwvdb info smoke.vdb
@@ -61,10 +77,6 @@ Options info_options(InfoArguments& a) {
     options.confine();
     return options;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int k_shown_variations = 3;
 
@@ -124,34 +136,34 @@ VdbAdvice advise_on_frames(const InfoArguments& a, SequenceReport& sequence) {
     return advice;
 }
 
-VdbReport report_on(const InfoArguments& a) {
-    VdbReport report;
-    report.file = a.subject.string();
+VdbSurvey survey_vdb(const InfoArguments& a) {
+    VdbSurvey survey;
+    survey.file = a.subject.string();
     fs::path file = a.subject;
     const bool is_sequence = !is_there(a.subject) && has_frame_pattern(a.subject.string());
     if (is_sequence) {
-        report.sequence = look_for_frames(a.subject, a.frame);
+        survey.sequence = look_for_frames(a.subject, a.frame);
         if (a.frame) require_file(file_of_frame(a.subject, *a.frame));
-        report.advice = advise_on_frames(a, report.sequence);
-        file = file_of_frame(a.subject, report.sequence.frame);
+        survey.advice = advise_on_frames(a, survey.sequence);
+        file = file_of_frame(a.subject, survey.sequence.frame);
     } else if (a.frame) {
         refuse_frame(a.subject);
     }
     require_file(file);
-    report.inspection = inspect_vdb(file, printable(file.filename().string(), 300));
-    if (!is_sequence || report.advice.map.empty()) {
-        report.advice = advise_on_vdb(report.inspection, a.subject);
+    survey.inspection = inspect_vdb(file, printable(file.filename().string(), 300));
+    if (!is_sequence || survey.advice.map.empty()) {
+        survey.advice = advise_on_vdb(survey.inspection, a.subject);
         if (is_sequence)
-            report.advice.lines.emplace_back("No frame of the sequence holds anything to map.");
+            survey.advice.lines.emplace_back("No frame of the sequence holds anything to map.");
     }
-    return report;
+    return survey;
 }
 
 /// Renders the proposed scene, small, and writes it as a PNG.
-void write_picture(const VdbReport& report, const fs::path& file) {
-    SceneDesc desc = load_scene_text(report.advice.scene, "scene.yaml");
+void write_picture(const VdbSurvey& survey, const fs::path& file) {
+    SceneDesc desc = load_scene_text(survey.advice.scene, "scene.yaml");
     resize_image(desc.camera, k_proposed_width / 2, k_proposed_height / 2);
-    if (!report.sequence.pattern.empty()) desc = scene_of_image(desc, {report.sequence.frame});
+    if (!survey.sequence.pattern.empty()) desc = scene_of_image(desc, {survey.sequence.frame});
     Renderer renderer;
     renderer.set_scene(std::move(desc));
     const Film& film = renderer.render();
@@ -170,14 +182,14 @@ std::string info_on_vdb(const InfoArguments& a) {
         throw UsageError(fmt::format("--picture: '{}' does not end in .png",
                                      printable(a.picture.string(), 300)));
     if (!a.picture.empty()) const AtomicFile check(a.picture);  // before the work
-    const VdbReport report = report_on(a);
-    if ((a.scene || !a.picture.empty()) && report.advice.map.empty())
+    const VdbSurvey survey = survey_vdb(a);
+    if ((a.scene || !a.picture.empty()) && survey.advice.map.empty())
         throw InputError(fmt::format("{}: {} There is no scene to show; see 'uwvdb info' of it",
                                      printable(a.subject.filename().string(), 300),
-                                     report.advice.lines.front()));
-    if (!a.picture.empty()) write_picture(report, a.picture);
-    if (a.scene) return report.advice.scene;
-    return a.json ? vdb_json(report) : vdb_text(report);
+                                     survey.advice.lines.front()));
+    if (!a.picture.empty()) write_picture(survey, a.picture);
+    if (a.scene) return survey.advice.scene;
+    return report_on_vdb(survey).printed(a.json);
 }
 
 /// How clearly the volumes of a scene are seen in a draft of this width. Leaves them loaded.
@@ -259,7 +271,7 @@ std::string info_on_scene(const InfoArguments& a) {
     for (const fs::path& file : inputs_outside(fs::weakly_canonical(a.subject).parent_path()))
         survey.files_outside.push_back(printable(file.string(), 300));
     if (!a.svg.empty()) write_path_plot(a, survey.path, surfaces);
-    return a.json ? survey_json(survey) : survey_text(survey);
+    return report_on_scene(survey).printed(a.json);
 }
 
 /// Whether VDB readers should read it: by its name, or else by its first bytes.
@@ -276,15 +288,12 @@ bool is_volume_file(const fs::path& file) {
 
 }  // namespace
 
-std::string run_info(const InfoArguments& a) {
-    return is_volume_file(a.subject) ? info_on_vdb(a) : info_on_scene(a);
-}
-
 Command info_command() {
     const auto arguments = std::make_shared<InfoArguments>();
     return {"info", "show what a VDB file or a scene holds, and what to fix", k_info_examples,
             info_options(*arguments), [arguments] {
-                print_output(run_info(*arguments));
+                const InfoArguments& a = *arguments;
+                print_output(is_volume_file(a.subject) ? info_on_vdb(a) : info_on_scene(a));
                 return k_exit_done;
             }};
 }

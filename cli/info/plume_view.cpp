@@ -157,6 +157,11 @@ ProposedLamp aimed(const char* name, const Point3& position, const Point3& targe
     return lamp;
 }
 
+std::string point_text(const Point3& p, double size) {
+    return fmt::format("[{}, {}, {}]", length_text(p.x, size), length_text(p.y, size),
+                       length_text(p.z, size));
+}
+
 }  // namespace
 
 SceneProposal propose_scene(const Bounds& bounds) {
@@ -189,11 +194,6 @@ std::string length_text(double length, double size) {
     if (steps == 0) return "0";
     const double digits = std::floor(std::log10(std::abs(steps)) + 1e-9) + 1;
     return fmt::format("{:.{}g}", steps * step, static_cast<int>(std::min(digits, 15.0)));
-}
-
-std::string point_text(const Point3& p, double size) {
-    return fmt::format("[{}, {}, {}]", length_text(p.x, size), length_text(p.y, size),
-                       length_text(p.z, size));
 }
 
 std::string proposal_yaml(const SceneProposal& p) {

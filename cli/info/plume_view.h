@@ -13,8 +13,8 @@ namespace uw {
 /// How clearly the volumes of a scene are seen, from two pictures of it. Light is that of the
 /// picture's R, G and B as luminance, so water and backscatter before the volumes count.
 struct DraftContrast {
-    /// Of a pixel: |with - without| / max(without, mean of the picture without). Here the 99th
-    /// percentile of the pixels that see the volumes.
+    /// The contrast of a pixel is |with - without| / max(without, mean of the picture without);
+    /// this is the 99th percentile of the pixels that see the volumes.
     double contrast = 0;
     /// Fraction of the image whose rays pass through the volumes before any surface.
     double seen = 0;
@@ -35,7 +35,7 @@ void make_draft(SceneDesc& desc, int width);
 
 /// The width of drafts, and of those of volumes too small to be seen in these.
 inline constexpr int k_draft_width = 128, k_fine_draft_width = 512;
-/// Of the image: volumes that cover less need the finer draft.
+/// Volumes that cover less of the image than this fraction need the finer draft.
 inline constexpr double k_least_seen = 0.002;
 
 /// A plume that changes the picture by less than this will hardly be noticed; at the second it is
@@ -72,9 +72,8 @@ SceneProposal propose_scene(const Bounds& bounds);
 /// The scene file without its volumes: `uwvdb: 1`, camera, water, geometry and lamps.
 std::string proposal_yaml(const SceneProposal& proposal);
 
-/// A length, or three, as text: to a thousandth of `size`, however far from the origin.
+/// A length as text: to a thousandth of `size`, however large it is.
 std::string length_text(double length, double size);
-std::string point_text(const Point3& point, double size);
 
 /// A proposed scene and how well it shows its volume.
 struct PlumeView {

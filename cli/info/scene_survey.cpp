@@ -19,6 +19,8 @@ namespace uw {
 namespace {
 
 constexpr double k_invisible_depth = 0.01;
+// Whatever lies behind this optical depth is taken to be black.
+constexpr double k_opaque_depth = 10;
 
 void warn_of_grid(const GridSurvey& grid, bool has_lamps, std::vector<std::string>& warnings) {
     const std::string name = fmt::format("grid '{}' of '{}': ", grid.report.grid,
@@ -86,8 +88,7 @@ void warn_of_contrast(const SceneSurvey& survey, std::vector<std::string>& warni
               "is lit before them, go nearer with the camera, or make the water clearer"));
 }
 
-}  // namespace
-
+/// One line for each thing that will be black, opaque or missing.
 void append_survey_warnings(SceneSurvey& survey) {
     std::vector<std::string>& warnings = survey.warnings;
     const bool has_lamps = !survey.scene.lamps.empty();
@@ -100,8 +101,6 @@ void append_survey_warnings(SceneSurvey& survey) {
         warnings.emplace_back(
             "neither a surface nor a volume is in view: the image shows water alone");
 }
-
-namespace {
 
 constexpr int k_points = 32;                // along each side of a grid's bounds
 constexpr int k_columns = 48, k_rows = 27;  // rays over the image

@@ -17,8 +17,6 @@ namespace uw {
 /// band the lamp's light arrives with more than this fraction of what the lamp gives on its axis at
 /// 1 m without water: profile e^-tau / r^2.
 inline constexpr double k_reach = 1e-3;
-/// Whatever lies behind this optical depth is taken to be black.
-inline constexpr double k_opaque_depth = 10;
 
 /// One grid of the scene. Fractions are of what the grid holds: the sum of its values.
 struct GridSurvey {
@@ -39,10 +37,10 @@ struct CentralRaySurvey {
 
 /// Rays over the whole image.
 struct ViewSurvey {
-    double in_water = 0;    // fraction of the image whose rays enter the water
-    double on_surface = 0;  // and meet a surface
-    double lit = 0;         // fraction of those surfaces that a lamp reaches
-    double hidden = 0;      // and of those behind an optical depth over k_opaque_depth in all bands
+    double in_water = 0;               // fraction of the image whose rays enter the water
+    double on_surface = 0;             // and meet a surface
+    double lit = 0;                    // fraction of those surfaces that a lamp reaches
+    double hidden = 0;                 // and of those behind an optical depth over 10 in all bands
     double nearest = 0, farthest = 0;  // surface [m]
 };
 
@@ -68,9 +66,6 @@ struct SceneSurvey {
     std::vector<std::string> files_outside;  // read by the scene, but not in its folder
     std::vector<std::string> warnings;       // the scene's, then what will be black or opaque
 };
-
-/// Appends to `survey.warnings` one line for each thing that will be black, opaque or missing.
-void append_survey_warnings(SceneSurvey& survey);
 
 /// Surveys an assembled scene, which outlives the result. `contrast`: from drafts of it, if any
 /// were rendered. Deterministic.

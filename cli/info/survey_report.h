@@ -1,15 +1,11 @@
 #pragma once
 
-#include <string>
-
 #include "cli/info/scene_survey.h"
+#include "cli/report.h"
 
 namespace uw {
 
-/// A survey for people, ASCII.
-std::string survey_text(const SceneSurvey& survey);
-
-/// A survey as one JSON object (docs/command-line.md).
-std::string survey_json(const SceneSurvey& survey);
+/// What was found of a scene, and the warnings about it (docs/command-line.md has the keys).
+Report report_on_scene(const SceneSurvey& survey);
 
 }  // namespace uw

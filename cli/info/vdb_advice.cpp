@@ -40,6 +40,27 @@ std::string list(const std::vector<std::string>& names) {
     return fmt::format("'{}'", fmt::join(names, "', '"));
 }
 
+/// Whether its values can be concentrations, whatever its name.
+bool can_be_mapped(const GridInspection& grid) {
+    return grid.unusable.empty() && grid.unread.empty() && grid.values && grid.values->max > 0 &&
+           !is_level_set_in_disguise(grid);
+}
+
+/// The likeliest concentration of those that can be mapped; nullptr if there is none.
+const GridInspection* likeliest_grid(const VdbInspection& inspection) {
+    int best = 0;
+    const GridInspection* chosen = nullptr;
+    for (const GridInspection& grid : inspection.grids) {
+        if (!can_be_mapped(grid)) continue;
+        const int likelihood = concentration_likelihood(grid.summary.base_name);
+        if (likelihood <= best) continue;
+        best = likelihood;
+        chosen = &grid;
+    }
+    return chosen;
+}
+
+/// Decides `advice.map`, and sets `advice.bounds` to what these grids hold.
 void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
     const GridInspection* const chosen = likeliest_grid(inspection);
     if (chosen == nullptr) {
@@ -101,58 +122,6 @@ void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
         say("has a background of " + v.background + ": it counts as 0 outside the active voxels");
 }
 
-}  // namespace
-
-std::string lower_case(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
-
-bool can_be_mapped(const GridInspection& grid) {
-    return grid.unusable.empty() && grid.unread.empty() && grid.values && grid.values->max > 0 &&
-           !is_level_set_in_disguise(grid);
-}
-
-int concentration_likelihood(const std::string& name) {
-    const std::string text = lower_case(name);
-    if (contains_any(text, {"shadow", "vel", "phi_", "pressure", "divergence", "curl", "color",
-                            "flags", "sdf", "surface", "distance", "normal", "particle_id",
-                            "gradient", "collision", "mask"}) ||
-        text == "cd" || text == "v" || text == "id" || text == "rest")
-        return 0;
-    if (contains_any(text, {"temp", "heat", "flame", "fire", "fuel", "react", "burn", "emission"}))
-        return 1;
-    if (text.find("density") != std::string::npos) return 4;
-    if (contains_any(text, {"smoke", "fog", "cloud", "dust", "plume", "concentration", "sediment",
-                            "soot", "dye", "tracer", "ppm", "silt"}))
-        return 3;
-    return 2;
-}
-
-const GridInspection* likeliest_grid(const VdbInspection& inspection) {
-    int best = 0;
-    const GridInspection* chosen = nullptr;
-    for (const GridInspection& grid : inspection.grids) {
-        if (!can_be_mapped(grid)) continue;
-        const int likelihood = concentration_likelihood(grid.summary.base_name);
-        if (likelihood <= best) continue;
-        best = likelihood;
-        chosen = &grid;
-    }
-    return chosen;
-}
-
-void choose_grids(const VdbInspection& inspection, VdbAdvice& advice) {
-    say_what_to_map(inspection, advice);
-    say_what_to_leave(inspection, advice);
-}
-
-void say_what_is_wrong(const VdbInspection& inspection, VdbAdvice& advice) {
-    for (const GridInspection& grid : inspection.grids) say_what_is_wrong(grid, advice);
-}
-
-namespace {
-
 constexpr std::size_t k_most_sampled = 6;
 constexpr std::size_t k_most_faults = 3;
 
@@ -163,48 +132,6 @@ bool may_hold_something(const VdbHeader& header) {
                grid.active_voxels.value_or(1) > 0;
     });
 }
-
-}  // namespace
-
-FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vector<int>& frames) {
-    FrameSurvey survey;
-    const auto guarded = [&](int frame, const auto& look) {
-        const std::filesystem::path file = file_of_frame(pattern, frame);
-        try {
-            look(file, printable(file.filename().string(), 300));
-        } catch (const std::runtime_error& error) {
-            if (survey.faults.size() < k_most_faults) survey.faults.emplace_back(error.what());
-        }
-    };
-    std::vector<int> candidates;
-    for (const int frame : frames)
-        guarded(frame, [&](const std::filesystem::path& file, const std::string& name) {
-            const bool holds = may_hold_something(read_vdb_header(file, name));
-            (holds ? candidates : survey.empty).push_back(frame);
-        });
-    const std::size_t count = std::min(candidates.size(), k_most_sampled);
-    for (std::size_t n = 0; n < count; ++n) {
-        const int frame = candidates[count == 1 ? 0 : n * (candidates.size() - 1) / (count - 1)];
-        guarded(frame, [&](const std::filesystem::path& file, const std::string& name) {
-            SampledFrame sampled{frame, inspect_vdb(file, name)};
-            if (likeliest_grid(sampled.inspection) != nullptr)
-                survey.sampled.push_back(std::move(sampled));
-            else
-                survey.empty.push_back(frame);
-        });
-    }
-    std::ranges::sort(survey.empty);
-    return survey;
-}
-
-std::vector<double> largest_values(const FrameSurvey& survey) {
-    std::vector<double> values;
-    for (const SampledFrame& frame : survey.sampled)
-        values.push_back(likeliest_grid(frame.inspection)->values->max);
-    return values;
-}
-
-namespace {
 
 // Larger than lamps can light under water; too small to be the intended size [m].
 constexpr double k_too_large = 12, k_too_small = 0.05;
@@ -252,6 +179,7 @@ void say_adaptive_domain(const VdbInspection& inspection, VdbAdvice& advice) {
                 "side divided by its Resolution Divisions.");
 }
 
+/// Which way is up and where values lie, by the program that wrote the file.
 void say_axes(const VdbInspection& inspection, VdbAdvice& advice) {
     const VdbHeader& header = inspection.header;
     if (header.from_blender_fluid()) {
@@ -333,8 +261,7 @@ void say_size(const VdbInspection& inspection, VdbAdvice& advice) {
     }
 }
 
-}  // namespace
-
+/// How to blur it by its motion, if the file has velocities.
 void say_motion(const VdbInspection& inspection, VdbAdvice& advice) {
     const auto has = [&](const std::string& name) {
         return std::ranges::any_of(inspection.grids, [&](const GridInspection& grid) {
@@ -361,13 +288,65 @@ void say_motion(const VdbInspection& inspection, VdbAdvice& advice) {
                         : " Its unit is taken to be m/s."));
 }
 
-void say_placement(const VdbInspection& inspection, VdbAdvice& advice) {
-    say_axes(inspection, advice);
+}  // namespace
+
+std::string lower_case(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
 }
 
-void say_units(const VdbInspection& inspection, VdbAdvice& advice) {
-    say_size(inspection, advice);
-    say_place(advice);
+int concentration_likelihood(const std::string& name) {
+    const std::string text = lower_case(name);
+    if (contains_any(text, {"shadow", "vel", "phi_", "pressure", "divergence", "curl", "color",
+                            "flags", "sdf", "surface", "distance", "normal", "particle_id",
+                            "gradient", "collision", "mask"}) ||
+        text == "cd" || text == "v" || text == "id" || text == "rest")
+        return 0;
+    if (contains_any(text, {"temp", "heat", "flame", "fire", "fuel", "react", "burn", "emission"}))
+        return 1;
+    if (text.find("density") != std::string::npos) return 4;
+    if (contains_any(text, {"smoke", "fog", "cloud", "dust", "plume", "concentration", "sediment",
+                            "soot", "dye", "tracer", "ppm", "silt"}))
+        return 3;
+    return 2;
+}
+
+FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vector<int>& frames) {
+    FrameSurvey survey;
+    const auto guarded = [&](int frame, const auto& look) {
+        const std::filesystem::path file = file_of_frame(pattern, frame);
+        try {
+            look(file, printable(file.filename().string(), 300));
+        } catch (const std::runtime_error& error) {
+            if (survey.faults.size() < k_most_faults) survey.faults.emplace_back(error.what());
+        }
+    };
+    std::vector<int> candidates;
+    for (const int frame : frames)
+        guarded(frame, [&](const std::filesystem::path& file, const std::string& name) {
+            const bool holds = may_hold_something(read_vdb_header(file, name));
+            (holds ? candidates : survey.empty).push_back(frame);
+        });
+    const std::size_t count = std::min(candidates.size(), k_most_sampled);
+    for (std::size_t n = 0; n < count; ++n) {
+        const int frame = candidates[count == 1 ? 0 : n * (candidates.size() - 1) / (count - 1)];
+        guarded(frame, [&](const std::filesystem::path& file, const std::string& name) {
+            SampledFrame sampled{frame, inspect_vdb(file, name)};
+            if (likeliest_grid(sampled.inspection) != nullptr)
+                survey.sampled.push_back(std::move(sampled));
+            else
+                survey.empty.push_back(frame);
+        });
+    }
+    std::ranges::sort(survey.empty);
+    return survey;
+}
+
+std::vector<double> largest_values(const FrameSurvey& survey) {
+    std::vector<double> values;
+    for (const SampledFrame& frame : survey.sampled)
+        values.push_back(likeliest_grid(frame.inspection)->values->max);
+    return values;
 }
 
 namespace {
@@ -569,16 +548,18 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
 VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
                  const std::filesystem::path& file) {
     VdbAdvice advice;
-    choose_grids(inspection, advice);
-    say_what_is_wrong(inspection, advice);
+    say_what_to_map(inspection, advice);
+    say_what_to_leave(inspection, advice);
+    for (const GridInspection& grid : inspection.grids) say_what_is_wrong(grid, advice);
     if (advice.map.empty()) return advice;
-    say_placement(inspection, advice);
+    say_axes(inspection, advice);
     Bounds others;
     for (const SampledFrame& frame : frames.sampled)
         others.extend(held_by(frame.inspection, advice));
     advice.bounds = held_by(inspection, advice);
     advice.bounds.extend(others);
-    say_units(inspection, advice);
+    say_size(inspection, advice);
+    say_place(advice);
     say_motion(inspection, advice);
     choose_concentrations(inspection, others, advice);
     write_block(inspection, file, advice);

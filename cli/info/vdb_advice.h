@@ -20,8 +20,8 @@ struct VdbAdvice {
     Vector3 translate{0};  // to apply: 0, or what brings a faraway volume to the origin [m]
     double small_ppm = 0, large_ppm = 0;  // per unit of grid value
     std::vector<double> bands_nm;
-    /// Of the mapped grids alone, with these concentrations, per band: through their densest part,
-    /// along the world axis with the median value of this.
+    /// How opaque the mapped grids alone are with these concentrations, per band: through their
+    /// densest part, along the world axis with the median value of this.
     std::vector<double> optical_depth;
     /// YAML, ready to paste into a scene; empty where nothing can be mapped.
     std::string volumes;
@@ -38,19 +38,6 @@ std::string lower_case(std::string text);
 /// which a concentration can be guessed (heat, flames), 2 unknown, 3 likely, 4 a density.
 int concentration_likelihood(const std::string& name);
 
-/// Whether a grid's values can be concentrations, whatever its name.
-bool can_be_mapped(const GridInspection& grid);
-
-/// The likeliest concentration of those that can be mapped; nullptr if there is none.
-const GridInspection* likeliest_grid(const VdbInspection& inspection);
-
-/// Decides `advice.map`, sets `advice.bounds` to what these grids hold, and says why and what else
-/// there is.
-void choose_grids(const VdbInspection& inspection, VdbAdvice& advice);
-
-/// Says what is wrong with each grid's values.
-void say_what_is_wrong(const VdbInspection& inspection, VdbAdvice& advice);
-
 /// One frame of a sequence, with what is in it.
 struct SampledFrame {
     int frame = 0;
@@ -62,9 +49,6 @@ struct FrameSurvey {
     std::vector<int> empty;             // by their headers hold nothing that could be mapped
     std::vector<SampledFrame> sampled;  // some of the others, spread evenly from first to last
     std::vector<std::string> faults;    // of frames that cannot be read, one line each
-
-    /// The first of the sampled frames; nullptr if none holds anything.
-    const SampledFrame* first() const { return sampled.empty() ? nullptr : &sampled.front(); }
 };
 
 /// Reads the headers of all `frames` that exist of the sequence, and all of a few of them.
@@ -72,17 +56,6 @@ FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vecto
 
 /// The largest value of the grid likeliest to be a concentration, per sampled frame.
 std::vector<double> largest_values(const FrameSurvey& survey);
-
-/// Says which way is up and where values lie, by the program that wrote the file, and decides
-/// `advice.voxel_size`. Precondition of all three: `advice.map` is decided.
-void say_placement(const VdbInspection& inspection, VdbAdvice& advice);
-
-/// Says whether the size is plausible, by `advice.bounds`, and decides `advice.scale` and
-/// `advice.translate`.
-void say_units(const VdbInspection& inspection, VdbAdvice& advice);
-
-/// Says how to blur it by its motion, if the file has velocities.
-void say_motion(const VdbInspection& inspection, VdbAdvice& advice);
 
 /// Chooses `small_ppm` and `large_ppm` of the grids in `advice.map`, at `advice.scale`, such that
 /// the optical depth is 1.5 at 540 nm, with small and large particles each contributing about half

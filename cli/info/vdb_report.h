@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/info/vdb_advice.h"
+#include "cli/report.h"
 
 namespace uw {
 
@@ -12,29 +13,21 @@ struct SequenceReport {
     std::string pattern;              // empty: it is one file
     int frame = 0;                    // the one inspected
     std::vector<int> found, missing;  // missing: between the first and the last found
-    // Of a sequence of volumes:
+    // What sequences of volumes have, too:
     std::vector<int> empty;       // frames that hold nothing to map
     std::vector<int> sampled;     // frames of which all was read
     std::vector<double> largest;  // largest value of the grid to map, of each of these
 };
 
 /// What `uwvdb info` says about a VDB file.
-struct VdbReport {
+struct VdbSurvey {
     std::string file;  // as typed
     SequenceReport sequence;
     VdbInspection inspection;
     VdbAdvice advice;
 };
 
-/// A report for people: grids, advice, and the block to paste.
-std::string vdb_text(const VdbReport& report);
-
-/// "none", "zip", "blosc, active values only" and so on.
-std::string compression_of(const GridSummary& grid);
-/// How many bits its numbers have in the file: "half", "float", "fp8" and so on.
-std::string precision_of(const GridSummary& grid);
-
-/// A report as one JSON object (docs/command-line.md).
-std::string vdb_json(const VdbReport& report);
+/// Its grids, advice, and a scene to paste (docs/command-line.md has the keys).
+Report report_on_vdb(const VdbSurvey& survey);
 
 }  // namespace uw

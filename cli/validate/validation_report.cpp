@@ -6,14 +6,15 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
+#include "cli/report.h"
 #include "cli/svg_plot.h"
-#include "cli/validate/validation_methods.h"
-#include "core/base/error.h"
 #include "core/base/output_files.h"
 #include "core/base/version.h"
 #include "core/image/colour.h"
 #include "core/image/image_file.h"
+#include "validation/validation_methods.h"
 
 namespace uw {
 
@@ -36,9 +37,7 @@ std::string base64(const std::string& bytes) {
     return text;
 }
 
-}  // namespace
-
-const char* const k_report_style =
+constexpr const char* k_report_style =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;"
     "color:#222}table{border-collapse:collapse;margin:1em 0}td,th{padding:.15em .8em;"
     "border-bottom:1px solid "
@@ -52,63 +51,111 @@ std::string verdict_html(bool passed) {
     return passed ? "<span class=passed>passed</span>" : "<span class=failed>FAILED</span>";
 }
 
-std::string ReportPictures::figure(const Preview& picture, const std::string& caption) const {
-    const std::filesystem::path file = folder_.path() / "picture.png";
-    write_png(file, picture, {});
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    return fmt::format(
-        "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
-        "<figcaption>{}</figcaption></figure>\n",
-        k_picture_width, k_picture_width * picture.height() / std::max(1, picture.width()), caption,
-        base64(bytes), caption);
-}
+/// A table for people, as lines of text or in HTML.
+struct Table {
+    struct Row {
+        std::vector<std::string> cells;
+        std::optional<bool> passed{};  // the verdict on it, where there is one
+    };
+    std::vector<std::string> headings;
+    std::size_t names;  // that many columns come first, and hold no numbers
+    std::vector<Row> rows{};
 
-namespace {
-
-// "0.42 %, 0.8 errors of 1.2 at worst" is too long for a table: columns by themselves.
-std::string spread_text(const LightCheck& check) {
-    if (!check.spread) return fmt::format("{:>9} {:>9} {:>9}", "", "", "");
-    const PixelSpread& spread = *check.spread;
-    return fmt::format("{:>7.2f} % {:>9.2f} {:>9.1f}", 100 * spread.rms, spread.rms_in_errors,
-                       spread.worst_in_errors);
-}
-
-std::string spread_cells(const LightCheck& check) {
-    if (!check.spread) return "<td></td><td></td><td></td>";
-    const PixelSpread& spread = *check.spread;
-    return fmt::format("<td class=n>{:.2f} %</td><td class=n>{:.2f}</td><td class=n>{:.1f}</td>",
-                       100 * spread.rms, spread.rms_in_errors, spread.worst_in_errors);
-}
-
-std::string table_html(const LightValidation& light) {
-    std::string html =
-        "<table><tr><th>methods</th><th>light</th><th>deviation</th><th>its error</th>"
-        "<th>in errors</th><th>RMS</th><th>in errors</th><th>worst</th><th></th></tr>\n";
-    for (const LightCheck& c : light.checks)
-        html += fmt::format(
-            "<tr><td>{} ↔ {}</td><td>{}</td><td class=n>{:+.3f} %</td><td class=n>{:.3f} %</td>"
-            "<td class=n>{:.1f}</td>{}<td>{}</td></tr>\n",
-            c.left, c.right, c.light, 100 * c.deviation, 100 * c.error, c.deviation_in_errors(),
-            spread_cells(c), verdict_html(c.passed()));
-    return html + "</table>\n";
-}
-
-std::string parts_html(const LightValidation& light) {
-    std::string html = "<table><tr><th>share of the light</th>";
-    for (const double band : light.bands_nm) html += fmt::format("<th>{:g} nm</th>", band);
-    html += "</tr>\n";
-    for (std::size_t part = 0; part < LightParts::k_names.size(); ++part) {
-        html += fmt::format("<tr><td>{}</td>", LightParts::k_names[part]);
-        for (const LightParts& parts : light.parts)
-            html += fmt::format("<td class=n>{:.1f} %</td>", 100 * parts.share(part));
-        html += "</tr>\n";
+    /// Rows of what failed are red if `colour` is set.
+    std::string text(bool colour) const {
+        std::vector<std::vector<std::string>> cells{headings};
+        for (const Row& row : rows) cells.push_back(row.cells);
+        const std::vector<std::string> lines = aligned_rows(cells, names);
+        std::string text = "  " + lines[0] + "\n";
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const bool failed = rows[i].passed && !*rows[i].passed;
+            const std::string verdict = !rows[i].passed ? "" : failed ? "  FAILED" : "  passed";
+            const std::string line = "  " + lines[1 + i] + verdict;
+            text += colour && failed ? "\033[31m" + line + "\033[0m\n" : line + "\n";
+        }
+        return text;
     }
-    html += "<tr><td>all light / single scattering</td>";
-    for (const LightParts& parts : light.parts)
-        html += fmt::format("<td class=n>{:.3f}</td>", parts.ratio());
-    return html + "</tr></table>\n";
+
+    std::string html() const {
+        std::string html = "<table><tr>";
+        for (const std::string& heading : headings) html += "<th>" + heading + "</th>";
+        html += "</tr>\n";
+        for (const Row& row : rows) {
+            html += "<tr>";
+            for (std::size_t i = 0; i < row.cells.size(); ++i)
+                html += (i < names ? "<td>" : "<td class=n>") + row.cells[i] + "</td>";
+            if (row.passed) html += "<td>" + verdict_html(*row.passed) + "</td>";
+            html += "</tr>\n";
+        }
+        return html + "</table>\n";
+    }
+};
+
+Table checks_of(const SceneValidation& scene) {
+    Table table{{"methods", "component", "band", "pixels", "largest", "RMS", "tolerance"}, 2};
+    for (const Check& c : scene.checks)
+        table.rows.push_back(
+            {{c.left + " - " + c.right, c.component.name,
+              fmt::format("{:g} nm", scene.bands_nm[c.band]), fmt::format("{}", c.pixels),
+              fmt::format("{:.4f} %", 100 * c.largest), fmt::format("{:.4f} %", 100 * c.rms),
+              fmt::format("{:.3g} %", 100 * c.tolerance)},
+             c.passed()});
+    return table;
 }
+
+Table checks_of(const LightValidation& light) {
+    Table table{
+        {"methods", "light", "deviation", "its error", "in errors", "RMS", "in errors", "worst"},
+        2};
+    for (const LightCheck& c : light.checks) {
+        table.rows.push_back(
+            {{c.left + " - " + c.right, c.light, fmt::format("{:+.3f} %", 100 * c.deviation),
+              fmt::format("{:.3f} %", 100 * c.error),
+              fmt::format("{:.1f}", c.deviation_in_errors()), "", "", ""},
+             c.passed()});
+        if (!c.spread) continue;
+        std::vector<std::string>& cells = table.rows.back().cells;
+        cells[5] = fmt::format("{:.2f} %", 100 * c.spread->rms);
+        cells[6] = fmt::format("{:.2f}", c.spread->rms_in_errors);
+        cells[7] = fmt::format("{:.1f}", c.spread->worst_in_errors);
+    }
+    return table;
+}
+
+/// Which way the light took, per band.
+Table parts_of(const LightValidation& light) {
+    Table table{{"share of the light"}, 1};
+    for (const double band : light.bands_nm) table.headings.push_back(fmt::format("{:g} nm", band));
+    for (std::size_t part = 0; part < LightParts::k_names.size(); ++part) {
+        Table::Row& row = table.rows.emplace_back(Table::Row{{LightParts::k_names[part]}});
+        for (const LightParts& parts : light.parts)
+            row.cells.push_back(fmt::format("{:.1f} %", 100 * parts.share(part)));
+    }
+    Table::Row& row = table.rows.emplace_back(Table::Row{{"all light / single scattering"}});
+    for (const LightParts& parts : light.parts)
+        row.cells.push_back(fmt::format("{:.3f}", parts.ratio()));
+    return table;
+}
+
+/// Turns pictures into HTML that needs no other files; owns the folder for temporary ones.
+class ReportPictures {
+  public:
+    /// A picture with a caption below.
+    std::string figure(const Preview& picture, const std::string& caption) const {
+        const std::filesystem::path file = folder_.path() / "picture.png";
+        write_png(file, picture, {});
+        std::ifstream in(file, std::ios::binary);
+        const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+        return fmt::format(
+            "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
+            "<figcaption>{}</figcaption></figure>\n",
+            k_picture_width, k_picture_width * picture.height() / std::max(1, picture.width()),
+            caption, base64(bytes), caption);
+    }
+
+  private:
+    ScratchFolder folder_;
+};
 
 // Deviations by check, in standard errors, between the limits.
 std::string deviations_svg(const LightValidation& light) {
@@ -135,42 +182,15 @@ std::string deviations_svg(const LightValidation& light) {
     return svg_document(figure);
 }
 
-}  // namespace
-
-std::string light_table(const LightValidation& light, bool colour) {
-    std::string text = fmt::format("{} ({:.1f} s)\n", light.name, light.seconds);
-    for (const std::string& line : light.notes) text += "  " + line + "\n";
-    text +=
-        fmt::format("  {:<16} {:<32} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "methods", "light",
-                    "deviation", "its error", "in errors", "RMS", "in errors", "worst");
-    for (const LightCheck& c : light.checks) {
-        const std::string line =
-            fmt::format("  {:<16} {:<32} {:>+8.3f} % {:>7.3f} % {:>9.1f} {}  {}",
-                        c.left + " - " + c.right, c.light, 100 * c.deviation, 100 * c.error,
-                        c.deviation_in_errors(), spread_text(c), c.passed() ? "passed" : "FAILED");
-        text += colour && !c.passed() ? "\033[31m" + line + "\033[0m\n" : line + "\n";
-    }
-    for (std::size_t b = 0; b < light.parts.size(); ++b) {
-        text += fmt::format("  {:g} nm:", light.bands_nm[b]);
-        for (std::size_t part = 0; part < LightParts::k_names.size(); ++part)
-            text += fmt::format(" {} {:.1f} %,", LightParts::k_names[part],
-                                100 * light.parts[b].share(part));
-        text += fmt::format(" all light / single scattering {:.3f}\n", light.parts[b].ratio());
-    }
-    return text;
-}
-
 std::string light_section(const LightValidation& light, const ReportPictures& pictures) {
     std::string html =
         fmt::format("<h2>{}: {}</h2>\n<p>", light.name, verdict_html(light.passed()));
     for (const std::string& line : light.notes) html += line + ". ";
-    html += fmt::format("{:.1f} s.</p>\n{}", light.seconds, table_html(light));
-    if (!light.parts.empty()) html += parts_html(light);
+    html += fmt::format("{:.1f} s.</p>\n{}", light.seconds, checks_of(light).html());
+    if (!light.parts.empty()) html += parts_of(light).html();
     for (const auto& [name, picture] : light.pictures) html += pictures.figure(picture, name);
     return html + deviations_svg(light);
 }
-
-namespace {
 
 using Components = std::vector<Component>;
 const Components k_before{k_direct, k_backscatter};
@@ -249,21 +269,6 @@ constexpr const char* k_colour_scale =
     "full colour at the largest difference, which is given below each map. Grey: a shadow edge or "
     "hard beam edge crosses the ray of a method that steps over it.</p>\n";
 
-std::string table_of(const SceneValidation& scene) {
-    std::string html =
-        "<table><tr><th>methods</th><th>component</th><th>band</th><th>pixels</th><th>largest</th>"
-        "<th>RMS</th><th>tolerance</th><th></th></tr>\n";
-    for (const Check& c : scene.checks)
-        html += fmt::format(
-            "<tr><td>{} ↔ {}</td><td>{}</td><td class=n>{:g} nm</td><td class=n>{}</td>"
-            "<td class=n>{:.4f} %</td><td class=n>{:.4f} %</td><td class=n>{:.3g} %</td><td "
-            "class={}>{}</td></tr>\n",
-            c.left, c.right, c.component.name, scene.bands_nm[c.band], c.pixels, 100 * c.largest,
-            100 * c.rms, 100 * c.tolerance, c.passed() ? "passed" : "failed",
-            c.passed() ? "passed" : "FAILED");
-    return html + "</table>\n";
-}
-
 std::string convergence_plot(const SceneValidation& scene) {
     PlotCurve measured{"largest difference", {}, {}, plot_colour::k_blue, "", 1.8, true};
     PlotCurve second_order{"1/N²", {}, {}, plot_colour::k_orange, "6 3", 1.8, false};
@@ -324,7 +329,7 @@ std::string section_of(const SceneValidation& scene, ReportPictures& pictures) {
         scene.width, scene.height,
         100 * static_cast<double>(smooth) / static_cast<double>(scene.smooth.size()),
         scene.seconds);
-    html += table_of(scene);
+    html += checks_of(scene).html();
     html += pictures_of(scene, k_before, "Pictures", pictures);
     html += pictures_of(scene, k_scattered, "Pictures with forward scatter", pictures);
     html +=
@@ -346,18 +351,17 @@ double own_error(const SceneValidation& scene) {
 
 }  // namespace
 
+std::string light_table(const LightValidation& light, bool colour) {
+    std::string text = fmt::format("{} ({:.1f} s)\n", light.name, light.seconds);
+    for (const std::string& line : light.notes) text += "  " + line + "\n";
+    text += checks_of(light).text(colour);
+    return light.parts.empty() ? text : text + parts_of(light).text(colour);
+}
+
 std::string validation_table(const SceneValidation& scene, bool colour) {
     std::string text = fmt::format("{} ({} x {} pixels, {:.1f} s)\n", scene.name, scene.width,
                                    scene.height, scene.seconds);
-    text += fmt::format("  {:<44} {:<20} {:>8} {:>7} {:>11} {:>11} {:>9}\n", "methods", "component",
-                        "band", "pixels", "largest", "RMS", "tolerance");
-    for (const Check& c : scene.checks) {
-        const std::string line = fmt::format(
-            "  {:<44} {:<20} {:>5g} nm {:>7} {:>9.4f} % {:>9.4f} % {:>7.3g} %  {}",
-            c.left + " - " + c.right, c.component.name, scene.bands_nm[c.band], c.pixels,
-            100 * c.largest, 100 * c.rms, 100 * c.tolerance, c.passed() ? "passed" : "FAILED");
-        text += colour && !c.passed() ? "\033[31m" + line + "\033[0m\n" : line + "\n";
-    }
+    text += checks_of(scene).text(colour);
     text += "  planes against their limit:";
     for (const PlanesStep& step : scene.planes)
         text += step.order == 0 ? fmt::format(" N={} {:.2g}", step.count, step.error)
@@ -373,9 +377,8 @@ std::string validation_table(const SceneValidation& scene, bool colour) {
     return text;
 }
 
-void write_validation_report(const std::filesystem::path& file,
-                             const std::vector<SceneValidation>& scenes,
-                             const std::vector<LightValidation>& lights) {
+std::string validation_page(const std::vector<SceneValidation>& scenes,
+                            const std::vector<LightValidation>& lights) {
     ReportPictures pictures;
     std::string html = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>uwvdb validate"
@@ -385,13 +388,7 @@ void write_validation_report(const std::filesystem::path& file,
         k_report_style, program_version());
     for (const SceneValidation& scene : scenes) html += section_of(scene, pictures);
     for (const LightValidation& light : lights) html += light_section(light, pictures);
-    html += "</body></html>\n";
-    AtomicFile target(file);
-    std::ofstream out(target.temporary_path(), std::ios::binary);
-    out << html;
-    out.close();
-    if (!out) throw IoError(fmt::format("{}: cannot write; is the disk full?", file.string()));
-    target.commit();
+    return html + "</body></html>\n";
 }
 
 }  // namespace uw

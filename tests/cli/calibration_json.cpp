@@ -21,7 +21,7 @@ Calibration odd_calibration() {
 }
 
 Json json_of_calibration(const Calibration& calibration) {
-    return Json::parse(calibration_json(report_on("c.yaml", calibration)));
+    return Json::parse(report_on_calibration(survey_calibration("c.yaml", calibration)).json());
 }
 
 TEST(CalibrationJson, HasAllDigitsOfTheCamera) {

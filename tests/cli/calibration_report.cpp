@@ -23,13 +23,13 @@ Calibration plain_calibration() {
     return calibration;
 }
 
-const CalibrationReport::Target& target_of(const CalibrationReport& report,
+const CalibrationSurvey::Target& target_of(const CalibrationSurvey& report,
                                            CalibrationFormat format) {
-    return *std::ranges::find(report.targets, format, &CalibrationReport::Target::format);
+    return *std::ranges::find(report.targets, format, &CalibrationSurvey::Target::format);
 }
 
 TEST(CalibrationReport, FieldsOfViewOfAPinhole) {
-    const CalibrationReport report = report_on("c.yaml", plain_calibration());
+    const CalibrationSurvey report = survey_calibration("c.yaml", plain_calibration());
     EXPECT_NEAR(report.in_lens.horizontal, 90 * k_one_degree, 1e-12);
     EXPECT_NEAR(report.in_lens.vertical, 2 * std::atan(0.5), 1e-12);
     EXPECT_NEAR(report.in_lens.diagonal, 2 * std::atan(std::sqrt(1.25)), 1e-12);
@@ -44,7 +44,7 @@ TEST(CalibrationReport, AFlatPortNarrowsTheViewByItsIndex) {
     port.n_air = 1;
     port.n_water = 1.333;
     calibration.desc.port = port;
-    const CalibrationReport report = report_on("c.yaml", calibration);
+    const CalibrationSurvey report = survey_calibration("c.yaml", calibration);
     EXPECT_NEAR(report.in_lens.horizontal, 90 * k_one_degree, 1e-12);
     ASSERT_TRUE(report.in_water);
     EXPECT_NEAR(report.in_water->horizontal, 2 * std::asin(std::sqrt(0.5) / 1.333), 1e-9);
@@ -56,7 +56,7 @@ TEST(CalibrationReport, FindsWhereALensFolds) {
     // r (1 - r^2 / 3) grows up to r = 1: 45 degrees, and 2/3 of the focal length in the image.
     Calibration calibration = plain_calibration();
     calibration.desc.distortion.k[0] = -1.0 / 3;
-    const CalibrationReport report = report_on("c.yaml", calibration);
+    const CalibrationSurvey report = survey_calibration("c.yaml", calibration);
     EXPECT_NEAR(report.fold_angle.value(), 45 * k_one_degree, 1e-12);
     EXPECT_NEAR(report.fold_radius.value(), 500 * 2.0 / 3, 1e-9);
     // The image reaches beyond: a part of its pixels has no ray.
@@ -65,7 +65,8 @@ TEST(CalibrationReport, FindsWhereALensFolds) {
 }
 
 TEST(CalibrationReport, ReadsAsText) {
-    const std::string text = calibration_text(report_on("dir/c.yaml", plain_calibration()));
+    const std::string text =
+        report_on_calibration(survey_calibration("dir/c.yaml", plain_calibration())).text();
     for (const char* part : {"c.yaml", "left", "pinhole", "1000 x 500", "90.00 x 53.13 deg"})
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
     EXPECT_TRUE(

@@ -15,7 +15,7 @@ using test::report_on_water;
 using test::report_with_dye;
 
 TEST(WaterCsv, HasTheTablesCoefficients) {
-    const WaterReport report = report_on_water();
+    const WaterSurvey report = report_on_water();
     const std::string text = water_coefficients_csv(report);
     EXPECT_TRUE(text.starts_with("# clear: coefficients of the water")) << text;
     const CsvTable csv(text, "t.csv");
@@ -46,7 +46,7 @@ TEST(WaterCsv, QuotesNamesFromFiles) {
 }
 
 TEST(WaterCsv, HasTheScatteringFunctionOfEachBandAtAllAngles) {
-    WaterReport report = report_on_water();
+    WaterSurvey report = report_on_water();
     report.vsf_bands = {1};
     const CsvTable csv(water_vsf_csv(report), "t.csv");
     EXPECT_EQ(csv.numbers("angle_deg"), file_angles());

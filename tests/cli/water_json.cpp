@@ -13,8 +13,8 @@ using test::report_on_water;
 using test::report_with_dye;
 
 TEST(WaterJson, HasTheTableWithAllDigits) {
-    const WaterReport report = report_on_water();
-    const Json json = Json::parse(water_json(report));
+    const WaterSurvey report = report_on_water();
+    const Json json = Json::parse(report_on_water(report).json());
     EXPECT_EQ(json.at("water"), "clear");
     EXPECT_EQ(json.at("sources"), Json({"a source"}));
     EXPECT_EQ(json.at("wavelengths_nm"), Json({540.0, 450.0}));
@@ -26,7 +26,7 @@ TEST(WaterJson, HasTheTableWithAllDigits) {
 }
 
 TEST(WaterJson, RatiosOfNothingAreNull) {
-    const Json json = Json::parse(water_json(report_with_dye("dye")));
+    const Json json = Json::parse(report_on_water(report_with_dye("dye")).json());
     const Json& dye = json.at("constituents").at(0);
     EXPECT_EQ(dye.at("name"), "dye");
     EXPECT_EQ(dye.at("unit"), "1");
@@ -36,9 +36,9 @@ TEST(WaterJson, RatiosOfNothingAreNull) {
 }
 
 TEST(WaterJson, HasTheScatteringFunctionOfTheBandsAskedFor) {
-    WaterReport report = report_on_water();
+    WaterSurvey report = report_on_water();
     report.vsf_bands = {1};
-    const Json vsf = Json::parse(water_json(report)).at("vsf");
+    const Json vsf = Json::parse(report_on_water(report).json()).at("vsf");
     EXPECT_EQ(vsf.at("angles_deg").size(), file_angles().size());
     ASSERT_EQ(vsf.at("bands").size(), 1U);
     EXPECT_EQ(vsf.at("bands")[0].at("wavelength_nm"), 450.0);
@@ -46,7 +46,7 @@ TEST(WaterJson, HasTheScatteringFunctionOfTheBandsAskedFor) {
 }
 
 TEST(WaterJson, NamesFromFilesNeedNotBeText) {
-    const Json json = Json::parse(water_json(report_with_dye("dye\xff")));
+    const Json json = Json::parse(report_on_water(report_with_dye("dye\xff")).json());
     EXPECT_EQ(json.at("constituents").at(0).at("name"), "dye\xEF\xBF\xBD");
 }
 

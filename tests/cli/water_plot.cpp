@@ -23,7 +23,7 @@ const PlotCurve& curve_called(const PlotPanel& panel, const std::string& label) 
 }
 
 TEST(WaterPlot, CurvesAreThoseOfTheTable) {
-    const WaterReport report = report_on_water();
+    const WaterSurvey report = report_on_water();
     const PlotFigure figure = water_figure(report);
     EXPECT_EQ(figure.title, "Water: clear");
     ASSERT_EQ(figure.panels.size(), 4U);
@@ -40,7 +40,7 @@ TEST(WaterPlot, CurvesAreThoseOfTheTable) {
 }
 
 TEST(WaterPlot, TheScatteringFunctionIsThatOfTheBandAskedFor) {
-    WaterReport report = report_on_water();
+    WaterSurvey report = report_on_water();
     report.plot_band = 1;
     const PlotPanel panel = water_figure(report).panels[2];
     EXPECT_NE(panel.title.find("at 450 nm"), std::string::npos);

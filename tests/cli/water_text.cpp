@@ -15,11 +15,11 @@ using test::report_on_water;
 using test::report_with_dye;
 
 TEST(WaterText, BeginsWithTitleAndSources) {
-    EXPECT_TRUE(water_text(report_on_water()).starts_with("clear\n  a source\n"));
+    EXPECT_TRUE(report_on_water(report_on_water()).text().starts_with("clear\n  a source\n"));
 }
 
 TEST(WaterText, ColumnsAreAlignedUnderTheirUnits) {
-    std::istringstream lines(water_text(report_on_water()));
+    std::istringstream lines(report_on_water(report_on_water()).text());
     std::vector<std::string> table;
     for (std::string line; std::getline(lines, line);)
         if (line.starts_with("       band") || !table.empty()) {
@@ -33,7 +33,7 @@ TEST(WaterText, ColumnsAreAlignedUnderTheirUnits) {
 }
 
 TEST(WaterText, RatiosOfNothingAreDashes) {
-    const std::string text = water_text(report_with_dye("dye"));
+    const std::string text = report_on_water(report_with_dye("dye")).text();
     EXPECT_NE(text.find("What grids add: 'dye', per unit of the grid's value"), std::string::npos);
     EXPECT_NE(text.find(" - "), std::string::npos) << text;
 }

@@ -8,8 +8,8 @@
 namespace uw::test {
 
 /// Pure sea water at two wavelengths that tables of 2 nm have.
-inline WaterReport report_on_water() {
-    WaterReport report;
+inline WaterSurvey report_on_water() {
+    WaterSurvey report;
     report.title = "clear";
     report.sources = {"a source"};
     report.water.bands_nm = {540, 450};
@@ -19,8 +19,8 @@ inline WaterReport report_on_water() {
 }
 
 /// The same with a grid that absorbs and does not scatter.
-inline WaterReport report_with_dye(const std::string& name) {
-    WaterReport report = report_on_water();
+inline WaterSurvey report_with_dye(const std::string& name) {
+    WaterSurvey report = report_on_water();
     VolumeDesc volume;
     volume.file = "plume.vdb";
     volume.grids.resize(1);

@@ -2,8 +2,8 @@
 // Water that ends everywhere exactly at the far face of the last slab.
 #include <gtest/gtest.h>
 
-#include "cli/validate/validation.h"
 #include "render/scene_loading.h"
+#include "validation/validation.h"
 
 namespace uw::test {
 namespace {
@@ -21,16 +21,13 @@ TEST(Validation, PassesWhereAWallEndsTheLastSlab) {
         "geometry: [{type: plane, point: [0, 0, 4], normal: [0, 0, -1], reflectance: 0.5}]\n"
         "lamps: [{name: bare, position: [1, -0.5, 0], intensity: [50, 50, 50]}]\n",
         "wall.yaml");
-    ValidationOptions options;
-    options.longest_side = 16;
-    options.most_planes = 128;  // enough for its tolerance
-    const SceneValidation result = validate_scene(std::move(scene), "wall", options);
+    const SceneValidation result = validate_scene(std::move(scene), "wall", {});
     bool has_planes = false;
     for (const Check& check : result.checks) {
         EXPECT_TRUE(check.passed())
             << check.left << " - " << check.right << ", " << check.component.name << " in band "
             << check.band << ": " << check.largest << ", " << check.rms;
-        has_planes = has_planes || (check.right == "planes, 128" && check.pixels > 100);
+        has_planes = has_planes || (check.right == "planes, 512" && check.pixels > 100);
     }
     EXPECT_TRUE(has_planes);
 }

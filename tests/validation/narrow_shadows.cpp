@@ -4,8 +4,9 @@
 
 #include <filesystem>
 
-#include "cli/validate/validation.h"
 #include "render/scene_loading.h"
+#include "validation/validation.h"
+#include "validation/validation_methods.h"
 
 namespace uw::test {
 namespace {
@@ -15,9 +16,8 @@ SceneValidation validate_example(const char* name) {
     SceneDesc scene =
         load_scene(std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/scenes" / name, {});
     scene.render.scattering = RenderDesc::Scattering::single;
-    ValidationOptions options;
-    options.longest_side = 32;
-    return validate_scene(std::move(scene), name, options);
+    show_radiance_in_water(scene, 32);
+    return validate_scene(std::move(scene), name, {});
 }
 
 // Shadows of a grating's bars, 4 mm wide, and a bulb that the camera looks past: narrower than the

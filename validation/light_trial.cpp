@@ -1,4 +1,4 @@
-#include "cli/validate/light_validation.h"
+#include "validation/light_trial.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <numeric>
 #include <random>
 
 #include "core/base/error.h"
@@ -18,34 +16,6 @@
 #include "core/passes/path_film.h"
 
 namespace uw {
-
-double LightCheck::deviation_in_errors() const {
-    if (deviation == 0) return 0;
-    return error > 0 ? std::abs(deviation) / error : std::numeric_limits<double>::infinity();
-}
-
-// Written so that NaN fails.
-bool LightCheck::passed() const {
-    return deviation_in_errors() <= k_most_errors && error <= most_error &&
-           (!spread || spread->rms_in_errors <= k_most_noise);
-}
-
-double LightParts::all() const {
-    return std::accumulate(means.begin(), means.end(), 0.0);
-}
-
-double LightParts::share(std::size_t part) const {
-    return all() > 0 ? means[part] / all() : 0;
-}
-
-double LightParts::ratio() const {
-    const double single = means[0] + means[1];
-    return single > 0 ? all() / single : 0;
-}
-
-bool LightValidation::passed() const {
-    return std::ranges::all_of(checks, [](const LightCheck& check) { return check.passed(); });
-}
 
 namespace {
 
@@ -125,31 +95,9 @@ void compare_row(const LampTableRow& row, const ValidationOptions& options,
         [](const PixelResult& round) { return round.backscatter[0] + round.multiple_volume[0]; });
 }
 
-}  // namespace
-
-std::span<const LampTableRow> lamp_table() {
-    return k_table;
-}
-
-LightValidation validate_by_table(std::span<const LampTableRow> table,
-                                  const ValidationOptions& options) {
-    const auto start = std::chrono::steady_clock::now();
-    LightValidation result;
-    result.name = "tables of a point lamp";
-    options.say(result.name + ": path");
-    result.notes.push_back(
-        fmt::format("{} paths for each row; deviations relative to the table's value",
-                    k_rounds_of_row * k_paths_of_row_round));
-    for (const LampTableRow& row : table) compare_row(row, options, result);
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    result.seconds = elapsed.count();
-    return result;
-}
-
-namespace {
-
 // One pixel is drawn from each cell of a lattice over the image.
 constexpr int k_columns = 12, k_rows = 8;
+constexpr int k_longest_side_in_all_light = 320;  // of the image [pixels]
 // The rounds of paths are independent; their spread tells the error.
 constexpr int k_rounds = 16, k_paths_of_round = 256;
 // Rays per pixel of the fast form: as many as integrator path has for what is no mean over paths.
@@ -157,7 +105,8 @@ constexpr int k_samples = 16;
 // The fast form smooths neighbouring nodes together, so that its errors are alike around them. At
 // least so many parts of an image have errors of their own.
 constexpr double k_independent_parts = 20;
-// Of the mean over the pixels, relative to all light, beyond which the comparison says nothing.
+// The standard error of the mean over the pixels, relative to all light, beyond which the
+// comparison says nothing.
 constexpr double k_most_error = 0.02;
 
 constexpr std::array<Layer, 4> k_part_layers{Layer::direct, Layer::backscatter,
@@ -179,7 +128,7 @@ constexpr std::array<Light, 3> k_lights{{{"multiple.volume", true, false},
 
 struct Pixel {
     int x, y;
-    /// By light and band, over the rounds.
+    /// Their means over the rounds, by light and band.
     std::array<std::vector<LightMean>, k_lights.size()> lights;
 };
 
@@ -203,10 +152,11 @@ std::vector<Pixel> draw_pixels(int width, int height, std::size_t bands) {
 
 class AllLightTrial {
   public:
-    AllLightTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options)
-        : scene_(std::move(scene)), options_(options) {
+    AllLightTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options,
+                  const TransportChange& under_test)
+        : scene_(std::move(scene)), options_(options), under_test_(under_test) {
         SceneDesc& desc = scene_.edit();
-        show_radiance_in_water(desc, options.longest_side_of_all_light);
+        show_radiance_in_water(desc, k_longest_side_in_all_light);
         desc.render.scattering = RenderDesc::Scattering::multiple;
         desc.render.samples = k_samples;
         result_.name = name + ", all light";
@@ -238,7 +188,7 @@ class AllLightTrial {
         options_.say(result_.name + ": volume");
         Renderer renderer = make_renderer(RenderDesc::Integrator::volume);
         LightTransport transport = renderer.make_transport();
-        if (options_.volume) transport = options_.volume(std::move(transport));
+        if (under_test_) transport = under_test_(std::move(transport));
         const RenderOptions request{.layers = k_layers, .transport = &transport};
         const Film& film = renderer.render(request);
         error_ = renderer.report().multiple_error.value_or(0);
@@ -358,6 +308,7 @@ class AllLightTrial {
 
     ResolvedScene scene_;
     const ValidationOptions& options_;
+    const TransportChange& under_test_;
     LightValidation result_;
     double error_ = 0;  // stated by the fast form
     std::vector<Pixel> pixels_;
@@ -366,9 +317,38 @@ class AllLightTrial {
 
 }  // namespace
 
+std::span<const LampTableRow> lamp_table() {
+    return k_table;
+}
+
+LightValidation validate_by_table(std::span<const LampTableRow> table,
+                                  const ValidationOptions& options) {
+    const auto start = std::chrono::steady_clock::now();
+    LightValidation result;
+    result.name = "tables of a point lamp";
+    options.say(result.name + ": path");
+    result.notes.push_back(
+        fmt::format("{} paths for each row; deviations relative to the table's value",
+                    k_rounds_of_row * k_paths_of_row_round));
+    for (const LampTableRow& row : table) compare_row(row, options, result);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    result.seconds = elapsed.count();
+    return result;
+}
+
+LightValidation validate_by_table(const ValidationOptions& options) {
+    return validate_by_table(k_table, options);
+}
+
+LightValidation validate_all_light(ResolvedScene scene, const std::string& name,
+                                   const ValidationOptions& options,
+                                   const TransportChange& under_test) {
+    return AllLightTrial(std::move(scene), name, options, under_test).run();
+}
+
 LightValidation validate_all_light(ResolvedScene scene, const std::string& name,
                                    const ValidationOptions& options) {
-    return AllLightTrial(std::move(scene), name, options).run();
+    return validate_all_light(std::move(scene), name, options, {});
 }
 
 }  // namespace uw

@@ -1,4 +1,4 @@
-#include "cli/validate/validation_methods.h"
+#include "validation/validation_methods.h"
 
 #include <algorithm>
 #include <atomic>

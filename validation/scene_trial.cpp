@@ -1,11 +1,10 @@
-#include "cli/validate/validation.h"
+#include "validation/scene_trial.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
-#include "cli/validate/validation_methods.h"
 #include "core/base/error.h"
 #include "core/light/reference_integrator.h"
 
@@ -13,6 +12,8 @@ namespace uw {
 
 namespace {
 
+constexpr int k_longest_side = 48;  // of the image that is compared [pixels]
+constexpr int k_most_planes = 512;  // more where shadow edges leave the finest sum rough
 constexpr double k_quadrature_tolerance = 1e-5;
 
 // In a plume as rough as its voxels, interpolating columns between a lamp's rays, and linearly
@@ -44,13 +45,13 @@ const char* const k_volume_on_grids = "volume, own grids";
 const char* const k_reference_on_grids = "reference, own grids";
 const char* const k_direct_sum = "direct sum";
 
-ResolvedScene small_image(ResolvedScene scene, int longest_side) {
+ResolvedScene small_image(ResolvedScene scene) {
     SceneDesc& small = scene.edit();
     if (small.camera.distortion.model == DistortionDesc::Model::fisheye)
         throw InputError(
             "validate: it includes sums over slabs parallel to the image plane, but a fisheye lens "
             "can see past them; give --set camera.distortion='{k: [0, 0, 0]}'");
-    show_radiance_in_water(small, longest_side);
+    show_radiance_in_water(small, k_longest_side);
     small.render.integrator = RenderDesc::Integrator::volume;
     small.render.scattering = RenderDesc::Scattering::single;
     small.render.quality = RenderDesc::Quality::exact;
@@ -67,8 +68,9 @@ bool scatters_in_all_bands(const Medium& medium) {
 /// Collects images and compares them.
 class SceneTrial {
   public:
-    SceneTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options)
-        : scene_(small_image(std::move(scene), options.longest_side)), options_(options) {
+    SceneTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options,
+               const TransportChange& under_test)
+        : scene_(small_image(std::move(scene))), options_(options), under_test_(under_test) {
         result_.name = name;
         result_.width = scene_.desc().camera.width;
         result_.height = scene_.desc().camera.height;
@@ -153,7 +155,7 @@ class SceneTrial {
 
     LightTransport on_trial(TrialScene& trial) const {
         LightTransport honest = trial.renderer.make_transport();
-        return options_.volume ? options_.volume(std::move(honest)) : std::move(honest);
+        return under_test_ ? under_test_(std::move(honest)) : std::move(honest);
     }
 
     static LightTransport by_reference(const TrialScene& trial) {
@@ -172,7 +174,7 @@ class SceneTrial {
         render_forward_scatter(trial, transport, result_.images[method]);
     }
 
-    // Likewise by an integrator that uses no splatted light or columns.
+    // Does so by an integrator that uses no splatted light or columns.
     void scatter_without_splats(const std::string& method, TrialScene& trial,
                                 RenderDesc::Integrator which) {
         trial.renderer.edit([&](AssembledScene& parts) { parts.desc.render.integrator = which; });
@@ -229,7 +231,7 @@ class SceneTrial {
     void sum_planes(const TrialScene& uniform) {
         PlaneSums sums = sum_planes_to_limit(
             uniform, result_.smooth,
-            {options_.tolerance, options_.most_planes, options_.proceed,
+            {options_.tolerance, k_most_planes, options_.proceed,
              [&](const std::string& sum) { options_.say(result_.name + ": " + sum); }});
         result_.images[k_planes_limit] = std::move(sums.limit);
         result_.images[planes_name(sums.steps.back().count)] = std::move(sums.finest);
@@ -239,19 +241,22 @@ class SceneTrial {
 
     ResolvedScene scene_;
     const ValidationOptions& options_;
+    const TransportChange& under_test_;
     SceneValidation result_;
     MethodImage coarser_sum_;  // over half the slabs of the finest sum
 };
 
 }  // namespace
 
-bool SceneValidation::passed() const {
-    return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed(); });
+SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
+                               const ValidationOptions& options,
+                               const TransportChange& under_test) {
+    return SceneTrial(std::move(scene), name, options, under_test).run();
 }
 
 SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
                                const ValidationOptions& options) {
-    return SceneTrial(std::move(scene), name, options).run();
+    return validate_scene(std::move(scene), name, options, {});
 }
 
 }  // namespace uw

@@ -2,22 +2,17 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/base/spectrum.h"
 #include "render/renderer.h"
+#include "validation/validation.h"
 
 namespace uw {
 
-/// The result of a method for every pixel of a scene, row by row, one sample at each pixel's centre
-/// [W m^-2 sr^-1]. Components that the method does not compute are empty.
-struct MethodImage {
-    std::vector<Spectrum> direct, backscatter;  // before forward scatter
-    std::vector<Spectrum> forward;              // what forward scatter adds to `direct`
-    std::vector<Spectrum> blurred_backscatter;  // with forward scatter
-};
+/// Changes the light transport under test: tests make it wrong, to show that it is found.
+using TransportChange = std::function<LightTransport(LightTransport honest)>;
 
 /// Resizes the image of `scene` to at most `longest_side` pixels a side, and makes it radiance in
 /// the water, in which methods are compared.
@@ -58,7 +53,7 @@ Slabs planes_of(const TrialScene& trial, int count);
 MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
                           const std::function<bool()>& proceed);
 
-/// Likewise with forward scatter, as `uwvdb render` does it: fills the other two components of
+/// Renders it with forward scatter, as `uwvdb render` does it: fills the other two components of
 /// `image`.
 void render_forward_scatter(TrialScene& trial, const LightTransport& transport, MethodImage& image);
 
@@ -80,13 +75,6 @@ double largest_difference(const std::vector<Spectrum>& a, const std::vector<Spec
 /// The RMS of the differences, relative to b's mean.
 double rms_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
                       std::size_t band);
-
-/// One sum over slabs, compared with the limit of many.
-struct PlanesStep {
-    int count = 0;
-    double error = 0;  // largest relative difference to the limit over smooth pixels and bands
-    double order = 0;  // log2 of how much smaller it is than with half the slabs; 0 for the first
-};
 
 /// McGlamery's sums of backscatter over ever more slabs of uniform water.
 struct PlaneSums {

@@ -1,10 +1,10 @@
 // ctest labels: unit
-#include "cli/validate/light_validation.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "validation/light_trial.h"
 
 namespace uw::test {
 namespace {
