@@ -14,6 +14,7 @@
 #include "core/image/pixel_image.h"
 #include "core/light/integrator_table.h"
 #include "render/image_header.h"
+#include "render/measures/irradiance_vdb.h"
 
 namespace uw {
 
