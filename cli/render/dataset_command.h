@@ -13,6 +13,7 @@
 #include "dataset/definition.h"
 #include "dataset/view.h"
 #include "render/renderer.h"
+#include "run/background_task.h"
 
 namespace uw {
 

@@ -15,6 +15,8 @@
 #include "cli/render/run_stats.h"
 #include "core/image/pixel_image.h"
 #include "render/renderer.h"
+#include "run/background_task.h"
+#include "run/run_engine.h"
 
 namespace uw {
 
