@@ -36,6 +36,7 @@
 #include "render/image_header.h"
 #include "render/resolved_scene.h"
 #include "render/scene_loading.h"
+#include "run/job.h"
 
 namespace uw {
 
@@ -44,9 +45,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// When the inputs of views were written last.
-class InputTimes {
+class ViewInputs {
   public:
-    InputTimes(const DatasetArguments& arguments, const DatasetDefinition& definition)
+    ViewInputs(const DatasetArguments& arguments, const DatasetDefinition& definition)
         : arguments_(arguments), definition_(definition) {}
 
     fs::file_time_type last_change(const View& view) {
@@ -85,7 +86,7 @@ std::vector<std::size_t> missing_views(const DatasetArguments& arguments,
         const View view = definition.view(range.begin + i);
         is_there[i] = is_view_complete(folder, definition, sum, view) ? 1 : 0;
     });
-    InputTimes inputs(arguments, definition);
+    ViewInputs inputs(arguments, definition);
     std::vector<std::size_t> missing;
     for (std::size_t i = 0; i < is_there.size(); ++i) {
         const View view = definition.view(range.begin + i);
@@ -255,10 +256,10 @@ void merge(const DatasetArguments& a) {
 
 /// Checks before the work that the scene can be rendered in all frames and written in all formats.
 void check(const DatasetDefinition& definition, const SceneDesc& scene) {
-    FrameSequence sequence;
-    for (const std::optional<int>& frame : definition.frames)
-        sequence.frames.push_back({frame, {}, 0, "", {}, {}});
-    check_frames(sequence, [&](std::optional<int>) -> const SceneDesc& { return scene; });
+    JobScenes scenes([&](int /*number*/) { return scene; });
+    Job job{scenes, {}};
+    for (const std::optional<int>& frame : definition.frames) job.images.push_back({0, {frame, 0}});
+    check_inputs(job);
     const ResolvedScene first(scene_of_image(scene, choice_of(definition, scene, {})));
     for (const std::string& name : definition.formats)
         if (const auto check = dataset_format(name).check) check(definition, first.desc());

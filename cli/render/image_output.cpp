@@ -2,54 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <vector>
-
 #include "core/base/error.h"
-#include "core/base/output_files.h"
+#include "core/image/image_file.h"
 #include "core/image/jpeg_file.h"
 #include "core/image/pixel_image.h"
 #include "core/image/png_file.h"
 #include "render/image_header.h"
 
 namespace uw {
-
-namespace {
-
-// The window with as many more pixels of the image around it.
-PixelWindow grown(const PixelWindow& window, int margin, const CameraDesc& camera) {
-    return {std::max(window.x0 - margin, 0), std::max(window.y0 - margin, 0),
-            std::min(window.x1 + margin, camera.width),
-            std::min(window.y1 + margin, camera.height)};
-}
-
-}  // namespace
-
-void write_sensor_image(OutputFile& out, const SensorImage& sensor, const ImageMetadata& metadata) {
-    if (sensor.desc.format == DevelopmentDesc::Format::jpeg)
-        write_jpeg_file(out, sensor.image, sensor.desc.quality, metadata);
-    else
-        write_png_file(out, sensor.image, metadata);
-}
-
-SensorImager::SensorImager(const Frame& frame, const SceneDesc& scene, const RenderOptions& wanted)
-    : window_(wanted.window.value()), rendered_(wanted) {
-    if (frame.files.sensor.empty()) return;
-    const SensorDesc& sensor = scene.camera.sensor.value();
-    development_.emplace(sensor);
-    desc_ = sensor.image;
-    rendered_.layers = (wanted.layers.empty() ? "default" : wanted.layers) + ",sensor";
-    rendered_.window = grown(window_, development_->margin(), scene.camera);
-    rendered_.frame = frame.number.value_or(0);
-}
-
-std::optional<SensorImage> SensorImager::take(Film& film, const LayerPlan& plan) const {
-    if (!development_) return std::nullopt;
-    SensorImage image{(*development_)(film, window_), desc_};
-    if (film.window() != window_ || film.channel_names() != plan.channel_names())
-        film = with_channels(film, plan.channel_names(), window_);
-    return image;
-}
 
 namespace {
 
@@ -100,22 +60,31 @@ void write_preview(OutputFile& out, const Film& film, const ImageStorage& storag
         write_png_file(out, make_preview(film, exposure), metadata);
 }
 
+void write_camera_image(OutputFile& out, const DigitalImage& image, const DevelopmentDesc& desc,
+                        const ImageMetadata& metadata) {
+    if (desc.format == DevelopmentDesc::Format::jpeg)
+        write_jpeg_file(out, image, desc.quality, metadata);
+    else
+        write_png_file(out, image, metadata);
+}
+
 }  // namespace
 
-void write_images(const OutputFiles& files, const Film& film,
-                  const std::optional<SensorImage>& sensor, const SurfaceNames& names,
-                  ImageMetadata metadata, const ImageStorage& storage, OutputGroup& outputs,
-                  const SayCallback& say, const SayCallback& warn) {
+void write_images(const OutputFiles& files, const FinishedImage& image, const ImageStorage& storage,
+                  OutputGroup& outputs, const SayCallback& say, const SayCallback& warn) {
+    const Film& film = image.film;
+    ImageMetadata metadata = image.metadata;
     const std::optional<double> automatic = automatic_exposure(film);
     const double exposure = storage.exposure.value_or(automatic.value_or(1.0));
     const bool with_exr = !files.image.empty();
     if (with_exr) {
         ImageMetadata with_names = metadata;
-        if (!files.ids.empty()) add_id_names(names, with_names);
+        if (!files.ids.empty()) add_id_names(image.surfaces->names(), with_names);
         write_exr(outputs.add(files.image), film, with_names, storage.exr);
-        if (!files.ids.empty()) write_id_table(outputs.add(files.ids), names);
+        if (!files.ids.empty()) write_id_table(outputs.add(files.ids), image.surfaces->names());
     }
-    if (sensor) write_sensor_image(outputs.add(files.sensor), *sensor, metadata);
+    if (image.sensor)
+        write_camera_image(outputs.add(files.sensor), *image.sensor, storage.camera, metadata);
     metadata["exposure"] = exposure;
     if (!files.preview.empty())
         write_preview(outputs.add(files.preview), film, storage, exposure, metadata);
@@ -132,7 +101,7 @@ void write_images(const OutputFiles& files, const Film& film,
     if (loss) warn_of_half(*loss, warn);
     if (with_exr) say(fmt::format("wrote {}", files.image.string()));
     if (!files.ids.empty()) say(fmt::format("wrote {} (names of ids)", files.ids.string()));
-    if (sensor) say(fmt::format("wrote {} (the camera's image)", files.sensor.string()));
+    if (image.sensor) say(fmt::format("wrote {} (the camera's image)", files.sensor.string()));
     if (files.preview.empty()) return;
     say(fmt::format("wrote {} ({}{})", files.preview.string(), with_exr ? "preview, " : "",
                     automatic ? fmt::format("R G B x {:.4g}", exposure) : "black"));
