@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -20,6 +21,6 @@ void check_irradiance_vdb(const AssembledScene& scene);
 /// Throws IoError; Interrupted, also if `progress`, called from any thread, returns false.
 void write_irradiance_vdb(OutputFile& out, const AssembledScene& scene,
                           const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
-                          const ProgressCallback& progress);
+                          const std::function<bool(double share)>& progress);
 
 }  // namespace uw
