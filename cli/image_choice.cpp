@@ -45,7 +45,6 @@ namespace {
 
 constexpr int k_last_frame = 999'999'999;
 constexpr std::size_t k_most_frames = 1'000'000;
-constexpr std::size_t k_most_runs = 50;  // named in a message
 
 // The option being read, for messages.
 struct ListOption {
@@ -120,21 +119,6 @@ std::vector<int> parse_frame_list(const std::string& text, const char* name, con
         at = comma + 1;
     }
     return frames;
-}
-
-std::string format_frame_list(std::vector<int> frames) {
-    std::ranges::sort(frames);
-    std::string text;
-    std::size_t runs = 0;
-    for (std::size_t i = 0; i < frames.size(); ++runs) {
-        if (runs == k_most_runs) return text + fmt::format(" and {} more", frames.size() - i);
-        std::size_t last = i;
-        while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
-        text += fmt::format("{}{}", i == 0 ? "" : ",", frames[i]);
-        if (last > i) text += fmt::format("-{}", frames[last]);
-        i = last + 1;
-    }
-    return text;
 }
 
 }  // namespace uw

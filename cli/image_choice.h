@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/scene/scene_desc.h"
+#include "run/job.h"
 
 namespace uw {
 
@@ -22,9 +23,5 @@ std::size_t chosen_camera(const std::string& name, const std::vector<RigCameraDe
 /// and what it lists, for other text, and for more than a million frames.
 std::vector<int> parse_frame_list(const std::string& text, const char* option = "--frames",
                                   const char* what = "frames");
-
-/// Frames as such a list, in ascending order: "3-5,9". If there are many runs, the first are
-/// listed, followed by the number of remaining frames.
-std::string format_frame_list(std::vector<int> frames);
 
 }  // namespace uw

@@ -29,6 +29,8 @@
 #include "render/image_header.h"
 #include "render/resolved_scene.h"
 #include "render/scene_loading.h"
+#include "run/job.h"
+#include "run/run_engine.h"
 #include "validation/validation.h"
 
 namespace uw {
@@ -283,7 +285,6 @@ Wanted wanted_of(const py::dict& settings) {
         refuse_setting(settings, "size", "(width, height) of 1 pixel or more");
     if (wanted.options.paths.orders < 0) refuse_setting(settings, "orders", number);
     wanted.options.paths.error = wanted.image.error;
-    wanted.options.frame = wanted.choice.frame.value_or(0);
     std::optional<std::array<int, 4>> crop;
     take("crop", crop, "(x0, y0, x1, y1) in whole pixels");
     if (crop) wanted.options.window = PixelWindow{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
@@ -296,12 +297,9 @@ std::map<int, std::string> numbered(const auto& names) {
     return result;
 }
 
-class RendererObject {
+class RendererObject : public RunClient {
   public:
-    explicit RendererObject(int threads)
-        : threads_(threads), renderer_([this](const std::string& stage, double fraction) {
-              return task_.tell(stage, fraction);
-          }) {}
+    explicit RendererObject(int threads) : threads_(threads), engine_(std::in_place) {}
 
     std::shared_ptr<ImageObject> render(const SceneObject& scene, const py::dict& settings,
                                         const py::object& progress) {
@@ -313,44 +311,59 @@ class RendererObject {
         const Wanted wanted = wanted_of(settings);
         // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): other threads may change it
         const std::shared_ptr<const SceneDesc> desc = scene.desc();
-        std::shared_ptr<ImageObject> image;
+        wanted_ = &wanted;
         const py::gil_scoped_release release;
-        task_.run([&] { with_threads(threads_, [&] { image = work(*desc, wanted); }); },
+        task_.run([&] { with_threads(threads_, [&] { work(*desc); }); },
                   [&](const std::vector<WatchedTask::News>& news) { watch(news, progress); });
-        return image;
+        return std::move(image_);
     }
 
     void clear() {
         const std::unique_lock alone(busy_, std::try_to_lock);
         if (!alone) throw UsageError("clear: this Renderer is at work in another thread");
-        renderer_ = Renderer([this](const std::string& stage, double fraction) {
-            return task_.tell(stage, fraction);
-        });
+        engine_.emplace();
+    }
+
+    WantedImage want(std::size_t /*place*/, ResolvedScene& /*scene*/) override {
+        return {wanted_->options};
+    }
+
+    ImageWork take(std::size_t /*place*/, FinishedImage there) override {
+        image_ =
+            std::make_shared<ImageObject>(ImageObject{std::move(there.film),
+                                                      std::move(there.metadata),
+                                                      std::move(there.report),
+                                                      engine_->renderer().scene().water.bands_nm,
+                                                      {},
+                                                      {}});
+        if (requests_ids(wanted_->options.layers)) {
+            const SurfaceNames& names = there.surfaces->names();
+            add_id_names(names, image_->metadata);
+            image_->objects = numbered(names.objects);
+            image_->materials = numbered(names.materials);
+        }
+        for (const std::string& name : wanted_->derivatives)
+            image_->derivatives[name] =
+                image_derivative(engine_->renderer(), name, wanted_->options);
+        return {};
+    }
+
+    void warn(std::size_t /*place*/, const std::string& /*line*/) override {
+        // The image's report has all warnings; Python gives them once it is there.
+    }
+
+    bool proceed(const std::string& stage, double fraction) override {
+        return task_.tell(stage, fraction);
     }
 
   private:
-    std::shared_ptr<ImageObject> work(const SceneDesc& desc, const Wanted& wanted) {
-        SceneDesc requested = desc;
-        apply_request(wanted.image, requested);
-        renderer_.set_scene(scene_of_image(requested, wanted.choice));
-        renderer_.render(wanted.options);
-        const AssembledScene& scene = renderer_.assembled();
-        ImageObject image{
-            renderer_.release_film(),
-            metadata_of(scene, wanted.choice.frame, wanted.options.paths, renderer_.report()),
-            renderer_.report(),
-            scene.desc.water.bands_nm,
-            {},
-            {}};
-        if (requests_ids(wanted.options.layers)) {
-            const SurfaceNames& names = scene.surfaces->names();
-            add_id_names(names, image.metadata);
-            image.objects = numbered(names.objects);
-            image.materials = numbered(names.materials);
-        }
-        for (const std::string& name : wanted.derivatives)
-            image.derivatives[name] = image_derivative(renderer_, name, wanted.options);
-        return std::make_shared<ImageObject>(std::move(image));
+    void work(const SceneDesc& desc) {
+        JobScenes scenes([&](int /*number*/) {
+            SceneDesc requested = desc;
+            apply_request(wanted_->image, requested);
+            return requested;
+        });
+        engine_->run({scenes, {{0, wanted_->choice}}}, *this);
     }
 
     static void watch(const std::vector<WatchedTask::News>& news, const py::object& progress) {
@@ -365,7 +378,9 @@ class RendererObject {
     int threads_;
     std::mutex busy_;
     WatchedTask task_;
-    Renderer renderer_;
+    const Wanted* wanted_ = nullptr;  // of the image that is rendered
+    std::shared_ptr<ImageObject> image_;
+    std::optional<RunEngine> engine_;
 };
 
 }  // namespace

@@ -194,8 +194,7 @@ std::string info_on_vdb(const InfoArguments& a) {
 
 /// How clearly the volumes of a scene are seen in a draft of this width. Leaves them loaded.
 DraftContrast draft_contrast(Renderer& renderer, const SceneDesc& scene, int width) {
-    ResolvedScene with{SceneDesc(scene)};
-    make_draft(with.edit(), width);
+    ResolvedScene with = single_draft_of(SceneDesc(scene), width);
     ResolvedScene without = with;
     without.edit().volumes.clear();
     renderer.set_scene(std::move(without));

@@ -9,7 +9,6 @@
 #include <tuple>
 #include <utility>
 
-#include "camera/camera.h"
 #include "core/base/parallel.h"
 #include "core/base/vector_math.h"
 #include "core/image/colour.h"
@@ -18,6 +17,7 @@
 #include "render/measures/picture_numbers.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
+#include "run/draft.h"
 
 namespace uw {
 
@@ -87,15 +87,12 @@ DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, cons
     return result;
 }
 
-void make_draft(SceneDesc& desc, int width) {
-    desc.render.quality = RenderDesc::Quality::draft;
-    desc.render.integrator = RenderDesc::Integrator::volume;
-    desc.render.scattering = RenderDesc::Scattering::single;
-    desc.render.samples = 1;
-    CameraDesc& camera = desc.camera;
-    width = std::min(camera.width, width);
-    const double height = static_cast<double>(camera.height) * width / camera.width;
-    resize_image(camera, width, std::clamp(static_cast<int>(std::lround(height)), 1, 1024));
+ResolvedScene single_draft_of(ResolvedScene scene, int width) {
+    constexpr int k_most_height = 1024;
+    RenderDesc& render = scene.edit().render;
+    render.integrator = RenderDesc::Integrator::volume;
+    render.scattering = RenderDesc::Scattering::single;
+    return draft_of(std::move(scene), width, k_most_height);
 }
 
 namespace {
@@ -234,8 +231,7 @@ class Drafts {
     Drafts(const SceneProposal& proposal, const VolumeDesc& volume, int width) {
         SceneDesc desc = load_scene_text(proposal_yaml(proposal), "proposal.yaml");
         desc.volumes = {volume};
-        make_draft(desc, width);
-        renderer_.set_scene(std::move(desc));
+        renderer_.set_scene(single_draft_of(std::move(desc), width));
         for (const LoadedVolume& loaded : renderer_.assemble().volumes)
             grids_.insert(grids_.end(), loaded.grids.begin(), loaded.grids.end());
         set_grids({});

@@ -6,6 +6,7 @@
 #include "core/base/ray.h"
 #include "core/image/film.h"
 #include "core/scene/volume_desc.h"
+#include "render/resolved_scene.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -29,9 +30,8 @@ struct DraftContrast {
 /// size.
 DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, const Film& without);
 
-/// Makes `desc` that of a small, quickly rendered picture of the same view: light scattered once,
-/// draft quality, at most `width` pixels wide.
-void make_draft(SceneDesc& desc, int width);
+/// The scene of a draft with light scattered once, at most `width` pixels wide (run/draft.h).
+ResolvedScene single_draft_of(ResolvedScene scene, int width);
 
 /// The width of drafts, and of those of volumes too small to be seen in these.
 inline constexpr int k_draft_width = 128, k_fine_draft_width = 512;

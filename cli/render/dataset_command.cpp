@@ -4,27 +4,21 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <system_error>
 #include <utility>
 
-#include "camera/camera.h"
 #include "cli/console.h"
 #include "cli/process.h"
 #include "cli/render/dataset_arguments.h"
-#include "cli/render/frame_sequence.h"
-#include "cli/render/image_output.h"
 #include "cli/render/run_stats.h"
 #include "cli/render/slurm_jobs.h"
-#include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
-#include "core/image/development.h"
 #include "core/image/pixel_image.h"
 #include "dataset/completion.h"
 #include "dataset/data_card.h"
@@ -33,9 +27,10 @@
 #include "dataset/set_files.h"
 #include "dataset/surface_points.h"
 #include "dataset/view.h"
-#include "render/image_header.h"
 #include "render/resolved_scene.h"
-#include "render/scene_loading.h"
+#include "run/draft.h"
+#include "run/job.h"
+#include "run/run_engine.h"
 
 namespace uw {
 
@@ -43,178 +38,151 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// When the inputs of views were written last.
-class InputTimes {
-  public:
-    InputTimes(const DatasetArguments& arguments, const DatasetDefinition& definition)
-        : arguments_(arguments), definition_(definition) {}
-
-    fs::file_time_type last_change(const View& view) {
-        if (!view_ || view_->draw != view.draw)
-            scene_ = scene_of_draw(arguments_, definition_.draws[view.draw]);
-        const bool is_known = view_ && view_->draw == view.draw && view_->frame == view.frame;
-        view_ = view;
-        if (is_known) return last_;
-        last_ = fs::file_time_type::min();
-        const SceneDesc image = scene_of_image(scene_, choice_of(definition_, scene_, view));
-        for (const InputFile& input : input_files(image, known_)) {
-            std::error_code error;
-            const auto written = fs::last_write_time(input.file, error);
-            if (!error && !input.is_hashed) last_ = std::max(last_, written);
-        }
-        return last_;
-    }
-
-  private:
-    const DatasetArguments& arguments_;
-    const DatasetDefinition& definition_;
-    SceneDesc scene_;
-    std::optional<View> view_;  // the last asked for
-    fs::file_time_type last_;
-    MeshSideFiles known_;
-};
-
-}  // namespace
-
-std::vector<std::size_t> missing_views(const DatasetArguments& arguments,
-                                       const DatasetDefinition& definition, ViewRange range) {
-    const fs::path& folder = arguments.image.output;
-    const std::string sum = sum_of(definition);
-    std::vector<char> is_there(range.end - range.begin);
-    parallel_for(is_there.size(), [&](std::size_t i) {
-        const View view = definition.view(range.begin + i);
-        is_there[i] = is_view_complete(folder, definition, sum, view) ? 1 : 0;
-    });
-    InputTimes inputs(arguments, definition);
-    std::vector<std::size_t> missing;
-    for (std::size_t i = 0; i < is_there.size(); ++i) {
-        const View view = definition.view(range.begin + i);
-        std::error_code error;
-        if (is_there[i] == 0 || fs::last_write_time(folder / record_file(definition, view), error) <
-                                    inputs.last_change(view))
-            missing.push_back(range.begin + i);
-    }
-    return missing;
-}
-
-namespace {
-
 constexpr int k_draft_width = 160;  // of the images that exposures follow from [pixels]
 constexpr std::size_t k_most_drafts = 5;
 
-void shrink_to_draft(SceneDesc& scene) {
-    CameraDesc& camera = scene.camera;
-    scene.render.quality = RenderDesc::Quality::draft;
-    scene.render.samples = 1;
-    if (camera.width <= k_draft_width) return;
-    const double height = static_cast<double>(camera.height) * k_draft_width / camera.width;
-    resize_image(camera, k_draft_width, std::max(1, static_cast<int>(std::lround(height))));
-}
+/// What has to do with views of a data set, and tells its user how far it is.
+class ViewClient : public RunClient {
+  public:
+    ViewClient(std::size_t count, bool quiet)
+        : progress_("views", "views", static_cast<double>(count), quiet) {}
+
+    bool proceed(const std::string& stage, double fraction) override {
+        // Nearly all the time that a view takes is this stage.
+        const double share = stage == "render" ? fraction : 0;
+        progress_.update(engine_.clock().share_done(share));
+        return !stop_requested();
+    }
+
+  protected:
+    RunEngine engine_;
+    Progress progress_;
+};
+
+/// Finds the exposures that bring the brightest of a few views to a good brightness, by small
+/// drafts of them.
+class ExposureDrafts : public ViewClient {
+  public:
+    ExposureDrafts(const DatasetDefinition& definition, bool quiet)
+        : ViewClient(1, quiet), with_clean_(definition.has_format("clean")) {}
+
+    Exposures find(const Job& job) {
+        engine_.run(job, *this);
+        return {image_.value_or(1), clean_.value_or(1)};
+    }
+
+    WantedImage want(std::size_t /*place*/, ResolvedScene& scene) override {
+        scene = draft_of(std::move(scene), k_draft_width);
+        scene.edit().render.samples = 1;
+        return {{.layers = with_clean_ ? "clean" : "depth"}};
+    }
+
+    ImageWork take(std::size_t /*place*/, FinishedImage image) override {
+        lower(image_, image.film);
+        const SceneDesc& scene = engine_.renderer().scene();
+        if (with_clean_)
+            lower(clean_,
+                  clean_film(image.film, image.plan, scene.render.colour, scene.water.bands_nm));
+        return {};
+    }
+
+    void warn(std::size_t /*place*/, const std::string& /*line*/) override {
+        // The views themselves will be warned of.
+    }
+
+  private:
+    static void lower(std::optional<double>& least, const Film& film) {
+        if (const auto exposure = automatic_exposure(film))
+            least = std::min(*exposure, least.value_or(*exposure));
+    }
+
+    bool with_clean_;
+    std::optional<double> image_, clean_;  // the least so far; none: all black
+};
+
+/// Renders views of a data set, and has them written.
+class ViewRenderer : public ViewClient {
+  public:
+    /// `views`: their indices in the set.
+    ViewRenderer(const DatasetArguments& arguments, const DatasetFile& set,
+                 const std::vector<std::size_t>& views)
+        : ViewClient(views.size(), arguments.image.quiet),
+          folder_(arguments.image.output),
+          set_(set),
+          sum_(sum_of(set.definition)),
+          views_(views) {}
+
+    /// Throws InputError; IoError; Interrupted, and then all views that were written are whole.
+    void run(const Job& job) {
+        scenes_ = &job.scenes;
+        try {
+            engine_.run(job, *this);
+        } catch (const Interrupted&) {
+            throw Interrupted(
+                fmt::format("interrupted; {} of {} views are done; the same command continues",
+                            engine_.written(), views_.size()));
+        }
+    }
+
+    /// When each view was rendered.
+    const std::vector<std::chrono::steady_clock::time_point>& ends() const { return ends_; }
+
+    WantedImage want(std::size_t place, ResolvedScene& scene) override {
+        load_points(set_.definition.view(views_[place]).draw);
+        const bool has_sensor = scene.desc().camera.sensor.has_value();
+        return {{.layers = layers_of(set_.definition) + (has_sensor ? ",sensor" : "")}, has_sensor};
+    }
+
+    ImageWork take(std::size_t place, FinishedImage image) override {
+        const DatasetDefinition& definition = set_.definition;
+        const View view = definition.view(views_[place]);
+        const SceneDesc& scene = engine_.renderer().scene();
+        const double number = definition.frames[view.frame].value_or(0);
+        const auto images = std::make_shared<ViewImages>(
+            ViewImages{definition, view, scene.time.value_or(number / scene.render.fps),
+                       scene.camera, scene.render.colour, scene.water.bands_nm,
+                       std::move(image.film), image.plan, std::move(image.sensor), set_.exposures,
+                       std::move(image.metadata), image.surfaces, points_});
+        ends_.push_back(std::chrono::steady_clock::now());
+        return {[this, images] { write_view(folder_, sum_, *images); }};
+    }
+
+    void warn(std::size_t /*place*/, const std::string& line) override {
+        progress_.end_line();
+        print_message(fmt::format("warning: {}\n", line));
+    }
+
+  private:
+    /// Reads a draw's surface points, or finds and writes them.
+    void load_points(std::size_t draw) {
+        const DatasetDefinition& definition = set_.definition;
+        if (!needs_points(definition) || (points_ && draw_of_points_ == draw)) return;
+        const std::string name = points_file(definition, draw);
+        std::error_code error;
+        if (!fs::exists(folder_ / name, error)) {
+            const SceneDesc& scene = scenes_->of(static_cast<int>(draw));
+            engine_.renderer().set_scene(
+                scene_of_image(scene, choice_of(definition, scene, {draw, 0, 0})));
+            SetFiles(folder_).add_bytes(
+                "points", name,
+                points_csv(
+                    point_seeds(definition, draw, scene, *engine_.renderer().assemble().surfaces)));
+        }
+        points_ = std::make_shared<const std::vector<SurfacePoint>>(read_points(folder_ / name));
+        draw_of_points_ = draw;
+    }
+
+    const fs::path& folder_;
+    const DatasetFile& set_;
+    std::string sum_;
+    const std::vector<std::size_t>& views_;
+    JobScenes* scenes_ = nullptr;
+    std::vector<std::chrono::steady_clock::time_point> ends_;
+    std::shared_ptr<const std::vector<SurfacePoint>> points_;  // null: none are needed
+    std::size_t draw_of_points_ = 0;
+};
 
 }  // namespace
-
-ViewRenderer::ViewRenderer(const DatasetArguments& arguments, std::size_t count)
-    : arguments_(arguments),
-      count_(count),
-      progress_("views", "views", static_cast<double>(count), arguments.image.quiet),
-      renderer_(
-          [this](const std::string& stage, double fraction) { return proceed(stage, fraction); }) {}
-
-ViewRenderer::~ViewRenderer() = default;
-
-bool ViewRenderer::proceed(const std::string& stage, double fraction) {
-    // Of a view's time nearly all is this stage.
-    const double share = stage == "render" ? fraction : 0;
-    progress_.update((static_cast<double>(rendered_) + share) / static_cast<double>(count_));
-    return !stop_requested();
-}
-
-void ViewRenderer::warn(const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings)
-        if (warned_.insert(warning).second) {
-            progress_.end_line();
-            print_message(fmt::format("warning: {}\n", warning));
-        }
-}
-
-Exposures ViewRenderer::exposures_of(const DatasetDefinition& definition, const SceneDesc& scene) {
-    const StopScope scope(stop_flag());
-    const bool with_clean = definition.has_format("clean");
-    const std::string layers = with_clean ? "clean" : "depth";
-    const std::size_t views = definition.frames.size() * definition.cameras.size();
-    const std::size_t drafts = std::min(views, k_most_drafts);
-    std::optional<double> least, least_clean;  // none: all black so far
-    const auto take = [](std::optional<double>& least_so_far, const Film& film) {
-        if (const auto exposure = automatic_exposure(film))
-            least_so_far = std::min(*exposure, least_so_far.value_or(*exposure));
-    };
-    for (std::size_t i = 0; i < drafts; ++i) {
-        const std::size_t index = drafts > 1 ? i * (views - 1) / (drafts - 1) : 0;
-        ResolvedScene draft(
-            scene_of_image(scene, choice_of(definition, scene, definition.view(index))));
-        shrink_to_draft(draft.edit());
-        renderer_.set_scene(std::move(draft));
-        const Film& film = renderer_.render({.layers = layers});
-        take(least, film);
-        if (with_clean)
-            take(least_clean,
-                 clean_film(film, layer_plan(renderer_.scene(), layers),
-                            renderer_.scene().render.colour, renderer_.scene().water.bands_nm));
-    }
-    return {least.value_or(1), least_clean.value_or(1)};
-}
-
-void ViewRenderer::load_points(const DatasetFile& set, std::size_t draw, const SceneDesc& scene) {
-    const DatasetDefinition& definition = set.definition;
-    if (!needs_points(definition) || (points_ && draw_of_points_ == draw)) return;
-    const std::string name = points_file(definition, draw);
-    const std::filesystem::path& folder = arguments_.image.output;
-    std::error_code error;
-    if (!std::filesystem::exists(folder / name, error)) {
-        renderer_.set_scene(scene_of_image(scene, choice_of(definition, scene, {draw, 0, 0})));
-        SetFiles(folder).add_bytes(
-            "points", name,
-            points_csv(point_seeds(definition, draw, scene, *renderer_.assemble().surfaces)));
-    }
-    points_ = std::make_shared<const std::vector<SurfacePoint>>(read_points(folder / name));
-    draw_of_points_ = draw;
-}
-
-void ViewRenderer::render(const DatasetFile& set, const View& view, const SceneDesc& scene) {
-    const StopScope scope(stop_flag());
-    const DatasetDefinition& definition = set.definition;
-    load_points(set, view.draw, scene);
-    const std::optional<int> number = definition.frames[view.frame];
-    RenderOptions options{.layers = layers_of(definition), .frame = number.value_or(0)};
-    renderer_.set_scene(scene_of_image(scene, choice_of(definition, scene, view)));
-    const std::optional<SensorDesc> sensor = renderer_.scene().camera.sensor;
-    if (sensor) options.layers += ",sensor";
-    renderer_.render(options);
-    warn(renderer_.report().warnings);
-    const SceneDesc& rendered = renderer_.scene();
-    const double time = rendered.time ? *rendered.time : number.value_or(0) / rendered.render.fps;
-    auto images = std::make_shared<ViewImages>(ViewImages{
-        definition, view, time, rendered.camera, rendered.render.colour, rendered.water.bands_nm,
-        renderer_.release_film(), layer_plan(rendered, options.layers), std::nullopt, set.exposures,
-        metadata_of(renderer_.assembled(), number, options.paths, renderer_.report()),
-        renderer_.assembled().surfaces, points_});
-    if (sensor) images->sensor = Development(*sensor)(images->film, images->film.window());
-    finish();
-    ++rendered_;
-    const std::size_t bytes = images->film.values().size_bytes();
-    writing_ = std::make_unique<BackgroundTask>(
-        [images = std::move(images), folder = arguments_.image.output, sum = sum_of(definition)] {
-            write_view(folder, sum, *images);
-        });
-    if (2 * bytes > available_memory_bytes()) finish();
-}
-
-void ViewRenderer::finish() {
-    if (!writing_) return;
-    const std::unique_ptr<BackgroundTask> writing = std::move(writing_);
-    writing->finish();
-    ++done_;
-}
 
 namespace {
 
@@ -253,12 +221,13 @@ void merge(const DatasetArguments& a) {
     complete(a.merge, *set, true, a.image.quiet);
 }
 
-/// Checks before the work that the scene can be rendered in all frames and written in all formats.
-void check(const DatasetDefinition& definition, const SceneDesc& scene) {
-    FrameSequence sequence;
-    for (const std::optional<int>& frame : definition.frames)
-        sequence.frames.push_back({frame, {}, 0, "", {}, {}});
-    check_frames(sequence, [&](std::optional<int>) -> const SceneDesc& { return scene; });
+/// Checks before the work that the first draw can be rendered in all frames and all draws written
+/// in all formats.
+void check(const DatasetDefinition& definition, JobScenes& scenes) {
+    Job job{scenes, {}};
+    for (const std::optional<int>& frame : definition.frames) job.images.push_back({0, {frame, 0}});
+    check_inputs(job);
+    const SceneDesc& scene = scenes.of(0);
     const ResolvedScene first(scene_of_image(scene, choice_of(definition, scene, {})));
     for (const std::string& name : definition.formats)
         if (const auto check = dataset_format(name).check) check(definition, first.desc());
@@ -284,12 +253,12 @@ class DatasetRun {
     }
 
     void run() {
-        std::vector<std::vector<std::string>> draws =
-            draws_of(a_, !read_dataset_file(a_.image.output));
-        scene_ = scene_of_draw(a_, draws.front());
-        DatasetDefinition wanted = definition_of(a_, scene_);
-        wanted.draws = std::move(draws);
-        check(wanted, scene_);
+        draws_ = draws_of(a_, !read_dataset_file(a_.image.output));
+        DatasetDefinition wanted = definition_of(a_, scenes_.of(0));
+        wanted.draws = draws_;
+        check(wanted, scenes_);
+        for (std::size_t camera = 0; camera < wanted.cameras.size(); ++camera)
+            cameras_.push_back(choice_of(wanted, scenes_.of(0), {0, 0, camera}).camera);
         begin_orderly_stop();  // or temporary files might stay
         const StopScope scope(stop_flag());
         begin(wanted);
@@ -311,12 +280,41 @@ class DatasetRun {
         if (shard.count == 1) complete(a_.image.output, set_, false, a_.image.quiet);
     }
 
-    std::vector<std::size_t> look_for_missing(ViewRange range) const {
+    std::vector<std::size_t> look_for_missing(ViewRange range) {
         try {
-            return missing_views(a_, set_.definition, range);
+            return missing_views(range);
         } catch (const Interrupted&) {
             throw Interrupted("interrupted; the same command continues");
         }
+    }
+
+    /// The views of `range` that are to be rendered, by their indices: those that are not there
+    /// whole, and those that an input file has changed since. Inputs that are part of the scene's
+    /// hash are part of the definition.
+    std::vector<std::size_t> missing_views(ViewRange range) {
+        const DatasetDefinition& definition = set_.definition;
+        const fs::path& folder = a_.image.output;
+        const std::string sum = sum_of(definition);
+        std::vector<char> is_there(range.end - range.begin);
+        parallel_for(is_there.size(), [&](std::size_t i) {
+            const View view = definition.view(range.begin + i);
+            is_there[i] = is_view_complete(folder, definition, sum, view) ? 1 : 0;
+        });
+        InputTimes inputs(scenes_);
+        std::vector<std::size_t> missing;
+        for (std::size_t i = 0; i < is_there.size(); ++i) {
+            const View view = definition.view(range.begin + i);
+            std::error_code error;
+            if (is_there[i] == 0 || fs::last_write_time(folder / record_file(definition, view),
+                                                        error) < inputs.last_change(image_of(view)))
+                missing.push_back(range.begin + i);
+        }
+        return missing;
+    }
+
+    JobImage image_of(const View& view) const {
+        return {static_cast<int>(view.draw),
+                {set_.definition.frames[view.frame], cameras_[view.camera]}};
     }
 
     /// Renders the first moments here to learn what the others take, and leaves those to a cluster.
@@ -328,12 +326,12 @@ class DatasetRun {
             views.push_back(view);
         SlurmRequest request;
         MeasuredWork& measured = request.measured;
-        render(views);
+        const auto ends = render(views);
         const auto seconds = [](auto from, auto to) {
             return std::chrono::duration<double>(to - from).count();
         };
-        measured.first_seconds = seconds(start_, ends_[cameras - 1]);
-        measured.next_seconds = views.size() > cameras ? seconds(ends_[cameras - 1], ends_.back())
+        measured.first_seconds = seconds(start_, ends[cameras - 1]);
+        measured.next_seconds = views.size() > cameras ? seconds(ends[cameras - 1], ends.back())
                                                        : measured.first_seconds;
         measured.memory_bytes = RunStats::peak_memory_bytes();
         measured.threads = permitted_threads();
@@ -371,12 +369,11 @@ class DatasetRun {
         }
         const AtomicFile probe(folder / k_dataset_file);  // before the work rather than after it
         set_.definition = wanted;
-        const ImageChoice first = choice_of(set_.definition, scene_, {});
         if (const auto& exposure = set_.definition.exposure)
             set_.exposures = {*exposure, *exposure};
         else
-            set_.exposures = ViewRenderer(a_, 1).exposures_of(set_.definition, scene_);
-        set_.facts = facts_of(ResolvedScene(scene_of_image(scene_, first)).desc());
+            set_.exposures = find_exposures();
+        set_.facts = facts_of(scenes_.look_at(image_of({})));
         {
             const FolderLock lock(folder);  // of several that begin at once, one says what it is
             if (!read_dataset_file(folder))
@@ -387,42 +384,38 @@ class DatasetRun {
         check_same_set(folder, set_.definition, wanted);
     }
 
-    void render(const std::vector<std::size_t>& views) {
-        if (views.empty()) return;
-        ViewRenderer renderer(a_, views.size());
-        try {
-            for (const std::size_t index : views) {
-                const View view = set_.definition.view(index);
-                load_draw(view.draw);
-                renderer.render(set_, view, scene_);
-                ends_.push_back(std::chrono::steady_clock::now());
-            }
-            renderer.finish();
-        } catch (const Interrupted&) {
-            try {
-                renderer.finish();
-            } catch (const Interrupted&) {
-                // It was being written, and is not done.
-            }
-            throw Interrupted(
-                fmt::format("interrupted; {} of {} views are done; the same command "
-                            "continues",
-                            renderer.done(), views.size()));
+    /// By drafts of a few views of the first draw.
+    Exposures find_exposures() {
+        const DatasetDefinition& definition = set_.definition;
+        const std::size_t views = definition.frames.size() * definition.cameras.size();
+        const std::size_t drafts = std::min(views, k_most_drafts);
+        Job job{scenes_, {}};
+        for (std::size_t i = 0; i < drafts; ++i) {
+            const std::size_t index = drafts > 1 ? i * (views - 1) / (drafts - 1) : 0;
+            job.images.push_back(image_of(definition.view(index)));
         }
+        return ExposureDrafts(definition, a_.image.quiet).find(job);
     }
 
-    void load_draw(std::size_t draw) {
-        if (draw == draw_) return;
-        scene_ = scene_of_draw(a_, set_.definition.draws[draw]);
-        draw_ = draw;
+    /// When each of the views was rendered.
+    std::vector<std::chrono::steady_clock::time_point> render(
+        const std::vector<std::size_t>& views) {
+        if (views.empty()) return {};
+        Job job{scenes_, {}};
+        for (const std::size_t index : views)
+            job.images.push_back(image_of(set_.definition.view(index)));
+        ViewRenderer renderer(a_, set_, views);
+        renderer.run(job);
+        return renderer.ends();
     }
 
     DatasetArguments a_;
-    SceneDesc scene_;  // of the draw
-    std::size_t draw_ = 0;
+    std::vector<std::vector<std::string>> draws_;
+    JobScenes scenes_{
+        [this](int draw) { return scene_of_draw(a_, draws_[static_cast<std::size_t>(draw)]); }};
     DatasetFile set_;
+    std::vector<std::size_t> cameras_;  // of the set, by their places in the scene
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    std::vector<std::chrono::steady_clock::time_point> ends_;  // of the views rendered
 };
 
 }  // namespace

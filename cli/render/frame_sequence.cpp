@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -14,7 +13,6 @@
 #include "core/base/input_files.h"
 #include "core/base/output_files.h"
 #include "core/base/text.h"
-#include "media/volumes/load_volumes.h"
 #include "render/image_header.h"
 #include "render/resolved_scene.h"
 
@@ -213,6 +211,13 @@ bool has_sequence(const SceneDesc& scene) {
 
 }  // namespace
 
+std::vector<JobImage> images_of(const std::vector<Frame>& frames) {
+    std::vector<JobImage> images;
+    images.reserve(frames.size());
+    for (const Frame& frame : frames) images.push_back(frame.image());
+    return images;
+}
+
 std::string place_in_run(const Frame& frame) {
     std::string place;
     if (frame.variation) place += fmt::format("variation {}: ", *frame.variation);
@@ -348,23 +353,15 @@ void add_sensor_images(FrameSequence& sequence, const SceneDesc& scene) {
     }
 }
 
-bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
-                 const std::function<bool(const fs::path&)>& is_image_of) {
+std::optional<fs::file_time_type> time_rendered(const Frame& frame) {
     const OutputFiles& files = frame.files;
-    if (!is_file(files.image) || !is_file(files.preview)) return false;
-    if (!files.irradiance_vdb.empty() && !is_file(files.irradiance_vdb)) return false;
-    if (!files.ids.empty() && !is_file(files.ids)) return false;
-    if (!files.sensor.empty() && !is_file(files.sensor)) return false;
+    for (const fs::path* file : {&files.image, &files.preview})
+        if (!is_file(*file)) return std::nullopt;
+    for (const fs::path* file : {&files.irradiance_vdb, &files.ids, &files.sensor})
+        if (!file->empty() && !is_file(*file)) return std::nullopt;
     std::error_code error;
-    const auto rendered = fs::last_write_time(files.image, error);
-    if (error) return false;
-    const auto is_newer = [&](const InputFile& input) {
-        if (input.is_hashed) return false;
-        const auto written = fs::last_write_time(input.file, error);
-        return !error && written > rendered;
-    };
-    if (std::ranges::any_of(inputs, is_newer)) return false;
-    return is_image_of(files.image);
+    const fs::file_time_type time = fs::last_write_time(files.image, error);
+    return error ? std::nullopt : std::optional(time);
 }
 
 std::optional<std::string> frame_warning(const RenderArguments& a, const SceneDesc& scene) {
@@ -380,77 +377,9 @@ std::optional<std::string> frame_warning(const RenderArguments& a, const SceneDe
     return std::nullopt;
 }
 
-namespace {
-
-bool is_there(const fs::path& file) {
-    std::error_code ignored;
-    return fs::is_regular_file(file, ignored);
-}
-
-// Lists the frames that lack a file of a sequence in the scene.
-class MissingFrames {
-  public:
-    void look(const SourceLocation& where, const fs::path& name, std::span<const Frame> frames) {
-        std::vector<int> missing;
-        for (const Frame& frame : frames)
-            if (frame.camera == frames.front().camera &&
-                !is_there(file_of_frame(name, *frame.number)))
-                missing.push_back(*frame.number);
-        if (missing.empty()) return;
-        text_ += fmt::format("{}{}.file: '{}' has no file for {} {}", text_.empty() ? "" : "; ",
-                             where, printable(name.string(), 300),
-                             missing.size() == 1 ? "frame" : "frames", format_frame_list(missing));
-    }
-    void refuse() const {
-        if (!text_.empty())
-            throw IoError(text_ + "; choose --frames that exist, or add the missing files");
-    }
-
-  private:
-    std::string text_;
-};
-
-void check_volumes(std::span<const Frame> frames, const SceneDesc& scene) {
-    for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
-        if (!scene.volumes[v].is_sequence) continue;
-        VolumeSequenceCheck check;
-        for (const Frame& frame : frames)
-            if (frame.camera == frames.front().camera)
-                check.take(scene_of_image(scene, frame.choice()).volumes[v]);
-    }
-}
-
-// The files of the numbered frames of one scene.
-void check_sequences(std::span<const Frame> frames, const SceneDesc& scene) {
-    MissingFrames missing;
-    for (const VolumeDesc& volume : scene.volumes) {
-        if (volume.is_sequence) missing.look(volume.where, volume.file, frames);
-        if (volume.motion && volume.motion->is_sequence && volume.motion->file != volume.file)
-            missing.look(volume.motion->where, volume.motion->file, frames);
-    }
-    for (const GeometryDesc& mesh : scene.geometry)
-        if (mesh.is_sequence) missing.look(mesh.where, mesh.file, frames);
-    missing.refuse();
-    check_volumes(frames, scene);
-}
-
-}  // namespace
-
-void check_frames(const FrameSequence& sequence, const SceneOfVariation& scene_of) {
+void check_frames(const FrameSequence& sequence, JobScenes& scenes) {
     OutputCheck outputs;
-    MeshSideFiles known;
-    std::span<const Frame> left = sequence.frames;
-    while (!left.empty()) {
-        const auto end = std::ranges::find_if(
-            left, [&](const Frame& frame) { return frame.variation != left.front().variation; });
-        const auto count = static_cast<std::size_t>(end - left.begin());
-        const std::span<const Frame> of_scene = left.first(count);
-        left = left.subspan(count);
-        const SceneDesc& scene = scene_of(of_scene.front().variation);
-        if (of_scene.front().number) check_sequences(of_scene, scene);
-        for (const Frame& frame : of_scene)
-            outputs.take_inputs(input_files(scene_of_image(scene, frame.choice()), known));
-    }
+    outputs.take_inputs(check_inputs({scenes, images_of(sequence.frames)}));
     for (const Frame& frame : sequence.frames) outputs.take_outputs(frame.files);
     OutputFiles about_all;
     about_all.stats = sequence.stats;

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -14,8 +13,8 @@
 #include "core/image/film.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/sensor_desc.h"
-#include "render/resolved_scene.h"
 #include "render/scene_loading.h"
+#include "run/job.h"
 
 namespace uw {
 
@@ -74,8 +73,11 @@ struct Frame {
     std::optional<int> variation{};  // of the scene; none: the scene itself
     PixelWindow window{};            // the pixels that are written
 
-    ImageChoice choice() const { return {number, camera}; }
+    JobImage image() const { return {variation.value_or(0), {number, camera}}; }
 };
+
+/// The frames as the images of a job: the scene itself has the number 0.
+std::vector<JobImage> images_of(const std::vector<Frame>& frames);
 
 /// Where an image belongs, to begin a message with: "variation 17: frame 3: camera left: ". Empty
 /// for the only one.
@@ -115,22 +117,16 @@ bool has_sensor(const SceneDesc& scene);
 /// where there would be nothing else, and for a name whose ending is not that of its format.
 void add_sensor_images(FrameSequence& sequence, const SceneDesc& scene);
 
-/// Whether `frame`, one of a sequence, has been rendered: all its files but the statistics exist,
-/// the image is one that `is_image_of` accepts, and none of `inputs` is newer than it. Inputs that
-/// are part of the scene's hash are left to `is_image_of`.
-bool is_rendered(const Frame& frame, const std::vector<InputFile>& inputs,
-                 const std::function<bool(const std::filesystem::path& image)>& is_image_of);
+/// When `frame`, one of a sequence, was rendered: all its files but the statistics exist. None: not
+/// all of them do.
+std::optional<std::filesystem::file_time_type> time_rendered(const Frame& frame);
 
 /// A one-line warning if names and frames do not match although they can be rendered: frames that
 /// are all alike, or names with a placeholder for the number but no frames.
 std::optional<std::string> frame_warning(const RenderArguments& arguments, const SceneDesc& scene);
 
-/// The scene of a variation, until another is requested; without a number the scene itself.
-using SceneOfVariation = std::function<const SceneDesc&(std::optional<int> variation)>;
-
-/// Checks what all frames read and write before the first is rendered. Throws IoError that names
-/// all frames whose files are missing; InputError for a frame that does not match the others (see
-/// VolumeSequenceCheck); and as OutputCheck does.
-void check_frames(const FrameSequence& sequence, const SceneOfVariation& scene_of);
+/// Checks what all frames read and write before the first is rendered: throws as check_inputs and
+/// OutputCheck do.
+void check_frames(const FrameSequence& sequence, JobScenes& scenes);
 
 }  // namespace uw

@@ -11,19 +11,9 @@
 #include "core/image/exr_file.h"
 #include "render/scene_loading.h"
 #include "render/scene_rendering.h"
+#include "run/exposure.h"
 
 namespace uw {
-
-/// By what the previews are multiplied: --exposure.
-struct PreviewExposure {
-    enum class Kind {
-        automatic,  // of each by itself
-        first,      // the first image's, for all
-        fixed
-    };
-    Kind kind = Kind::automatic;
-    double factor = 1;  // of `fixed`
-};
 
 /// `uwvdb render` as typed.
 struct RenderArguments {

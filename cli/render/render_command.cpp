@@ -40,35 +40,34 @@ bool has_preview(const OutputFiles& files, const RenderArguments& a,
            (!exposure || header->exposure == as_stated_in_png(*exposure));
 }
 
-}  // namespace
-
-std::optional<double> leave_out_rendered(FrameSequence& sequence, RunScenes& scenes,
-                                         const RenderArguments& a) {
+// Removes the images that exist already (--resume), and prints which. Keeps the first image's
+// exposure, if that exists.
+void leave_out_rendered(FrameSequence& sequence, RunScenes& scenes, const RenderArguments& a,
+                        RunExposure& exposure) {
     const PathRequest paths = a.paths();
     const ExrOptions storage = a.exr();
+    const auto is_wanted = [&](const Frame& frame) {
+        // Headers describe the camera that was rendered, possibly a glTF file's.
+        const ResolvedScene resolved(
+            scene_of_image(scenes.of(frame.variation), frame.image().choice));
+        const SceneDesc& scene = resolved.desc();
+        const ImageLayout layout{scene.camera.width, scene.camera.height, frame.window,
+                                 layer_plan(scene, a.layers, paths).channel_names(), storage};
+        return has_header_of(frame.files.image, layout, metadata_of(scene, frame.number, paths)) &&
+               has_preview(frame.files, a, exposure.of_all());
+    };
+    InputTimes inputs(scenes.job());
     std::vector<int> there;  // frames of the scene itself
     const char* noun = "";
     const std::size_t all = sequence.frames.size();
     std::vector<Frame> left;
-    MeshSideFiles known;
-    std::optional<double> exposure;
-    if (a.exposure.kind == PreviewExposure::Kind::fixed) exposure = a.exposure.factor;
     for (Frame& frame : sequence.frames) {
-        const SceneDesc scene = scene_of_image(scenes.of(frame.variation), frame.choice());
-        // Headers describe the camera that was rendered, possibly a glTF file's.
-        const auto is_image_of = [&](const std::filesystem::path& file) {
-            const ResolvedScene resolved{SceneDesc(scene)};
-            const ImageLayout layout{scene.camera.width, scene.camera.height, frame.window,
-                                     layer_plan(resolved.desc(), a.layers, paths).channel_names(),
-                                     storage};
-            return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number, paths));
-        };
-        const bool rendered = is_rendered(frame, input_files(scene, known), is_image_of) &&
-                              has_preview(frame.files, a, exposure);
-        if (rendered && !exposure && left.empty() &&
-            a.exposure.kind == PreviewExposure::Kind::first) {
-            exposure = read_preview_header(frame.files.preview)->exposure;
-            if (*exposure == 1) exposure.reset();  // black
+        const auto time = time_rendered(frame);
+        const bool rendered =
+            time && inputs.last_change(frame.image()) <= *time && is_wanted(frame);
+        if (rendered && left.empty()) {
+            const double first = read_preview_header(frame.files.preview)->exposure;
+            if (first != 1) exposure.keep(first);  // or it is black
         }
         if (rendered && !frame.variation && (there.empty() || there.back() != *frame.number))
             there.push_back(*frame.number);
@@ -77,23 +76,13 @@ std::optional<double> leave_out_rendered(FrameSequence& sequence, RunScenes& sce
     }
     sequence.frames = std::move(left);
     const std::size_t done = all - sequence.frames.size();
-    if (done == 0 || a.quiet) return exposure;
+    if (done == 0 || a.quiet) return;
     const std::string which =
         there.empty() ? fmt::format("{} of {} images are", done, all)
                       : fmt::format("{} {} {}", there.size() == 1 ? "frame" : "frames",
                                     format_frame_list(there), there.size() == 1 ? "is" : "are");
     print_message(
         fmt::format("resume: {} there already, {} {}left\n", which, sequence.frames.size(), noun));
-    return exposure;
-}
-
-namespace {
-
-std::vector<std::string> names_of(const std::vector<LampDesc>& lamps) {
-    std::vector<std::string> names;
-    names.reserve(lamps.size());
-    for (const LampDesc& lamp : lamps) names.push_back(lamp.name);
-    return names;
 }
 
 PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
@@ -133,47 +122,6 @@ std::vector<std::string> warnings_of(const RenderArguments& a, const Frame& firs
             "camera.sensor.seed: {integer: [0, 2000000000]}");
     return warnings;
 }
-
-// The scenes of frames one after the other, each resolved once. The first is resolved before
-// anything is rendered: its lamps name layers, and all frames must have the same.
-class FrameScenes {
-  public:
-    FrameScenes(RunScenes& scenes, const Frame& first, std::vector<std::string> warnings)
-        : scenes_(scenes), warnings_(std::move(warnings)), first_frame_(first) {
-        first_ = resolved(first);
-        lamp_names_ = names_of(first_->desc().lamps);
-    }
-
-    const SceneDesc& first() const { return first_->desc(); }
-
-    ResolvedScene take(const Frame& frame) {
-        std::optional<ResolvedScene> first = std::exchange(first_, std::nullopt);
-        if (first && frame.choice() == first_frame_.choice() &&
-            frame.variation == first_frame_.variation)
-            return std::move(*first);
-        ResolvedScene scene = resolved(frame);
-        const std::vector<std::string> names = names_of(scene.desc().lamps);
-        if (names != lamp_names_)
-            throw InputError(fmt::format(
-                "{}its lamps are {}, but those of the first are {}; all images have the same "
-                "lights",
-                place_in_run(frame), fmt::join(names, ", "), fmt::join(lamp_names_, ", ")));
-        return scene;
-    }
-
-  private:
-    ResolvedScene resolved(const Frame& frame) {
-        SceneDesc scene = scene_of_image(scenes_.of(frame.variation), frame.choice());
-        scene.warnings.insert(scene.warnings.end(), warnings_.begin(), warnings_.end());
-        return {std::move(scene)};
-    }
-
-    RunScenes& scenes_;
-    std::vector<std::string> warnings_;  // about the run
-    Frame first_frame_;
-    std::optional<ResolvedScene> first_;  // until a frame is taken
-    std::vector<std::string> lamp_names_;
-};
 
 // A row for each frame of a rig's cameras, or each variation's frames.
 void write_contact_sheet(const FrameSequence& sequence, bool quiet) {
@@ -242,29 +190,6 @@ FrameSequence images_of(const RenderArguments& a, RunScenes& scenes, VariationMa
     return sequence;
 }
 
-// Renders all frames; `stats` are those of the first so far. Whatever ends the run but a stop, the
-// frames that were rendered are written, and so counted in `done`; a stop gives up the last one.
-void render_frames(const FrameSequence& sequence, FrameScenes& scenes, FrameRenderer& renderer,
-                   RunStats stats, const std::size_t& done) {
-    try {
-        for (const Frame& frame : sequence.frames)
-            renderer.render(frame, scenes.take(frame), std::exchange(stats, RunStats()));
-        renderer.finish();
-    } catch (const Interrupted&) {
-        try {
-            renderer.finish();
-        } catch (const Interrupted&) {
-            // It was being written, and is not done.
-        }
-        if (done == 0) throw;
-        throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume continues",
-                                      done, sequence.frames.size()));
-    } catch (...) {
-        renderer.finish();
-        throw;
-    }
-}
-
 }  // namespace
 
 void run_render(const RenderArguments& typed) {
@@ -281,12 +206,14 @@ void run_render(const RenderArguments& typed) {
     VariationManifest manifest(a);
     FrameSequence sequence = images_of(a, scenes, manifest);
     const Frame first = sequence.frames.front();
-    FrameScenes frame_scenes(scenes, first,
-                             warnings_of(a, first, scenes.of(first.variation), scenes));
-    layer_plan(frame_scenes.first(), a.layers, a.paths());  // throws for what does not exist
+    for (std::string& line : warnings_of(a, first, scenes.of(first.variation), scenes))
+        scenes.job().warn(std::move(line));
+    // Its lamps name layers, and all frames must have the same.
+    const SceneDesc first_scene = scenes.job().look_at(first.image());
+    layer_plan(first_scene, a.layers, a.paths());  // throws for what does not exist
     const FrameSequence all = sequence;
-    std::optional<double> exposure;
-    if (a.resume) exposure = leave_out_rendered(sequence, scenes, a);
+    RunExposure exposure(a.exposure);
+    if (a.resume) leave_out_rendered(sequence, scenes, a, exposure);
     if (sequence.frames.empty()) {
         std::set<std::filesystem::path> folders;
         for (const Frame& frame : all.frames) folders.insert(frame.files.main().parent_path());
@@ -295,34 +222,35 @@ void run_render(const RenderArguments& typed) {
         write_contact_sheet(all, a.quiet);
         return;
     }
-    check_measures(a, frame_scenes.first(), sequence.frames.front().window);
-    check_frames(sequence, [&](std::optional<int> variation) -> const SceneDesc& {
-        return scenes.of(variation);
-    });
+    check_measures(a, first_scene, sequence.frames.front().window);
+    check_frames(sequence, scenes.job());
     manifest.write(a.quiet);
     std::size_t done = 0;
     // Kept only if they are asked for: there may be many thousands.
     const bool keeps_stats = !sequence.stats.empty() || !a.numbers.empty();
     std::vector<RunStats> all_stats;
-    FrameRenderer renderer(a, sequence.frames.size(),
-                           first.camera_name.empty() && !first.variation ? "frame" : "image",
-                           [&](const Frame& frame, RunStats of_frame) {
+    FrameRenderer renderer(a, sequence.frames, names_of(first_scene.lamps), exposure,
+                           std::move(stats), [&](const Frame& frame, RunStats of_frame) {
                                if (!frame.files.stats.empty())
                                    of_frame.write_json(frame.files.stats,
                                                        a.scene.filename().string());
                                ++done;
                                if (keeps_stats) all_stats.push_back(std::move(of_frame));
                            });
-    if (exposure) renderer.keep_exposure(*exposure);
     const auto write_stats = [&] {
         write_numbers(a, sequence.numbers, all_stats);
         if (!sequence.stats.empty() && done > 0)
             RunStats::write_json(sequence.stats, a.scene.filename().string(), all_stats);
     };
     try {
-        render_frames(sequence, frame_scenes, renderer, std::move(stats), done);
-    } catch (...) {
+        renderer.run(scenes.job());
+    } catch (const Interrupted&) {
         write_stats();  // of the frames done
+        if (done == 0) throw;
+        throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume continues",
+                                      done, sequence.frames.size()));
+    } catch (...) {
+        write_stats();
         throw;
     }
     write_stats();

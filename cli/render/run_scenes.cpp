@@ -20,7 +20,13 @@
 
 namespace uw {
 
-RunScenes::RunScenes(const RenderArguments& arguments) : arguments_(arguments) {
+RunScenes::RunScenes(const RenderArguments& arguments)
+    : arguments_(arguments), job_([this](int number) {
+          SceneDesc scene = variations_ ? variations_->scene(number)
+                                        : load_scene(arguments_.scene, arguments_.overrides);
+          apply_request(arguments_.image(), scene);
+          return scene;
+      }) {
     if (arguments.is_scene_itself()) {
         all_.emplace_back();
         return;
@@ -46,16 +52,6 @@ RunScenes::RunScenes(const RenderArguments& arguments) : arguments_(arguments) {
 bool RunScenes::is_wanted(std::optional<int> variation) const {
     const std::vector<int>& wanted = arguments_.variations;
     return !variation || wanted.empty() || std::ranges::find(wanted, *variation) != wanted.end();
-}
-
-const SceneDesc& RunScenes::of(std::optional<int> variation) {
-    if (scene_ && variation == current_) return *scene_;
-    SceneDesc scene = variation ? variations_->scene(*variation)
-                                : load_scene(arguments_.scene, arguments_.overrides);
-    apply_request(arguments_.image(), scene);
-    scene_ = std::move(scene);
-    current_ = variation;
-    return *scene_;
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include "cli/render/render_arguments.h"
 #include "core/scene/variations.h"
 #include "render/scene_loading.h"
+#include "run/job.h"
 
 namespace uw {
 
@@ -19,6 +20,11 @@ class RunScenes {
     /// Reads the scene, or what its variations draw. Throws as load_scene and SceneVariations;
     /// UsageError for a scene without variations, or one that is not among the set.
     explicit RunScenes(const RenderArguments& arguments);
+    ~RunScenes() = default;
+    RunScenes(const RunScenes&) = delete;
+    RunScenes& operator=(const RunScenes&) = delete;
+    RunScenes(RunScenes&&) = delete;
+    RunScenes& operator=(RunScenes&&) = delete;
 
     /// The variations of the whole set, if one is requested, else those to render: in the order of
     /// their images. One that is none: the scene itself.
@@ -26,10 +32,11 @@ class RunScenes {
     /// Whether a variation of the set is to be rendered.
     bool is_wanted(std::optional<int> variation) const;
 
-    /// One of these scenes, with the arguments applied, until another is requested: it is read for
-    /// the occasion. Throws as load_scene and SceneVariations::scene; UsageError for arguments that
-    /// do not suit it.
-    const SceneDesc& of(std::optional<int> variation);
+    /// These scenes with the arguments applied, by the numbers of the variations; the scene itself
+    /// has the number 0. They throw as load_scene and SceneVariations::scene; UsageError for
+    /// arguments that do not suit them.
+    JobScenes& job() { return job_; }
+    const SceneDesc& of(std::optional<int> variation) { return job_.of(variation.value_or(0)); }
 
     /// Only of variations.
     const SceneVariations& variations() const { return *variations_; }
@@ -38,8 +45,7 @@ class RunScenes {
     const RenderArguments& arguments_;
     std::optional<SceneVariations> variations_;
     std::vector<std::optional<int>> all_;
-    std::optional<int> current_;
-    std::optional<SceneDesc> scene_;  // that of the current
+    JobScenes job_;
 };
 
 /// What the variations of a whole set drew, and which images show it: SCENE.variations.csv, a row

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <string_view>
 #include <utility>
 
-#include "camera/camera.h"
 #include "cli/console.h"
 #include "cli/image_choice.h"
 #include "cli/process.h"
@@ -19,9 +19,10 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
-#include "core/light/integrator_table.h"
 #include "core/scene/render_desc.h"
 #include "render/scene_loading.h"
+#include "run/draft.h"
+#include "run/run_engine.h"
 
 namespace uw {
 
@@ -45,11 +46,7 @@ std::optional<std::array<double, 3>> range_in(std::string_view text) {
 
 }  // namespace
 
-std::string SweepAxis::override_at(std::size_t index) const {
-    return fmt::format("{}={}", key, values[index]);
-}
-
-std::optional<SweepAxis> sweep_axis(const std::string& override) {
+std::optional<ValueAxis> sweep_axis(const std::string& override) {
     const std::size_t equals = override.find('=');
     if (equals == std::string::npos) return std::nullopt;
     const auto range = range_in(std::string_view(override).substr(equals + 1));
@@ -63,7 +60,7 @@ std::optional<SweepAxis> sweep_axis(const std::string& override) {
     const double count = std::floor(std::abs((last - first) / step) + 1e-9) + 1;
     if (count > k_most_axis_values) fail("more than 1000 values; give a larger step");
     if (count < 2) fail("the step is larger than the range; give a smaller one");
-    SweepAxis axis{override.substr(0, equals), {}};
+    ValueAxis axis{override.substr(0, equals), {}};
     const double signed_step = std::copysign(step, last - first);
     for (int i = 0; i < static_cast<int>(count); ++i) {
         // As decimal numbers are meant: 0.3, not 0.30000000000000004.
@@ -89,12 +86,6 @@ OUT.svg, plots of contrast and signal to backscatter. Ctrl-C keeps what has been
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted.)";
 
-std::size_t SweepArguments::count() const {
-    std::size_t product = 1;
-    for (const SweepAxis& axis : axes) product *= axis.values.size();
-    return product;
-}
-
 Options sweep_options(SweepArguments& a) {
     Options options;
     options.path("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
@@ -104,7 +95,7 @@ Options sweep_options(SweepArguments& a) {
         "--set", "KEY.PATH=FIRST:LAST:STEP",
         [&a](const std::string& text) {
             if (const auto axis = sweep_axis(text))
-                a.axes.push_back(*axis);
+                a.grid.axes.push_back(*axis);
             else
                 a.overrides.push_back(text);
         },
@@ -119,7 +110,7 @@ Options sweep_options(SweepArguments& a) {
                 if (!axis)
                     throw UsageError(fmt::format("--with {}: expected KEY.PATH=FIRST:LAST:STEP",
                                                  printable(text, 200)));
-                a.companions.push_back(*axis);
+                a.grid.companions.push_back(*axis);
             },
             "vary this value along with the first; may be repeated")
         .repeatable = true;
@@ -129,17 +120,8 @@ Options sweep_options(SweepArguments& a) {
     options.text("--camera", "NAME", a.camera, "which camera of a rig");
     options.integer("--frame", "N", a.frame, 0, 999'999'999, "which frame of sequences");
     options.size(a.size, "of the pictures; default: the scene's, or less: 480 pixels wide");
-    Option& quality = options.parsed(
-        "--quality", "NAME",
-        [&a](const std::string& word) {
-            const auto* const known = std::ranges::find(
-                k_quality_names, word, &std::pair<std::string_view, RenderDesc::Quality>::first);
-            if (known == k_quality_names.end())
-                throw UsageError(fmt::format("--quality: unknown '{}'; use {}", printable(word),
-                                             alternatives(words_of(k_quality_names))));
-            a.quality = known->second;
-        },
-        "of the pictures: draft, the default, final or exact");
+    Option& quality = options.text("--quality", "NAME", a.quality,
+                                   "of the pictures: draft, the default, final or exact");
     quality.value = Option::Value::word;
     for (const auto& [word, meaning] : k_quality_names) quality.words.emplace_back(word);
     options.threads(a.threads);
@@ -149,22 +131,22 @@ Options sweep_options(SweepArguments& a) {
 }
 
 void check_axes(const SweepArguments& a) {
-    if (a.axes.empty() || a.axes.size() > 2)
+    if (a.grid.axes.empty() || a.grid.axes.size() > 2)
         throw UsageError(
             fmt::format("--set: {} values with a range; vary one or two, such as "
                         "lamps.left.position[0]=-1.2:-0.2:0.2",
-                        a.axes.size()));
-    for (const SweepAxis& companion : a.companions)
-        if (companion.values.size() != a.axes.front().values.size())
-            throw UsageError(
-                fmt::format("--with {}: has {} values, but {} has {}; give it a step "
-                            "of as many",
-                            printable(companion.key, 200), companion.values.size(),
-                            printable(a.axes.front().key, 200), a.axes.front().values.size()));
+                        a.grid.axes.size()));
+    for (const ValueAxis& companion : a.grid.companions)
+        if (companion.values.size() != a.grid.axes.front().values.size())
+            throw UsageError(fmt::format(
+                "--with {}: has {} values, but {} has {}; give it a step "
+                "of as many",
+                printable(companion.key, 200), companion.values.size(),
+                printable(a.grid.axes.front().key, 200), a.grid.axes.front().values.size()));
     constexpr std::size_t k_most_pictures = 10000;
-    if (a.count() > k_most_pictures)
+    if (a.grid.count() > k_most_pictures)
         throw UsageError(fmt::format("--set: {} pictures, more than {}; give larger steps",
-                                     a.count(), k_most_pictures));
+                                     a.grid.count(), k_most_pictures));
 }
 
 namespace {
@@ -172,64 +154,33 @@ namespace {
 constexpr double k_rendering = 0.9;  // of the time that a picture takes
 constexpr int k_usual_width = 480;   // of pictures without --size [pixels]
 
-/// Which value of each axis.
-struct Place {
-    std::size_t first, second;
-};
-
-Place place_of(const SweepArguments& a, std::size_t index) {
-    const std::size_t count = a.axes.front().values.size();
-    return {index % count, index / count};
-}
-
-std::vector<double> values_at(const SweepArguments& a, const Place& at) {
-    std::vector<double> values{a.axes[0].values[at.first]};
-    if (a.axes.size() > 1) values.push_back(a.axes[1].values[at.second]);
-    for (const SweepAxis& companion : a.companions) values.push_back(companion.values[at.first]);
-    return values;
-}
-
-void shrink(const SweepArguments& a, SceneDesc& scene) {
-    const CameraDesc& camera = scene.camera;
-    if (a.size)
-        resize_image(scene.camera, (*a.size)[0], (*a.size)[1]);
-    else if (camera.width > k_usual_width)
-        resize_image(scene.camera, k_usual_width,
-                     std::max(1, static_cast<int>(std::lround(static_cast<double>(camera.height) *
-                                                              k_usual_width / camera.width))));
-}
-
-ResolvedScene scene_at(const SweepArguments& a, const Place& at) {
+/// The scene at a place of the grid, with pictures as they are requested.
+SceneDesc scene_at(const SweepArguments& a, std::size_t place) {
     std::vector<std::string> overrides = a.overrides;
-    overrides.push_back(a.axes[0].override_at(at.first));
-    if (a.axes.size() > 1) overrides.push_back(a.axes[1].override_at(at.second));
-    for (const SweepAxis& companion : a.companions)
-        overrides.push_back(companion.override_at(at.first));
-    const SceneDesc all = load_scene(a.scene, overrides);
-    SceneDesc scene = scene_of_image(all, {a.frame, chosen_camera(a.camera, all.cameras)});
-    shrink(a, scene);
-    scene.render.quality = a.quality;
-    if (a.quality == RenderDesc::Quality::draft)
-        scene.render.samples = integrator_kind(scene.render.integrator).draft_samples;
+    std::ranges::move(a.grid.overrides_at(place), std::back_inserter(overrides));
+    SceneDesc scene = load_scene(a.scene, overrides);
+    ImageRequest request;
+    request.quality = a.quality;
+    request.size = a.size;
+    apply_request(request, scene);
+    if (a.size) return scene;
+    shrink_image(scene.camera, k_usual_width);
+    for (RigCameraDesc& entry : scene.cameras) shrink_image(entry.camera, k_usual_width);
     return scene;
 }
 
-class Run {
+/// Measures the pictures of a sweep.
+class SweepRun : public RunClient {
   public:
-    Run(const SweepArguments& arguments, const SweepProgress& progress)
-        : a_(arguments),
-          progress_(progress),
-          renderer_([this](const std::string& stage, double fraction) {
-              return tell(stage == "render" ? k_rendering * fraction : 0);
-          }) {
-        for (const SweepAxis& axis : a_.axes) sweep_.keys.push_back(axis.key);
-        for (const SweepAxis& axis : a_.companions) sweep_.keys.push_back(axis.key);
+    SweepRun(const SweepArguments& arguments, const SweepProgress& progress)
+        : a_(arguments), progress_(progress) {
+        sweep_.keys = a_.grid.keys();
     }
 
-    Sweep take() {
+    Sweep measure(const Job& job) {
         try {
-            for (; done_ < a_.count(); ++done_) measure(place_of(a_, done_));
-            tell(0);  // all is done
+            engine_.run(job, *this);
+            progress_(1);
             sweep_.is_complete = true;
         } catch (const Interrupted&) {
             // What has been measured is the result.
@@ -237,54 +188,61 @@ class Run {
         return std::move(sweep_);
     }
 
-  private:
-    bool tell(double share_of_picture) const {
-        return progress_((static_cast<double>(done_) + share_of_picture) /
-                         static_cast<double>(a_.count()));
+    bool proceed(const std::string& stage, double fraction) override {
+        return tell(stage == "render" ? k_rendering * fraction : 0);
     }
 
-    void measure(const Place& at) {
-        const ResolvedScene scene = scene_at(a_, at);
+    WantedImage want(std::size_t /*place*/, ResolvedScene& scene) override {
+        scene_ = scene;
         sweep_.width = scene.desc().camera.width;
         sweep_.height = scene.desc().camera.height;
-        const RenderOptions options{.layers = layers_to_measure(scene.desc()) +
-                                              (a_.parts.object.empty() ? "" : ",id")};
-        renderer_.set_scene(scene);
-        const Film& film = renderer_.render(options);
-        for (const std::string& warning : renderer_.report().warnings) warn(warning);
-        const LayerPlan plan = layer_plan(scene.desc(), options.layers);
-        const std::vector<PicturePart> parts = picture_parts(
-            a_.parts, scene.desc(), renderer_.assembled().surfaces->names(), film, plan);
-        SweepPoint point{values_at(a_, at), part_numbers({film, plan}, parts), {}};
-        if (a_.target)
-            point.target = target_numbers(
-                probe_.lamps_on_target(scene, *a_.target, [this] { return tell(k_rendering); }),
-                *a_.target, scene.desc().water.bands_nm.size(), probe_.options());
-        sweep_.points.push_back(std::move(point));
+        return {
+            {.layers = layers_to_measure(scene.desc()) + (a_.parts.object.empty() ? "" : ",id")}};
     }
 
-    void warn(const std::string& warning) {
-        if (std::ranges::find(sweep_.warnings, warning) == sweep_.warnings.end())
-            sweep_.warnings.push_back(warning);
+    ImageWork take(std::size_t place, FinishedImage image) override {
+        const SceneDesc& scene = scene_->desc();
+        const std::vector<PicturePart> parts =
+            picture_parts(a_.parts, scene, image.surfaces->names(), image.film, image.plan);
+        SweepPoint point{
+            a_.grid.values_at(place), part_numbers({image.film, image.plan}, parts), {}};
+        if (a_.target)
+            point.target = target_numbers(
+                probe_.lamps_on_target(*scene_, *a_.target, [this] { return tell(k_rendering); }),
+                *a_.target, scene.water.bands_nm.size(), probe_.options());
+        sweep_.points.push_back(std::move(point));
+        return {};
+    }
+
+    void warn(std::size_t /*place*/, const std::string& line) override {
+        sweep_.warnings.push_back(line);
+    }
+
+  private:
+    bool tell(double share_of_picture) const {
+        return progress_(engine_.clock().share_done(share_of_picture));
     }
 
     const SweepArguments& a_;
     const SweepProgress& progress_;
     Sweep sweep_;
-    std::size_t done_ = 0;
-    Renderer renderer_;
+    std::optional<ResolvedScene> scene_;  // of the picture
     TargetProbe probe_;
+    RunEngine engine_;
 };
 
 }  // namespace
 
 Sweep run_pictures(const SweepArguments& a, const SweepProgress& progress) {
-    for (std::size_t index = 0; index < a.count(); ++index) {
-        const ResolvedScene scene = scene_at(a, place_of(a, index));
-        const CameraDesc& camera = scene.desc().camera;
-        check_parts(a.parts, scene.desc(), {0, 0, camera.width, camera.height});
+    JobScenes scenes([&a](int place) { return scene_at(a, static_cast<std::size_t>(place)); });
+    const ImageChoice choice{a.frame, chosen_camera(a.camera, scenes.of(0).cameras)};
+    Job job{scenes, {}};
+    for (std::size_t place = 0; place < a.grid.count(); ++place) {
+        job.images.push_back({static_cast<int>(place), choice});
+        const SceneDesc& scene = scenes.look_at(job.images.back());
+        check_parts(a.parts, scene, {0, 0, scene.camera.width, scene.camera.height});
     }
-    return Run(a, progress).take();
+    return SweepRun(a, progress).measure(job);
 }
 
 namespace {
@@ -363,21 +321,22 @@ PlotPanel panel_of(const Sweep& sweep, const SweepArguments& a, Kind kind, const
     if (kind == Kind::evenness) panel.y.request.max = 1;
     std::vector<Quantity> quantities = quantities_of(sweep, kind);
     if (quantities.empty()) return panel;
-    const std::size_t curves = a.axes.size() > 1 ? a.axes[1].values.size() : quantities.size();
+    const std::size_t curves =
+        a.grid.axes.size() > 1 ? a.grid.axes[1].values.size() : quantities.size();
     for (std::size_t i = 0; i < curves; ++i) {
-        const bool by_value = a.axes.size() > 1;
+        const bool by_value = a.grid.axes.size() > 1;
         const Quantity& quantity = by_value ? quantities.back() : quantities[i];
         PlotCurve curve =
-            styled(by_value ? fmt::format("{:g}", a.axes[1].values[i]) : quantity.label, i);
+            styled(by_value ? fmt::format("{:g}", a.grid.axes[1].values[i]) : quantity.label, i);
         for (const SweepPoint& point : sweep.points) {
-            if (by_value && point.values[1] != a.axes[1].values[i]) continue;
+            if (by_value && point.values[1] != a.grid.axes[1].values[i]) continue;
             curve.x.push_back(point.values[0]);
             curve.y.push_back(quantity.value(point));
         }
         if (!curve.x.empty()) panel.curves.push_back(std::move(curve));
     }
     if (kind == Kind::ratio) panel.y.request.scale = scale_for(panel.curves);
-    if (a.axes.size() > 1) panel.title += fmt::format(" ({})", quantities.back().label);
+    if (a.grid.axes.size() > 1) panel.title += fmt::format(" ({})", quantities.back().label);
     return panel;
 }
 
@@ -409,8 +368,8 @@ std::string sweep_csv(const Sweep& sweep) {
 PlotFigure sweep_figure(const Sweep& sweep, const SweepArguments& a) {
     PlotFigure figure;
     figure.title = a.scene.filename().string() + " over " + sweep.keys.front();
-    for (std::size_t i = 1; i < a.axes.size(); ++i)
-        figure.title += ", for values of " + a.axes[i].key;
+    for (std::size_t i = 1; i < a.grid.axes.size(); ++i)
+        figure.title += ", for values of " + a.grid.axes[i].key;
     figure.panels = {
         panel_of(sweep, a, Kind::contrast, "Contrast", "Michelson contrast"),
         panel_of(sweep, a, Kind::ratio, "Signal to backscatter", "signal / backscatter"),
@@ -418,7 +377,7 @@ PlotFigure sweep_figure(const Sweep& sweep, const SweepArguments& a) {
     figure.columns = 3;
     figure.panel_width = 400;
     std::string along;
-    for (const SweepAxis& axis : a.companions)
+    for (const ValueAxis& axis : a.grid.companions)
         along += fmt::format("{}{} from {:g} to {:g}", along.empty() ? "Along with it: " : ", ",
                              axis.key, axis.values.front(), axis.values.back());
     if (!along.empty()) figure.caption.push_back(along + ".");
@@ -468,7 +427,7 @@ void run_sweep(const SweepArguments& a) {
     Sweep sweep;
     {
         const StopScope scope(stop_flag());
-        Progress progress("sweep", "pictures", static_cast<double>(a.count()), a.quiet);
+        Progress progress("sweep", "pictures", static_cast<double>(a.grid.count()), a.quiet);
         sweep = run_pictures(a, [&](double share) {
             progress.update(share);
             return !stop_requested();
@@ -484,7 +443,7 @@ void run_sweep(const SweepArguments& a) {
     files.commit(a.quiet);
     if (!sweep.is_complete)
         throw Interrupted(fmt::format("interrupted; {} of {} pictures are measured",
-                                      sweep.points.size(), a.count()));
+                                      sweep.points.size(), a.grid.count()));
 }
 
 Command sweep_command() {

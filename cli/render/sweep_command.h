@@ -12,41 +12,29 @@
 #include "cli/svg_plot.h"
 #include "render/measures/picture_numbers.h"
 #include "render/measures/target_probe.h"
+#include "run/job.h"
 
 namespace uw {
-
-/// A value of the scene that is varied: `--set KEY.PATH=FIRST:LAST:STEP`.
-struct SweepAxis {
-    std::string key;
-    std::vector<double> values;
-
-    /// As an override of the scene, the value at `index`.
-    std::string override_at(std::size_t index) const;
-};
 
 /// The axis that an override describes; none if its value is not such a range. Both ends are
 /// included, up to rounding; the step's sign does not matter. Throws UsageError for a range that
 /// makes no sense, or of more than 1000 values.
-std::optional<SweepAxis> sweep_axis(const std::string& override);
+std::optional<ValueAxis> sweep_axis(const std::string& override);
 
 /// `uwvdb sweep` as typed.
 struct SweepArguments {
     std::filesystem::path scene;
-    std::filesystem::path output;            // the CSV; empty: the scene's name with -sweep.csv
-    std::vector<std::string> overrides;      // --set key.path=value
-    std::vector<SweepAxis> axes;             // --set key.path=first:last:step, one or two
-    std::vector<SweepAxis> companions;       // --with: vary along with the first axis
+    std::filesystem::path output;        // the CSV; empty: the scene's name with -sweep.csv
+    std::vector<std::string> overrides;  // --set key.path=value
+    ValueGrid grid;  // --set key.path=first:last:step, one or two axes; --with: companions
     std::optional<double> target;            // --target: distance of a target [m]
     PartArguments parts;                     // --part, --object
     std::string camera;                      // --camera: of a rig
     std::optional<int> frame;                // --frame: of sequences
     std::optional<std::array<int, 2>> size;  // --size WxH; none: at most 480 pixels wide
-    RenderDesc::Quality quality = RenderDesc::Quality::draft;  // --quality
+    std::string quality = "draft";           // --quality
     int threads = 0;
     bool quiet = false;
-
-    /// The number of pictures.
-    std::size_t count() const;
 };
 
 /// What `uwvdb sweep --help` ends with.
@@ -60,14 +48,14 @@ void check_axes(const SweepArguments& arguments);
 
 /// What was measured with one choice of the values that are varied.
 struct SweepPoint {
-    std::vector<double> values;      // of the axes, then of the first one's companions
+    std::vector<double> values;      // of Sweep::keys
     std::vector<PartNumbers> parts;  // of all light; an object out of the picture has none
     std::optional<TargetNumbers> target;
 };
 
 /// What was measured, in the order of the grid: the second axis is the slower one.
 struct Sweep {
-    std::vector<std::string> keys;  // of SweepPoint::values
+    std::vector<std::string> keys;  // as ValueGrid::keys
     std::vector<SweepPoint> points;
     std::vector<std::string> warnings;  // about its pictures, each once
     int width = 0, height = 0;          // of its pictures [pixels]

@@ -1,5 +1,5 @@
 // ctest labels: analytic
-#include "cli/render/image_output.h"
+#include "render/measures/irradiance_vdb.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit threads
-#include "cli/render/image_output.h"
+#include "run/background_task.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/render/run_stats.h"
+#include "run/run_engine.h"
 
 #include <gtest/gtest.h>
 

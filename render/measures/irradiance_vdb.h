@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/base/output_files.h"
+#include "core/light/integrator.h"
+#include "render/scene_assembly.h"
+
+namespace uw {
+
+/// Throws InputError if nothing in `scene` determines where to sample its irradiance.
+void check_irradiance_vdb(const AssembledScene& scene);
+
+/// Writes the irradiance of each lamp and band on a surface facing the lamp [W m^-2], with shadows
+/// and attenuation, as float grids "irradiance.<lamp>.<band>nm" on a lattice over the bounds of the
+/// volumes (of all surfaces and lamps if there are no volumes). Voxels are those of the finest
+/// grid, or large enough that the longest side has at most 256 and all grids together at most 2^28
+/// values. World space, y up as in the scene's world. All of a VDB file, for `out` to be committed.
+/// Throws IoError; Interrupted, also if `progress`, called from any thread, returns false.
+void write_irradiance_vdb(OutputFile& out, const AssembledScene& scene,
+                          const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
+                          const std::function<bool(double share)>& progress);
+
+}  // namespace uw

@@ -1,0 +1,25 @@
+#include "run/draft.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "camera/camera.h"
+#include "render/scene_loading.h"
+
+namespace uw {
+
+void shrink_image(CameraDesc& camera, int most_width, int most_height) {
+    const int width = std::min(camera.width, most_width);
+    const double height = static_cast<double>(camera.height) * width / camera.width;
+    resize_image(camera, width, std::clamp(static_cast<int>(std::lround(height)), 1, most_height));
+}
+
+ResolvedScene draft_of(ResolvedScene scene, int most_width, int most_height) {
+    ImageRequest draft;
+    draft.quality = "draft";
+    apply_request(draft, scene.edit());
+    shrink_image(scene.edit().camera, most_width, most_height);
+    return scene;
+}
+
+}  // namespace uw

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include "core/image/film.h"
+
+namespace uw {
+
+/// By what the previews of a run's images are multiplied.
+struct PreviewExposure {
+    enum class Kind {
+        automatic,  // each by its own
+        first,      // all by that of the first image that is not black
+        fixed
+    };
+    Kind kind = Kind::automatic;
+    double factor = 1;  // of `fixed`
+};
+
+/// Chooses the exposures of a run's images, one after the other.
+class RunExposure {
+  public:
+    explicit RunExposure(const PreviewExposure& wanted);
+
+    /// The one exposure of all images; none: each has its own, or it is not known yet.
+    const std::optional<double>& of_all() const { return of_all_; }
+    /// Where it is the first image's, and that was rendered before. Does nothing otherwise.
+    void keep(double first);
+    /// The exposure of an image; none: its own.
+    std::optional<double> of(const Film& film);
+
+  private:
+    PreviewExposure::Kind kind_;
+    std::optional<double> of_all_;
+};
+
+}  // namespace uw

@@ -1,0 +1,135 @@
+// ctest labels: unit threads
+#include "run/run_engine.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "core/base/error.h"
+#include "tests/support/test_scene.h"
+
+namespace uw::test {
+namespace {
+
+/// Scenes whose lamp is as bright as their number, with one warning that all have and one of their
+/// own.
+SceneDesc scene_of(int number) {
+    SceneDesc scene = pinhole_scene(8, 6);
+    scene.water = hg_water(0.8);
+    scene.geometry = {plane_at_z(2)};
+    scene.lamps = {isotropic_lamp({0.2, 0, 0}, number)};
+    scene.warnings = {"the same", "scene " + std::to_string(number)};
+    return scene;
+}
+
+/// Keeps what it is told, and the films.
+class Recorder : public RunClient {
+  public:
+    WantedImage want(std::size_t place, ResolvedScene& /*scene*/) override {
+        told.push_back("want " + std::to_string(place));
+        return {{.layers = "depth"}};
+    }
+    void loaded(std::size_t place) override { told.push_back("loaded " + std::to_string(place)); }
+    ImageWork take(std::size_t place, FinishedImage image) override {
+        told.push_back("take " + std::to_string(place));
+        films.push_back(std::move(image.film));
+        return {[this, place] { write(place); },
+                [this, place] { told.push_back("written " + std::to_string(place)); }};
+    }
+    void warn(std::size_t place, const std::string& line) override {
+        warnings.push_back(std::to_string(place) + ": " + line);
+    }
+    bool proceed(const std::string& /*stage*/, double /*fraction*/) override {
+        return films.size() < stop_after;
+    }
+
+    std::vector<std::string> told, warnings;
+    std::vector<Film> films;
+    std::function<void(std::size_t place)> write = [](std::size_t) {};
+    std::size_t stop_after = 100;  // images
+};
+
+std::vector<JobImage> images_of_scenes(std::initializer_list<int> numbers) {
+    std::vector<JobImage> images;
+    for (const int number : numbers) images.push_back({number, {}});
+    return images;
+}
+
+std::size_t place_of(const Recorder& client, const std::string& what) {
+    return static_cast<std::size_t>(std::ranges::find(client.told, what) - client.told.begin());
+}
+
+TEST(RunEngine, HandsOverAllImagesAsTheyAre) {
+    JobScenes scenes(scene_of);
+    Recorder client;
+    RunEngine engine;
+    engine.run({scenes, images_of_scenes({3, 1, 2})}, client);
+    EXPECT_EQ(engine.written(), 3U);
+    ASSERT_EQ(client.films.size(), 3U);
+    for (const auto& [place, number] : {std::pair{0U, 3}, {1U, 1}, {2U, 2}}) {
+        Renderer alone;
+        alone.set_scene(scene_of(number));
+        EXPECT_TRUE(std::ranges::equal(client.films[place].values(),
+                                       alone.render({.layers = "depth"}).values()));
+    }
+    const std::vector<std::string> first{"want 0", "loaded 0", "take 0"};
+    EXPECT_TRUE(std::ranges::equal(first, std::span(client.told).first(3)));
+    for (const char* place : {"0", "1", "2"}) {
+        const std::size_t written = place_of(client, std::string("written ") + place);
+        EXPECT_LT(written, client.told.size());
+        EXPECT_GT(written, place_of(client, std::string("take ") + place));
+    }
+}
+
+TEST(RunEngine, GivesEachWarningOnceInARun) {
+    JobScenes scenes(scene_of);
+    scenes.warn("of the job");
+    RunEngine engine;
+    for (int run = 0; run < 2; ++run) {
+        Recorder client;
+        engine.run({scenes, images_of_scenes({1, 2})}, client);
+        EXPECT_EQ(client.warnings, (std::vector<std::string>{"0: the same", "0: scene 1",
+                                                             "0: of the job", "1: scene 2"}));
+    }
+}
+
+TEST(RunEngine, PassesOnAFaultOfWriting) {
+    JobScenes scenes(scene_of);
+    Recorder client;
+    client.write = [](std::size_t place) {
+        if (place == 1) throw IoError("full");
+    };
+    RunEngine engine;
+    EXPECT_THROW(engine.run({scenes, images_of_scenes({1, 2, 3, 4})}, client), IoError);
+    EXPECT_EQ(engine.written(), 1U);
+    EXPECT_LT(client.films.size(), 4U);
+}
+
+TEST(RunEngine, WritesWhatWasRenderedBeforeAFault) {
+    JobScenes scenes([](int number) -> SceneDesc {
+        if (number == 3) throw InputError("no scene");
+        return scene_of(number);
+    });
+    Recorder client;
+    RunEngine engine;
+    EXPECT_THROW(engine.run({scenes, images_of_scenes({1, 2, 3})}, client), InputError);
+    EXPECT_EQ(engine.written(), 2U);
+    EXPECT_LT(place_of(client, "written 1"), client.told.size());
+}
+
+TEST(RunEngine, StopsAsItsClientSays) {
+    JobScenes scenes(scene_of);
+    Recorder client;
+    client.stop_after = 2;
+    RunEngine engine;
+    EXPECT_THROW(engine.run({scenes, images_of_scenes({1, 2, 3})}, client), Interrupted);
+    EXPECT_EQ(engine.written(), 2U);
+    client.stop_after = 100;  // it stays usable
+    engine.run({scenes, images_of_scenes({1})}, client);
+    EXPECT_EQ(engine.written(), 1U);
+}
+
+}  // namespace
+}  // namespace uw::test
