@@ -14,7 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/geometry_scene.h"
 #include "core/image/image_file.h"
-#include "core/passes/render_film.h"
+#include "core/passes/pixel_pass.h"
 #include "render/renderer.h"
 
 namespace uw::bench {

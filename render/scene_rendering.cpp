@@ -9,8 +9,8 @@
 #include "core/base/error.h"
 #include "core/image/image_quantity.h"
 #include "core/light/integrator_table.h"
-#include "core/passes/multiple_light.h"
-#include "core/passes/render_film.h"
+#include "core/passes/all_light_pass.h"
+#include "core/passes/pixel_pass.h"
 #include "core/passes/snow_image.h"
 #include "render/marine_snow.h"
 

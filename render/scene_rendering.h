@@ -11,7 +11,7 @@
 #include "core/image/film.h"
 #include "core/image/layers.h"
 #include "core/passes/forward_pass.h"
-#include "core/passes/path_film.h"
+#include "core/passes/path_pass.h"
 #include "media/light/deep_shadow_map.h"
 #include "render/scene_assembly.h"
 

@@ -8,8 +8,8 @@
 #include "core/image/image_quantity.h"
 #include "core/image/layers.h"
 #include "core/passes/forward_images.h"
+#include "core/passes/pixel_pass.h"
 #include "core/passes/pixel_renderer.h"
-#include "core/passes/render_film.h"
 
 namespace uw {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/passes/render_film.h"
+#include "core/passes/pixel_pass.h"
 #include "render/scene_loading.h"
 #include "tests/support/planes_scene.h"
 

@@ -1,4 +1,4 @@
-#include "core/passes/multiple_light.h"
+#include "core/passes/all_light_pass.h"
 
 #include <algorithm>
 #include <atomic>

@@ -8,8 +8,8 @@
 #include "core/image/colour.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
+#include "core/passes/all_light_pass.h"
 #include "core/passes/in_scatter_lattice.h"
-#include "core/passes/multiple_light.h"
 #include "core/passes/pixel_renderer.h"
 #include "core/passes/snow_image.h"
 

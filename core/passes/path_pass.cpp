@@ -1,4 +1,4 @@
-#include "core/passes/path_film.h"
+#include "core/passes/path_pass.h"
 
 #include <fmt/format.h>
 

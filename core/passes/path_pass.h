@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
+#include "core/passes/pixel_pass.h"
 #include "core/passes/pixel_renderer.h"
-#include "core/passes/render_film.h"
 
 namespace uw {
 

@@ -1,4 +1,4 @@
-#include "core/passes/render_film.h"
+#include "core/passes/pixel_pass.h"
 
 #include <algorithm>
 #include <atomic>
