@@ -329,12 +329,9 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene,
             "water.snow.ground_truth: held is for images in which nothing but the snow moves while "
             "the shutter is open; give --set water.snow.ground_truth=ignored");
     const bool scatters_forward = desc.water.forward_scatter.K > 0;
-    const LightTerms terms{scatters_forward,
-                           scattering_of(desc.render) == RenderDesc::Scattering::multiple,
-                           desc.water.snow.has_value()};
     const int parts = exposure.part_count();
     ReachedByParts reached_by_parts(reached, parts);
-    ExposureMean mean(plan, terms, colour, film);
+    ExposureMean mean(plan, colour, film);
     const Camera truth_camera = camera_of_truth(desc);
     const bool truth_differs = exposure.is_rolling() && exposure.moves_surfaces();
     for (int k = 0; k < parts; ++k) {

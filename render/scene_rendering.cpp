@@ -185,15 +185,19 @@ LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const Pat
     names.reserve(scene.lamps.size());
     for (const LampDesc& lamp : scene.lamps) names.push_back(lamp.name);
     const bool several = paths.error || samples_of(scene.render) > 1;
-    const std::optional<SensorDesc>& sensor = scene.camera.sensor;
-    return {request, scene.water.bands_nm, names,
-            LayerSupply{.multiple = scattering_of(scene.render) == RenderDesc::Scattering::multiple,
-                        .snow = scene.water.snow.has_value(),
-                        .error = traces_paths && several,
-                        .flow = scene.choice.frame.has_value(),
-                        .disparity = scene.cameras.size() > 1,
-                        .orders = paths.orders,
-                        .sensor_values = sensor ? value_count(sensor->mosaic) : 0}};
+    LayerSupply supply{.orders = paths.orders};
+    if (scattering_of(scene.render) == RenderDesc::Scattering::multiple)
+        supply.layers |= {Layer::multiple, Layer::multiple_volume, Layer::multiple_surface};
+    if (scene.water.forward_scatter.K > 0) supply.layers |= {Layer::forward};
+    if (scene.water.snow) supply.layers |= {Layer::snow};
+    if (traces_paths && several) supply.layers |= {Layer::error};
+    if (scene.choice.frame) supply.layers |= {Layer::flow, Layer::flow_back, Layer::flow_occluded};
+    if (scene.cameras.size() > 1) supply.layers |= {Layer::disparity, Layer::disparity_occluded};
+    if (const std::optional<SensorDesc>& sensor = scene.camera.sensor) {
+        supply.layers |= {Layer::sensor};
+        supply.sensor_values = value_count(sensor->mosaic);
+    }
+    return {request, scene.water.bands_nm, names, supply};
 }
 
 bool needs_slabs(const SceneDesc& scene, const LayerPlan& plan) {
