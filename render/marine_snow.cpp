@@ -46,22 +46,6 @@ double view_angle(const Camera& camera) {
 
 }  // namespace
 
-double SnowModel::drawn_depth(double distance) const {
-    double depth = 0;
-    for (std::size_t k = 0; k < ranges.size(); ++k)
-        depth += field.classes()[k].attenuation() * std::min(distance, ranges[k]);
-    return depth;
-}
-
-std::vector<BeyondSnow::Part> SnowModel::parts() const {
-    double all = 0;
-    for (const SnowClass& kind : field.classes()) all += kind.attenuation();
-    std::vector<BeyondSnow::Part> parts;
-    for (std::size_t k = 0; k < ranges.size(); ++k)
-        parts.push_back({ranges[k], field.classes()[k].attenuation() / all});
-    return parts;
-}
-
 std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Camera& camera,
                                                  const Medium& medium) {
     auto model = std::make_shared<SnowModel>(SnowModel{.field = SnowField(desc),
