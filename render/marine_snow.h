@@ -13,6 +13,7 @@
 #include "core/light/integrator.h"
 #include "core/light/medium.h"
 #include "core/passes/marine_snow.h"
+#include "core/passes/pass.h"
 #include "core/passes/snow_image.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/water_desc.h"
@@ -94,6 +95,24 @@ struct SnowPlacing {
     /// `progress` receives the fraction done, from any thread, and may throw.
     SnowSplats splats(const PixelWindow& window,
                       const std::function<void(double fraction)>& progress) const;
+};
+
+/// Marine snow: places the particles, and adds to each pixel what they change in its light, and in
+/// its ground truth if that is wanted.
+class SnowPass final : public Pass {
+  public:
+    explicit SnowPass(const SnowDesc& desc)
+        : Pass("snow"), in_ground_truth_(desc.in_ground_truth) {}
+
+    void provide(LayerSupply& supply) const override;
+    void begin(Rendering& rendering) override;
+    void run(Rendering& rendering) override;
+
+  private:
+    void add_to(const RenderedPixel& pixel, const PixelRenderer& pixels) const;
+
+    bool in_ground_truth_;
+    std::optional<SnowLayer> layer_;  // of the image, from run on
 };
 
 }  // namespace uw

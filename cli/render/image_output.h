@@ -19,7 +19,7 @@
 #include "core/image/film.h"
 #include "core/image/image_file.h"
 #include "core/image/pixel_image.h"
-#include "core/passes/pixel_pass.h"
+#include "core/passes/pass.h"
 #include "render/renderer.h"
 #include "render/scene_assembly.h"
 

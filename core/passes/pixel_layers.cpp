@@ -87,7 +87,7 @@ void fill_material(const PixelResult& pixel, std::span<float> channels) {
     channels[0] = static_cast<float>(pixel.hit.material_id);
 }
 
-/// Leaves the channels alone: they are filled once the whole image is there (CameraSensor).
+/// Leaves the channels alone: they are filled once the whole image is there (SensorPass).
 void leave(const PixelResult&, std::span<float>) {}
 
 /// How a layer is filled from a pixel.

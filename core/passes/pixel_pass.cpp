@@ -4,36 +4,55 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/base/grid2d.h"
 #include "core/base/parallel.h"
+#include "core/light/integrator_table.h"
+#include "core/passes/in_scatter_lattice.h"
 
 namespace uw {
 
 namespace {
 
-/// Makes the ground truth of a pixel that of a particle of snow at this distance along its ray: a
-/// disk that faces the camera, with the number after those of all objects for its id.
-void hold(double distance, const PixelView& view, const PixelRenderer& renderer,
-          PixelResult& result) {
-    result.has_hit = true;
-    result.hit = {};
-    result.hit.distance = distance;
-    result.hit.position = view.ray->at(distance);
-    result.hit.normal = result.hit.geometric_normal = -view.ray->direction;
-    result.hit.object_id =
-        static_cast<std::uint32_t>(renderer.scene().surfaces->names().objects.size()) + 1;
-    const Point3 in_camera = renderer.rays().world_from_camera().inverse() * result.hit.position;
-    result.depth_z = in_camera.z;
-    result.range = glm::length(from_origin(in_camera));
-    result.path = distance;
-}
+// How far in-scatter that is interpolated between pixels may be from that of their own rays
+// (InScatterLattice), relative, where the lattice is confirmed; the image is interpolated from
+// closer nodes and has a quarter of that error.
+constexpr double k_in_scatter_tolerance = 4e-3;
+constexpr double k_draft_tolerance = 0.05;
 
-}  // namespace
+/// Renders tile by tile: the surfaces that the pixels' rays hit, the in-scatter on the way, and the
+/// final pixels.
+class TileRenderer {
+  public:
+    /// As render_tiles.
+    TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
+                 std::span<const PixelStep> steps);
+
+    /// Traces the whole tile, even if only part of it is rendered: its lattice depends on all of
+    /// it, and its surfaces are lit in one batch.
+    void begin(const PixelWindow& tile);
+
+    /// Renders a pixel of the tile; the result is storage of the renderer's.
+    const PixelResult& render(int x, int y);
+
+  private:
+    const PixelRenderer& renderer_;
+    std::span<const PixelStep> steps_;
+    std::optional<InScatterLattice> lattice_;  // empty: every pixel by itself
+    PixelWindow tile_;
+    Grid2D<PixelView> views_;                 // of the tile
+    SurfaceLight light_;                      // on all their samples
+    std::vector<std::size_t> first_samples_;  // index of each view's first sample in light_
+    std::vector<double> in_scatter_;          // of the current pixel, if there is no lattice
+    PixelResult result_;
+};
 
 TileRenderer::TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
-                           const PixelAdditions& additions)
-    : renderer_(renderer), additions_(additions) {
+                           std::span<const PixelStep> steps)
+    : renderer_(renderer), steps_(steps) {
     if (in_scatter_tolerance > 0)
         lattice_.emplace(renderer.rays(), renderer.scene(), renderer.in_scatter(),
                          in_scatter_tolerance);
@@ -54,27 +73,16 @@ void TileRenderer::begin(const PixelWindow& tile) {
     if (lattice_) lattice_->evaluate(tile, views_);
 }
 
-RenderedPixel TileRenderer::render(int x, int y) {
+const PixelResult& TileRenderer::render(int x, int y) {
     const std::size_t pixel = views_.index(x - tile_.x0, y - tile_.y0);
     const PixelView& view = views_[pixel];
     const std::size_t first_sample = first_samples_[pixel];
     if (!lattice_) renderer_.in_scatter().integrate(view, in_scatter_);
     renderer_.shade(view, light_, first_sample, lattice_ ? lattice_->values(pixel) : in_scatter_,
                     result_);
-    if (additions_.multiple) additions_.multiple->add(view, light_, first_sample, result_);
-    if (additions_.snow && view.ray) add_snow(x, y, view);
-    return {view, light_, first_sample, result_};
+    for (const PixelStep& step : steps_) step({x, y, view, light_, first_sample, result_});
+    return result_;
 }
-
-void TileRenderer::add_snow(int x, int y, const PixelView& view) {
-    const double end = view.has_hit ? view.path : view.distances.back();
-    result_.snow = additions_.snow->radiance(x, y, end, result_.direct + result_.multiple_surface,
-                                             result_.backscatter + result_.multiple_volume);
-    const double held = additions_.snow->held(x, y);
-    if (additions_.snow_in_ground_truth && held > 0) hold(held, view, renderer_, result_);
-}
-
-namespace {
 
 constexpr int k_tile = InScatterLattice::k_tile;  // pixels along an edge
 
@@ -88,8 +96,8 @@ PixelWindow tile_within(int x0, int y0, const PixelWindow& bounds) {
 class TileRendererPool {
   public:
     TileRendererPool(const PixelRenderer& renderer, double in_scatter_tolerance,
-                     const PixelAdditions& additions)
-        : renderer_(renderer), in_scatter_tolerance_(in_scatter_tolerance), additions_(additions) {}
+                     std::span<const PixelStep> steps)
+        : renderer_(renderer), in_scatter_tolerance_(in_scatter_tolerance), steps_(steps) {}
 
     std::unique_ptr<TileRenderer> take() {
         {
@@ -100,7 +108,7 @@ class TileRendererPool {
                 return taken;
             }
         }
-        return std::make_unique<TileRenderer>(renderer_, in_scatter_tolerance_, additions_);
+        return std::make_unique<TileRenderer>(renderer_, in_scatter_tolerance_, steps_);
     }
     void give_back(std::unique_ptr<TileRenderer> renderer) {
         const std::lock_guard lock(mutex_);
@@ -110,26 +118,32 @@ class TileRendererPool {
   private:
     const PixelRenderer& renderer_;
     double in_scatter_tolerance_;
-    PixelAdditions additions_;
+    std::span<const PixelStep> steps_;
     std::mutex mutex_;
     std::vector<std::unique_ptr<TileRenderer>> free_;
 };
 
 }  // namespace
 
-void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, const LayerPlan& plan,
-                 const BandColour& colour, Film& film, const ProgressCallback& progress,
-                 const PixelCallback& pixel_done, const PixelAdditions& additions) {
-    const PixelWindow& window = film.window();
-    const PixelWindow image{0, 0, film.width(), film.height()};
+double in_scatter_tolerance(const RenderDesc& render) {
+    const bool exact = render.quality == RenderDesc::Quality::exact;
+    if (exact || !integrator_kind(render.integrator).interpolates_between_pixels) return 0;
+    return render.quality == RenderDesc::Quality::draft ? k_draft_tolerance
+                                                        : k_in_scatter_tolerance;
+}
+
+void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
+                  std::span<const PixelStep> steps, const PixelWindow& window,
+                  const ProgressCallback& progress, const PixelCallback& done) {
+    const PixelWindow image{0, 0, renderer.rays().width(), renderer.rays().height()};
     const int left = window.x0 / k_tile, top = window.y0 / k_tile;
     const int columns = (window.x1 + k_tile - 1) / k_tile - left;
     const int rows = (window.y1 + k_tile - 1) / k_tile - top;
     const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     // Counted in rows of pixels within tiles: a tile may take the reference integrator a minute.
     const auto all = static_cast<double>(columns) * window.height();
-    std::atomic<std::size_t> done = 0;
-    TileRendererPool pool(renderer, in_scatter_tolerance, additions);
+    std::atomic<std::size_t> rows_done = 0;
+    TileRendererPool pool(renderer, in_scatter_tolerance, steps);
     parallel_for(tiles, [&](std::size_t tile) {
         const int x0 = (left + static_cast<int>(tile) % columns) * k_tile;
         const int y0 = (top + static_cast<int>(tile) / columns) * k_tile;
@@ -137,15 +151,30 @@ void render_film(const PixelRenderer& renderer, double in_scatter_tolerance, con
         tile_renderer->begin(tile_within(x0, y0, image));
         const PixelWindow wanted = tile_within(x0, y0, window);
         for (int y = wanted.y0; y < wanted.y1; ++y) {
-            for (int x = wanted.x0; x < wanted.x1; ++x) {
-                const RenderedPixel pixel = tile_renderer->render(x, y);
-                store_pixel(pixel.result, plan, colour, film.pixel(x, y));
-                if (pixel_done) pixel_done(x, y, pixel);
-            }
-            if (!progress(static_cast<double>(++done) / all)) throw Interrupted();
+            for (int x = wanted.x0; x < wanted.x1; ++x) done(x, y, tile_renderer->render(x, y));
+            if (!progress(static_cast<double>(++rows_done) / all)) throw Interrupted();
         }
         pool.give_back(std::move(tile_renderer));
     });
+}
+
+PixelPass::PixelPass(const RenderDesc& render)
+    : Pass("render"),
+      in_scatter_tolerance_(uw::in_scatter_tolerance(render)),
+      needs_light_(integrator_kind(render.integrator).needs_deep_shadows),
+      needs_slabs_(integrator_kind(render.integrator).sums_slabs || render.planes.near ||
+                   render.planes.far) {}
+
+PassNeeds PixelPass::needs(const LayerPlan& plan) const {
+    return {.light = needs_light_, .slabs = needs_slabs_ || in_scatter_parts(plan).first_slab};
+}
+
+void PixelPass::run(Rendering& rendering) {
+    Film& film = rendering.film;
+    render_tiles(rendering.pixels, in_scatter_tolerance_, rendering.steps, film.window(),
+                 rendering.progress_of(stage()), [&](int x, int y, const PixelResult& pixel) {
+                     store_pixel(pixel, rendering.plan, rendering.colour, film.pixel(x, y));
+                 });
 }
 
 }  // namespace uw
