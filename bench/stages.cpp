@@ -14,7 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/geometry_scene.h"
 #include "core/image/image_file.h"
-#include "core/passes/render_film.h"
+#include "core/passes/pixel_pass.h"
 #include "render/renderer.h"
 
 namespace uw::bench {
@@ -48,6 +48,24 @@ class StageRun {
                 camera.height,
                 {0, 0, camera.width, camera.height},
                 plan().channel_names()};
+    }
+
+    /// Runs passes on an image of the scene.
+    void render(const PixelRenderer& pixels, const LayerPlan& plan, Film& film,
+                const std::function<void(Rendering&)>& run) {
+        const BandColour colour(desc().water.bands_nm);
+        const RenderProgress progress = [](const std::string&, double) { return true; };
+        ImageProgress reached;
+        Rendering rendering{.desc = desc(),
+                            .pixels = pixels,
+                            .light = renderer_.light(),
+                            .snow = nullptr,
+                            .plan = plan,
+                            .colour = colour,
+                            .film = film,
+                            .progress = progress,
+                            .reached = reached};
+        run(rendering);
     }
 
     /// Times `work` and records the memory that the scene and it need.
@@ -98,45 +116,30 @@ void splat(StageRun& run, benchmark::State& state) {
 void march(StageRun& run, benchmark::State& state) {
     const PixelRenderer renderer = run.pixels();
     const CameraDesc& camera = run.desc().camera;
-    constexpr int k_tile = InScatterLattice::k_tile;
-    const int columns = (camera.width + k_tile - 1) / k_tile;
-    const int rows = (camera.height + k_tile - 1) / k_tile;
     run.measure(state, [&] {
-        parallel_for(static_cast<std::size_t>(columns * rows), [&](std::size_t i) {
-            TileRenderer tile(renderer, in_scatter_tolerance(run.desc().render));
-            const int x0 = static_cast<int>(i) % columns * k_tile;
-            const int y0 = static_cast<int>(i) / columns * k_tile;
-            const int x1 = std::min(x0 + k_tile, camera.width);
-            const int y1 = std::min(y0 + k_tile, camera.height);
-            tile.begin({x0, y0, x1, y1});
-            for (int y = y0; y < y1; ++y)
-                for (int x = x0; x < x1; ++x) {
-                    double red = tile.render(x, y).result.backscatter[0];
-                    benchmark::DoNotOptimize(red);
-                }
-        });
+        render_tiles(
+            renderer, in_scatter_tolerance(run.desc().render), {},
+            {0, 0, camera.width, camera.height}, [](double) { return true; },
+            [](int, int, const PixelResult& pixel) {
+                double red = pixel.backscatter[0];
+                benchmark::DoNotOptimize(red);
+            });
     });
 }
 
 // An image with forward scatter; `render_s` is the CPU time of the same without.
 void forward_scatter(StageRun& run, benchmark::State& state) {
     const PixelRenderer renderer = run.pixels();
-    const AssembledScene& scene = run.scene();
     const LayerPlan plan = run.plan();
-    const BandColour colour(run.desc().water.bands_nm);
-    const double tolerance = in_scatter_tolerance(run.desc().render);
-    const auto setup = forward_scatter_setup(scene, run.renderer().splat());
-    const auto go_on = [](double) { return true; };
     Film film = run.film();
     const double begin = process_cpu_seconds();
-    render_film(renderer, tolerance, plan, colour, film, go_on);
+    run.render(renderer, plan, film,
+               [&](Rendering& rendering) { PixelPass(run.desc().render).run(rendering); });
     state.counters["render_s"] = process_cpu_seconds() - begin;
     run.measure(state, [&] {
-        ForwardPass pass(renderer, scene.lit(), setup, plan);
-        render_film(renderer, tolerance, plan, colour, film, go_on,
-                    [&](int x, int y, const RenderedPixel& pixel) { pass.keep(x, y, pixel); });
-        pass.run(go_on);
-        pass.write(plan, colour, film);
+        run.render(renderer, plan, film, [&](Rendering& rendering) {
+            make_passes(run.desc()).run(Pass::Of::light, rendering);
+        });
     });
 }
 
@@ -162,8 +165,8 @@ Film rendered(StageRun& run, const char* layers) {
     const CameraDesc& camera = run.desc().camera;
     Film film(camera.width, camera.height, {0, 0, camera.width, camera.height},
               plan.channel_names());
-    render_film(run.pixels(), in_scatter_tolerance(run.desc().render), plan,
-                BandColour(run.desc().water.bands_nm), film, [](double) { return true; });
+    run.render(run.pixels(), plan, film,
+               [&](Rendering& rendering) { PixelPass(run.desc().render).run(rendering); });
     return film;
 }
 

@@ -64,9 +64,8 @@ std::shared_ptr<const Surfaces> surfaces_of(const SceneDesc& next, const Assembl
 Correspondences::Correspondences(const AssembledScene& scene, const LayerPlan& plan,
                                  SurfacesAhead& ahead) {
     const SceneDesc& now = scene.desc;
-    for (std::size_t i = 0; i < k_layer_count; ++i)
-        if (const auto layer = static_cast<Layer>(i);
-            is_about_another_image(layer) && plan.has(layer))
+    for (const LayerKind& kind : k_layers)
+        if (kind.content == LayerContent::match && plan.has(kind.layer))
             refuse_rolling_surfaces(now);
     const bool finds_occluded = plan.has(Layer::flow_occluded);
     const auto motions_until = [&](const SceneDesc& then) {

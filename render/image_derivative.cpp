@@ -9,7 +9,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/light/integrator_table.h"
 #include "media/water/water_model.h"
 #include "render/exposure.h"
 
@@ -24,20 +23,20 @@ void refuse_other_light(const AssembledScene& scene, const std::string& name) {
     const auto refuse = [&](const char* what) {
         throw UsageError(fmt::format("derivative {}: {}", name, what));
     };
-    const RenderDesc& render = scene.desc.render;
-    if (render.integrator != RenderDesc::Integrator::volume)
+    if (scene.desc.render.integrator != RenderDesc::Integrator::volume)
         refuse(
             "it is computed term by term from the sums of integrator volume, which others do not "
             "have; choose integrator volume");
-    if (scattering_of(render) == RenderDesc::Scattering::multiple)
+    const LayerPlan plan = layer_plan(scene.desc, {});
+    if (plan.is_provided(Layer::multiple))
         refuse(
             "light scattered more than once is the mean over random paths and has none; set "
             "render.scattering to single, whose image this is the derivative of");
-    if (scene.desc.water.forward_scatter.K > 0)
+    if (plan.is_provided(Layer::forward))
         refuse(
             "forward scatter blurs the finished image, and how is not differentiated; remove "
             "water.forward_scatter, or set its K to 0");
-    if (scene.snow)
+    if (plan.is_provided(Layer::snow))
         refuse("marine snow is drawn particle by particle and has none; remove water.snow");
     if (Exposure(scene).part_count() > 0)
         refuse(

@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "core/base/parallel.h"
-#include "core/passes/marine_snow.h"
 
 namespace uw {
 
@@ -45,22 +44,6 @@ double view_angle(const Camera& camera) {
 }
 
 }  // namespace
-
-double SnowModel::drawn_depth(double distance) const {
-    double depth = 0;
-    for (std::size_t k = 0; k < ranges.size(); ++k)
-        depth += field.classes()[k].attenuation() * std::min(distance, ranges[k]);
-    return depth;
-}
-
-std::vector<BeyondSnow::Part> SnowModel::parts() const {
-    double all = 0;
-    for (const SnowClass& kind : field.classes()) all += kind.attenuation();
-    std::vector<BeyondSnow::Part> parts;
-    for (std::size_t k = 0; k < ranges.size(); ++k)
-        parts.push_back({ranges[k], field.classes()[k].attenuation() / all});
-    return parts;
-}
 
 std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Camera& camera,
                                                  const Medium& medium) {
@@ -450,6 +433,72 @@ SnowSplats SnowPlacing::splats(const PixelWindow& window,
         part = {};
     }
     return all;
+}
+
+namespace {
+
+/// Makes the ground truth of a pixel that of a particle of snow at this distance along its ray: a
+/// disk that faces the camera, with the number after those of all objects for its id.
+void hold(double distance, const Ray& ray, const PixelRenderer& pixels, PixelResult& result) {
+    result.has_hit = true;
+    result.hit = {};
+    result.hit.distance = distance;
+    result.hit.position = ray.at(distance);
+    result.hit.normal = result.hit.geometric_normal = -ray.direction;
+    result.hit.object_id =
+        static_cast<std::uint32_t>(pixels.scene().surfaces->names().objects.size()) + 1;
+    const Point3 in_camera = pixels.rays().world_from_camera().inverse() * result.hit.position;
+    result.depth_z = in_camera.z;
+    result.range = glm::length(from_origin(in_camera));
+    result.path = distance;
+}
+
+}  // namespace
+
+void SnowPass::provide(LayerSupply& supply) const {
+    supply.layers |= {Layer::snow};
+}
+
+void SnowPass::begin(Rendering& rendering) {
+    layer_.reset();
+    rendering.steps.emplace_back([this, &rendering](const RenderedPixel& pixel) {
+        if (pixel.view.ray) add_to(pixel, rendering.pixels);
+    });
+}
+
+void SnowPass::run(Rendering& rendering) {
+    const SnowModel& model = *rendering.snow;
+    const SceneDesc& desc = rendering.desc;
+    const auto depth = [&model](double distance) { return model.drawn_depth(distance); };
+    const PixelRenderer& pixels = rendering.pixels;
+    WaterVeil veil(pixels.rays(), *pixels.transport().integrator, depth);
+    const SnowLighting lighting(pixels.scene(), rendering.light);
+    const std::vector<ExposureView> views = exposure_views(desc);
+    const SensorModel sensor(desc);
+    const SnowPlacing placing{.model = model,
+                              .desc = *desc.water.snow,
+                              .time = desc.time.value_or(0),
+                              .views = views,
+                              .surfaces = *pixels.scene().surfaces,
+                              .lighting = lighting,
+                              .veil = veil,
+                              .sensor = sensor};
+    const PixelWindow& window = rendering.film.window();
+    const SnowSplats splats =
+        placing.splats(window, [&](double fraction) { rendering.tell(stage(), fraction); });
+    rendering.reached.snow_particles = splats.splats.size();
+    layer_.emplace(SnowImage(window, model.water.wavelengths_nm.size(), splats), std::move(veil),
+                   depth);
+}
+
+void SnowPass::add_to(const RenderedPixel& pixel, const PixelRenderer& pixels) const {
+    const PixelView& view = pixel.view;
+    PixelResult& result = pixel.result;
+    const double end = view.has_hit ? view.path : view.distances.back();
+    result.snow = layer_->radiance(pixel.x, pixel.y, end, result.direct + result.multiple_surface,
+                                   result.backscatter + result.multiple_volume);
+    const double held = layer_->held(pixel.x, pixel.y);
+    if (in_ground_truth_ && held > 0) hold(held, *view.ray, pixels, result);
 }
 
 }  // namespace uw

@@ -13,29 +13,12 @@
 #include "core/light/integrator.h"
 #include "core/light/medium.h"
 #include "core/passes/marine_snow.h"
+#include "core/passes/pass.h"
 #include "core/passes/snow_image.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/water_desc.h"
 
 namespace uw {
-
-/// The snow of a scene as one of its cameras sees it (docs/snow.md).
-struct SnowModel {
-    SnowField field;
-    /// How far the particles of each class are drawn, along rays in water [m]; those beyond are as
-    /// many as their mean.
-    std::vector<double> ranges{};
-    double expected_count = 0;  // of particles drawn, in the view
-    Medium water;               // without the light that snow scatters
-    Medium alone;               // that light alone
-    std::optional<std::string> warning{};
-
-    /// The optical depth of the particles drawn, as a mean over many, up to a distance [m]: the
-    /// water's coefficients hold it, and so do the particles.
-    double drawn_depth(double distance) const;
-    /// For what lies beyond the ranges.
-    std::vector<BeyondSnow::Part> parts() const;
-};
 
 /// `medium` holds the snow's mean. Throws as without_snow.
 std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Camera& camera,
@@ -112,6 +95,24 @@ struct SnowPlacing {
     /// `progress` receives the fraction done, from any thread, and may throw.
     SnowSplats splats(const PixelWindow& window,
                       const std::function<void(double fraction)>& progress) const;
+};
+
+/// Marine snow: places the particles, and adds to each pixel what they change in its light, and in
+/// its ground truth if that is wanted.
+class SnowPass final : public Pass {
+  public:
+    explicit SnowPass(const SnowDesc& desc)
+        : Pass("snow"), in_ground_truth_(desc.in_ground_truth) {}
+
+    void provide(LayerSupply& supply) const override;
+    void begin(Rendering& rendering) override;
+    void run(Rendering& rendering) override;
+
+  private:
+    void add_to(const RenderedPixel& pixel, const PixelRenderer& pixels) const;
+
+    bool in_ground_truth_;
+    std::optional<SnowLayer> layer_;  // of the image, from run on
 };
 
 }  // namespace uw

@@ -35,10 +35,6 @@ void Renderer::tell(const std::string& stage, double fraction) const {
     if (progress_ && !progress_(stage, fraction)) throw Interrupted();
 }
 
-bool Renderer::needs_light() const {
-    return integrator_kind(scene_.desc.render.integrator).needs_deep_shadows;
-}
-
 void Renderer::set_scene(ResolvedScene scene) {
     AssembledScene next, nothing;
     next.desc = std::move(scene).release();
@@ -90,8 +86,9 @@ const DeepShadows& Renderer::splat(const DeepShadowOptions& options) {
 
 LightTransport Renderer::make_transport() {
     assemble();
-    if (needs_light()) splat();
-    return make_light_transport(scene_, light_);
+    const PassNeeds needs = make_passes(scene_.desc).needs(layer_plan(scene_.desc, {}));
+    if (needs.light) splat();
+    return make_light_transport(scene_, light_, needs.paths);
 }
 
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
@@ -106,13 +103,11 @@ void Renderer::drop_light() {
     light_.clear();
 }
 
-// Light from outside a window is scattered into it: forward scatter needs the whole image.
 void Renderer::fit_film(const RenderOptions& options) {
     const CameraDesc& camera = scene_.desc.camera;
     window_ = options.window.value_or(whole_image(camera));
     check_window(window_, camera);
-    const bool needs_all = scene_.desc.water.forward_scatter.K > 0;
-    const PixelWindow rendered = needs_all ? whole_image(camera) : window_;
+    const PixelWindow rendered = needs_.whole_image ? whole_image(camera) : window_;
     cropped_.reset();
     if (film_ && film_->width() == camera.width && film_->height() == camera.height &&
         film_->window() == rendered && film_->channel_names() == plan_->channel_names()) {
@@ -128,12 +123,13 @@ void Renderer::prepare(const RenderOptions& options) {
     report_ = {};
     plan_ = layer_plan(scene_.desc, options.layers, options.paths);
     if (!colour_) colour_ = make_band_colour(scene_.desc.render.colour, scene_.desc.water.bands_nm);
-    sensor_.reset();
-    if (plan_->has(Layer::sensor)) sensor_.emplace(scene_.desc, options.frame);
+    passes_ = make_passes(scene_.desc, options.paths, options.frame);
+    passes_.prepare(scene_.desc, *plan_);
+    needs_ = passes_.needs(*plan_);
     fit_film(options);
     report_.pixels = static_cast<std::uint64_t>(film_->window().width()) *
                      static_cast<std::uint64_t>(film_->window().height());
-    if (needs_slabs(scene_.desc, *plan_))
+    if (needs_.slabs)
         assemble();
     else
         build();
@@ -178,16 +174,16 @@ void Renderer::warn_of_multiple_error() {
 }
 
 DeepShadows Renderer::light_of_part(const AssembledScene& part) {
-    if (!needs_light()) return {};
+    if (!needs_.light) return {};
     const DeepShadows light =
         splatter_.splat(part, deep_shadow_options(scene_.desc.render.quality, scene_.water.medium));
     splat_rays_ += splatter_.counts().rays;
     return light;
 }
 
-void Renderer::render_film(const RenderOptions& options) {
+void Renderer::render_film(const RenderOptions& options, PassList& passes) {
     LightTransport own;
-    if (!options.transport) own = make_light_transport(scene_, light_);
+    if (!options.transport) own = make_light_transport(scene_, light_, needs_.paths);
     const LightTransport& transport = options.transport ? *options.transport : own;
     const Correspondences others(scene_, *plan_, ahead_);
     report_.warnings.insert(report_.warnings.end(), others.warnings().begin(),
@@ -195,38 +191,44 @@ void Renderer::render_film(const RenderOptions& options) {
     const RenderProgress progress = [this](const std::string& stage, double fraction) {
         return !progress_ || progress_(stage, fraction);
     };
-    const ImageCallbacks reached{[this](const PathAccuracy& so_far) { report_.paths = so_far; },
-                                 [this](double error) { report_.multiple_error = error; },
-                                 [this](std::size_t count) { report_.snow_particles = count; }};
     const Exposure exposure(scene_);
     report_.exposure_parts = static_cast<std::uint64_t>(exposure.part_count());
     report_.exposure_samples = static_cast<std::uint64_t>(exposure.samples());
     report_.motion_pixels = exposure.motion_pixels();
+    const PixelRenderer pixels =
+        pixel_renderer(scene_, transport, in_scatter_parts(*plan_), others.matchers());
+    Rendering rendering{.desc = scene_.desc,
+                        .pixels = pixels,
+                        .light = light_,
+                        .snow = scene_.snow.get(),
+                        .plan = *plan_,
+                        .colour = *colour_,
+                        .film = *film_,
+                        .progress = progress,
+                        .reached = report_};
     if (exposure.part_count() == 0) {
-        render_scene(scene_, light_, transport, *plan_, *colour_, *film_, progress,
-                     {samples_of(scene_.desc.render), options.paths.error}, reached,
-                     others.matchers());
-        return;
+        passes.run(Pass::Of::light, rendering);
+    } else {
+        if (options.paths.error)
+            throw UsageError(
+                "--error: is not known of an image in which something moves while the shutter is "
+                "open; give --samples instead");
+        render_exposure(
+            exposure, scene_, passes,
+            [this](const AssembledScene& part) { return light_of_part(part); }, rendering);
     }
-    if (options.paths.error)
-        throw UsageError(
-            "--error: is not known of an image in which something moves while the shutter is "
-            "open; give --samples instead");
-    render_exposure(
-        exposure, scene_, transport,
-        [this](const AssembledScene& part) { return light_of_part(part); }, *plan_, *colour_,
-        *film_, progress, reached, others.matchers());
+    passes.run(Pass::Of::image, rendering);
 }
 
 const Film& Renderer::render(const RenderOptions& options) {
     prepare(options);
-    if (needs_light())
+    if (needs_.light)
         splat();
     else
         begin("splat");
     is_film_clear_ = false;
-    render_film(options);
-    if (sensor_) sensor_->expose(*scene_.camera, *plan_, *film_);
+    PassList passes = std::exchange(passes_, {});  // what they hold is freed with them
+    render_film(options, passes);
     warn_of_error(options.paths);
     warn_of_multiple_error();
     count_work();

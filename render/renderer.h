@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/image/camera_sensor.h"
 #include "render/correspondences.h"
 #include "render/light_splatter.h"
 #include "render/resolved_scene.h"
@@ -27,7 +26,7 @@ struct RenderOptions {
 };
 
 /// What an image was made of, and the warnings about it.
-struct RenderReport {
+struct RenderReport : ImageProgress {
     /// About the scene, then about the image: one line each, in the order met.
     std::vector<std::string> warnings;
     std::uint64_t pixels = 0;  // rendered: with forward scatter always the whole image
@@ -37,17 +36,10 @@ struct RenderReport {
     std::uint64_t active_voxels = 0;  // of all grids
     std::uint64_t grid_bytes = 0;
     std::uint64_t triangles = 0, lamps = 0, bands = 0;
-    /// Of an image of light paths: so far, while it is rendered; it changes only between two calls
-    /// of the progress callback.
-    PathAccuracy paths;
-    /// The stated standard error of light scattered more than once, where the integrator volume
-    /// renders it (MultipleLight::error), relative to the image's mean.
-    std::optional<double> multiple_error;
     /// Of an image during whose exposure something moves: its parts (Exposure), the samples per
     /// pixel of all of them, and how far it moves in the image, at most [pixels]. 0: nothing does.
     std::uint64_t exposure_parts = 0, exposure_samples = 0;
     double motion_pixels = 0;
-    std::uint64_t snow_particles = 0;  // drawn
 };
 
 /// Renders images of scenes: the only path from a scene description to pixels.
@@ -60,11 +52,12 @@ struct RenderReport {
 /// unchanged; every image is the same to the bit as from a new renderer. It neither prints nor ends
 /// the program. Faults in files are an InputError or IoError, in options a UsageError.
 ///
-/// Stages, in this order: "volumes", "geometry", "splat", "snow" if there is some, "multiple
-/// scattering" if the integrator volume renders it, "render" and, with forward scatter, "forward
-/// scatter". `progress` receives each with 0 before it begins, on the calling thread. If it returns
-/// false, or throws, the work ends with Interrupted, or with what was thrown; the renderer stays
-/// usable, and the same image can be requested again.
+/// Stages, in this order: "volumes", "geometry", "splat", and those of the image's passes
+/// (make_passes): "multiple scattering" if the integrator volume renders it, "snow" if there is
+/// some, "render" and, with forward scatter, "forward scatter". `progress` receives each with 0
+/// before it begins, on the calling thread. If it returns false, or throws, the work ends with
+/// Interrupted, or with what was thrown; the renderer stays usable, and the same image can be
+/// requested again.
 class Renderer {
   public:
     explicit Renderer(RenderProgress progress = {}) : progress_(std::move(progress)) {}
@@ -122,12 +115,11 @@ class Renderer {
     void begin(const std::string& stage) const { tell(stage, 0); }
     void tell(const std::string& stage, double fraction) const;
     void build();
-    bool needs_light() const;
     void fit_film(const RenderOptions& options);
     void count_work();
     void warn_of_error(const PathRequest& request);
     void warn_of_multiple_error();
-    void render_film(const RenderOptions& options);
+    void render_film(const RenderOptions& options, PassList& passes);
     DeepShadows light_of_part(const AssembledScene& part);
 
     RenderProgress progress_;
@@ -139,10 +131,11 @@ class Renderer {
     DeepShadows light_;             // of the scene; empty: not splatted
     std::uint64_t splat_rays_ = 0;  // since the last image
     std::optional<LayerPlan> plan_;
-    std::optional<BandColour> colour_;    // of the scene; none: not looked up
-    std::optional<CameraSensor> sensor_;  // if its layer is wanted
-    PixelWindow window_;                  // wanted of the image
-    std::optional<Film> film_;            // of what is rendered
+    std::optional<BandColour> colour_;  // of the scene; none: not looked up
+    PassList passes_;                   // of the image that was prepared, until it is rendered
+    PassNeeds needs_;                   // of these
+    PixelWindow window_;                // wanted of the image
+    std::optional<Film> film_;          // of what is rendered
     bool is_film_clear_ = false;
     std::optional<Film> cropped_;  // what is wanted of it, if that is less
     RenderReport report_;

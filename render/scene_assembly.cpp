@@ -213,8 +213,8 @@ AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
     return moved;
 }
 
-LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows) {
-    const RenderDesc& render = scene.desc.render;
+LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows,
+                                    bool with_paths) {
     const auto make = [&](const Medium& medium) {
         return transport_in(medium, {}, scene, deep_shadows);
     };
@@ -223,9 +223,9 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
         transport.integrator =
             std::make_unique<BeyondSnow>(make(scene.snow->water).integrator,
                                          make(scene.snow->alone).integrator, scene.snow->parts());
-    if (integrator_kind(render.integrator).traces_paths)
+    if (with_paths && integrator_kind(scene.desc.render.integrator).traces_paths)
         transport.paths = std::make_shared<PathTracer>(scene.lit());
-    else if (scattering_of(render) == RenderDesc::Scattering::multiple)
+    else if (with_paths)
         transport.paths = std::make_shared<PathTracer>(
             scene.lit(), PathOptions{{deep_shadows.begin(), deep_shadows.end()}});
     weigh_as_output(scene.desc, transport);
@@ -241,8 +241,6 @@ LightTransport make_single_scattering(const AssembledScene& scene, const DeepSha
 
 namespace {
 
-// One path's relative deviation is 2 to 8 at this optical depth, and 6 to 60 at twice that.
-constexpr double k_most_depth = 5;
 constexpr int k_columns = 16, k_rows = 12;  // rays over the image
 
 /// What the camera sees, at a lattice of rays.
@@ -291,22 +289,6 @@ std::optional<double> depth_of_nearest_lamp(const AssembledScene& scene) {
             if (lights(scene, lamp, hit)) take(lamp, hit.position);
     }
     return nearest;
-}
-
-std::optional<std::string> far_lamp_warning(const AssembledScene& scene) {
-    const RenderDesc& render = scene.desc.render;
-    if (scattering_of(render) != RenderDesc::Scattering::multiple ||
-        integrator_kind(render.integrator).traces_paths)
-        return std::nullopt;
-    const std::optional<double> depth = depth_of_nearest_lamp(scene);
-    if (!depth || *depth <= k_most_depth) return std::nullopt;
-    return fmt::format(
-        "multiple scattering: the nearest lamp lies behind an optical depth of {:.2g}, as seen "
-        "from "
-        "the camera and from the surfaces it lights; beyond {:g} its noise is large; use "
-        "--integrator "
-        "path with --error 0.02, or move a lamp nearer",
-        *depth, k_most_depth);
 }
 
 }  // namespace uw

@@ -71,8 +71,10 @@ AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
 
 /// The light transport of the integrator that the scene requests, from light splatted before;
 /// `deep_shadows` may be empty unless IntegratorKind::needs_deep_shadows. In-scatter is weighted by
-/// distance if the output is the paper's, and without that of the snow that is drawn.
-LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows);
+/// distance if the output is the paper's, and without that of the snow that is drawn. `with_paths`:
+/// LightTransport::paths, too.
+LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows,
+                                    bool with_paths);
 
 /// The same of single scattering alone, with the scene's output, by the integrator volume, in
 /// another medium than the scene's, of the same constituents and phase functions, which outlives
@@ -84,10 +86,5 @@ LightTransport make_single_scattering(const AssembledScene& scene, const DeepSha
 /// light paths from the camera begin: the camera, or a surface in view that the lamp lights. With
 /// columns of the volumes. None without lamps.
 std::optional<double> depth_of_nearest_lamp(const AssembledScene& scene);
-
-/// One line about lamps too far away for the fast form of multiple scattering: its paths begin at
-/// the camera and seldom come near such lamps, so that few of them carry nearly all the light. None
-/// where it is not what the scene is rendered by.
-std::optional<std::string> far_lamp_warning(const AssembledScene& scene);
 
 }  // namespace uw

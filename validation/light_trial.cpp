@@ -13,7 +13,7 @@
 #include "core/base/parallel.h"
 #include "core/image/pixel_image.h"
 #include "core/light/lamp.h"
-#include "core/passes/path_film.h"
+#include "core/passes/path_pass.h"
 
 namespace uw {
 

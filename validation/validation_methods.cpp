@@ -14,6 +14,7 @@
 #include "core/geometry/surface_reflection.h"
 #include "core/light/medium.h"
 #include "core/light/planes_integrator.h"
+#include "core/passes/forward_pass.h"
 #include "core/passes/pixel_renderer.h"
 #include "media/volumes/vdb_writer.h"
 
@@ -409,7 +410,7 @@ class DirectSum {
         : trial_(trial),
           proceed_(proceed),
           desc_(trial.scene().desc.water.forward_scatter),
-          plane_(forward_scatter_setup(trial.scene(), trial.light()).plane),
+          plane_(scatter_plane(*trial.scene().camera)),
           bands_(static_cast<std::size_t>(trial.scene().water.medium.band_count())),
           pixels_(static_cast<std::size_t>(trial.width() * trial.height())) {}
 

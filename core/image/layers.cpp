@@ -56,36 +56,8 @@ std::string mend_of(std::string_view item) {
     return suggestion(item, words);
 }
 
-/// What to write to have a layer that is not in `supply`; empty if it is.
-std::string_view mend_of_missing(Layer layer, const LayerSupply& supply) {
-    switch (layer) {
-        case Layer::multiple:
-        case Layer::multiple_volume:
-        case Layer::multiple_surface:
-            if (supply.multiple) return {};
-            return "the scene is rendered with single scattering; write --set "
-                   "render.scattering=multiple, or --integrator path";
-        case Layer::snow:
-            if (supply.snow) return {};
-            return "there is no snow in the scene; add water.snow";
-        case Layer::error:
-            if (supply.error) return {};
-            return "only --integrator path has a standard error, from two samples on; write that";
-        case Layer::sensor:
-            if (supply.sensor_values > 0) return {};
-            return "the camera has no sensor; add camera.sensor to the scene";
-        case Layer::flow:
-        case Layer::flow_back:
-        case Layer::flow_occluded:
-            if (supply.flow) return {};
-            return "other frames are those of a sequence; give its --frames";
-        case Layer::disparity:
-        case Layer::disparity_occluded:
-            if (supply.disparity) return {};
-            return "needs a rig of at least two cameras; give cameras: a list of them";
-        default:
-            return {};
-    }
+bool is_possible(const LayerKind& kind, const LayerSupply& supply) {
+    return kind.mend.empty() || supply.layers.has(kind.layer);
 }
 
 /// The endings of a layer's channels.
@@ -122,7 +94,7 @@ bool is_image_channel(std::string_view channel_name) {
 bool is_light(std::string_view channel_name) {
     if (is_image_channel(channel_name) || channel_name.starts_with(k_lamp_prefix)) return true;
     const auto layer = find_layer(channel_name.substr(0, channel_name.rfind('.')));
-    if (layer) return k_layers[*layer].is_light;
+    if (layer) return k_layers[*layer].is_light();
     const auto order = channel_name.substr(0, channel_name.find('.'));
     return std::ranges::find(k_orders, order) != k_orders.end();
 }
@@ -161,17 +133,15 @@ void LayerPlan::Selection::add(std::string_view item, std::span<const std::strin
 }
 
 void LayerPlan::Selection::add_all() {
-    for (std::size_t i = 0; i < k_layer_count; ++i) {
-        const auto layer = static_cast<Layer>(i);
-        if (!is_about_another_image(layer) && mend_of_missing(layer, supply).empty())
+    for (std::size_t i = 0; i < k_layer_count; ++i)
+        if (k_layers[i].content != LayerContent::match && is_possible(k_layers[i], supply))
             layers[i] = true;
-    }
 }
 
 void LayerPlan::Selection::add_layer(std::size_t layer) {
-    const std::string_view mend = mend_of_missing(static_cast<Layer>(layer), supply);
-    if (!mend.empty())
-        throw UsageError(fmt::format("--layers: {}: {}", k_layers[layer].name, mend));
+    const LayerKind& kind = k_layers[layer];
+    if (!is_possible(kind, supply))
+        throw UsageError(fmt::format("--layers: {}: {}", kind.name, kind.mend));
     layers[layer] = true;
 }
 
@@ -189,7 +159,9 @@ void LayerPlan::Selection::add_lamp(std::string_view name,
 
 LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
                      std::span<const std::string> lamp_names, const LayerSupply& supply)
-    : band_count_(bands_nm.size()), first_of_lamp_(lamp_names.size(), -1) {
+    : band_count_(bands_nm.size()),
+      provided_(supply.layers),
+      first_of_lamp_(lamp_names.size(), -1) {
     first_.fill(-1);
     Selection selection{.supply = supply};
     selection.lamps.resize(lamp_names.size());

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,8 +12,8 @@
 namespace uw {
 
 /// The layers of an image (docs: image layers) besides the colour R G B A, in the order in which
-/// their channels are stored. Each has a line in k_layers, and one in k_pixel_layers
-/// (core/passes/pixel_layers.h), which defines how it is filled from a pixel.
+/// their channels are stored. Each is described in k_layers; how it is filled from a pixel is a
+/// line in core/passes/pixel_layers.cpp.
 enum class Layer {
     total,
     direct,
@@ -46,51 +48,88 @@ enum class Layer {
 };
 inline constexpr auto k_layer_count = static_cast<std::size_t>(Layer::count);
 
-/// A layer's name in files and --layers.
-struct LayerKind {
-    Layer layer;
-    std::string_view name;
-    /// One channel per letter; one per band if empty. A sensor with one number per pixel has `V`.
-    std::string_view suffixes;
-    bool is_light = false;  // radiance, irradiance or exitance; else ground truth
+/// What a layer holds, which decides how it is stored, and what becomes of it where an image is a
+/// mean over light paths or over the time of an exposure.
+enum class LayerContent {
+    light,   ///< radiance: a mean over paths and over an exposure
+    exact,   ///< light that no path estimates, or its error: of an exposure, not of paths
+    share,   ///< a fraction, not light: a mean over an exposure
+    point,   ///< ground truth of the point that a pixel's centre sees; 0 where it sees none
+    match,   ///< where that point is in another image: `all` leaves it out
+    number,  ///< the sensor's
 };
+
+/// All that is said of a layer besides how it is filled.
+struct LayerKind {
+    /// The effect of forward scatter, a second pass over the image, on a layer.
+    enum class ForwardScatter { leaves, replaces, adds };
+
+    Layer layer;
+    LayerContent content;
+    std::string_view name;  ///< in files and --layers
+    /// One channel per letter; one per band if empty. A sensor with one number per pixel has `V`.
+    std::string_view suffixes{};
+    /// Why an image lacks the layer, and what to write to have it; empty if every image has it,
+    /// else a pass has to provide it (LayerSupply).
+    std::string_view mend{};
+    ForwardScatter forward_scatter = ForwardScatter::leaves;
+
+    constexpr bool is_light() const {
+        return content == LayerContent::light || content == LayerContent::exact;
+    }
+    constexpr bool of_exposure() const { return is_light() || content == LayerContent::share; }
+};
+
+namespace layer_mends {
+inline constexpr std::string_view
+    k_multiple =
+        "the scene is rendered with single scattering; write --set render.scattering=multiple, or "
+        "--integrator path",
+    k_snow = "there is no snow in the scene; add water.snow",
+    k_error = "only --integrator path has a standard error, from two samples on; write that",
+    k_sensor = "the camera has no sensor; add camera.sensor to the scene",
+    k_flow = "other frames are those of a sequence; give its --frames",
+    k_disparity = "needs a rig of at least two cameras; give cameras: a list of them";
+}  // namespace layer_mends
 
 /// Every layer, in the order of Layer.
 inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
-    {Layer::total, "total", "", true},
-    {Layer::direct, "direct", "", true},
-    {Layer::forward, "forward", "", true},
-    {Layer::backscatter, "backscatter", "", true},
-    {Layer::backscatter_first, "backscatter_first", "", true},
-    {Layer::multiple, "multiple", "", true},
-    {Layer::multiple_volume, "multiple.volume", "", true},
-    {Layer::multiple_surface, "multiple.surface", "", true},
-    {Layer::snow, "snow", "", true},
-    {Layer::error, "error", "", true},
-    {Layer::irradiance, "irradiance", "", true},
-    {Layer::exitance, "exitance", "", true},
-    {Layer::lit, "lit", "V"},
-    {Layer::clean, "clean", "", true},
-    {Layer::transmittance, "transmittance", ""},
-    {Layer::albedo, "albedo", ""},
-    {Layer::depth, "depth", "Z"},
-    {Layer::range, "range", "V"},
-    {Layer::path, "path", "V"},
-    {Layer::normal, "normal", "XYZ"},
-    {Layer::position, "position", "XYZ"},
-    {Layer::id, "id", "V"},
-    {Layer::material, "material", "V"},
-    {Layer::sensor, "sensor", "RGB"},
-    {Layer::flow, "flow", "XY"},
-    {Layer::flow_back, "flow_back", "XY"},
-    {Layer::flow_occluded, "flow_occluded", "V"},
-    {Layer::disparity, "disparity", "XY"},
-    {Layer::disparity_occluded, "disparity_occluded", "V"},
+    {Layer::total, LayerContent::light, "total", "", "", LayerKind::ForwardScatter::replaces},
+    {Layer::direct, LayerContent::light, "direct", "", "", LayerKind::ForwardScatter::replaces},
+    {Layer::forward, LayerContent::light, "forward", "", "", LayerKind::ForwardScatter::replaces},
+    {Layer::backscatter, LayerContent::light, "backscatter", "", "",
+     LayerKind::ForwardScatter::replaces},
+    {Layer::backscatter_first, LayerContent::light, "backscatter_first", "", "",
+     LayerKind::ForwardScatter::adds},
+    {Layer::multiple, LayerContent::light, "multiple", "", layer_mends::k_multiple},
+    {Layer::multiple_volume, LayerContent::light, "multiple.volume", "", layer_mends::k_multiple},
+    {Layer::multiple_surface, LayerContent::light, "multiple.surface", "", layer_mends::k_multiple},
+    {Layer::snow, LayerContent::light, "snow", "", layer_mends::k_snow},
+    {Layer::error, LayerContent::exact, "error", "", layer_mends::k_error},
+    {Layer::irradiance, LayerContent::exact, "irradiance"},
+    {Layer::exitance, LayerContent::exact, "exitance"},
+    {Layer::lit, LayerContent::share, "lit", "V"},
+    {Layer::clean, LayerContent::exact, "clean"},
+    {Layer::transmittance, LayerContent::share, "transmittance"},
+    {Layer::albedo, LayerContent::point, "albedo"},
+    {Layer::depth, LayerContent::point, "depth", "Z"},
+    {Layer::range, LayerContent::point, "range", "V"},
+    {Layer::path, LayerContent::point, "path", "V"},
+    {Layer::normal, LayerContent::point, "normal", "XYZ"},
+    {Layer::position, LayerContent::point, "position", "XYZ"},
+    {Layer::id, LayerContent::point, "id", "V"},
+    {Layer::material, LayerContent::point, "material", "V"},
+    {Layer::sensor, LayerContent::number, "sensor", "RGB", layer_mends::k_sensor},
+    {Layer::flow, LayerContent::match, "flow", "XY", layer_mends::k_flow},
+    {Layer::flow_back, LayerContent::match, "flow_back", "XY", layer_mends::k_flow},
+    {Layer::flow_occluded, LayerContent::match, "flow_occluded", "V", layer_mends::k_flow},
+    {Layer::disparity, LayerContent::match, "disparity", "XY", layer_mends::k_disparity},
+    {Layer::disparity_occluded, LayerContent::match, "disparity_occluded", "V",
+     layer_mends::k_disparity},
 }};
 
-/// Whether a layer says where points are in another image: `all` leaves it out.
-constexpr bool is_about_another_image(Layer layer) {
-    return layer >= Layer::flow;
+constexpr const LayerKind& kind_of(Layer layer) {
+    return k_layers[static_cast<std::size_t>(layer)];
 }
 
 /// Whether a table holds one line for every layer, in order.
@@ -107,17 +146,35 @@ bool is_light(std::string_view channel_name);
 /// Whether it is of the image itself: R, G, B, A or the total of a band.
 bool is_image_channel(std::string_view channel_name);
 
-/// What an image can hold besides what every image can.
+/// Some of the layers.
+class LayerSet {
+  public:
+    constexpr LayerSet() = default;
+    constexpr LayerSet(std::initializer_list<Layer> layers) {
+        for (const Layer layer : layers) bits_ |= bit(layer);
+    }
+    constexpr bool has(Layer layer) const { return (bits_ & bit(layer)) != 0; }
+    constexpr LayerSet& operator|=(LayerSet more) {
+        bits_ |= more.bits_;
+        return *this;
+    }
+
+  private:
+    static_assert(k_layer_count <= 64);
+    static constexpr std::uint64_t bit(Layer layer) {
+        return std::uint64_t{1} << static_cast<unsigned>(layer);
+    }
+
+    std::uint64_t bits_ = 0;
+};
+
+/// What the passes of an image provide besides what every image has.
 struct LayerSupply {
-    bool multiple = false;   // light scattered or reflected more than once
-    bool snow = false;       // marine snow
-    bool error = false;      // the standard error
-    bool flow = false;       // where points are in other frames
-    bool disparity = false;  // where points are in another camera
+    LayerSet layers{};
     /// The light by how often it was scattered, and by how often it was reflected, each 0 to this;
     /// 0: not at all. These layers are in the plan without being requested.
     int orders = 0;
-    std::size_t sensor_values = 0;  // numbers per pixel of the camera's sensor, 1 or 3; 0: none
+    std::size_t sensor_values = 0;  // numbers per pixel of the camera's sensor, 1 or 3
 };
 
 /// Which channels an image has, what they are called, and where each layer begins.
@@ -149,6 +206,8 @@ class LayerPlan {
     /// Index of the layer's first channel; its others follow. -1 if it was not requested.
     int first_channel(Layer layer) const { return first_[static_cast<std::size_t>(layer)]; }
     bool has(Layer layer) const { return first_channel(layer) >= 0; }
+    /// Whether a pass provides the layer, requested or not: light that none does is 0.
+    bool is_provided(Layer layer) const { return provided_.has(layer); }
     /// The same for the light of one lamp, by its index in the scene.
     int first_channel_of_lamp(std::size_t lamp) const { return first_of_lamp_[lamp]; }
     /// Whether the light of any single lamp was requested.
@@ -188,6 +247,7 @@ class LayerPlan {
 
     std::vector<std::string> channel_names_{"R", "G", "B", "A"};
     std::size_t band_count_;
+    LayerSet provided_;
     std::array<int, k_layer_count> first_{};
     std::array<std::size_t, k_layer_count> channel_counts_{};
     std::vector<int> first_of_lamp_;

@@ -19,7 +19,7 @@ struct LightTransport {
     std::unique_ptr<const Integrator> integrator;
     std::unique_ptr<const SurfaceLighting> surfaces;
     /// Random paths: of all light (IntegratorKind::traces_paths), or of what the other two leave
-    /// out (MultipleLight). Null for single scattering.
+    /// out (AllLightPass). Null unless a pass needs them.
     std::shared_ptr<const PathTracer> paths{};
 };
 

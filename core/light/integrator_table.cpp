@@ -20,15 +20,14 @@ LightTransport make_path(const IntegratorInputs& inputs) {
             std::make_unique<DirectLighting>(inputs.scene)};
 }
 
-}  // namespace
-
+// All light by random paths from the camera, without bias (`render.integrator: path`). What traces
+// them, LightTransport::paths, is left to the caller of `make`: paths are made of integrators, not
+// the other way round.
 constinit const IntegratorKind k_path_kind{.traces_paths = true,
                                            .multiple_scattering = true,
                                            .samples = 16,
                                            .draft_samples = 4,
                                            .make = make_path};
-
-namespace {
 
 struct Entry {
     RenderDesc::Integrator integrator;

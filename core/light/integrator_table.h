@@ -4,11 +4,6 @@
 
 namespace uw {
 
-/// All light by random paths from the camera, without bias (`render.integrator: path`). What traces
-/// them, LightTransport::paths, is left to the caller of `make`: paths are made of integrators, not
-/// the other way round.
-extern const IntegratorKind k_path_kind;
-
 /// The requirements, checks and factory of an integrator; k_integrator_names holds the names that
 /// users write.
 const IntegratorKind& integrator_kind(RenderDesc::Integrator integrator);

@@ -223,4 +223,20 @@ void BeyondSnow::add_beyond(const Ray& ray, double begin, std::span<const double
             }
 }
 
+double SnowModel::drawn_depth(double distance) const {
+    double depth = 0;
+    for (std::size_t k = 0; k < ranges.size(); ++k)
+        depth += field.classes()[k].attenuation() * std::min(distance, ranges[k]);
+    return depth;
+}
+
+std::vector<BeyondSnow::Part> SnowModel::parts() const {
+    double all = 0;
+    for (const SnowClass& kind : field.classes()) all += kind.attenuation();
+    std::vector<BeyondSnow::Part> parts;
+    for (std::size_t k = 0; k < ranges.size(); ++k)
+        parts.push_back({ranges[k], field.classes()[k].attenuation() / all});
+    return parts;
+}
+
 }  // namespace uw

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/vector_math.h"
@@ -144,6 +146,24 @@ class BeyondSnow final : public Integrator {
 
     std::unique_ptr<const Integrator> water_, snow_;
     std::vector<Part> parts_;  // by ascending range
+};
+
+/// The snow of a scene as one of its cameras sees it (docs/snow.md).
+struct SnowModel {
+    SnowField field;
+    /// How far the particles of each class are drawn, along rays in water [m]; those beyond are as
+    /// many as their mean.
+    std::vector<double> ranges{};
+    double expected_count = 0;  // of particles drawn, in the view
+    Medium water;               // without the light that snow scatters
+    Medium alone;               // that light alone
+    std::optional<std::string> warning{};
+
+    /// The optical depth of the particles drawn, as a mean over many, up to a distance [m]: the
+    /// water's coefficients hold it, and so do the particles.
+    double drawn_depth(double distance) const;
+    /// For what lies beyond the ranges.
+    std::vector<BeyondSnow::Part> parts() const;
 };
 
 }  // namespace uw

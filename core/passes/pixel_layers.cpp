@@ -19,6 +19,117 @@ void store_vector(double x, double y, double z, std::span<float> channels) {
     channels[2] = static_cast<float>(z);
 }
 
+/// Values as they are, one per band.
+template <Spectrum PixelResult::*values>
+void fill_spectrum(const PixelResult& pixel, std::span<float> channels) {
+    for (std::size_t b = 0; b < channels.size(); ++b)
+        channels[b] = static_cast<float>((pixel.*values)[b]);
+}
+
+/// Radiance, which images hold multiplied by the pixel's factor.
+template <Spectrum PixelResult::*values>
+void fill_radiance(const PixelResult& pixel, std::span<float> channels) {
+    for (std::size_t b = 0; b < channels.size(); ++b)
+        channels[b] = static_cast<float>(pixel.pixel_factor * (pixel.*values)[b]);
+}
+
+template <double PixelResult::*value>
+void fill_number(const PixelResult& pixel, std::span<float> channels) {
+    channels[0] = static_cast<float>(pixel.*value);
+}
+
+template <std::array<double, 2> PixelResult::*values>
+void fill_pair(const PixelResult& pixel, std::span<float> channels) {
+    for (std::size_t i = 0; i < 2; ++i) channels[i] = static_cast<float>((pixel.*values)[i]);
+}
+
+/// The sum of `multiple_volume` and `multiple_surface`, each rounded to float before the addition.
+void fill_multiple(const PixelResult& pixel, std::span<float> channels) {
+    const double factor = pixel.pixel_factor;
+    for (std::size_t b = 0; b < channels.size(); ++b)
+        channels[b] = static_cast<float>(factor * pixel.multiple_volume[b]) +
+                      static_cast<float>(factor * pixel.multiple_surface[b]);
+}
+
+/// The sum of direct, forward, backscatter, `multiple` and snow, in this order, each rounded to
+/// float before the addition, so that in the image they add up to the total to the bit; 0 where
+/// snow hides all of them and rounding leaves less.
+void fill_total(const PixelResult& pixel, std::span<float> channels) {
+    const double factor = pixel.pixel_factor;
+    fill_multiple(pixel, channels);
+    for (std::size_t b = 0; b < channels.size(); ++b) {
+        const float sum = static_cast<float>(factor * pixel.direct[b]) +
+                          static_cast<float>(factor * pixel.forward[b]) +
+                          static_cast<float>(factor * pixel.backscatter[b]) + channels[b] +
+                          static_cast<float>(factor * pixel.snow[b]);
+        channels[b] = std::max(sum, 0.0F);
+    }
+}
+
+void fill_albedo(const PixelResult& pixel, std::span<float> channels) {
+    for (std::size_t b = 0; b < channels.size(); ++b)
+        channels[b] = static_cast<float>(pixel.hit.reflectance[b]);
+}
+
+void fill_normal(const PixelResult& pixel, std::span<float> channels) {
+    store_vector(pixel.hit.normal.x, pixel.hit.normal.y, pixel.hit.normal.z, channels);
+}
+
+void fill_position(const PixelResult& pixel, std::span<float> channels) {
+    store_vector(pixel.hit.position.x, pixel.hit.position.y, pixel.hit.position.z, channels);
+}
+
+void fill_id(const PixelResult& pixel, std::span<float> channels) {
+    channels[0] = static_cast<float>(pixel.hit.object_id);
+}
+
+void fill_material(const PixelResult& pixel, std::span<float> channels) {
+    channels[0] = static_cast<float>(pixel.hit.material_id);
+}
+
+/// Leaves the channels alone: they are filled once the whole image is there (SensorPass).
+void leave(const PixelResult&, std::span<float>) {}
+
+/// How a layer is filled from a pixel.
+struct LayerFill {
+    Layer layer;
+    void (*fill)(const PixelResult& pixel, std::span<float> channels);
+};
+
+/// Omitting a layer is a compile-time error.
+constexpr std::array<LayerFill, k_layer_count> k_fills{{
+    {Layer::total, fill_total},
+    {Layer::direct, fill_radiance<&PixelResult::direct>},
+    {Layer::forward, fill_radiance<&PixelResult::forward>},
+    {Layer::backscatter, fill_radiance<&PixelResult::backscatter>},
+    {Layer::backscatter_first, fill_radiance<&PixelResult::backscatter_first>},
+    {Layer::multiple, fill_multiple},
+    {Layer::multiple_volume, fill_radiance<&PixelResult::multiple_volume>},
+    {Layer::multiple_surface, fill_radiance<&PixelResult::multiple_surface>},
+    {Layer::snow, fill_radiance<&PixelResult::snow>},
+    {Layer::error, fill_spectrum<&PixelResult::error>},
+    {Layer::irradiance, fill_spectrum<&PixelResult::irradiance>},
+    {Layer::exitance, fill_spectrum<&PixelResult::exitance>},
+    {Layer::lit, fill_number<&PixelResult::lit>},
+    {Layer::clean, fill_radiance<&PixelResult::clean>},
+    {Layer::transmittance, fill_spectrum<&PixelResult::transmittance>},
+    {Layer::albedo, fill_albedo},
+    {Layer::depth, fill_number<&PixelResult::depth_z>},
+    {Layer::range, fill_number<&PixelResult::range>},
+    {Layer::path, fill_number<&PixelResult::path>},
+    {Layer::normal, fill_normal},
+    {Layer::position, fill_position},
+    {Layer::id, fill_id},
+    {Layer::material, fill_material},
+    {Layer::sensor, leave},
+    {Layer::flow, fill_pair<&PixelResult::flow>},
+    {Layer::flow_back, fill_pair<&PixelResult::flow_back>},
+    {Layer::flow_occluded, fill_number<&PixelResult::flow_occluded>},
+    {Layer::disparity, fill_pair<&PixelResult::disparity>},
+    {Layer::disparity_occluded, fill_number<&PixelResult::disparity_occluded>},
+}};
+static_assert(has_every_layer(k_fills));
+
 void store_colour(std::span<const float> total, const BandColour& colour,
                   std::span<float> channels) {
     const LinearRgb rgb = colour(
@@ -30,7 +141,7 @@ void store_colour(const PixelResult& pixel, std::size_t bands, const BandColour&
                   std::span<float> channels) {
     std::array<float, k_max_bands> rounded{};
     const std::span<float> total = std::span(rounded).first(bands);
-    layer_channels::total(pixel, total);
+    fill_total(pixel, total);
     store_colour(total, colour, channels);
 }
 
@@ -50,14 +161,47 @@ void mix_channels(std::span<float> mean, std::span<const float> more, double wei
     }
 }
 
-void store_layer(const PixelLayer& layer, const PixelResult& pixel, const LayerPlan& plan,
+void store_layer(const LayerFill& line, const PixelResult& pixel, const LayerPlan& plan,
                  std::span<float> channels) {
-    if (!plan.has(layer.layer)) return;
-    const std::span<float> own = plan.channels(layer.layer, channels);
-    if (layer.of_hit && !pixel.has_hit)
+    if (!plan.has(line.layer)) return;
+    const std::span<float> own = plan.channels(line.layer, channels);
+    if (kind_of(line.layer).content == LayerContent::point && !pixel.has_hit)
         std::ranges::fill(own, 0.0F);
     else
-        layer.fill(pixel, own);
+        line.fill(pixel, own);
+}
+
+/// Makes sums of layers, as far as the image holds all of their terms, sums to the bit, in the
+/// order of fill_total: after the terms were averaged and rounded.
+void restore_sums(const LayerPlan& plan, const BandColour& colour, std::span<float> channels) {
+    const bool has_forward = plan.is_provided(Layer::forward);
+    const bool has_snow = plan.is_provided(Layer::snow);
+    const auto layer = [&](Layer which) { return plan.channels(which, channels); };
+    std::array<float, k_max_bands> multiple{}, sums{};
+    const std::span<float> more = std::span(multiple).first(plan.band_count());
+    if (plan.has(Layer::multiple_volume) && plan.has(Layer::multiple_surface)) {
+        std::ranges::copy(layer(Layer::multiple_volume), more.begin());
+        add_channels(more, layer(Layer::multiple_surface));
+        if (plan.has(Layer::multiple)) std::ranges::copy(more, layer(Layer::multiple).begin());
+    } else if (plan.has(Layer::multiple)) {
+        std::ranges::copy(layer(Layer::multiple), more.begin());
+    } else if (plan.is_provided(Layer::multiple)) {
+        return;
+    }
+    if (!plan.has(Layer::direct) || !plan.has(Layer::backscatter)) return;
+    if (has_forward && !plan.has(Layer::forward)) return;
+    if (has_snow && !plan.has(Layer::snow)) return;
+    const std::span<float> total = std::span(sums).first(plan.band_count());
+    std::ranges::copy(layer(Layer::direct), total.begin());
+    if (has_forward) add_channels(total, layer(Layer::forward));
+    add_channels(total, layer(Layer::backscatter));
+    add_channels(total, more);
+    if (has_snow) {
+        add_channels(total, layer(Layer::snow));
+        for (float& sum : total) sum = std::max(sum, 0.0F);
+    }
+    if (plan.has(Layer::total)) std::ranges::copy(total, layer(Layer::total).begin());
+    store_colour(total, colour, channels);
 }
 
 }  // namespace
@@ -81,62 +225,15 @@ void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     reflections.clear();
 }
 
-namespace layer_channels {
-
-void multiple(const PixelResult& pixel, std::span<float> channels) {
-    const double factor = pixel.pixel_factor;
-    for (std::size_t b = 0; b < channels.size(); ++b)
-        channels[b] = static_cast<float>(factor * pixel.multiple_volume[b]) +
-                      static_cast<float>(factor * pixel.multiple_surface[b]);
-}
-
-void total(const PixelResult& pixel, std::span<float> channels) {
-    const double factor = pixel.pixel_factor;
-    multiple(pixel, channels);
-    for (std::size_t b = 0; b < channels.size(); ++b) {
-        const float sum = static_cast<float>(factor * pixel.direct[b]) +
-                          static_cast<float>(factor * pixel.forward[b]) +
-                          static_cast<float>(factor * pixel.backscatter[b]) + channels[b] +
-                          static_cast<float>(factor * pixel.snow[b]);
-        channels[b] = std::max(sum, 0.0F);
-    }
-}
-
-void albedo(const PixelResult& pixel, std::span<float> channels) {
-    for (std::size_t b = 0; b < channels.size(); ++b)
-        channels[b] = static_cast<float>(pixel.hit.reflectance[b]);
-}
-
-void normal(const PixelResult& pixel, std::span<float> channels) {
-    store_vector(pixel.hit.normal.x, pixel.hit.normal.y, pixel.hit.normal.z, channels);
-}
-
-void position(const PixelResult& pixel, std::span<float> channels) {
-    store_vector(pixel.hit.position.x, pixel.hit.position.y, pixel.hit.position.z, channels);
-}
-
-void id(const PixelResult& pixel, std::span<float> channels) {
-    channels[0] = static_cast<float>(pixel.hit.object_id);
-}
-
-void material(const PixelResult& pixel, std::span<float> channels) {
-    channels[0] = static_cast<float>(pixel.hit.material_id);
-}
-
-}  // namespace layer_channels
-
 InScatterParts in_scatter_parts(const LayerPlan& plan) {
-    return {.lamps = plan.has_lamps(),
-            .first_slab = std::ranges::any_of(k_pixel_layers, [&](const PixelLayer& layer) {
-                return layer.needs_first_slab && plan.has(layer.layer);
-            })};
+    return {.lamps = plan.has_lamps(), .first_slab = plan.has(Layer::backscatter_first)};
 }
 
 void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColour& colour,
                  std::span<float> channels) {
     store_colour(pixel, plan.band_count(), colour, channels);
     channels[k_alpha] = static_cast<float>(pixel.alpha);
-    for (const PixelLayer& layer : k_pixel_layers) store_layer(layer, pixel, plan, channels);
+    for (const LayerFill& line : k_fills) store_layer(line, pixel, plan, channels);
     for (std::size_t j = 0; j < pixel.lamps.size(); ++j)
         store_radiance(pixel.lamps[j], pixel.pixel_factor, plan.lamp_channels(j, channels));
     for (std::size_t order = 0; order < plan.order_count(); ++order) {
@@ -148,38 +245,8 @@ void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColo
 }
 
 void store_truth(const PixelResult& pixel, const LayerPlan& plan, std::span<float> channels) {
-    for (const PixelLayer& layer : k_pixel_layers)
-        if (!layer.of_exposure) store_layer(layer, pixel, plan, channels);
-}
-
-void restore_sums(const LayerPlan& plan, const LightTerms& terms, const BandColour& colour,
-                  std::span<float> channels) {
-    const auto layer = [&](Layer which) { return plan.channels(which, channels); };
-    std::array<float, k_max_bands> multiple{}, sums{};
-    const std::span<float> more = std::span(multiple).first(plan.band_count());
-    if (plan.has(Layer::multiple_volume) && plan.has(Layer::multiple_surface)) {
-        std::ranges::copy(layer(Layer::multiple_volume), more.begin());
-        add_channels(more, layer(Layer::multiple_surface));
-        if (plan.has(Layer::multiple)) std::ranges::copy(more, layer(Layer::multiple).begin());
-    } else if (plan.has(Layer::multiple)) {
-        std::ranges::copy(layer(Layer::multiple), more.begin());
-    } else if (terms.multiple) {
-        return;
-    }
-    if (!plan.has(Layer::direct) || !plan.has(Layer::backscatter)) return;
-    if (terms.forward && !plan.has(Layer::forward)) return;
-    if (terms.snow && !plan.has(Layer::snow)) return;
-    const std::span<float> total = std::span(sums).first(plan.band_count());
-    std::ranges::copy(layer(Layer::direct), total.begin());
-    if (terms.forward) add_channels(total, layer(Layer::forward));
-    add_channels(total, layer(Layer::backscatter));
-    add_channels(total, more);
-    if (terms.snow) {
-        add_channels(total, layer(Layer::snow));
-        for (float& sum : total) sum = std::max(sum, 0.0F);
-    }
-    if (plan.has(Layer::total)) std::ranges::copy(total, layer(Layer::total).begin());
-    store_colour(total, colour, channels);
+    for (const LayerFill& line : k_fills)
+        if (!kind_of(line.layer).of_exposure()) store_layer(line, pixel, plan, channels);
 }
 
 void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
@@ -191,32 +258,32 @@ void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
         mix_channels(channels_in(channels), channels_in(std::span(fresh)), weight);
     };
     merge([](std::span<float> all) { return all.first(k_alpha + 1); });
-    for (const PixelLayer& layer : k_pixel_layers)
-        if (layer.of_paths && plan.has(layer.layer))
-            merge([&](std::span<float> all) { return plan.channels(layer.layer, all); });
+    for (const LayerKind& kind : k_layers)
+        if (kind.content == LayerContent::light && plan.has(kind.layer))
+            merge([&](std::span<float> all) { return plan.channels(kind.layer, all); });
     for (std::size_t j = 0; j < pixel.lamps.size(); ++j)
         merge([&](std::span<float> all) { return plan.lamp_channels(j, all); });
     for (std::size_t order = 0; order < plan.order_count(); ++order) {
         merge([&](std::span<float> all) { return plan.order_channels(order, all); });
         merge([&](std::span<float> all) { return plan.reflection_channels(order, all); });
     }
-    // Nothing is scattered forward by a blur, and no snow is drawn.
-    restore_sums(plan, {.forward = false, .multiple = true, .snow = false}, colour, channels);
+    restore_sums(plan, colour, channels);
 }
 
 void store_forward_scatter(const PixelResult& pixel, const LayerPlan& plan,
                            const BandColour& colour, std::span<float> channels) {
-    using Effect = PixelLayer::ForwardScatter;
+    using Effect = LayerKind::ForwardScatter;
     store_colour(pixel, plan.band_count(), colour, channels);
     std::array<float, k_max_bands> added{};
     const std::span<float> more = std::span(added).first(plan.band_count());
-    for (const PixelLayer& layer : k_pixel_layers) {
-        if (layer.forward_scatter == Effect::leaves || !plan.has(layer.layer)) continue;
-        const std::span<float> own = plan.channels(layer.layer, channels);
-        if (layer.forward_scatter == Effect::replaces) {
-            layer.fill(pixel, own);
+    for (const LayerFill& line : k_fills) {
+        const Effect effect = kind_of(line.layer).forward_scatter;
+        if (effect == Effect::leaves || !plan.has(line.layer)) continue;
+        const std::span<float> own = plan.channels(line.layer, channels);
+        if (effect == Effect::replaces) {
+            line.fill(pixel, own);
         } else {
-            layer.fill(pixel, more);
+            line.fill(pixel, more);
             add_channels(own, more);
         }
     }
@@ -230,17 +297,16 @@ void add_forward_scatter_of_lamp(const PixelResult& pixel, const LayerPlan& plan
                   static_cast<float>(pixel.pixel_factor * pixel.backscatter[b]);
 }
 
-ExposureMean::ExposureMean(const LayerPlan& plan, const LightTerms& terms, const BandColour& colour,
-                           Film& mean)
-    : plan_(plan), terms_(terms), colour_(colour), mean_(mean) {
+ExposureMean::ExposureMean(const LayerPlan& plan, const BandColour& colour, Film& mean)
+    : plan_(plan), colour_(colour), mean_(mean) {
     // Lamps and orders follow the layers: all channels but those of other kinds are means.
     std::vector<bool> is_mean(mean.channel_names().size(), true);
     std::vector<float> place(is_mean.size());
-    for (const PixelLayer& layer : k_pixel_layers) {
+    for (const LayerKind& kind : k_layers) {
         const bool is_plain =
-            layer.of_exposure && layer.layer != Layer::error && layer.layer != Layer::transmittance;
-        if (is_plain || !plan.has(layer.layer)) continue;
-        const std::span<float> own = plan.channels(layer.layer, place);
+            kind.of_exposure() && kind.layer != Layer::error && kind.layer != Layer::transmittance;
+        if (is_plain || !plan.has(kind.layer)) continue;
+        const std::span<float> own = plan.channels(kind.layer, place);
         const auto first = static_cast<std::size_t>(own.data() - place.data());
         std::fill_n(is_mean.begin() + static_cast<std::ptrdiff_t>(first), own.size(), false);
     }
@@ -299,7 +365,7 @@ void ExposureMean::finish() {
             const std::span<float> pixel = mean_.pixel(x, y);
             if (plan_.has(Layer::error))  // whose variances add up
                 for (float& value : plan_.channels(Layer::error, pixel)) value = std::sqrt(value);
-            restore_sums(plan_, terms_, colour_, pixel);
+            restore_sums(plan_, colour_, pixel);
         }
     });
 }

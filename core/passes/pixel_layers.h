@@ -63,138 +63,6 @@ struct PixelResult {
     void reset(std::size_t lamp_count, std::size_t bands = k_max_bands);
 };
 
-/// Functions that fill a layer's channels from a pixel.
-namespace layer_channels {
-
-/// Values as they are, one per band.
-template <Spectrum PixelResult::*values>
-void spectrum(const PixelResult& pixel, std::span<float> channels) {
-    for (std::size_t b = 0; b < channels.size(); ++b)
-        channels[b] = static_cast<float>((pixel.*values)[b]);
-}
-/// Radiance, which images hold multiplied by the pixel's factor.
-template <Spectrum PixelResult::*values>
-void radiance(const PixelResult& pixel, std::span<float> channels) {
-    for (std::size_t b = 0; b < channels.size(); ++b)
-        channels[b] = static_cast<float>(pixel.pixel_factor * (pixel.*values)[b]);
-}
-/// One number.
-template <double PixelResult::*value>
-void number(const PixelResult& pixel, std::span<float> channels) {
-    channels[0] = static_cast<float>(pixel.*value);
-}
-/// The sum of `multiple_volume` and `multiple_surface`, each rounded to float before the addition.
-void multiple(const PixelResult& pixel, std::span<float> channels);
-/// The sum of direct, forward, backscatter, `multiple` and snow, in this order, each rounded to
-/// float before the addition, so that in the image they add up to the total to the bit; 0 where
-/// snow hides all of them and rounding leaves less.
-void total(const PixelResult& pixel, std::span<float> channels);
-/// Several numbers.
-template <std::array<double, 2> PixelResult::*values>
-void pair(const PixelResult& pixel, std::span<float> channels) {
-    for (std::size_t i = 0; i < 2; ++i) channels[i] = static_cast<float>((pixel.*values)[i]);
-}
-void albedo(const PixelResult& pixel, std::span<float> channels);
-void normal(const PixelResult& pixel, std::span<float> channels);
-void position(const PixelResult& pixel, std::span<float> channels);
-void id(const PixelResult& pixel, std::span<float> channels);
-void material(const PixelResult& pixel, std::span<float> channels);
-/// Leaves them alone: they are filled once the whole image is there (core/sensor).
-inline void later(const PixelResult&, std::span<float>) {}
-
-}  // namespace layer_channels
-
-/// How a layer is filled from a pixel.
-struct PixelLayer {
-    /// The effect of forward scatter, a second pass over the image, on a layer.
-    enum class ForwardScatter { leaves, replaces, adds };
-
-    Layer layer;
-    void (*fill)(const PixelResult& pixel, std::span<float> channels);
-    ForwardScatter forward_scatter = ForwardScatter::leaves;
-    bool of_paths = false;          // a mean over light paths: merge_paths
-    bool of_exposure = false;       // a mean over the exposure's time, else of its middle
-    bool of_hit = false;            // 0 where the centre's ray hits no surface
-    bool needs_first_slab = false;  // of the in-scatter
-};
-
-/// The contents of each layer, in the order of Layer: omitting one is a compile-time error.
-inline constexpr std::array<PixelLayer, k_layer_count> k_pixel_layers{{
-    {.layer = Layer::total,
-     .fill = layer_channels::total,
-     .forward_scatter = PixelLayer::ForwardScatter::replaces,
-     .of_paths = true,
-     .of_exposure = true},
-    {.layer = Layer::direct,
-     .fill = layer_channels::radiance<&PixelResult::direct>,
-     .forward_scatter = PixelLayer::ForwardScatter::replaces,
-     .of_paths = true,
-     .of_exposure = true},
-    {.layer = Layer::forward,
-     .fill = layer_channels::radiance<&PixelResult::forward>,
-     .forward_scatter = PixelLayer::ForwardScatter::replaces,
-     .of_exposure = true},
-    {.layer = Layer::backscatter,
-     .fill = layer_channels::radiance<&PixelResult::backscatter>,
-     .forward_scatter = PixelLayer::ForwardScatter::replaces,
-     .of_paths = true,
-     .of_exposure = true},
-    {.layer = Layer::backscatter_first,
-     .fill = layer_channels::radiance<&PixelResult::backscatter_first>,
-     .forward_scatter = PixelLayer::ForwardScatter::adds,
-     .of_paths = true,
-     .of_exposure = true,
-     .needs_first_slab = true},
-    {.layer = Layer::multiple,
-     .fill = layer_channels::multiple,
-     .of_paths = true,
-     .of_exposure = true},
-    {.layer = Layer::multiple_volume,
-     .fill = layer_channels::radiance<&PixelResult::multiple_volume>,
-     .of_paths = true,
-     .of_exposure = true},
-    {.layer = Layer::multiple_surface,
-     .fill = layer_channels::radiance<&PixelResult::multiple_surface>,
-     .of_paths = true,
-     .of_exposure = true},
-    {.layer = Layer::snow,
-     .fill = layer_channels::radiance<&PixelResult::snow>,
-     .of_paths = true,
-     .of_exposure = true},
-    {.layer = Layer::error,
-     .fill = layer_channels::spectrum<&PixelResult::error>,
-     .of_exposure = true},
-    {.layer = Layer::irradiance,
-     .fill = layer_channels::spectrum<&PixelResult::irradiance>,
-     .of_exposure = true},
-    {.layer = Layer::exitance,
-     .fill = layer_channels::spectrum<&PixelResult::exitance>,
-     .of_exposure = true},
-    {.layer = Layer::lit, .fill = layer_channels::number<&PixelResult::lit>, .of_exposure = true},
-    {.layer = Layer::clean,
-     .fill = layer_channels::radiance<&PixelResult::clean>,
-     .of_exposure = true},
-    {.layer = Layer::transmittance,
-     .fill = layer_channels::spectrum<&PixelResult::transmittance>,
-     .of_exposure = true},
-    {.layer = Layer::albedo, .fill = layer_channels::albedo, .of_hit = true},
-    {.layer = Layer::depth, .fill = layer_channels::number<&PixelResult::depth_z>, .of_hit = true},
-    {.layer = Layer::range, .fill = layer_channels::number<&PixelResult::range>, .of_hit = true},
-    {.layer = Layer::path, .fill = layer_channels::number<&PixelResult::path>, .of_hit = true},
-    {.layer = Layer::normal, .fill = layer_channels::normal, .of_hit = true},
-    {.layer = Layer::position, .fill = layer_channels::position, .of_hit = true},
-    {.layer = Layer::id, .fill = layer_channels::id, .of_hit = true},
-    {.layer = Layer::material, .fill = layer_channels::material, .of_hit = true},
-    {.layer = Layer::sensor, .fill = layer_channels::later},
-    {.layer = Layer::flow, .fill = layer_channels::pair<&PixelResult::flow>},
-    {.layer = Layer::flow_back, .fill = layer_channels::pair<&PixelResult::flow_back>},
-    {.layer = Layer::flow_occluded, .fill = layer_channels::number<&PixelResult::flow_occluded>},
-    {.layer = Layer::disparity, .fill = layer_channels::pair<&PixelResult::disparity>},
-    {.layer = Layer::disparity_occluded,
-     .fill = layer_channels::number<&PixelResult::disparity_occluded>},
-}};
-static_assert(has_every_layer(k_pixel_layers));
-
 /// Which parts of the in-scatter the layers of `plan` need.
 InScatterParts in_scatter_parts(const LayerPlan& plan);
 
@@ -209,18 +77,8 @@ void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
                  const BandColour& colour, std::span<float> channels);
 
 /// Writes what belongs to the middle of an exposure alone, its ground truth: layers not
-/// PixelLayer::of_exposure.
+/// LayerKind::of_exposure.
 void store_truth(const PixelResult& pixel, const LayerPlan& plan, std::span<float> channels);
-
-/// Whether light of these kinds is in an image; else it is 0.
-struct LightTerms {
-    bool forward = false, multiple = false, snow = false;
-};
-
-/// Makes sums of layers, as far as the image holds all of their terms, sums to the bit, in the
-/// order of layer_channels::total: after the terms were averaged and rounded.
-void restore_sums(const LayerPlan& plan, const LightTerms& terms, const BandColour& colour,
-                  std::span<float> channels);
 
 /// Writes the changes due to forward scatter into channels previously filled by store_pixel, except
 /// for the lamps. `pixel` holds the light after forward scatter, but in `backscatter_first` only
@@ -242,9 +100,8 @@ class ExposureMean {
     using RowShare = std::function<double(int row)>;
 
     /// Adds to `mean`, whose values are 0; it outlives this object, as do `plan` and `colour`.
-    /// `terms`: of the images. Throws InputError if there is not enough memory.
-    ExposureMean(const LayerPlan& plan, const LightTerms& terms, const BandColour& colour,
-                 Film& mean);
+    /// Throws InputError if there is not enough memory.
+    ExposureMean(const LayerPlan& plan, const BandColour& colour, Film& mean);
 
     /// Includes the image of a part: with the same channels, and of the window all rows that have
     /// a share.
@@ -260,7 +117,6 @@ class ExposureMean {
                            float& on_surface) const;
 
     const LayerPlan& plan_;
-    LightTerms terms_;
     const BandColour& colour_;
     Film& mean_;
     std::vector<std::size_t> channels_;  // that are means

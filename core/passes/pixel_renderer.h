@@ -90,6 +90,7 @@ class PixelRenderer {
     const RayInScatter& in_scatter() const { return in_scatter_; }
     const LightTransport& transport() const { return transport_; }
     const LitScene& scene() const { return scene_; }
+    const PointMatchers& matchers() const { return matchers_; }
 
     /// Traces the samples of pixel (x, y). Thread safe.
     void trace(int x, int y, PixelView& view) const;

@@ -85,6 +85,7 @@ class RayInScatter {
     std::size_t value_count() const { return (groups_ + (parts_.first_slab ? 1 : 0)) * bands_; }
     std::size_t band_count() const { return bands_; }
     const InScatterParts& parts() const { return parts_; }
+    const Slabs& slabs() const { return slabs_; }
     /// Number of lamp groups: one per lamp, or one for all lamps.
     std::size_t group_count() const { return groups_; }
     /// The bands of one group's light in a list.

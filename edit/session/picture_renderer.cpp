@@ -34,9 +34,9 @@ void light_up(LampDesc& lamp, const Spectrum& brightness, std::size_t bands) {
 std::string layers_of(const SceneDesc& scene, bool is_lit) {
     std::string layers = "direct,clean";
     layers += is_lit ? ",backscatter,irradiance" : ",depth,albedo";
-    if (scene.water.forward_scatter.K > 0) layers += ",forward";
-    if (scattering_of(scene.render) == RenderDesc::Scattering::multiple)
-        layers += ",multiple,multiple.volume,multiple.surface";
+    const LayerPlan plan = layer_plan(scene, {});
+    if (plan.is_provided(Layer::forward)) layers += ",forward";
+    if (plan.is_provided(Layer::multiple)) layers += ",multiple,multiple.volume,multiple.surface";
     return layers;
 }
 

@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/light/integrator_table.h"
-
 namespace uw {
 
 std::vector<PicturePlane> layer_planes(const Film& film, const LayerPlan& plan,
@@ -209,7 +207,7 @@ Distribution distribution_of(const MeasuredImage& image, std::initializer_list<L
 
 std::string layers_to_measure(const SceneDesc& scene) {
     std::string layers = k_picture_layers;
-    if (scattering_of(scene.render) == RenderDesc::Scattering::multiple)
+    if (layer_plan(scene, {}).is_provided(Layer::multiple))
         layers += ",multiple.volume,multiple.surface";
     return layers;
 }

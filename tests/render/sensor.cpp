@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "core/passes/render_film.h"
+#include "core/passes/pixel_renderer.h"
 #include "tests/support/adaptive_quadrature.h"
 #include "tests/support/test_scene.h"
 

@@ -113,12 +113,26 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
         Film film(desc.camera.width, desc.camera.height,
                   {0, 0, desc.camera.width, desc.camera.height}, plan.channel_names());
         const auto render = [&] {
-            if (needs_slabs(desc, plan)) assembled.slabs = place_slabs(assembled);
+            PassList passes = make_passes(desc);
+            const PassNeeds needs = passes.needs(plan);
+            if (needs.slabs) assembled.slabs = place_slabs(assembled);
             const DeepShadows light = LightSplatter().splat(
                 assembled, deep_shadow_options(desc.render.quality, assembled.water.medium));
-            render_scene(assembled, light, make_light_transport(assembled, light), plan, colour,
-                         film, [](const std::string&, double) { return true; },
-                         {GetParam().samples, {}});
+            const LightTransport transport = make_light_transport(assembled, light, needs.paths);
+            const PixelRenderer pixels =
+                pixel_renderer(assembled, transport, in_scatter_parts(plan));
+            const RenderProgress progress = [](const std::string&, double) { return true; };
+            ImageProgress reached;
+            Rendering rendering{.desc = desc,
+                                .pixels = pixels,
+                                .light = light,
+                                .snow = nullptr,
+                                .plan = plan,
+                                .colour = colour,
+                                .film = film,
+                                .progress = progress,
+                                .reached = reached};
+            passes.run(Pass::Of::light, rendering);
         };
         const ThreadLimit alone(1);
         const StopScope scope(surfaces->stop());

@@ -80,9 +80,9 @@ TEST(Layers, DefaultIsTheImageWithItsDepth) {
     const Names rgb{"R", "G", "B", "A", "depth.Z"};
     EXPECT_EQ(LayerPlan("", k_rgb, k_lamps).channel_names(), rgb);
     EXPECT_EQ(LayerPlan("default", k_rgb, k_lamps).channel_names(), rgb);
-    EXPECT_EQ(
-        LayerPlan("default", k_rgb, k_lamps, {.multiple = true, .error = true}).channel_names(),
-        rgb);
+    EXPECT_EQ(LayerPlan("default", k_rgb, k_lamps, {.layers = {Layer::multiple, Layer::error}})
+                  .channel_names(),
+              rgb);
     EXPECT_EQ(LayerPlan("", std::vector<double>{450, 540.5}, {}).channel_names(),
               (Names{"R", "G", "B", "A", "total.450nm", "total.540_5nm", "depth.Z"}));
     EXPECT_EQ(LayerPlan("id,default", k_rgb, k_lamps).channel_names(),
@@ -170,14 +170,17 @@ TEST(Layers, WhatCannotBeSuppliedIsLeftOutOrRefused) {
     const auto names = [](std::string_view request, const LayerSupply& supply) {
         return LayerPlan(request, k_rgb, k_lamps, supply).channel_names();
     };
-    const Names all = names("all", {.multiple = true, .error = true});
+    const Names all = names("all", {.layers = {Layer::multiple, Layer::multiple_volume,
+                                               Layer::multiple_surface, Layer::error}});
     ASSERT_EQ(all.size(), 43U + 12U + 6U);
     EXPECT_EQ(Names(all.begin() + 16, all.begin() + 28),
               (Names{"multiple.R", "multiple.G", "multiple.B", "multiple.volume.R",
                      "multiple.volume.G", "multiple.volume.B", "multiple.surface.R",
                      "multiple.surface.G", "multiple.surface.B", "error.R", "error.G", "error.B"}));
-    EXPECT_EQ(names("all", {.multiple = true}).size(), 43U + 9U + 6U);
-    EXPECT_EQ(names("multiple.surface", {.multiple = true}).size(), 4U + 3U);
+    const LayerSupply multiple{
+        .layers = {Layer::multiple, Layer::multiple_volume, Layer::multiple_surface}};
+    EXPECT_EQ(names("all", multiple).size(), 43U + 9U + 6U);
+    EXPECT_EQ(names("multiple.surface", multiple).size(), 4U + 3U);
     for (const char* const name : {"multiple", "multiple.volume", "multiple.surface"})
         EXPECT_EQ(message_of<UsageError>(name),
                   std::string("--layers: ") + name +
@@ -186,13 +189,18 @@ TEST(Layers, WhatCannotBeSuppliedIsLeftOutOrRefused) {
     EXPECT_NE(message_of<UsageError>("error").find("only --integrator path has a standard error"),
               std::string::npos);
     EXPECT_NE(message_of<UsageError>("order.2").find("written with --orders N"), std::string::npos);
+    // Whether it is requested or not.
+    EXPECT_TRUE(LayerPlan("depth", k_rgb, k_lamps, multiple).is_provided(Layer::multiple));
+    EXPECT_FALSE(LayerPlan("all", k_rgb, k_lamps).is_provided(Layer::multiple));
 }
 
 TEST(Layers, ASensorHasOneNumberPerPixelOrThree) {
-    const LayerPlan one("sensor", k_rgb, k_lamps, {.sensor_values = 1});
+    const LayerSupply number{.layers = {Layer::sensor}, .sensor_values = 1};
+    const LayerSupply numbers{.layers = {Layer::sensor}, .sensor_values = 3};
+    const LayerPlan one("sensor", k_rgb, k_lamps, number);
     EXPECT_EQ(one.channel_names(), (Names{"R", "G", "B", "A", "sensor.V"}));
     // More bands are needed to make it of.
-    const LayerPlan three("sensor", std::vector<double>{450, 540}, {}, {.sensor_values = 3});
+    const LayerPlan three("sensor", std::vector<double>{450, 540}, {}, numbers);
     EXPECT_EQ(three.channel_names(), (Names{"R", "G", "B", "A", "total.450nm", "total.540nm",
                                             "sensor.R", "sensor.G", "sensor.B"}));
     std::vector<float> pixel(three.channel_names().size());
@@ -201,7 +209,7 @@ TEST(Layers, ASensorHasOneNumberPerPixelOrThree) {
     EXPECT_EQ(one.channels(Layer::sensor, pixel).size(), 1U);
     EXPECT_FALSE(is_light("sensor.V"));  // numbers of 16 bits need more than half floats have
     EXPECT_NE(message_of<UsageError>("sensor").find("add camera.sensor"), std::string::npos);
-    EXPECT_EQ(LayerPlan("all", k_rgb, k_lamps, {.sensor_values = 1}).channel_names().size(),
+    EXPECT_EQ(LayerPlan("all", k_rgb, k_lamps, number).channel_names().size(),
               LayerPlan("all", k_rgb, k_lamps).channel_names().size() + 1);
 }
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/passes/render_film.h"
+#include "core/passes/pixel_pass.h"
 #include "render/scene_loading.h"
 #include "tests/support/planes_scene.h"
 
@@ -32,17 +32,13 @@ class MixedImage {
         return render(tolerance, {0, 0, camera.width, camera.height});
     }
     std::vector<PixelResult> render(double tolerance, const PixelWindow& window) const {
-        const SceneDesc& scene = renderer_.scene();
-        const LayerPlan plan = layer_plan(scene, "direct");
-        Film film(scene.camera.width, scene.camera.height, window, plan.channel_names());
         std::vector<PixelResult> pixels(static_cast<std::size_t>(window.width()) *
                                         static_cast<std::size_t>(window.height()));
-        render_film(
-            pixels_, tolerance, plan, BandColour(scene.water.bands_nm), film,
-            [](double) { return true; },
-            [&](int x, int y, const RenderedPixel& pixel) {
+        render_tiles(
+            pixels_, tolerance, {}, window, [](double) { return true; },
+            [&](int x, int y, const PixelResult& pixel) {
                 pixels[static_cast<std::size_t>((y - window.y0) * window.width() + x - window.x0)] =
-                    pixel.result;
+                    pixel;
             });
         return pixels;
     }

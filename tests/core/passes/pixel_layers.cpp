@@ -172,7 +172,9 @@ class PathLayers : public ::testing::Test {
 
     std::vector<std::string> lamps_{"left"};
     BandColour colour_{k_bands};
-    LayerSupply supply_{.multiple = true, .error = true, .orders = 1};
+    LayerSupply supply_{
+        .layers = {Layer::multiple, Layer::multiple_volume, Layer::multiple_surface, Layer::error},
+        .orders = 1};
 };
 
 TEST_F(PathLayers, AddUpToTheBitBeforeAndAfterMorePaths) {

@@ -1,8 +1,11 @@
-#include "core/passes/multiple_light.h"
+#include "core/passes/all_light_pass.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "core/base/error.h"
@@ -10,6 +13,7 @@
 #include "core/geometry/surface_reflection.h"
 #include "core/paths/multiple_nodes.h"
 #include "core/paths/node_smoothing.h"
+#include "core/paths/surface_glow.h"
 
 namespace uw {
 
@@ -63,6 +67,37 @@ void WeightLattice::find(double x, double y, std::vector<float>& weights) const 
     add(i, j + 1, (1 - u + i) * (v - j));
     add(i + 1, j + 1, (u - i) * (v - j));
 }
+
+namespace {
+
+/// The radiance of surfaces that SurfaceGlow blurs: by direct light and emission, which are exact,
+/// and roughly by the light that has been scattered or reflected before: as much as in proportion
+/// to the direct light and, beside it, from an even ambient light explains most of it.
+class GlowSource {
+  public:
+    /// Estimates the rough part for each group and band. Both references must outlive this object.
+    GlowSource(const PixelRenderer& pixels, const MultipleNodes& estimator);
+
+    /// The radiance at the camera of `sample`, number `index` of `light`, by group and band. Thread
+    /// safe.
+    void find_radiance(const SurfaceSample& sample, const SurfaceLight& light, std::size_t index,
+                       std::span<double> radiance) const;
+
+  private:
+    struct Indirect {
+        double per_direct = 0;
+        double ambient = 0;  // what a white surface would reflect [W m^-2 sr^-1]
+    };
+
+    void find_indirect();
+    void add_direct(const SurfaceSample& sample, const SurfaceLight& light, std::size_t index,
+                    std::span<double> radiance) const;
+
+    const PixelRenderer& pixels_;
+    const MultipleNodes& estimator_;
+    std::size_t bands_;
+    std::vector<Indirect> indirect_;  // by group and band
+};
 
 GlowSource::GlowSource(const PixelRenderer& pixels, const MultipleNodes& estimator)
     : pixels_(pixels),
@@ -158,7 +193,14 @@ void GlowSource::find_indirect() {
     }
 }
 
-namespace {
+/// How much is spent on the light that was scattered or reflected more than once.
+struct MultipleLightOptions {
+    int paths = 0;       // in the whole image, of each kind, at its nodes, at most
+    double error = 0;    // standard error for which fewer will do, relative to the image's mean
+    int nodes = 0;       // about as many
+    int cells = 0;       // of the surfaces' glow, at most
+    bool lamps = false;  // each lamp's light by itself
+};
 
 // Of a node: more would leave less noise than there is light between the nodes of a small image.
 constexpr int k_fewest_node_paths = 16, k_most_node_paths = 1024;
@@ -193,6 +235,60 @@ int node_count(const RaySource& rays, int spacing) {
 }
 
 }  // namespace
+
+/// The light of AllLightPass in one image.
+class MultipleLight {
+  public:
+    /// Receives the share that is done, on any thread; returns false to stop.
+    using Progress = std::function<bool(double share)>;
+
+    /// `pixels` must outlive this object; its transport has paths.
+    MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options);
+
+    /// Estimates the light of the pixels of `window`. Throws Interrupted if `progress` returned
+    /// false, InputError if the nodes do not fit into free memory.
+    void prepare(const PixelWindow& window, const Progress& progress);
+
+    /// Adds a pixel's light to multiple_volume, multiple_surface and the lamps of `result`. The
+    /// samples of `view` begin at `first_sample` of `light`. Thread safe.
+    void add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
+             PixelResult& result) const;
+
+    /// The standard error of this light: the RMS over the nodes over the mean of all light.
+    double error() const { return error_; }
+
+  private:
+    struct Corner {
+        const SmoothNode* node;
+        double weight;
+    };
+
+    void limit_paths(double error);
+    void take_away_glow(Grid2D<MultipleNode>& raw);
+    void find_corners(double x, double y, std::vector<Corner>& corners) const;
+    void find_matches(double x, double y, const SurfaceHit& hit,
+                      std::vector<Corner>& matches) const;
+    void find_matches(double x, double y, const SurfaceHit& hit, double least_cosine,
+                      std::vector<Corner>& matches) const;
+    void add_water(const PixelView& view, std::span<double> light) const;
+    void add_volume(const PixelView& view, PixelResult& result) const;
+    void add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
+                     PixelResult& result) const;
+    void give(std::size_t group, std::size_t band, double radiance, PixelResult& result) const;
+
+    const PixelRenderer& pixels_;
+    std::size_t bands_;
+    int spacing_ = 1;           // of the nodes [pixels]
+    int column_ = 0, row_ = 0;  // of the first node of nodes_
+    DistanceIntervals intervals_;
+    IntervalWeights weights_;
+    MultipleNodes estimator_;
+    WeightLattice weight_lattice_;  // from prepare on, as the following
+    Grid2D<SmoothNode> nodes_;
+    int cells_ = 0;
+    std::optional<SurfaceGlow> glow_;
+    double error_ = 0;
+};
 
 MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options)
     : pixels_(pixels),
@@ -436,6 +532,59 @@ void MultipleLight::add(const PixelView& view, const SurfaceLight& light, std::s
     add_volume(view, result);
     for (std::size_t i = 0; i < view.samples.size(); ++i)
         add_surface(view.samples[i], light.to_camera(first_sample + i), result);
+}
+
+namespace {
+
+// What leaves a standard error of less than 1 % where light crosses an optical depth of about one,
+// and 5 % for drafts.
+MultipleLightOptions options_of(RenderDesc::Quality quality) {
+    MultipleLightOptions options;
+    options.nodes = 5000;
+    options.cells = 1'000'000;
+    options.paths = 1'000'000;
+    options.error = 0.009;
+    if (quality == RenderDesc::Quality::draft) {
+        options.nodes = 1000;
+        options.cells = 100'000;
+        options.paths = 30'000;
+        options.error = 0;
+    }
+    if (quality == RenderDesc::Quality::exact) {
+        options.nodes = 20000;
+        options.cells = 4'000'000;
+        options.paths = 16'000'000;
+        options.error = 0;
+    }
+    return options;
+}
+
+}  // namespace
+
+AllLightPass::AllLightPass() : Pass("multiple scattering") {}
+AllLightPass::~AllLightPass() = default;
+
+PassNeeds AllLightPass::needs(const LayerPlan& /*plan*/) const {
+    return {.paths = true};
+}
+
+void AllLightPass::provide(LayerSupply& supply) const {
+    supply.layers |= {Layer::multiple, Layer::multiple_volume, Layer::multiple_surface};
+}
+
+void AllLightPass::begin(Rendering& rendering) {
+    light_.reset();
+    rendering.steps.emplace_back([this](const RenderedPixel& pixel) {
+        light_->add(pixel.view, pixel.light, pixel.first_sample, pixel.result);
+    });
+}
+
+void AllLightPass::run(Rendering& rendering) {
+    MultipleLightOptions options = options_of(rendering.desc.render.quality);
+    options.lamps = rendering.plan.has_lamps();
+    light_ = std::make_unique<MultipleLight>(rendering.pixels, options);
+    light_->prepare(rendering.film.window(), rendering.progress_of(stage()));
+    rendering.reached.multiple_error = light_->error();
 }
 
 }  // namespace uw

@@ -1,4 +1,4 @@
-#include "core/passes/path_film.h"
+#include "core/passes/path_pass.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "core/base/grid2d.h"
 #include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
-#include "core/passes/pixel_renderer.h"
+#include "core/light/integrator_table.h"
 #include "core/paths/path_tracer.h"
 #include "core/scene/render_desc.h"
 
@@ -399,10 +399,28 @@ int samples_of_next_round(const PathGoal& goal, const PathAccuracy& so_far) {
     return std::min(samples, possible);
 }
 
-PathAccuracy render_path_film(const PixelRenderer& renderer, const PathGoal& goal,
-                              const LayerPlan& plan, const BandColour& colour, Film& film,
-                              const ProgressCallback& progress, const AccuracyCallback& reached) {
-    const PathPixels pixels(renderer, plan.order_count());
+PathPass::PathPass(const RenderDesc& render, const PathRequest& request)
+    : Pass("render"),
+      request_(request),
+      has_error_(request.error || samples_of(render) > 1),
+      needs_slabs_(render.planes.near || render.planes.far) {}
+
+PassNeeds PathPass::needs(const LayerPlan& plan) const {
+    return {.slabs = needs_slabs_ || in_scatter_parts(plan).first_slab, .paths = true};
+}
+
+void PathPass::provide(LayerSupply& supply) const {
+    supply.layers |= {Layer::multiple, Layer::multiple_volume, Layer::multiple_surface};
+    if (has_error_) supply.layers |= {Layer::error};
+    supply.orders = request_.orders;
+}
+
+void PathPass::run(Rendering& rendering) {
+    const LayerPlan& plan = rendering.plan;
+    const PathGoal goal{samples_of(rendering.desc.render), request_.error};
+    const ProgressCallback progress = rendering.progress_of(stage());
+    const PathPixels pixels(rendering.pixels, plan.order_count());
+    Film& film = rendering.film;
     const PixelWindow& window = film.window();
     Spread spread(window, plan.band_count());
     RoundProgress so_far(progress, window);
@@ -426,22 +444,21 @@ PathAccuracy render_path_film(const PixelRenderer& renderer, const PathGoal& goa
                 pixels.render(
                     x, y, round, [&](int paths) { so_far.add(paths); }, result);
                 if (round.number == 0)
-                    store_pixel(result, plan, colour, film.pixel(x, y));
+                    store_pixel(result, plan, rendering.colour, film.pixel(x, y));
                 else
-                    merge_paths(result, share, plan, colour, film.pixel(x, y));
+                    merge_paths(result, share, plan, rendering.colour, film.pixel(x, y));
                 spread.merge(x, y, result, share);
             }
         });
         accuracy.samples = samples;
         if (samples > 1) accuracy.error = spread.error();
-        if (reached) reached(accuracy);
+        rendering.reached.paths = accuracy;
     }
     if (plan.has(Layer::error))
         for (int y = window.y0; y < window.y1; ++y)
             for (int x = window.x0; x < window.x1; ++x)
                 spread.store_error(x, y, plan.channels(Layer::error, film.pixel(x, y)));
-    if (!progress(1)) throw Interrupted();
-    return accuracy;
+    rendering.tell(stage(), 1);
 }
 
 }  // namespace uw

@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
+#include "core/passes/pass.h"
 #include "core/passes/pixel_renderer.h"
-#include "core/passes/render_film.h"
 
 namespace uw {
 
@@ -55,23 +55,21 @@ class PathPixels {
     std::size_t order_count_;
 };
 
+/// What is requested of an image that is rendered by light paths (IntegratorKind::traces_paths).
+struct PathRequest {
+    /// The greatest PathAccuracy::error, instead of the scene's samples. No more than k_most_paths
+    /// are traced for it.
+    std::optional<double> error{};
+    int orders = 0;  // LayerSupply::orders
+
+    friend bool operator==(const PathRequest&, const PathRequest&) = default;
+};
+
 /// When an image of light paths is done.
 struct PathGoal {
-    int samples = 16;  // paths per pixel
-    /// Instead: the greatest PathAccuracy::error. No more than k_most_paths are traced for it.
-    std::optional<double> error{};
+    int samples = 16;               // paths per pixel
+    std::optional<double> error{};  // instead: PathRequest::error
 };
-
-/// What an image of light paths has reached.
-struct PathAccuracy {
-    int samples = 0;  // paths per pixel
-    /// The standard error of the image: the RMS over pixels and bands of that of the total, over
-    /// the total's mean. None for a single path.
-    std::optional<double> error{};
-};
-
-/// Receives what has been reached, after each round, while no pixel is being rendered.
-using AccuracyCallback = std::function<void(const PathAccuracy& so_far)>;
 
 /// The number of paths per pixel to trace next for an image that has reached `so_far`; 0: it is
 /// done. For an error that must not be exceeded, the number follows from the error so far, and is
@@ -80,11 +78,20 @@ int samples_of_next_round(const PathGoal& goal, const PathAccuracy& so_far);
 
 /// Renders every pixel of the film's window by light paths, round after round, on all permitted
 /// threads. The result does not depend on their number, and pixels do not depend on the window
-/// unless it is an error that is to be reached. Throws Interrupted if `progress` returned false;
-/// InputError if there is not enough memory.
-PathAccuracy render_path_film(const PixelRenderer& renderer, const PathGoal& goal,
-                              const LayerPlan& plan, const BandColour& colour, Film& film,
-                              const ProgressCallback& progress,
-                              const AccuracyCallback& reached = {});
+/// unless it is an error that is to be reached. After each round, while no pixel is being rendered,
+/// it sets ImageProgress::paths.
+class PathPass final : public Pass {
+  public:
+    PathPass(const RenderDesc& render, const PathRequest& request);
+
+    PassNeeds needs(const LayerPlan& plan) const override;
+    void provide(LayerSupply& supply) const override;
+    void run(Rendering& rendering) override;
+
+  private:
+    PathRequest request_;
+    bool has_error_;  // which takes two samples
+    bool needs_slabs_;
+};
 
 }  // namespace uw

@@ -1,6 +1,6 @@
 // ctest labels: unit statistical metamorphic
 // Images of light paths: what they hold, and how sure they are of it.
-#include "core/passes/path_film.h"
+#include "core/passes/path_pass.h"
 
 #include <gtest/gtest.h>
 

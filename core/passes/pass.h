@@ -1,0 +1,153 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/image/colour.h"
+#include "core/image/film.h"
+#include "core/image/layers.h"
+#include "core/light/integrator.h"
+#include "core/passes/pixel_renderer.h"
+#include "core/scene/scene_desc.h"
+
+namespace uw {
+
+/// Receives the progress of a stage (0..1), on any thread; returns false to stop.
+using RenderProgress = std::function<bool(const std::string& stage, double fraction)>;
+
+/// Receives the fraction of one stage that is done, from any thread; returns false to stop.
+using ProgressCallback = std::function<bool(double fraction)>;
+
+/// What an image of light paths has reached.
+struct PathAccuracy {
+    int samples = 0;  // paths per pixel
+    /// The standard error of the image: the RMS over pixels and bands of that of the total, over
+    /// the total's mean. None for a single path.
+    std::optional<double> error{};
+};
+
+/// What the passes of an image have reached.
+struct ImageProgress {
+    /// Of an image of light paths: so far, while it is rendered; it changes only between two calls
+    /// of the progress callback.
+    PathAccuracy paths;
+    /// The stated standard error of light scattered more than once, where AllLightPass renders it,
+    /// relative to the image's mean.
+    std::optional<double> multiple_error;
+    std::uint64_t snow_particles = 0;  // drawn
+};
+
+/// A pixel and what it was made of.
+struct RenderedPixel {
+    int x, y;
+    const PixelView& view;
+    const SurfaceLight& light;  // on its samples, from `first_sample` on
+    std::size_t first_sample;
+    PixelResult& result;
+};
+
+/// What a pass does to each pixel, or keeps of it, while PixelPass renders it. Thread safe.
+using PixelStep = std::function<void(const RenderedPixel& pixel)>;
+
+struct SnowModel;
+
+/// One image in the making, or that of a part of an exposure: what its passes work on.
+struct Rendering {
+    const SceneDesc& desc;        // resolved
+    const PixelRenderer& pixels;  // of the scene's rays, its water and surfaces, and their light
+    /// The light of every emitter, splatted; empty if it was not needed.
+    std::span<const std::shared_ptr<const DeepShadow>> light;
+    const SnowModel* snow;  // null: there is none
+    const LayerPlan& plan;
+    const BandColour& colour;
+    Film& film;  // its window is what is rendered
+    const RenderProgress& progress;
+    ImageProgress& reached;
+    /// The rows whose ground truth TruthPass finds; empty: all of them.
+    std::function<bool(int row)> has_truth{};
+    /// In the order in which they are done to a pixel, before it is stored.
+    std::vector<PixelStep> steps{};
+
+    /// Tells how far a stage is. Throws Interrupted if that is as far as it should get.
+    void tell(const std::string& stage, double fraction) const;
+    /// Tells the same of one stage, without throwing.
+    ProgressCallback progress_of(const std::string& stage) const {
+        return [this, stage](double fraction) { return progress(stage, fraction); };
+    }
+};
+
+/// What has to be there before a pass is run.
+struct PassNeeds {
+    bool light = false;        // the lamps' light, splatted
+    bool slabs = false;        // the scene's slabs, placed
+    bool paths = false;        // LightTransport::paths
+    bool whole_image = false;  // whatever the window wanted: light comes from outside it
+};
+
+/// A step on the way from a scene to the finished image, which is a list of them (PassList). It
+/// knows of the scene what the list was made from; what it makes for an image it may hold until
+/// the next one begins.
+class Pass {
+  public:
+    /// What a pass is run on where something moves while the shutter is open.
+    enum class Of {
+        light,  ///< every part of the exposure, whose light is averaged
+        truth,  ///< the exposure's middle; not at all where nothing moves: pixels hold it already
+        image,  ///< the whole image, after everything else
+    };
+
+    /// `stage`: under which its progress is told; empty: it takes no time.
+    explicit Pass(std::string stage, Of of = Of::light) : stage_(std::move(stage)), of_(of) {}
+    virtual ~Pass() = default;
+    Pass(const Pass&) = delete;
+    Pass& operator=(const Pass&) = delete;
+
+    const std::string& stage() const { return stage_; }
+    Of of() const { return of_; }
+
+    /// For an image with these layers.
+    virtual PassNeeds needs(const LayerPlan& plan) const;
+    /// Adds the layers that it provides, apart from those that every image has.
+    virtual void provide(LayerSupply& supply) const;
+    /// Reads the files that it needs for these layers, before anything else is loaded.
+    virtual void prepare(const SceneDesc& scene, const LayerPlan& plan);
+    /// Adds its step to the rendering, if it takes part in each pixel. All passes begin before the
+    /// first is run.
+    virtual void begin(Rendering& rendering);
+    /// Does its work. Throws Interrupted if the progress callback says so; InputError if there is
+    /// not enough memory.
+    virtual void run(Rendering& rendering) = 0;
+
+  private:
+    std::string stage_;
+    Of of_;
+};
+
+/// The passes of an image, in the order in which they are run.
+class PassList {
+  public:
+    template <class AnyPass, class... Arguments>
+    void add(Arguments&&... arguments) {
+        passes_.push_back(std::make_unique<AnyPass>(std::forward<Arguments>(arguments)...));
+    }
+
+    /// What all of them provide.
+    LayerSupply supply() const;
+    /// What any of them needs.
+    PassNeeds needs(const LayerPlan& plan) const;
+    /// Prepares all of them.
+    void prepare(const SceneDesc& scene, const LayerPlan& plan);
+    /// Begins and runs those of this kind. Each stage is told with 0 before it begins.
+    void run(Pass::Of of, Rendering& rendering);
+
+  private:
+    std::vector<std::unique_ptr<Pass>> passes_;
+};
+
+}  // namespace uw

@@ -1,0 +1,180 @@
+#include "core/passes/pixel_pass.h"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/grid2d.h"
+#include "core/base/parallel.h"
+#include "core/light/integrator_table.h"
+#include "core/passes/in_scatter_lattice.h"
+
+namespace uw {
+
+namespace {
+
+// How far in-scatter that is interpolated between pixels may be from that of their own rays
+// (InScatterLattice), relative, where the lattice is confirmed; the image is interpolated from
+// closer nodes and has a quarter of that error.
+constexpr double k_in_scatter_tolerance = 4e-3;
+constexpr double k_draft_tolerance = 0.05;
+
+/// Renders tile by tile: the surfaces that the pixels' rays hit, the in-scatter on the way, and the
+/// final pixels.
+class TileRenderer {
+  public:
+    /// As render_tiles.
+    TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
+                 std::span<const PixelStep> steps);
+
+    /// Traces the whole tile, even if only part of it is rendered: its lattice depends on all of
+    /// it, and its surfaces are lit in one batch.
+    void begin(const PixelWindow& tile);
+
+    /// Renders a pixel of the tile; the result is storage of the renderer's.
+    const PixelResult& render(int x, int y);
+
+  private:
+    const PixelRenderer& renderer_;
+    std::span<const PixelStep> steps_;
+    std::optional<InScatterLattice> lattice_;  // empty: every pixel by itself
+    PixelWindow tile_;
+    Grid2D<PixelView> views_;                 // of the tile
+    SurfaceLight light_;                      // on all their samples
+    std::vector<std::size_t> first_samples_;  // index of each view's first sample in light_
+    std::vector<double> in_scatter_;          // of the current pixel, if there is no lattice
+    PixelResult result_;
+};
+
+TileRenderer::TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
+                           std::span<const PixelStep> steps)
+    : renderer_(renderer), steps_(steps) {
+    if (in_scatter_tolerance > 0)
+        lattice_.emplace(renderer.rays(), renderer.scene(), renderer.in_scatter(),
+                         in_scatter_tolerance);
+    else
+        in_scatter_.resize(renderer.in_scatter().value_count());
+}
+
+void TileRenderer::begin(const PixelWindow& tile) {
+    tile_ = tile;
+    renderer_.trace(tile, views_);
+    renderer_.light_surfaces(views_.values(), light_);
+    first_samples_.clear();
+    std::size_t samples = 0;
+    for (const PixelView& view : views_) {
+        first_samples_.push_back(samples);
+        samples += view.samples.size();
+    }
+    if (lattice_) lattice_->evaluate(tile, views_);
+}
+
+const PixelResult& TileRenderer::render(int x, int y) {
+    const std::size_t pixel = views_.index(x - tile_.x0, y - tile_.y0);
+    const PixelView& view = views_[pixel];
+    const std::size_t first_sample = first_samples_[pixel];
+    if (!lattice_) renderer_.in_scatter().integrate(view, in_scatter_);
+    renderer_.shade(view, light_, first_sample, lattice_ ? lattice_->values(pixel) : in_scatter_,
+                    result_);
+    for (const PixelStep& step : steps_) step({x, y, view, light_, first_sample, result_});
+    return result_;
+}
+
+constexpr int k_tile = InScatterLattice::k_tile;  // pixels along an edge
+
+// The part of the tile that begins at (x0, y0) within `bounds`.
+PixelWindow tile_within(int x0, int y0, const PixelWindow& bounds) {
+    return {std::max(x0, bounds.x0), std::max(y0, bounds.y0), std::min(x0 + k_tile, bounds.x1),
+            std::min(y0 + k_tile, bounds.y1)};
+}
+
+/// Lends out tile renderers, one for each tile in progress.
+class TileRendererPool {
+  public:
+    TileRendererPool(const PixelRenderer& renderer, double in_scatter_tolerance,
+                     std::span<const PixelStep> steps)
+        : renderer_(renderer), in_scatter_tolerance_(in_scatter_tolerance), steps_(steps) {}
+
+    std::unique_ptr<TileRenderer> take() {
+        {
+            const std::lock_guard lock(mutex_);
+            if (!free_.empty()) {
+                std::unique_ptr<TileRenderer> taken = std::move(free_.back());
+                free_.pop_back();
+                return taken;
+            }
+        }
+        return std::make_unique<TileRenderer>(renderer_, in_scatter_tolerance_, steps_);
+    }
+    void give_back(std::unique_ptr<TileRenderer> renderer) {
+        const std::lock_guard lock(mutex_);
+        free_.push_back(std::move(renderer));
+    }
+
+  private:
+    const PixelRenderer& renderer_;
+    double in_scatter_tolerance_;
+    std::span<const PixelStep> steps_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<TileRenderer>> free_;
+};
+
+}  // namespace
+
+double in_scatter_tolerance(const RenderDesc& render) {
+    const bool exact = render.quality == RenderDesc::Quality::exact;
+    if (exact || !integrator_kind(render.integrator).interpolates_between_pixels) return 0;
+    return render.quality == RenderDesc::Quality::draft ? k_draft_tolerance
+                                                        : k_in_scatter_tolerance;
+}
+
+void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
+                  std::span<const PixelStep> steps, const PixelWindow& window,
+                  const ProgressCallback& progress, const PixelCallback& done) {
+    const PixelWindow image{0, 0, renderer.rays().width(), renderer.rays().height()};
+    const int left = window.x0 / k_tile, top = window.y0 / k_tile;
+    const int columns = (window.x1 + k_tile - 1) / k_tile - left;
+    const int rows = (window.y1 + k_tile - 1) / k_tile - top;
+    const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    // Counted in rows of pixels within tiles: a tile may take the reference integrator a minute.
+    const auto all = static_cast<double>(columns) * window.height();
+    std::atomic<std::size_t> rows_done = 0;
+    TileRendererPool pool(renderer, in_scatter_tolerance, steps);
+    parallel_for(tiles, [&](std::size_t tile) {
+        const int x0 = (left + static_cast<int>(tile) % columns) * k_tile;
+        const int y0 = (top + static_cast<int>(tile) / columns) * k_tile;
+        std::unique_ptr<TileRenderer> tile_renderer = pool.take();
+        tile_renderer->begin(tile_within(x0, y0, image));
+        const PixelWindow wanted = tile_within(x0, y0, window);
+        for (int y = wanted.y0; y < wanted.y1; ++y) {
+            for (int x = wanted.x0; x < wanted.x1; ++x) done(x, y, tile_renderer->render(x, y));
+            if (!progress(static_cast<double>(++rows_done) / all)) throw Interrupted();
+        }
+        pool.give_back(std::move(tile_renderer));
+    });
+}
+
+PixelPass::PixelPass(const RenderDesc& render)
+    : Pass("render"),
+      in_scatter_tolerance_(uw::in_scatter_tolerance(render)),
+      needs_light_(integrator_kind(render.integrator).needs_deep_shadows),
+      needs_slabs_(integrator_kind(render.integrator).sums_slabs || render.planes.near ||
+                   render.planes.far) {}
+
+PassNeeds PixelPass::needs(const LayerPlan& plan) const {
+    return {.light = needs_light_, .slabs = needs_slabs_ || in_scatter_parts(plan).first_slab};
+}
+
+void PixelPass::run(Rendering& rendering) {
+    Film& film = rendering.film;
+    render_tiles(rendering.pixels, in_scatter_tolerance_, rendering.steps, film.window(),
+                 rendering.progress_of(stage()), [&](int x, int y, const PixelResult& pixel) {
+                     store_pixel(pixel, rendering.plan, rendering.colour, film.pixel(x, y));
+                 });
+}
+
+}  // namespace uw

@@ -1,0 +1,30 @@
+#include "core/passes/truth_pass.h"
+
+#include "core/base/parallel.h"
+
+namespace uw {
+
+TruthPass::TruthPass(const SceneDesc& scene)
+    : Pass({}, Of::truth),
+      has_other_frames_(scene.choice.frame.has_value()),
+      has_other_cameras_(scene.cameras.size() > 1) {}
+
+void TruthPass::provide(LayerSupply& supply) const {
+    if (has_other_frames_) supply.layers |= {Layer::flow, Layer::flow_back, Layer::flow_occluded};
+    if (has_other_cameras_) supply.layers |= {Layer::disparity, Layer::disparity_occluded};
+}
+
+void TruthPass::run(Rendering& rendering) {
+    const PixelWindow& window = rendering.film.window();
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        thread_local PixelResult result;
+        const int y = window.y0 + static_cast<int>(line);
+        if (rendering.has_truth && !rendering.has_truth(y)) return;
+        for (int x = window.x0; x < window.x1; ++x) {
+            rendering.pixels.find_truth(x, y, result);
+            store_truth(result, rendering.plan, rendering.film.pixel(x, y));
+        }
+    });
+}
+
+}  // namespace uw

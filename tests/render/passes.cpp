@@ -1,0 +1,120 @@
+// ctest labels: unit
+// Which passes an image is made of, and how a list of them is run.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "tests/support/test_scene.h"
+
+namespace uw::test {
+namespace {
+
+/// Writes down when it begins and is run.
+class NotingPass final : public Pass {
+  public:
+    NotingPass(std::vector<std::string>& notes, const std::string& name, Of of = Of::light)
+        : Pass(name, of), notes_(notes) {}
+    void begin(Rendering& /*rendering*/) override { notes_.push_back("begin " + stage()); }
+    void run(Rendering& /*rendering*/) override { notes_.push_back("run " + stage()); }
+
+  private:
+    std::vector<std::string>& notes_;
+};
+
+class Passes : public testing::Test {
+  protected:
+    Passes() {
+        desc_.geometry = {plane_at_z(4)};
+        desc_.lamps = {isotropic_lamp({-0.5, 0, 0}, 10)};
+    }
+
+    LayerSet provided() const { return make_passes(desc_).supply().layers; }
+    PassNeeds needs(const char* layers = "depth") const {
+        return make_passes(desc_).needs(layer_plan(desc_, layers));
+    }
+
+    SceneDesc desc_ = pinhole_scene(8, 6);
+};
+
+TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
+    Renderer renderer;
+    renderer.set_scene(SceneDesc(desc_));
+    const LightTransport transport = renderer.make_transport();
+    const PixelRenderer pixels = pixel_renderer(renderer.assembled(), transport);
+    const LayerPlan plan = layer_plan(desc_, "depth");
+    const BandColour colour(desc_.water.bands_nm);
+    Film film(8, 6, {0, 0, 8, 6}, plan.channel_names());
+    std::vector<std::string> notes;
+    bool goes_on = true;
+    const RenderProgress progress = [&](const std::string& stage, double fraction) {
+        EXPECT_EQ(fraction, 0);
+        notes.push_back("stage " + stage);
+        return goes_on;
+    };
+    ImageProgress reached;
+    Rendering rendering{.desc = desc_,
+                        .pixels = pixels,
+                        .light = {},
+                        .snow = nullptr,
+                        .plan = plan,
+                        .colour = colour,
+                        .film = film,
+                        .progress = progress,
+                        .reached = reached};
+    PassList passes;
+    passes.add<NotingPass>(notes, "one");
+    passes.add<NotingPass>(notes, "truth", Pass::Of::truth);
+    passes.add<NotingPass>(notes, "two");
+    passes.run(Pass::Of::light, rendering);
+    EXPECT_EQ(notes, (std::vector<std::string>{"begin one", "begin two", "stage one", "run one",
+                                               "stage two", "run two"}));
+    notes.clear();
+    goes_on = false;
+    EXPECT_THROW(passes.run(Pass::Of::truth, rendering), Interrupted);
+    EXPECT_EQ(notes, (std::vector<std::string>{"begin truth", "stage truth"}));
+}
+
+TEST_F(Passes, NeedAndProvideWhatTheSceneAsksFor) {
+    EXPECT_TRUE(needs().light);
+    EXPECT_FALSE(needs().slabs || needs().paths || needs().whole_image);
+    EXPECT_TRUE(needs("backscatter_first").slabs);
+    for (const LayerKind& kind : k_layers) EXPECT_FALSE(provided().has(kind.layer)) << kind.name;
+
+    desc_.water.forward_scatter.K = 0.5;
+    EXPECT_TRUE(needs().slabs && needs().whole_image);
+    EXPECT_TRUE(provided().has(Layer::forward));
+    desc_.water.forward_scatter.K = 0;
+
+    desc_.render.scattering = RenderDesc::Scattering::multiple;
+    EXPECT_TRUE(needs().light && needs().paths);
+    EXPECT_TRUE(provided().has(Layer::multiple_surface));
+    EXPECT_FALSE(provided().has(Layer::error));
+
+    desc_.render.integrator = RenderDesc::Integrator::path;
+    EXPECT_TRUE(needs().paths);
+    EXPECT_FALSE(needs().light);
+    EXPECT_TRUE(provided().has(Layer::multiple_surface));
+    EXPECT_TRUE(provided().has(Layer::error));
+    EXPECT_EQ(make_passes(desc_, {.orders = 3}).supply().orders, 3);
+    desc_.render.samples = 1;
+    EXPECT_FALSE(provided().has(Layer::error));
+}
+
+// A layer that is not in every image has a pass that provides it, and no other has.
+TEST_F(Passes, ProvideEveryLayerThatHasToBeProvided) {
+    desc_.render.scattering = RenderDesc::Scattering::multiple;
+    desc_.water.snow.emplace();
+    desc_.camera.sensor.emplace();
+    desc_.choice.frame = 1;
+    desc_.cameras.resize(2);
+    LayerSet all = provided();
+    desc_.render.integrator = RenderDesc::Integrator::path;
+    all |= provided();
+    for (const LayerKind& kind : k_layers)
+        EXPECT_EQ(all.has(kind.layer), !kind.mend.empty()) << kind.name;
+}
+
+}  // namespace
+}  // namespace uw::test
