@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -87,10 +87,10 @@ Options points_options(PointsArguments& arguments, std::string table_name, std::
 
 /// The scene that the arguments name as one camera sees it, without what neither refracts nor
 /// occludes: volumes and lamps. Throws UsageError, InputError and IoError.
-ResolvedScene observed_scene(const PointsArguments& arguments);
+ImageScene observed_scene(const PointsArguments& arguments);
 
 /// It with its surfaces; prints the warnings about them. Throws InputError and IoError.
-AssembledScene with_surfaces(const ResolvedScene& scene);
+AssembledScene with_surfaces(const ImageScene& scene);
 
 /// `uwvdb project`: where a scene's camera sees points of the world, as a table on standard output
 /// or in a file. Counts go to stderr. Throws UsageError, InputError and IoError.

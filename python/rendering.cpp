@@ -28,7 +28,7 @@
 #include "python/scene.h"
 #include "render/image_derivative.h"
 #include "render/image_header.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_loading.h"
 
 namespace uw {
@@ -339,7 +339,7 @@ class RendererObject {
             renderer_.release_film(),
             metadata_of(scene, wanted.choice.frame, wanted.options.paths, renderer_.report()),
             renderer_.report(),
-            scene.desc.water.bands_nm,
+            scene.desc().water.bands_nm,
             {},
             {}};
         if (requests_ids(wanted.options.layers)) {

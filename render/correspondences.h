@@ -27,12 +27,12 @@ struct SurfacesAhead {
 /// rig, as far as layers about that are in the image.
 ///
 /// Neighbours are the frames with the numbers one higher and one lower, made of the scene as it was
-/// read (SceneDesc::whole). There is none before frame 0 and where a trajectory has no pose. Of a
+/// read (ImageScene::whole). There is none before frame 0 and where a trajectory has no pose. Of a
 /// rig the other camera is the second for the first, and the first for all others.
 class Correspondences {
   public:
     /// `scene` outlives this. Surfaces of the next frame are `scene`'s if nothing of them moves,
-    /// else taken from `ahead`, or built and kept there. Throws as ResolvedScene, build_surfaces
+    /// else taken from `ahead`, or built and kept there. Throws as ImageScene, build_surfaces
     /// and object_motions.
     Correspondences(const AssembledScene& scene, const LayerPlan& plan, SurfacesAhead& ahead);
 

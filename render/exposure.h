@@ -47,7 +47,7 @@ class Exposure {
   private:
     double bound(int part) const;
     RowExposure rows_of(int part) const;
-    void measure(const std::vector<SceneDesc>& moments);
+    void measure(const std::vector<ImageScene>& moments);
     void divide(int samples);
 
     const AssembledScene& scene_;
@@ -60,12 +60,12 @@ class Exposure {
     double view_pixels_ = 0, surface_pixels_ = 0, light_pixels_ = 0;
 };
 
-/// How the camera of a resolved scene moves around its time [s] over `span`; null if it stands
-/// still, or if nothing of the scene moves.
-std::shared_ptr<const CameraMotion> camera_motion(const SceneDesc& scene, const TimeSpan& span);
+/// How the camera of an image moves around its time [s] over `span`; null if it stands still, or if
+/// nothing of the scene moves.
+std::shared_ptr<const CameraMotion> camera_motion(const ImageScene& scene, const TimeSpan& span);
 
-/// The camera of a resolved scene as ground truth has it: each row in the middle of its exposure.
-Camera camera_of_truth(const SceneDesc& scene);
+/// The camera of an image as ground truth has it: each row in the middle of its exposure.
+Camera camera_of_truth(const ImageScene& scene);
 
 /// Makes the light of the lamps of a part of an exposure, if its integrator needs any.
 using LightOfPart = std::function<DeepShadows(const AssembledScene& part)>;

@@ -24,7 +24,7 @@ void refuse_other_light(const AssembledScene& scene, const std::string& name) {
     const auto refuse = [&](const char* what) {
         throw UsageError(fmt::format("derivative {}: {}", name, what));
     };
-    const RenderDesc& render = scene.desc.render;
+    const RenderDesc& render = scene.desc().render;
     if (render.integrator != RenderDesc::Integrator::volume)
         refuse(
             "it is computed term by term from the sums of integrator volume, which others do not "
@@ -33,7 +33,7 @@ void refuse_other_light(const AssembledScene& scene, const std::string& name) {
         refuse(
             "light scattered more than once is the mean over random paths and has none; set "
             "render.scattering to single, whose image this is the derivative of");
-    if (scene.desc.water.forward_scatter.K > 0)
+    if (scene.desc().water.forward_scatter.K > 0)
         refuse(
             "forward scatter blurs the finished image, and how is not differentiated; remove "
             "water.forward_scatter, or set its K to 0");
@@ -132,7 +132,7 @@ std::vector<Spectrum> shares_of_scattering(const Medium& medium) {
 
 ParticleDerivative derivative_by_particles(const AssembledScene& scene, const std::string& name) {
     try {
-        return particle_derivative(scene.desc.water, scene.desc.volumes,
+        return particle_derivative(scene.desc().water, scene.desc().volumes,
                                    name == k_small ? WaterParticles::small : WaterParticles::large);
     } catch (const UsageError& fault) {
         throw UsageError(fmt::format("derivative {}: {}", name, fault.what()));

@@ -109,11 +109,12 @@ Affine moved(const Trajectory& trajectory, double from, double to, const Affine&
 
 }  // namespace
 
-std::vector<ExposureView> exposure_views(const SceneDesc& scene) {
+std::vector<ExposureView> exposure_views(const ImageScene& image) {
+    const SceneDesc& scene = image.desc();
     std::vector<ExposureView> views{{Camera(scene.camera), 0, {}}};
     const double half = 0.5 * scene.render.shutter;
     if (!(half > 0)) return views;
-    const double middle = scene.time.value_or(0);
+    const double middle = image.time().value_or(0);
     const TrajectoryDesc* trajectory = trajectory_of(scene);
     for (const double offset : {-half, half}) {
         CameraDesc camera = scene.camera;

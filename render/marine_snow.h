@@ -16,6 +16,7 @@
 #include "core/passes/snow_image.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/water_desc.h"
+#include "render/image_scene.h"
 
 namespace uw {
 
@@ -51,7 +52,7 @@ struct ExposureView {
 /// The camera of a resolved scene when the shutter opens, in the middle and when it closes; in the
 /// middle alone without a shutter (RenderDesc::shutter), and without the ends that its trajectory
 /// does not reach. The middle is the first.
-std::vector<ExposureView> exposure_views(const SceneDesc& scene);
+std::vector<ExposureView> exposure_views(const ImageScene& image);
 
 /// A convex body around all that an image sees up to a distance while its shutter is open, through
 /// all of the lens's aperture: of what drifts, where it is in the middle of the exposure.

@@ -36,46 +36,44 @@ void Renderer::tell(const std::string& stage, double fraction) const {
 }
 
 bool Renderer::needs_light() const {
-    return integrator_kind(scene_.desc.render.integrator).needs_deep_shadows;
+    return integrator_kind(scene_->desc().render.integrator).needs_deep_shadows;
 }
 
-void Renderer::set_scene(ResolvedScene scene) {
-    AssembledScene next, nothing;
-    next.desc = std::move(scene).release();
-    if (is_edited_) before_ = std::move(nothing);
-    if (is_assembled_ && !is_edited_) before_ = std::move(scene_);
-    scene_ = std::move(next);
-    is_assembled_ = is_edited_ = false;
+void Renderer::set_scene(ImageScene scene) {
+    if (is_edited_) before_.reset();
+    if (scene_ && !is_edited_) before_ = std::move(scene_);
+    scene_.reset();
+    image_ = std::move(scene);
+    is_edited_ = false;
     light_.clear();
     colour_.reset();
 }
 
 void Renderer::build() {
-    if (is_assembled_) return;
-    AssembledScene before;
-    std::swap(before, before_);
-    if (ahead_.are_of(scene_.desc) && before.desc.water.bands_nm == ahead_.bands_nm) {
-        before.desc.geometry = std::move(ahead_.geometry);
-        before.surfaces = std::move(ahead_.surfaces);
-        before.geometry_warnings = std::move(ahead_.warnings);
+    if (scene_) return;
+    std::optional<AssembledScene> before = std::exchange(before_, std::nullopt);
+    if (before && ahead_.are_of(image_->desc()) &&
+        before->desc().water.bands_nm == ahead_.bands_nm) {
+        before->image = before->image.with(
+            [&](SceneDesc& desc) { desc.geometry = std::move(ahead_.geometry); });
+        before->surfaces = std::move(ahead_.surfaces);
+        before->geometry_warnings = std::move(ahead_.warnings);
         ahead_ = {};
     }
-    AssembledScene assembled = assemble_scene(
-        scene_.desc, [this](const std::string& stage) { begin(stage); }, std::move(before));
-    assembled.desc = std::move(scene_.desc);
-    scene_ = std::move(assembled);
-    is_assembled_ = true;
+    scene_ = assemble_scene(
+        *image_, [this](const std::string& stage) { begin(stage); }, std::move(before));
 }
 
 const AssembledScene& Renderer::assemble() {
     build();
-    if (!scene_.slabs) scene_.slabs = place_slabs(scene_);
-    return scene_;
+    if (!scene_->slabs) scene_->slabs = place_slabs(*scene_);
+    return *scene_;
 }
 
 const DeepShadows& Renderer::splat() {
     build();
-    if (light_.empty()) splat(deep_shadow_options(scene_.desc.render.quality, scene_.water.medium));
+    if (light_.empty())
+        splat(deep_shadow_options(scene_->desc().render.quality, scene_->water.medium));
     return light_;
 }
 
@@ -83,7 +81,7 @@ const DeepShadows& Renderer::splat(const DeepShadowOptions& options) {
     build();
     light_.clear();
     begin("splat");
-    light_ = splatter_.splat(scene_, options, [this](double share) { tell("splat", share); });
+    light_ = splatter_.splat(*scene_, options, [this](double share) { tell("splat", share); });
     splat_rays_ += splatter_.counts().rays;
     return light_;
 }
@@ -91,14 +89,15 @@ const DeepShadows& Renderer::splat(const DeepShadowOptions& options) {
 LightTransport Renderer::make_transport() {
     assemble();
     if (needs_light()) splat();
-    return make_light_transport(scene_, light_);
+    return make_light_transport(*scene_, light_);
 }
 
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
     assemble();
     is_edited_ = true;
     light_.clear();
-    change(scene_);
+    change(*scene_);
+    image_ = scene_->image;
 }
 
 void Renderer::drop_light() {
@@ -108,10 +107,10 @@ void Renderer::drop_light() {
 
 // Light from outside a window is scattered into it: forward scatter needs the whole image.
 void Renderer::fit_film(const RenderOptions& options) {
-    const CameraDesc& camera = scene_.desc.camera;
+    const CameraDesc& camera = image_->desc().camera;
     window_ = options.window.value_or(whole_image(camera));
     check_window(window_, camera);
-    const bool needs_all = scene_.desc.water.forward_scatter.K > 0;
+    const bool needs_all = image_->desc().water.forward_scatter.K > 0;
     const PixelWindow rendered = needs_all ? whole_image(camera) : window_;
     cropped_.reset();
     if (film_ && film_->width() == camera.width && film_->height() == camera.height &&
@@ -126,24 +125,26 @@ void Renderer::fit_film(const RenderOptions& options) {
 
 void Renderer::prepare(const RenderOptions& options) {
     report_ = {};
-    plan_ = layer_plan(scene_.desc, options.layers, options.paths);
-    if (!colour_) colour_ = make_band_colour(scene_.desc.render.colour, scene_.desc.water.bands_nm);
+    plan_ = layer_plan(*image_, options.layers, options.paths);
+    if (!colour_)
+        colour_ = make_band_colour(image_->desc().render.colour, image_->desc().water.bands_nm);
     sensor_.reset();
-    if (plan_->has(Layer::sensor)) sensor_.emplace(scene_.desc, options.frame);
+    if (plan_->has(Layer::sensor)) sensor_.emplace(image_->desc(), options.frame);
     fit_film(options);
     report_.pixels = static_cast<std::uint64_t>(film_->window().width()) *
                      static_cast<std::uint64_t>(film_->window().height());
-    if (needs_slabs(scene_.desc, *plan_))
+    if (needs_slabs(image_->desc(), *plan_))
         assemble();
     else
         build();
     if (!colour_->warning().empty()) report_.warnings.push_back(colour_->warning());
-    report_.warnings.insert(report_.warnings.end(), scene_.warnings.begin(), scene_.warnings.end());
-    if (const auto warning = far_lamp_warning(scene_)) report_.warnings.push_back(*warning);
+    report_.warnings.insert(report_.warnings.end(), scene_->warnings.begin(),
+                            scene_->warnings.end());
+    if (const auto warning = far_lamp_warning(*scene_)) report_.warnings.push_back(*warning);
 }
 
 void Renderer::count_work() {
-    const auto samples = static_cast<std::uint64_t>(samples_of(scene_.desc.render));
+    const auto samples = static_cast<std::uint64_t>(samples_of(scene_->desc().render));
     // One ray per sample, and one more for the pixel's centre unless that is the sample: its water
     // and ground truth.
     report_.camera_rays = report_.pixels * (samples == 1 ? 1 : samples + 1);
@@ -151,13 +152,13 @@ void Renderer::count_work() {
         report_.camera_rays = report_.pixels * static_cast<std::uint64_t>(report_.paths.samples);
     report_.splat_rays = std::exchange(splat_rays_, 0);
     for (const auto& field : light_) report_.light_bytes += field->bytes();
-    for (const VolumeReport& volume : scene_.volume_reports) {
+    for (const VolumeReport& volume : scene_->volume_reports) {
         report_.active_voxels += static_cast<std::uint64_t>(volume.statistics.active_voxels);
         report_.grid_bytes += volume.bytes;
     }
-    report_.triangles = scene_.surfaces->triangle_count();
-    report_.lamps = scene_.lamps.size();
-    report_.bands = static_cast<std::uint64_t>(scene_.water.medium.band_count());
+    report_.triangles = scene_->surfaces->triangle_count();
+    report_.lamps = scene_->lamps.size();
+    report_.bands = static_cast<std::uint64_t>(scene_->water.medium.band_count());
 }
 
 void Renderer::warn_of_error(const PathRequest& request) {
@@ -169,7 +170,7 @@ void Renderer::warn_of_error(const PathRequest& request) {
 }
 
 void Renderer::warn_of_multiple_error() {
-    const bool is_draft = scene_.desc.render.quality == RenderDesc::Quality::draft;
+    const bool is_draft = scene_->desc().render.quality == RenderDesc::Quality::draft;
     if (is_draft || !(report_.multiple_error > k_most_multiple_error)) return;
     report_.warnings.push_back(fmt::format(
         "multiple scattering: its standard error is {:.2g} % of the image's mean; for less, use "
@@ -179,17 +180,17 @@ void Renderer::warn_of_multiple_error() {
 
 DeepShadows Renderer::light_of_part(const AssembledScene& part) {
     if (!needs_light()) return {};
-    const DeepShadows light =
-        splatter_.splat(part, deep_shadow_options(scene_.desc.render.quality, scene_.water.medium));
+    const DeepShadows light = splatter_.splat(
+        part, deep_shadow_options(scene_->desc().render.quality, scene_->water.medium));
     splat_rays_ += splatter_.counts().rays;
     return light;
 }
 
 void Renderer::render_film(const RenderOptions& options) {
     LightTransport own;
-    if (!options.transport) own = make_light_transport(scene_, light_);
+    if (!options.transport) own = make_light_transport(*scene_, light_);
     const LightTransport& transport = options.transport ? *options.transport : own;
-    const Correspondences others(scene_, *plan_, ahead_);
+    const Correspondences others(*scene_, *plan_, ahead_);
     report_.warnings.insert(report_.warnings.end(), others.warnings().begin(),
                             others.warnings().end());
     const RenderProgress progress = [this](const std::string& stage, double fraction) {
@@ -198,13 +199,13 @@ void Renderer::render_film(const RenderOptions& options) {
     const ImageCallbacks reached{[this](const PathAccuracy& so_far) { report_.paths = so_far; },
                                  [this](double error) { report_.multiple_error = error; },
                                  [this](std::size_t count) { report_.snow_particles = count; }};
-    const Exposure exposure(scene_);
+    const Exposure exposure(*scene_);
     report_.exposure_parts = static_cast<std::uint64_t>(exposure.part_count());
     report_.exposure_samples = static_cast<std::uint64_t>(exposure.samples());
     report_.motion_pixels = exposure.motion_pixels();
     if (exposure.part_count() == 0) {
-        render_scene(scene_, light_, transport, *plan_, *colour_, *film_, progress,
-                     {samples_of(scene_.desc.render), options.paths.error}, reached,
+        render_scene(*scene_, light_, transport, *plan_, *colour_, *film_, progress,
+                     {samples_of(scene_->desc().render), options.paths.error}, reached,
                      others.matchers());
         return;
     }
@@ -213,7 +214,7 @@ void Renderer::render_film(const RenderOptions& options) {
             "--error: is not known of an image in which something moves while the shutter is "
             "open; give --samples instead");
     render_exposure(
-        exposure, scene_, transport,
+        exposure, *scene_, transport,
         [this](const AssembledScene& part) { return light_of_part(part); }, *plan_, *colour_,
         *film_, progress, reached, others.matchers());
 }
@@ -226,7 +227,7 @@ const Film& Renderer::render(const RenderOptions& options) {
         begin("splat");
     is_film_clear_ = false;
     render_film(options);
-    if (sensor_) sensor_->expose(*scene_.camera, *plan_, *film_);
+    if (sensor_) sensor_->expose(*scene_->camera, *plan_, *film_);
     warn_of_error(options.paths);
     warn_of_multiple_error();
     count_work();

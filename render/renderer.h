@@ -10,8 +10,8 @@
 
 #include "core/image/camera_sensor.h"
 #include "render/correspondences.h"
+#include "render/image_scene.h"
 #include "render/light_splatter.h"
-#include "render/resolved_scene.h"
 #include "render/scene_assembly.h"
 #include "render/scene_rendering.h"
 
@@ -71,9 +71,9 @@ class Renderer {
 
     /// Sets the scene of the images to come. Loads nothing yet: what is the same as in the scene
     /// before is reused as it is, even if its files have changed since.
-    void set_scene(ResolvedScene scene);
-    /// Precondition of this and all that follows: set_scene was called.
-    const SceneDesc& scene() const { return scene_.desc; }
+    void set_scene(ImageScene scene);
+    /// As it was set, or edited since. Precondition of this and all that follows: it was set.
+    const ImageScene& scene() const { return *image_; }
 
     /// Allocates an image and assembles its scene: then the report has its warnings and its pixels.
     /// render() does so itself; call this to learn of them beforehand.
@@ -108,7 +108,7 @@ class Renderer {
     LightTransport make_transport();
 
     /// What assemble() and splat() returned last. Precondition: they have been called.
-    const AssembledScene& assembled() const { return scene_; }
+    const AssembledScene& assembled() const { return *scene_; }
     const DeepShadows& light() const { return light_; }
 
     /// Changes the assembled scene by hand: for water, volumes and slabs that no description can
@@ -131,10 +131,11 @@ class Renderer {
     DeepShadows light_of_part(const AssembledScene& part);
 
     RenderProgress progress_;
-    AssembledScene scene_;  // its `desc` alone until it is assembled
-    bool is_assembled_ = false, is_edited_ = false;
-    SurfacesAhead ahead_;    // of the next frame
-    AssembledScene before_;  // what the scene reuses when it is assembled
+    std::optional<ImageScene> image_;      // as it was set
+    std::optional<AssembledScene> scene_;  // none: it has not been assembled
+    bool is_edited_ = false;
+    SurfacesAhead ahead_;                   // of the next frame
+    std::optional<AssembledScene> before_;  // what the scene reuses when it is assembled
     LightSplatter splatter_;
     DeepShadows light_;             // of the scene; empty: not splatted
     std::uint64_t splat_rays_ = 0;  // since the last image

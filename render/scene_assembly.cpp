@@ -83,9 +83,8 @@ void take_over_volumes(const std::vector<VolumeDesc>& volumes, AssembledScene& s
                        AssembledScene& before) {
     bool all = volumes.size() == before.volumes.size() && before.field != nullptr &&
                before.field->constituent_count() == scene.water.medium.constituent_count();
-    scene.volumes.resize(volumes.size());
     for (std::size_t v = 0; v < volumes.size(); ++v) {
-        const bool same = v < before.volumes.size() && before.desc.volumes[v] == volumes[v] &&
+        const bool same = v < before.volumes.size() && before.desc().volumes[v] == volumes[v] &&
                           before.water.loads[v] == scene.water.loads[v];
         if (same) scene.volumes[v] = std::move(before.volumes[v]);
         all = all && same;
@@ -118,13 +117,12 @@ void load_volumes(const std::vector<VolumeDesc>& volumes, bool interpolates,
 }
 
 void take_over_surfaces(const SceneDesc& desc, AssembledScene& scene, AssembledScene& before) {
-    if (before.surfaces && before.desc.geometry == desc.geometry &&
-        before.desc.water.bands_nm == desc.water.bands_nm) {
+    if (before.surfaces && before.desc().geometry == desc.geometry &&
+        before.desc().water.bands_nm == desc.water.bands_nm) {
         scene.surfaces = before.surfaces;
         scene.geometry_warnings = std::move(before.geometry_warnings);
     }
     before.surfaces.reset();
-    scene.meshes = before.meshes ? std::move(before.meshes) : std::make_shared<MeshStore>();
 }
 
 void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
@@ -139,13 +137,13 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
 
 LightTransport transport_in(const Medium& medium, const PathWeight& path_weight,
                             const AssembledScene& scene, const DeepShadows& deep_shadows) {
-    const RenderDesc& render = scene.desc.render;
+    const RenderDesc& render = scene.desc().render;
     LitScene lit = scene.lit();
     lit.medium = &medium;
     lit.path_weight = path_weight;
     return integrator_kind(render.integrator)
         .make({lit,
-               scene.desc.camera.world_from_camera,
+               scene.desc().camera.world_from_camera,
                scene.slabs.value_or(Slabs{}),
                render.quality,
                {deep_shadows.begin(), deep_shadows.end()}});
@@ -159,13 +157,14 @@ void weigh_as_output(const SceneDesc& desc, LightTransport& transport) {
 
 }  // namespace
 
-AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
-                              AssembledScene before) {
-    AssembledScene scene;
+AssembledScene assemble_scene(const ImageScene& image, const StageCallback& begin_stage,
+                              std::optional<AssembledScene> before) {
+    AssembledScene scene(image);
+    const SceneDesc& desc = scene.desc();
     check_integrator(desc);
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
-    scene.water = before.camera && same_water(before.desc, desc) ? before.water : build_water(desc);
+    scene.water = before && same_water(before->desc(), desc) ? before->water : build_water(desc);
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
     check_forward_scatter_of(desc, medium);
@@ -173,8 +172,12 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
         scene.snow = make_snow_model(*desc.water.snow, *scene.camera, medium);
         if (scene.snow->warning) scene.warnings.push_back(*scene.snow->warning);
     }
-    take_over_volumes(desc.volumes, scene, before);
-    take_over_surfaces(desc, scene, before);
+    scene.volumes.resize(desc.volumes.size());
+    scene.meshes = before ? std::move(before->meshes) : std::make_shared<MeshStore>();
+    if (before) {
+        take_over_volumes(desc.volumes, scene, *before);
+        take_over_surfaces(desc, scene, *before);
+    }
     begin_stage("volumes");
     load_volumes(desc.volumes, integrator_kind(desc.render.integrator).needs_deep_shadows, scene);
     begin_stage("geometry");
@@ -188,29 +191,29 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
 }
 
 Slabs place_slabs(const AssembledScene& scene) {
-    return place_slabs(scene.desc.render.planes, *scene.camera, scene.lit());
+    return place_slabs(scene.desc().render.planes, *scene.camera, scene.lit());
 }
 
-AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
+AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
                           std::unique_ptr<Camera> camera) {
-    AssembledScene moved;
+    AssembledScene moved(std::move(then));
+    const SceneDesc& desc = moved.desc();
     moved.camera = std::move(camera);
     moved.water = scene.water;
     moved.snow = scene.snow;
     moved.field = scene.field;
     moved.surfaces = scene.surfaces;
-    if (desc.geometry != scene.desc.geometry)
+    if (desc.geometry != scene.desc().geometry)
         moved.surfaces = build_surfaces(desc.geometry, scene.water.medium.wavelengths_nm,
                                         moved.geometry_warnings, *scene.meshes);
     place_lamps(desc, moved);
     moved.warnings.clear();
-    moved.desc = std::move(desc);
     if (scene.slabs) moved.slabs = place_slabs(moved);
     return moved;
 }
 
 LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows) {
-    const RenderDesc& render = scene.desc.render;
+    const RenderDesc& render = scene.desc().render;
     const auto make = [&](const Medium& medium) {
         return transport_in(medium, {}, scene, deep_shadows);
     };
@@ -224,14 +227,14 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
     else if (scattering_of(render) == RenderDesc::Scattering::multiple)
         transport.paths = std::make_shared<PathTracer>(
             scene.lit(), PathOptions{{deep_shadows.begin(), deep_shadows.end()}});
-    weigh_as_output(scene.desc, transport);
+    weigh_as_output(scene.desc(), transport);
     return transport;
 }
 
 LightTransport make_single_scattering(const AssembledScene& scene, const DeepShadows& deep_shadows,
                                       const Medium& medium, const PathWeight& path_weight) {
     LightTransport transport = transport_in(medium, path_weight, scene, deep_shadows);
-    weigh_as_output(scene.desc, transport);
+    weigh_as_output(scene.desc(), transport);
     return transport;
 }
 
@@ -290,7 +293,7 @@ std::optional<double> depth_of_nearest_lamp(const AssembledScene& scene) {
 }
 
 std::optional<std::string> far_lamp_warning(const AssembledScene& scene) {
-    const RenderDesc& render = scene.desc.render;
+    const RenderDesc& render = scene.desc().render;
     if (scattering_of(render) != RenderDesc::Scattering::multiple ||
         integrator_kind(render.integrator).traces_paths)
         return std::nullopt;

@@ -11,9 +11,9 @@
 #include "core/light/integrator.h"
 #include "core/light/integrator_kind.h"
 #include "core/light/slabs.h"
-#include "core/scene/scene_desc.h"
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
+#include "render/image_scene.h"
 #include "render/marine_snow.h"
 
 namespace uw {
@@ -23,7 +23,9 @@ using DeepShadows = std::vector<std::shared_ptr<const DeepShadow>>;
 
 /// A scene description turned into the concrete parts that integrators work on.
 struct AssembledScene {
-    SceneDesc desc;  // what it was made from, resolved
+    explicit AssembledScene(ImageScene of) : image(std::move(of)) {}
+
+    ImageScene image;  // what it was made from
     std::unique_ptr<Camera> camera;
     WaterModel water;                       // its coefficients hold the snow's mean
     std::shared_ptr<const SnowModel> snow;  // null: there is none
@@ -42,29 +44,29 @@ struct AssembledScene {
     std::vector<std::string> geometry_warnings;
     std::shared_ptr<MeshStore> meshes;  // of `surfaces`
 
+    const SceneDesc& desc() const { return image.desc(); }
     LitScene lit() const { return {&water.medium, field.get(), surfaces.get(), &emitters}; }
 };
 
 /// Called with the name of each stage as it begins.
 using StageCallback = std::function<void(const std::string& stage)>;
 
-/// Loads and builds what `desc`, that of a resolved scene, names; slabs are not placed. `desc` of
-/// the result is left empty for the caller to move the description into: it is never copied.
+/// Loads and builds what the scene of an image names; slabs are not placed.
 /// `before`, a scene assembled earlier or none, is consumed: water, volumes and surfaces with the
 /// same description are reused as they are, even if their files have changed since; the rest is
 /// freed before anything is loaded. The result is the same to the bit as without `before`. Throws
 /// InputError and IoError of one line each.
-AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
-                              AssembledScene before = {});
+AssembledScene assemble_scene(const ImageScene& image, const StageCallback& begin_stage,
+                              std::optional<AssembledScene> before = {});
 
 /// Places the slabs of an assembled scene: costs a ray through each pixel of a coarse image. Throws
 /// as place_slabs.
 Slabs place_slabs(const AssembledScene& scene);
 
-/// The scene, assembled, with what moves at another moment: `desc` is what scene_at makes of its
-/// description. It shares the rest with `scene`; it has nothing for a next scene to reuse, and no
-/// warnings. `camera`: that of the part of the exposure, made of `desc`. Throws as build_surfaces.
-AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
+/// The scene, assembled, with what moves at another moment: `then` is what ImageScene::at makes of
+/// it. It shares the rest with `scene`; it has nothing for a next scene to reuse, and no warnings.
+/// `camera`: that of the part of the exposure, made of `then`. Throws as build_surfaces.
+AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
                           std::unique_ptr<Camera> camera);
 
 /// The light transport of the integrator that the scene requests, from light splatted before;

@@ -56,7 +56,7 @@ std::vector<double> growing_slabs(double near, double far, double attenuation) {
 std::vector<double> slab_faces(const AssembledScene& scene) {
     const Slabs& slabs = scene.slabs.value();
     std::vector<double> faces;
-    if (integrator_kind(scene.desc.render.integrator).sums_slabs) {
+    if (integrator_kind(scene.desc().render.integrator).sums_slabs) {
         for (int i = 0; i <= slabs.count; ++i) faces.push_back(slabs.boundary(i));
         return faces;
     }
@@ -108,14 +108,14 @@ ScatterPlane scatter_plane(const Camera& camera) {
 ForwardScatterSetup forward_scatter_setup(const AssembledScene& scene,
                                           const DeepShadows& deep_shadows) {
     ForwardScatterSetup setup;
-    setup.desc = scene.desc.water.forward_scatter;
+    setup.desc = scene.desc().water.forward_scatter;
     setup.plane = scatter_plane(*scene.camera);
     setup.faces = slab_faces(scene);
-    if (in_scatter_tolerance(scene.desc.render) > 0)
+    if (in_scatter_tolerance(scene.desc().render) > 0)
         setup.spacing = std::max(1.0, std::floor(k_slab_spacing * setup.plane.focal_x));
     // Planes of constant camera z do not cover a view wider than a hemisphere.
-    setup.shells = scene.desc.camera.distortion.model == DistortionDesc::Model::fisheye;
-    setup.sensor = SensorModel(scene.desc);
+    setup.shells = scene.desc().camera.distortion.model == DistortionDesc::Model::fisheye;
+    setup.sensor = SensorModel(scene.desc());
     setup.has_snow = scene.snow != nullptr;
     const Slabs& slabs = scene.slabs.value();
     setup.first = {slabs.boundary(0), slabs.boundary(1)};
@@ -174,7 +174,8 @@ MultipleLightOptions multiple_light_options(const SceneDesc& scene, const LayerP
     return options;
 }
 
-LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const PathRequest& paths) {
+LayerPlan layer_plan(const ImageScene& image, std::string_view request, const PathRequest& paths) {
+    const SceneDesc& scene = image.desc();
     const bool traces_paths = integrator_kind(scene.render.integrator).traces_paths;
     for (const auto& [requested, option] :
          {std::pair{paths.error.has_value(), "--error"}, std::pair{paths.orders > 0, "--orders"}})
@@ -190,7 +191,7 @@ LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const Pat
             LayerSupply{.multiple = scattering_of(scene.render) == RenderDesc::Scattering::multiple,
                         .snow = scene.water.snow.has_value(),
                         .error = traces_paths && several,
-                        .flow = scene.choice.frame.has_value(),
+                        .flow = image.choice().frame.has_value(),
                         .disparity = scene.cameras.size() > 1,
                         .orders = paths.orders,
                         .sensor_values = sensor ? value_count(sensor->mosaic) : 0}};
@@ -205,15 +206,15 @@ bool needs_slabs(const SceneDesc& scene, const LayerPlan& plan) {
 
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts, const PointMatchers& matchers) {
-    int samples = samples_of(scene.desc.render);
-    if (integrator_kind(scene.desc.render.integrator).traces_paths)
+    int samples = samples_of(scene.desc().render);
+    if (integrator_kind(scene.desc().render.integrator).traces_paths)
         samples = std::min(samples, k_most_samples_beside_paths);
     return {*scene.camera,
             scene.lit(),
             transport,
             {samples, scene.total_samples, scene.first_sample},
             scene.slabs.value_or(Slabs{}),
-            SensorModel(scene.desc),
+            SensorModel(scene.desc()),
             parts,
             matchers};
 }
@@ -226,11 +227,11 @@ SnowLayer snow_layer(const AssembledScene& scene, const DeepShadows& deep_shadow
     WaterVeil veil(*scene.camera, *transport.integrator, depth);
     const LitScene lit = scene.lit();
     const SnowLighting lighting(lit, deep_shadows);
-    const std::vector<ExposureView> views = exposure_views(scene.desc);
-    const SensorModel sensor(scene.desc);
+    const std::vector<ExposureView> views = exposure_views(scene.image);
+    const SensorModel sensor(scene.desc());
     const SnowPlacing placing{.model = model,
-                              .desc = *scene.desc.water.snow,
-                              .time = scene.desc.time.value_or(0),
+                              .desc = *scene.desc().water.snow,
+                              .time = scene.image.time().value_or(0),
                               .views = views,
                               .surfaces = *scene.surfaces,
                               .lighting = lighting,
@@ -250,7 +251,7 @@ void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
                   const ImageCallbacks& reached, const PointMatchers& matchers) {
     const PixelRenderer renderer =
         pixel_renderer(scene, transport, in_scatter_parts(plan), matchers);
-    const double tolerance = in_scatter_tolerance(scene.desc.render);
+    const double tolerance = in_scatter_tolerance(scene.desc().render);
     const auto told = [&progress](const std::string& stage) {
         return [&progress, stage](double fraction) { return progress(stage, fraction); };
     };
@@ -263,11 +264,11 @@ void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
         begin("snow");
         snow = snow_layer(scene, deep_shadows, transport, film.window(), told("snow"), reached);
         additions.snow = &*snow;
-        additions.snow_in_ground_truth = scene.desc.water.snow->in_ground_truth;
+        additions.snow_in_ground_truth = scene.desc().water.snow->in_ground_truth;
     }
-    if (transport.paths && !integrator_kind(scene.desc.render.integrator).traces_paths) {
+    if (transport.paths && !integrator_kind(scene.desc().render.integrator).traces_paths) {
         begin("multiple scattering");
-        MultipleLight multiple(renderer, multiple_light_options(scene.desc, plan));
+        MultipleLight multiple(renderer, multiple_light_options(scene.desc(), plan));
         multiple.prepare(film.window(), told("multiple scattering"));
         if (reached.multiple) reached.multiple(multiple.error());
         additions.multiple = &multiple;
@@ -280,7 +281,7 @@ void render_scene(const AssembledScene& scene, const DeepShadows& deep_shadows,
         render_path_film(renderer, goal, plan, colour, film, told("render"), reached.paths);
         return;
     }
-    if (scene.desc.water.forward_scatter.K == 0) {
+    if (scene.desc().water.forward_scatter.K == 0) {
         render_film(renderer, tolerance, plan, colour, film, told("render"), {}, additions);
         return;
     }

@@ -28,9 +28,9 @@ struct PathRequest {
     friend bool operator==(const PathRequest&, const PathRequest&) = default;
 };
 
-/// The layers of an image of `scene`, resolved: `request` is what LayerPlan takes. Throws as it
-/// does, and UsageError if `paths` is requested of an integrator that traces none.
-LayerPlan layer_plan(const SceneDesc& scene, std::string_view request,
+/// The layers of an image: `request` is what LayerPlan takes. Throws as it does, and UsageError if
+/// `paths` is requested of an integrator that traces none.
+LayerPlan layer_plan(const ImageScene& image, std::string_view request,
                      const PathRequest& paths = {});
 
 /// Whether an image of these layers has to do with slabs: some layer, its integrator or its forward

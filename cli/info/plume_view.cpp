@@ -39,7 +39,7 @@ std::vector<double> luminances(const Film& film) {
 
 /// Optical depth of the volumes along the rays of all pixels up to the first surface.
 std::vector<double> volume_depths(const AssembledScene& scene) {
-    const int width = scene.desc.camera.width, height = scene.desc.camera.height;
+    const int width = scene.desc().camera.width, height = scene.desc().camera.height;
     std::vector<double> depths(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     const Bounds bounds = scene.field->bounds();
     if (bounds.empty()) return depths;

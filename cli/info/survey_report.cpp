@@ -44,7 +44,7 @@ std::string describe_water(const AssembledScene& scene) {
 
 // What `uwvdb render` will make of the scene.
 std::string describe_render(const AssembledScene& scene) {
-    const RenderDesc& render = scene.desc.render;
+    const RenderDesc& render = scene.desc().render;
     std::string text = fmt::format(
         "render\n  integrator {}, quality {}: ", word_of(render.integrator, k_integrator_names),
         word_of(render.quality, k_quality_names));
@@ -58,11 +58,11 @@ std::string describe_render(const AssembledScene& scene) {
 }
 
 std::string describe_camera(const SceneSurvey& survey) {
-    const CameraDesc& camera = survey.scene.desc.camera;
+    const CameraDesc& camera = survey.scene.desc().camera;
     const Vector3& at = camera.world_from_camera.offset();
     const Vector3 to = camera.world_from_camera.apply_to_vector({0, 0, 1});
-    const std::string name = survey.scene.desc.camera_name;
-    const double shutter = survey.scene.desc.render.shutter;
+    const std::string name = survey.scene.desc().camera_name;
+    const double shutter = survey.scene.desc().render.shutter;
     std::string exposure;
     if (shutter > 0) exposure += fmt::format("  exposed for {:.4g} ms\n", 1e3 * shutter);
     if (camera.line_time > 0)
@@ -98,9 +98,9 @@ std::string describe_lamps(const AssembledScene& scene) {
 }
 
 std::string describe_geometry(const AssembledScene& scene) {
-    if (scene.desc.geometry.empty()) return "no geometry\n";
+    if (scene.desc().geometry.empty()) return "no geometry\n";
     std::string text = fmt::format("geometry\n  {} entries, {} triangles\n",
-                                   scene.desc.geometry.size(), scene.surfaces->triangle_count());
+                                   scene.desc().geometry.size(), scene.surfaces->triangle_count());
     const Bounds b = scene.surfaces->bounds();
     if (!b.empty())
         text +=
@@ -211,12 +211,12 @@ Json water(const AssembledScene& scene) {
 
 /// Of a rig's camera; null without a rig.
 Json camera_name(const SceneSurvey& survey) {
-    const std::string& name = survey.scene.desc.camera_name;
+    const std::string& name = survey.scene.desc().camera_name;
     return name.empty() ? Json(nullptr) : Json(name);
 }
 
 Json camera(const SceneSurvey& survey) {
-    const CameraDesc& desc = survey.scene.desc.camera;
+    const CameraDesc& desc = survey.scene.desc().camera;
     const Vector3& at = desc.world_from_camera.offset();
     const Vector3 to = desc.world_from_camera.apply_to_vector({0, 0, 1});
     return {{"name", camera_name(survey)},
@@ -335,7 +335,7 @@ std::string survey_json(const SceneSurvey& survey) {
     const AssembledScene& scene = survey.scene;
     Json json;
     json["uwvdb"] = program_version();
-    json["scene"] = scene.desc.file.string();
+    json["scene"] = scene.desc().file.string();
     json["sequences"] = Json::array();
     for (const SequenceReport& s : survey.sequences)
         json["sequences"].push_back({{"pattern", s.pattern},
@@ -345,10 +345,10 @@ std::string survey_json(const SceneSurvey& survey) {
     json["water"] = water(scene);
     json["camera"] = camera(survey);
     json["lamps"] = lamps(scene);
-    json["geometry"] = {{"entries", scene.desc.geometry.size()},
+    json["geometry"] = {{"entries", scene.desc().geometry.size()},
                         {"triangles", scene.surfaces->triangle_count()},
                         {"bounds", bounds_json(scene.surfaces->bounds())}};
-    json["render"] = render(scene.desc.render);
+    json["render"] = render(scene.desc().render);
     json["grids"] = Json::array();
     for (const GridSurvey& grid : survey.grids)
         json["grids"].push_back(grid_json(grid, scene.water.medium));

@@ -34,7 +34,7 @@
 #include "dataset/surface_points.h"
 #include "dataset/view.h"
 #include "render/image_header.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_loading.h"
 
 namespace uw {
@@ -56,8 +56,8 @@ class InputTimes {
         view_ = view;
         if (is_known) return last_;
         last_ = fs::file_time_type::min();
-        const SceneDesc image = scene_of_image(scene_, choice_of(definition_, scene_, view));
-        for (const InputFile& input : input_files(image, known_)) {
+        const ImageChoice choice = choice_of(definition_, scene_, view);
+        for (const InputFile& input : input_files(scene_, choice, known_)) {
             std::error_code error;
             const auto written = fs::last_write_time(input.file, error);
             if (!error && !input.is_hashed) last_ = std::max(last_, written);
@@ -150,16 +150,15 @@ Exposures ViewRenderer::exposures_of(const DatasetDefinition& definition, const 
     };
     for (std::size_t i = 0; i < drafts; ++i) {
         const std::size_t index = drafts > 1 ? i * (views - 1) / (drafts - 1) : 0;
-        ResolvedScene draft(
-            scene_of_image(scene, choice_of(definition, scene, definition.view(index))));
-        shrink_to_draft(draft.edit());
-        renderer_.set_scene(std::move(draft));
+        renderer_.set_scene(
+            scene_of_image(scene, choice_of(definition, scene, definition.view(index)))
+                .with(shrink_to_draft));
         const Film& film = renderer_.render({.layers = layers});
         take(least, film);
         if (with_clean)
-            take(least_clean,
-                 clean_film(film, layer_plan(renderer_.scene(), layers),
-                            renderer_.scene().render.colour, renderer_.scene().water.bands_nm));
+            take(least_clean, clean_film(film, layer_plan(renderer_.scene(), layers),
+                                         renderer_.scene().desc().render.colour,
+                                         renderer_.scene().desc().water.bands_nm));
     }
     return {least.value_or(1), least_clean.value_or(1)};
 }
@@ -187,17 +186,18 @@ void ViewRenderer::render(const DatasetFile& set, const View& view, const SceneD
     const std::optional<int> number = definition.frames[view.frame];
     RenderOptions options{.layers = layers_of(definition), .frame = number.value_or(0)};
     renderer_.set_scene(scene_of_image(scene, choice_of(definition, scene, view)));
-    const std::optional<SensorDesc> sensor = renderer_.scene().camera.sensor;
+    const std::optional<SensorDesc> sensor = renderer_.scene().desc().camera.sensor;
     if (sensor) options.layers += ",sensor";
     renderer_.render(options);
     warn(renderer_.report().warnings);
-    const SceneDesc& rendered = renderer_.scene();
-    const double time = rendered.time ? *rendered.time : number.value_or(0) / rendered.render.fps;
-    auto images = std::make_shared<ViewImages>(ViewImages{
-        definition, view, time, rendered.camera, rendered.render.colour, rendered.water.bands_nm,
-        renderer_.release_film(), layer_plan(rendered, options.layers), std::nullopt, set.exposures,
-        metadata_of(renderer_.assembled(), number, options.paths, renderer_.report()),
-        renderer_.assembled().surfaces, points_});
+    const SceneDesc& rendered = renderer_.scene().desc();
+    const double time = renderer_.scene().time().value_or(number.value_or(0) / rendered.render.fps);
+    auto images = std::make_shared<ViewImages>(
+        ViewImages{definition, view, time, rendered.camera, rendered.render.colour,
+                   rendered.water.bands_nm, renderer_.release_film(),
+                   layer_plan(renderer_.scene(), options.layers), std::nullopt, set.exposures,
+                   metadata_of(renderer_.assembled(), number, options.paths, renderer_.report()),
+                   renderer_.assembled().surfaces, points_});
     if (sensor) images->sensor = Development(*sensor)(images->film, images->film.window());
     finish();
     ++rendered_;
@@ -259,10 +259,10 @@ void check(const DatasetDefinition& definition, const SceneDesc& scene) {
     for (const std::optional<int>& frame : definition.frames)
         sequence.frames.push_back({frame, {}, 0, "", {}, {}});
     check_frames(sequence, [&](std::optional<int>) -> const SceneDesc& { return scene; });
-    const ResolvedScene first(scene_of_image(scene, choice_of(definition, scene, {})));
+    const ImageScene first = scene_of_image(scene, choice_of(definition, scene, {}));
     for (const std::string& name : definition.formats)
         if (const auto check = dataset_format(name).check) check(definition, first.desc());
-    layer_plan(first.desc(), layers_of(definition));  // throws for what does not exist
+    layer_plan(first, layers_of(definition));  // throws for what does not exist
     const auto refuse_jpeg = [](const CameraDesc& camera) {
         if (camera.sensor && camera.sensor->image.format == DevelopmentDesc::Format::jpeg)
             throw UsageError(
@@ -376,7 +376,7 @@ class DatasetRun {
             set_.exposures = {*exposure, *exposure};
         else
             set_.exposures = ViewRenderer(a_, 1).exposures_of(set_.definition, scene_);
-        set_.facts = facts_of(ResolvedScene(scene_of_image(scene_, first)).desc());
+        set_.facts = facts_of(scene_of_image(scene_, first).desc());
         {
             const FolderLock lock(folder);  // of several that begin at once, one says what it is
             if (!read_dataset_file(folder))

@@ -80,9 +80,8 @@ void FrameRenderer::say(const std::string& line) const {
 }
 
 void FrameRenderer::warn(const Frame& frame, bool is_first, const std::string& line) {
-    const SceneDesc& scene = renderer_.scene();
-    const SceneDesc& all_frames = scene.whole ? *scene.whole : scene;
-    if (!warned_.insert(without_frame(line, scene, all_frames)).second) return;
+    const ImageScene& scene = renderer_.scene();
+    if (!warned_.insert(without_frame(line, scene.desc(), scene.whole())).second) return;
     const std::string which = is_first ? "" : place_in_run(frame);
     print_message(fmt::format("warning: {}{}\n", which, line));
 }
@@ -111,8 +110,8 @@ void FrameRenderer::begin_stage(const std::string& stage) {
         progress_ = std::make_unique<Progress>(clock_.label(stage), unit, scale, arguments_.quiet,
                                                clock_.seconds_left());
     };
-    if (stage == "splat") show("lamps", static_cast<double>(renderer_.scene().lamps.size()));
-    const bool paths = integrator_kind(renderer_.scene().render.integrator).traces_paths;
+    if (stage == "splat") show("lamps", static_cast<double>(renderer_.scene().desc().lamps.size()));
+    const bool paths = integrator_kind(renderer_.scene().desc().render.integrator).traces_paths;
     if (stage == "render" && paths)
         show("", 1);  // of how many paths may not be known yet
     else if (stage == "render" || stage == "forward scatter")
@@ -161,7 +160,7 @@ void FrameRenderer::write_irradiance(OutputFile& out) {
     });
 }
 
-void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats stats) {
+void FrameRenderer::render(const Frame& frame, ImageScene scene, RunStats stats) {
     const StopScope scope(stop_flag());
     const OutputFiles& files = frame.files;
     const bool with_irradiance = !files.irradiance_vdb.empty();
@@ -172,14 +171,14 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
                          layers_to_measure(scene.desc()) +
                          (arguments_.parts.object.empty() ? "" : ",id");
     const SensorImager imager(frame, scene.desc(), options);
-    std::optional<ResolvedScene> measured;
+    std::optional<ImageScene> measured;
     if (!arguments_.numbers.empty()) measured = scene;
     stats_ = &stats;
     stage_.clear();
     renderer_.set_scene(std::move(scene));
     prepare(frame, imager.rendered());
     if (!arguments_.parts.object.empty())
-        chosen_object(arguments_.parts.object, renderer_.scene().geometry,
+        chosen_object(arguments_.parts.object, renderer_.scene().desc().geometry,
                       renderer_.assembled().surfaces->names());
     if (with_irradiance) {
         check_irradiance_vdb(renderer_.assembled());
@@ -222,9 +221,9 @@ void FrameRenderer::render(const Frame& frame, ResolvedScene scene, RunStats sta
                   std::move(outputs));
 }
 
-std::vector<PartNumbers> FrameRenderer::measure(const ResolvedScene& scene, const Film& film,
+std::vector<PartNumbers> FrameRenderer::measure(const ImageScene& scene, const Film& film,
                                                 const RenderOptions& options) {
-    const LayerPlan plan = layer_plan(scene.desc(), options.layers, options.paths);
+    const LayerPlan plan = layer_plan(scene, options.layers, options.paths);
     const std::vector<PicturePart> parts = picture_parts(
         arguments_.parts, scene.desc(), renderer_.assembled().surfaces->names(), film, plan);
     std::vector<PartNumbers> numbers = part_numbers({film, plan}, parts);

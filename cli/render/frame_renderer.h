@@ -39,7 +39,7 @@ class FrameRenderer {
     /// frames with only the file's name changed is given once. Throws InputError, also if the image
     /// does not fit into memory; IoError, of this frame or the one before; Interrupted, and then no
     /// file of this frame is written.
-    void render(const Frame& frame, ResolvedScene scene, RunStats stats);
+    void render(const Frame& frame, ImageScene scene, RunStats stats);
 
     /// The exposure of all previews from now on, where that is the first image's and that has been
     /// rendered before.
@@ -62,7 +62,7 @@ class FrameRenderer {
     void begin_writing(const Frame& frame, Film film, std::optional<SensorImage> sensor,
                        ImageMetadata metadata, RunStats stats, OutputGroup outputs);
     /// Measures the image, lamp by lamp; the renderer's scene is then another.
-    std::vector<PartNumbers> measure(const ResolvedScene& scene, const Film& film,
+    std::vector<PartNumbers> measure(const ImageScene& scene, const Film& film,
                                      const RenderOptions& options);
     void say(const std::string& line) const;
     /// `is_first`: of the run's frames, whose warnings need not say which.

@@ -16,7 +16,7 @@
 #include "core/base/text.h"
 #include "media/volumes/load_volumes.h"
 #include "render/image_header.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 namespace uw {
 
@@ -416,7 +416,7 @@ void check_volumes(std::span<const Frame> frames, const SceneDesc& scene) {
         VolumeSequenceCheck check;
         for (const Frame& frame : frames)
             if (frame.camera == frames.front().camera)
-                check.take(scene_of_image(scene, frame.choice()).volumes[v]);
+                check.take(volume_of_frame(scene.volumes[v], *frame.number));
     }
 }
 
@@ -449,7 +449,7 @@ void check_frames(const FrameSequence& sequence, const SceneOfVariation& scene_o
         const SceneDesc& scene = scene_of(of_scene.front().variation);
         if (of_scene.front().number) check_sequences(of_scene, scene);
         for (const Frame& frame : of_scene)
-            outputs.take_inputs(input_files(scene_of_image(scene, frame.choice()), known));
+            outputs.take_inputs(input_files(scene, frame.choice(), known));
     }
     for (const Frame& frame : sequence.frames) outputs.take_outputs(frame.files);
     OutputFiles about_all;

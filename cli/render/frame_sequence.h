@@ -14,7 +14,7 @@
 #include "core/image/film.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/sensor_desc.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_loading.h"
 
 namespace uw {

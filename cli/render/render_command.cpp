@@ -54,17 +54,18 @@ std::optional<double> leave_out_rendered(FrameSequence& sequence, RunScenes& sce
     std::optional<double> exposure;
     if (a.exposure.kind == PreviewExposure::Kind::fixed) exposure = a.exposure.factor;
     for (Frame& frame : sequence.frames) {
-        const SceneDesc scene = scene_of_image(scenes.of(frame.variation), frame.choice());
+        const SceneDesc& of_all = scenes.of(frame.variation);
         // Headers describe the camera that was rendered, possibly a glTF file's.
         const auto is_image_of = [&](const std::filesystem::path& file) {
-            const ResolvedScene resolved{SceneDesc(scene)};
-            const ImageLayout layout{scene.camera.width, scene.camera.height, frame.window,
-                                     layer_plan(resolved.desc(), a.layers, paths).channel_names(),
-                                     storage};
-            return has_header_of(file, layout, metadata_of(resolved.desc(), frame.number, paths));
+            const ImageScene scene = scene_of_image(of_all, frame.choice());
+            const CameraDesc& camera = scene.desc().camera;
+            const ImageLayout layout{camera.width, camera.height, frame.window,
+                                     layer_plan(scene, a.layers, paths).channel_names(), storage};
+            return has_header_of(file, layout, metadata_of(scene, frame.number, paths));
         };
-        const bool rendered = is_rendered(frame, input_files(scene, known), is_image_of) &&
-                              has_preview(frame.files, a, exposure);
+        const bool rendered =
+            is_rendered(frame, input_files(of_all, frame.choice(), known), is_image_of) &&
+            has_preview(frame.files, a, exposure);
         if (rendered && !exposure && left.empty() &&
             a.exposure.kind == PreviewExposure::Kind::first) {
             exposure = read_preview_header(frame.files.preview)->exposure;
@@ -144,14 +145,14 @@ class FrameScenes {
         lamp_names_ = names_of(first_->desc().lamps);
     }
 
-    const SceneDesc& first() const { return first_->desc(); }
+    const ImageScene& first() const { return *first_; }
 
-    ResolvedScene take(const Frame& frame) {
-        std::optional<ResolvedScene> first = std::exchange(first_, std::nullopt);
+    ImageScene take(const Frame& frame) {
+        std::optional<ImageScene> first = std::exchange(first_, std::nullopt);
         if (first && frame.choice() == first_frame_.choice() &&
             frame.variation == first_frame_.variation)
             return std::move(*first);
-        ResolvedScene scene = resolved(frame);
+        ImageScene scene = resolved(frame);
         const std::vector<std::string> names = names_of(scene.desc().lamps);
         if (names != lamp_names_)
             throw InputError(fmt::format(
@@ -162,16 +163,16 @@ class FrameScenes {
     }
 
   private:
-    ResolvedScene resolved(const Frame& frame) {
-        SceneDesc scene = scene_of_image(scenes_.of(frame.variation), frame.choice());
+    ImageScene resolved(const Frame& frame) {
+        SceneDesc scene = scenes_.of(frame.variation);
         scene.warnings.insert(scene.warnings.end(), warnings_.begin(), warnings_.end());
-        return {std::move(scene)};
+        return {std::move(scene), frame.choice()};
     }
 
     RunScenes& scenes_;
     std::vector<std::string> warnings_;  // about the run
     Frame first_frame_;
-    std::optional<ResolvedScene> first_;  // until a frame is taken
+    std::optional<ImageScene> first_;  // until a frame is taken
     std::vector<std::string> lamp_names_;
 };
 
@@ -295,7 +296,7 @@ void run_render(const RenderArguments& typed) {
         write_contact_sheet(all, a.quiet);
         return;
     }
-    check_measures(a, frame_scenes.first(), sequence.frames.front().window);
+    check_measures(a, frame_scenes.first().desc(), sequence.frames.front().window);
     check_frames(sequence, [&](std::optional<int> variation) -> const SceneDesc& {
         return scenes.of(variation);
     });

@@ -189,29 +189,29 @@ std::vector<double> values_at(const SweepArguments& a, const Place& at) {
     return values;
 }
 
-void shrink(const SweepArguments& a, SceneDesc& scene) {
-    const CameraDesc& camera = scene.camera;
+void shrink(const SweepArguments& a, CameraDesc& camera) {
     if (a.size)
-        resize_image(scene.camera, (*a.size)[0], (*a.size)[1]);
+        resize_image(camera, (*a.size)[0], (*a.size)[1]);
     else if (camera.width > k_usual_width)
-        resize_image(scene.camera, k_usual_width,
+        resize_image(camera, k_usual_width,
                      std::max(1, static_cast<int>(std::lround(static_cast<double>(camera.height) *
                                                               k_usual_width / camera.width))));
 }
 
-ResolvedScene scene_at(const SweepArguments& a, const Place& at) {
+ImageScene scene_at(const SweepArguments& a, const Place& at) {
     std::vector<std::string> overrides = a.overrides;
     overrides.push_back(a.axes[0].override_at(at.first));
     if (a.axes.size() > 1) overrides.push_back(a.axes[1].override_at(at.second));
     for (const SweepAxis& companion : a.companions)
         overrides.push_back(companion.override_at(at.first));
-    const SceneDesc all = load_scene(a.scene, overrides);
-    SceneDesc scene = scene_of_image(all, {a.frame, chosen_camera(a.camera, all.cameras)});
-    shrink(a, scene);
+    SceneDesc scene = load_scene(a.scene, overrides);
+    const ImageChoice choice{a.frame, chosen_camera(a.camera, scene.cameras)};
+    shrink(a, scene.camera);
+    for (RigCameraDesc& entry : scene.cameras) shrink(a, entry.camera);
     scene.render.quality = a.quality;
     if (a.quality == RenderDesc::Quality::draft)
         scene.render.samples = integrator_kind(scene.render.integrator).draft_samples;
-    return scene;
+    return {std::move(scene), choice};
 }
 
 class Run {
@@ -244,7 +244,7 @@ class Run {
     }
 
     void measure(const Place& at) {
-        const ResolvedScene scene = scene_at(a_, at);
+        const ImageScene scene = scene_at(a_, at);
         sweep_.width = scene.desc().camera.width;
         sweep_.height = scene.desc().camera.height;
         const RenderOptions options{.layers = layers_to_measure(scene.desc()) +
@@ -252,7 +252,7 @@ class Run {
         renderer_.set_scene(scene);
         const Film& film = renderer_.render(options);
         for (const std::string& warning : renderer_.report().warnings) warn(warning);
-        const LayerPlan plan = layer_plan(scene.desc(), options.layers);
+        const LayerPlan plan = layer_plan(scene, options.layers);
         const std::vector<PicturePart> parts = picture_parts(
             a_.parts, scene.desc(), renderer_.assembled().surfaces->names(), film, plan);
         SweepPoint point{values_at(a_, at), part_numbers({film, plan}, parts), {}};
@@ -280,7 +280,7 @@ class Run {
 
 Sweep run_pictures(const SweepArguments& a, const SweepProgress& progress) {
     for (std::size_t index = 0; index < a.count(); ++index) {
-        const ResolvedScene scene = scene_at(a, place_of(a, index));
+        const ImageScene scene = scene_at(a, place_of(a, index));
         const CameraDesc& camera = scene.desc().camera;
         check_parts(a.parts, scene.desc(), {0, 0, camera.width, camera.height});
     }

@@ -203,14 +203,16 @@ std::vector<Pixel> draw_pixels(int width, int height, std::size_t bands) {
 
 class AllLightTrial {
   public:
-    AllLightTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options)
-        : scene_(std::move(scene)), options_(options) {
-        SceneDesc& desc = scene_.edit();
-        show_radiance_in_water(desc, options.longest_side_of_all_light);
-        desc.render.scattering = RenderDesc::Scattering::multiple;
-        desc.render.samples = k_samples;
+    AllLightTrial(const ImageScene& scene, const std::string& name,
+                  const ValidationOptions& options)
+        : scene_(scene.with([&](SceneDesc& desc) {
+              show_radiance_in_water(desc, options.longest_side_of_all_light);
+              desc.render.scattering = RenderDesc::Scattering::multiple;
+              desc.render.samples = k_samples;
+          })),
+          options_(options) {
         result_.name = name + ", all light";
-        result_.bands_nm = desc.water.bands_nm;
+        result_.bands_nm = scene_.desc().water.bands_nm;
     }
 
     LightValidation run() {
@@ -228,9 +230,9 @@ class AllLightTrial {
     std::size_t bands() const { return result_.bands_nm.size(); }
 
     Renderer make_renderer(RenderDesc::Integrator integrator) {
-        scene_.edit().render.integrator = integrator;
         Renderer renderer([this](const std::string&, double) { return options_.proceed(); });
-        renderer.set_scene(scene_);
+        renderer.set_scene(
+            scene_.with([&](SceneDesc& desc) { desc.render.integrator = integrator; }));
         return renderer;
     }
 
@@ -356,7 +358,7 @@ class AllLightTrial {
                         pixels_.size(), k_rounds * k_paths_of_round)};
     }
 
-    ResolvedScene scene_;
+    ImageScene scene_;
     const ValidationOptions& options_;
     LightValidation result_;
     double error_ = 0;  // stated by the fast form
@@ -366,9 +368,9 @@ class AllLightTrial {
 
 }  // namespace
 
-LightValidation validate_all_light(ResolvedScene scene, const std::string& name,
+LightValidation validate_all_light(const ImageScene& scene, const std::string& name,
                                    const ValidationOptions& options) {
-    return AllLightTrial(std::move(scene), name, options).run();
+    return AllLightTrial(scene, name, options).run();
 }
 
 }  // namespace uw

@@ -110,7 +110,7 @@ LightValidation validate_by_table(std::span<const LampTableRow> table,
 /// multiple.volume and multiple.surface, and their sum, in units of both standard errors. The image
 /// is that of `scene` with at most ValidationOptions::longest_side_of_all_light pixels a side.
 /// Throws InputError, and Interrupted.
-LightValidation validate_all_light(ResolvedScene scene, const std::string& name,
+LightValidation validate_all_light(const ImageScene& scene, const std::string& name,
                                    const ValidationOptions& options);
 
 }  // namespace uw

@@ -44,8 +44,7 @@ const char* const k_volume_on_grids = "volume, own grids";
 const char* const k_reference_on_grids = "reference, own grids";
 const char* const k_direct_sum = "direct sum";
 
-ResolvedScene small_image(ResolvedScene scene, int longest_side) {
-    SceneDesc& small = scene.edit();
+void make_small(SceneDesc& small, int longest_side) {
     if (small.camera.distortion.model == DistortionDesc::Model::fisheye)
         throw InputError(
             "validate: it includes sums over slabs parallel to the image plane, but a fisheye lens "
@@ -55,7 +54,6 @@ ResolvedScene small_image(ResolvedScene scene, int longest_side) {
     small.render.scattering = RenderDesc::Scattering::single;
     small.render.quality = RenderDesc::Quality::exact;
     small.render.samples = 1;
-    return scene;
 }
 
 bool scatters_in_all_bands(const Medium& medium) {
@@ -67,8 +65,9 @@ bool scatters_in_all_bands(const Medium& medium) {
 /// Collects images and compares them.
 class SceneTrial {
   public:
-    SceneTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options)
-        : scene_(small_image(std::move(scene), options.longest_side)), options_(options) {
+    SceneTrial(const ImageScene& scene, const std::string& name, const ValidationOptions& options)
+        : scene_(scene.with([&](SceneDesc& desc) { make_small(desc, options.longest_side); })),
+          options_(options) {
         result_.name = name;
         result_.width = scene_.desc().camera.width;
         result_.height = scene_.desc().camera.height;
@@ -175,7 +174,10 @@ class SceneTrial {
     // Likewise by an integrator that uses no splatted light or columns.
     void scatter_without_splats(const std::string& method, TrialScene& trial,
                                 RenderDesc::Integrator which) {
-        trial.renderer.edit([&](AssembledScene& parts) { parts.desc.render.integrator = which; });
+        trial.renderer.edit([&](AssembledScene& parts) {
+            parts.image =
+                parts.image.with([&](SceneDesc& desc) { desc.render.integrator = which; });
+        });
         scatter(method, trial, trial.renderer.make_transport());
     }
 
@@ -237,7 +239,7 @@ class SceneTrial {
         result_.planes = std::move(sums.steps);
     }
 
-    ResolvedScene scene_;
+    ImageScene scene_;
     const ValidationOptions& options_;
     SceneValidation result_;
     MethodImage coarser_sum_;  // over half the slabs of the finest sum
@@ -249,9 +251,9 @@ bool SceneValidation::passed() const {
     return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed(); });
 }
 
-SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
+SceneValidation validate_scene(const ImageScene& scene, const std::string& name,
                                const ValidationOptions& options) {
-    return SceneTrial(std::move(scene), name, options).run();
+    return SceneTrial(scene, name, options).run();
 }
 
 }  // namespace uw

@@ -71,7 +71,7 @@ struct SceneValidation {
 /// also its effect on each method's light: the finest sum over planes, the reference integrator, a
 /// VDB that holds half of the water, and a sum over all pairs of pixels against the volume
 /// integrator.
-SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
+SceneValidation validate_scene(const ImageScene& scene, const std::string& name,
                                const ValidationOptions& options);
 
 }  // namespace uw

@@ -40,24 +40,23 @@ std::string layers_of(const SceneDesc& scene, bool is_lit) {
     return layers;
 }
 
-ResolvedScene scene_of_part(const EditedScene& edited, PictureQuality quality,
-                            std::optional<std::size_t> lamp) {
-    ResolvedScene scene = edited.scene;
-    SceneDesc& desc = scene.edit();
-    LampDesc only;
-    if (lamp) only = desc.lamps[*lamp];
-    desc.lamps.clear();
-    if (lamp) {
-        light_up(only, edited.lamps[*lamp].brightness, edited.bands());
-        desc.lamps.push_back(std::move(only));
-    }
-    const auto [width, height] = picture_size(quality, desc.camera.width, desc.camera.height);
-    resize_image(desc.camera, width, height);
-    if (quality != PictureQuality::final) {
-        desc.render.quality = RenderDesc::Quality::draft;
-        desc.render.samples = integrator_kind(desc.render.integrator).draft_samples;
-    }
-    return scene;
+ImageScene scene_of_part(const EditedScene& edited, PictureQuality quality,
+                         std::optional<std::size_t> lamp) {
+    return edited.scene.with([&](SceneDesc& desc) {
+        LampDesc only;
+        if (lamp) only = desc.lamps[*lamp];
+        desc.lamps.clear();
+        if (lamp) {
+            light_up(only, edited.lamps[*lamp].brightness, edited.bands());
+            desc.lamps.push_back(std::move(only));
+        }
+        const auto [width, height] = picture_size(quality, desc.camera.width, desc.camera.height);
+        resize_image(desc.camera, width, height);
+        if (quality != PictureQuality::final) {
+            desc.render.quality = RenderDesc::Quality::draft;
+            desc.render.samples = integrator_kind(desc.render.integrator).draft_samples;
+        }
+    });
 }
 
 // Surfaces that emit light do so beside every lamp, but that light belongs to the unlit part.
@@ -186,7 +185,7 @@ bool PictureRenderer::is_known(const EditedScene& scene, PictureQuality quality)
 PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, PictureQuality quality,
                                                 std::optional<std::size_t> lamp) {
     renderer_.set_scene(scene_of_part(scene, quality, lamp));
-    const std::string layers = layers_of(renderer_.scene(), lamp.has_value());
+    const std::string layers = layers_of(renderer_.scene().desc(), lamp.has_value());
     LayerPlan plan = layer_plan(renderer_.scene(), layers);
     renderer_.render({.layers = layers});
     const Spectrum brightness =

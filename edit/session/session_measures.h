@@ -11,14 +11,14 @@
 #include "core/base/ray.h"
 #include "edit/session/edit_session.h"
 #include "edit/session/suggest.h"
+#include "render/image_scene.h"
 #include "render/measures/target_probe.h"
-#include "render/resolved_scene.h"
 
 namespace uw {
 
 /// What a window asks of the search for a lamp's place (docs/edit-api.md). Throws UsageError where
 /// the request is not one, or names lamps that are not in `scene`.
-SuggestRequest suggest_request(const Json& request, const ResolvedScene& scene);
+SuggestRequest suggest_request(const Json& request, const ImageScene& scene);
 
 /// What the search found: the map of the objective, the places before and best, and the lamps
 /// there.
@@ -61,7 +61,7 @@ class SessionMeasures {
 
   private:
     Json curves(const EditedScene& scene);
-    void search(std::int64_t id, const ResolvedScene& scene, const SuggestRequest& request);
+    void search(std::int64_t id, const ImageScene& scene, const SuggestRequest& request);
     void tell(Json event);
 
     EditSession& session_;

@@ -240,7 +240,7 @@ std::vector<PartNumbers> part_numbers(const MeasuredImage& image,
     return numbers;
 }
 
-std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ResolvedScene& scene,
+std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ImageScene& scene,
                                       const RenderOptions& options,
                                       const std::vector<PicturePart>& parts,
                                       const std::function<void(std::size_t image)>& begin) {
@@ -248,9 +248,7 @@ std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ResolvedScene& s
     measured.layers = layers_to_measure(scene.desc());
     const auto render = [&](std::vector<LampDesc> lamps, std::size_t image) {
         if (begin) begin(image);
-        ResolvedScene part = scene;
-        part.edit().lamps = std::move(lamps);
-        renderer.set_scene(std::move(part));
+        renderer.set_scene(scene.with([&](SceneDesc& desc) { desc.lamps = std::move(lamps); }));
         renderer.render(measured);
         return renderer.release_film();
     };

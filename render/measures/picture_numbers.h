@@ -179,7 +179,7 @@ std::vector<PartNumbers> part_numbers(const MeasuredImage& image,
 /// lamps alone, and once without any for what surfaces emit. `options` are those of the image; the
 /// layers in them do not matter. `begin` is called before each with its index, 0 to the number of
 /// lamps. Throws as Renderer.
-std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ResolvedScene& scene,
+std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ImageScene& scene,
                                       const RenderOptions& options,
                                       const std::vector<PicturePart>& parts,
                                       const std::function<void(std::size_t image)>& begin = {});

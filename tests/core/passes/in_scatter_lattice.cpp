@@ -28,12 +28,12 @@ class MixedImage {
           pixels_(pixel_renderer(renderer_.assembled(), transport_, parts)) {}
 
     std::vector<PixelResult> render(double tolerance) const {
-        const CameraDesc& camera = renderer_.scene().camera;
+        const CameraDesc& camera = renderer_.scene().desc().camera;
         return render(tolerance, {0, 0, camera.width, camera.height});
     }
     std::vector<PixelResult> render(double tolerance, const PixelWindow& window) const {
-        const SceneDesc& scene = renderer_.scene();
-        const LayerPlan plan = layer_plan(scene, "direct");
+        const SceneDesc& scene = renderer_.scene().desc();
+        const LayerPlan plan = layer_plan(renderer_.scene(), "direct");
         Film film(scene.camera.width, scene.camera.height, window, plan.channel_names());
         std::vector<PixelResult> pixels(static_cast<std::size_t>(window.width()) *
                                         static_cast<std::size_t>(window.height()));

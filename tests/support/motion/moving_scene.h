@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "render/image_scene.h"
 #include "render/renderer.h"
-#include "render/resolved_scene.h"
 #include "render/scene_loading.h"
 
 /// A scene in which all moves while the shutter is open, and how far images of it are apart.
@@ -16,9 +16,9 @@ namespace uw::test {
 inline constexpr int k_frame = 10;
 inline constexpr double k_shutter = 0.04;
 
-inline Film image_of(SceneDesc desc, const RenderOptions& options) {
+inline Film image_of(ImageScene scene, const RenderOptions& options) {
     Renderer renderer;
-    renderer.set_scene(std::move(desc));
+    renderer.set_scene(std::move(scene));
     renderer.render(options);
     return renderer.release_film();
 }
@@ -26,8 +26,8 @@ inline Film image_of(SceneDesc desc, const RenderOptions& options) {
 enum class Moves { all, camera_alone };
 
 /// Camera, lamps and box move, each in its own way, in water.
-inline SceneDesc moving_scene(const std::string& render, const std::string& water = "",
-                              Moves moves = Moves::all) {
+inline ImageScene moving_scene(const std::string& render, const std::string& water = "",
+                               Moves moves = Moves::all) {
     SceneDesc scene = load_scene_text(
         "uwvdb: 1\n"
         "camera: {resolution: [40, 36], intrinsics: {fx: 40}, port: {distance: 0.02, thickness: "
