@@ -24,6 +24,7 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "render/exposure.h"
+#include "render/scene_cache.h"
 #include "render/scene_loading.h"
 #include "render/view_matcher.h"
 
@@ -219,7 +220,8 @@ ImageScene observed_scene(const PointsArguments& a) {
 }
 
 AssembledScene with_surfaces(const ImageScene& scene) {
-    AssembledScene assembled = assemble_scene(scene, [](const std::string& /*stage*/) {});
+    SceneCache cache;
+    AssembledScene assembled = assemble_scene(scene, cache, [](const std::string& /*stage*/) {});
     for (const std::string& warning : assembled.geometry_warnings)
         print_message(fmt::format("warning: {}\n", warning));
     return assembled;

@@ -6,9 +6,9 @@
 
 #include "camera/camera.h"
 #include "core/base/error.h"
-#include "core/geometry/geometry_scene.h"
 #include "render/exposure.h"
 #include "render/image_scene.h"
+#include "render/scene_cache.h"
 #include "render/view_matcher.h"
 
 namespace uw {
@@ -39,20 +39,15 @@ std::optional<ImageScene> neighbour(const ImageScene& scene, int step) {
 }
 
 std::shared_ptr<const Surfaces> surfaces_of(const SceneDesc& next, const AssembledScene& scene,
-                                            SurfacesAhead& ahead) {
+                                            SceneCache& cache) {
     if (next.geometry == scene.desc().geometry) return scene.surfaces;
-    if (!ahead.are_of(next)) {
-        ahead = {next.geometry, next.water.bands_nm, nullptr, {}};
-        ahead.surfaces =
-            build_surfaces(next.geometry, next.water.bands_nm, ahead.warnings, *scene.meshes);
-    }
-    return ahead.surfaces;
+    return cache.surfaces_ahead(next).surfaces;
 }
 
 }  // namespace
 
 Correspondences::Correspondences(const AssembledScene& scene, const LayerPlan& plan,
-                                 SurfacesAhead& ahead) {
+                                 SceneCache& cache) {
     const SceneDesc& now = scene.desc();
     for (std::size_t i = 0; i < k_layer_count; ++i)
         if (const auto layer = static_cast<Layer>(i);
@@ -65,7 +60,7 @@ Correspondences::Correspondences(const AssembledScene& scene, const LayerPlan& p
     if (plan.has(Layer::flow) || finds_occluded) {
         if (const auto next = neighbour(scene.image, 1))
             next_.emplace(camera_of_truth(*next), motions_until(next->desc()),
-                          finds_occluded ? surfaces_of(next->desc(), scene, ahead) : nullptr);
+                          finds_occluded ? surfaces_of(next->desc(), scene, cache) : nullptr);
     }
     if (plan.has(Layer::flow_back)) {
         if (const auto previous = neighbour(scene.image, -1))

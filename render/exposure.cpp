@@ -238,7 +238,7 @@ bool Exposure::has_middle(int part, int row) const {
     return middle >= bound(part) && middle < bound(part + 1);
 }
 
-AssembledScene Exposure::part(int part) const {
+AssembledScene Exposure::part(int part, SceneCache& cache) const {
     const RowExposure rows = rows_of(part);
     const ImageScene& now = scene_.image;
     ImageScene then = now.at(*now.time() + rows.part.middle()).with([&](SceneDesc& desc) {
@@ -248,7 +248,7 @@ AssembledScene Exposure::part(int part) const {
     });
     auto camera = camera_ ? std::make_unique<Camera>(then.desc().camera, camera_, rows)
                           : std::make_unique<Camera>(then.desc().camera);
-    AssembledScene scene = with_moved(scene_, std::move(then), std::move(camera));
+    AssembledScene scene = with_moved(scene_, std::move(then), std::move(camera), cache);
     if (rows_.shutter == 0) return scene;
     scene.total_samples = parts_ * samples_of_part_;
     scene.first_sample = part * samples_of_part_;
@@ -324,7 +324,7 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene,
                      const LightTransport& transport, const LightOfPart& light_of_part,
                      const LayerPlan& plan, const BandColour& colour, Film& film,
                      const RenderProgress& progress, const ImageCallbacks& reached,
-                     const PointMatchers& matchers) {
+                     const PointMatchers& matchers, SceneCache& cache) {
     const SceneDesc& desc = scene.desc();
     if (desc.water.snow && desc.water.snow->in_ground_truth)
         throw InputError(
@@ -345,7 +345,7 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene,
             return progress("render", (k + done) / parts);
         };
         if (!tell("", 0)) throw Interrupted();
-        const AssembledScene part = exposure.part(k);
+        const AssembledScene part = exposure.part(k, cache);
         const DeepShadows light = light_of_part(part);
         const LightTransport part_transport = make_light_transport(part, light);
         const PixelWindow rows = rows_of_part(exposure, k, scatters_forward, film.window());

@@ -38,7 +38,7 @@ class Exposure {
     bool moves_surfaces() const { return moves_surfaces_; }
 
     /// The scene of part `part`, from 0 on, assembled.
-    AssembledScene part(int part) const;
+    AssembledScene part(int part, SceneCache& cache) const;
     /// The share that a part has of the exposure of pixel row `row`.
     double share(int part, int row) const { return rows_of(part).share(row); }
     /// Whether the middle of the row's exposure, which its ground truth is of, is in the part.
@@ -78,6 +78,6 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene,
                      const LightTransport& transport, const LightOfPart& light_of_part,
                      const LayerPlan& plan, const BandColour& colour, Film& film,
                      const RenderProgress& progress, const ImageCallbacks& reached,
-                     const PointMatchers& matchers);
+                     const PointMatchers& matchers, SceneCache& cache);
 
 }  // namespace uw

@@ -40,28 +40,16 @@ bool Renderer::needs_light() const {
 }
 
 void Renderer::set_scene(ImageScene scene) {
-    if (is_edited_) before_.reset();
-    if (scene_ && !is_edited_) before_ = std::move(scene_);
     scene_.reset();
     image_ = std::move(scene);
-    is_edited_ = false;
     light_.clear();
     colour_.reset();
 }
 
 void Renderer::build() {
-    if (scene_) return;
-    std::optional<AssembledScene> before = std::exchange(before_, std::nullopt);
-    if (before && ahead_.are_of(image_->desc()) &&
-        before->desc().water.bands_nm == ahead_.bands_nm) {
-        before->image = before->image.with(
-            [&](SceneDesc& desc) { desc.geometry = std::move(ahead_.geometry); });
-        before->surfaces = std::move(ahead_.surfaces);
-        before->geometry_warnings = std::move(ahead_.warnings);
-        ahead_ = {};
-    }
-    scene_ = assemble_scene(
-        *image_, [this](const std::string& stage) { begin(stage); }, std::move(before));
+    if (!scene_)
+        scene_ =
+            assemble_scene(*image_, cache_, [this](const std::string& stage) { begin(stage); });
 }
 
 const AssembledScene& Renderer::assemble() {
@@ -81,8 +69,8 @@ const DeepShadows& Renderer::splat(const DeepShadowOptions& options) {
     build();
     light_.clear();
     begin("splat");
-    light_ = splatter_.splat(*scene_, options, [this](double share) { tell("splat", share); });
-    splat_rays_ += splatter_.counts().rays;
+    light_ = cache_.light(*scene_, options, [this](double share) { tell("splat", share); });
+    splat_rays_ += cache_.splat_counts().rays;
     return light_;
 }
 
@@ -94,14 +82,13 @@ LightTransport Renderer::make_transport() {
 
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
     assemble();
-    is_edited_ = true;
     light_.clear();
     change(*scene_);
     image_ = scene_->image;
 }
 
 void Renderer::drop_light() {
-    splatter_ = {};
+    cache_.drop_light();
     light_.clear();
 }
 
@@ -180,9 +167,9 @@ void Renderer::warn_of_multiple_error() {
 
 DeepShadows Renderer::light_of_part(const AssembledScene& part) {
     if (!needs_light()) return {};
-    const DeepShadows light = splatter_.splat(
+    const DeepShadows light = cache_.light(
         part, deep_shadow_options(scene_->desc().render.quality, scene_->water.medium));
-    splat_rays_ += splatter_.counts().rays;
+    splat_rays_ += cache_.splat_counts().rays;
     return light;
 }
 
@@ -190,7 +177,7 @@ void Renderer::render_film(const RenderOptions& options) {
     LightTransport own;
     if (!options.transport) own = make_light_transport(*scene_, light_);
     const LightTransport& transport = options.transport ? *options.transport : own;
-    const Correspondences others(*scene_, *plan_, ahead_);
+    const Correspondences others(*scene_, *plan_, cache_);
     report_.warnings.insert(report_.warnings.end(), others.warnings().begin(),
                             others.warnings().end());
     const RenderProgress progress = [this](const std::string& stage, double fraction) {
@@ -216,7 +203,7 @@ void Renderer::render_film(const RenderOptions& options) {
     render_exposure(
         exposure, *scene_, transport,
         [this](const AssembledScene& part) { return light_of_part(part); }, *plan_, *colour_,
-        *film_, progress, reached, others.matchers());
+        *film_, progress, reached, others.matchers(), cache_);
 }
 
 const Film& Renderer::render(const RenderOptions& options) {

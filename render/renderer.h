@@ -11,8 +11,8 @@
 #include "core/image/camera_sensor.h"
 #include "render/correspondences.h"
 #include "render/image_scene.h"
-#include "render/light_splatter.h"
 #include "render/scene_assembly.h"
+#include "render/scene_cache.h"
 #include "render/scene_rendering.h"
 
 namespace uw {
@@ -56,9 +56,10 @@ struct RenderReport {
 ///     renderer.set_scene(load_scene("scene.yaml", {}));
 ///     write_exr("image.exr", renderer.render(), {});
 ///
-/// Water, volumes, surfaces and light are kept from one image to the next as far as they are
-/// unchanged; every image is the same to the bit as from a new renderer. It neither prints nor ends
-/// the program. Faults in files are an InputError or IoError, in options a UsageError.
+/// Water, volumes, surfaces and light are kept from one image to the next as far as they and their
+/// files are unchanged (SceneCache); every image is the same to the bit as from a new renderer. It
+/// neither prints nor ends the program. Faults in files are an InputError or IoError, in options a
+/// UsageError.
 ///
 /// Stages, in this order: "volumes", "geometry", "splat", "snow" if there is some, "multiple
 /// scattering" if the integrator volume renders it, "render" and, with forward scatter, "forward
@@ -69,8 +70,7 @@ class Renderer {
   public:
     explicit Renderer(RenderProgress progress = {}) : progress_(std::move(progress)) {}
 
-    /// Sets the scene of the images to come. Loads nothing yet: what is the same as in the scene
-    /// before is reused as it is, even if its files have changed since.
+    /// Sets the scene of the images to come. Loads nothing yet.
     void set_scene(ImageScene scene);
     /// As it was set, or edited since. Precondition of this and all that follows: it was set.
     const ImageScene& scene() const { return *image_; }
@@ -103,7 +103,7 @@ class Renderer {
     /// At this resolution, replacing the light there is.
     const DeepShadows& splat(const DeepShadowOptions& options);
     /// Of the last splat.
-    const SplatCounts& splat_counts() const { return splatter_.counts(); }
+    const SplatCounts& splat_counts() const { return cache_.splat_counts(); }
     /// The light transport of the scene's integrator, with its light if it needs any.
     LightTransport make_transport();
 
@@ -112,7 +112,7 @@ class Renderer {
     const DeepShadows& light() const { return light_; }
 
     /// Changes the assembled scene by hand: for water, volumes and slabs that no description can
-    /// express. The next scene that is set reuses nothing.
+    /// express. The next scene that is set has nothing of it.
     void edit(const std::function<void(AssembledScene&)>& change);
     /// Frees the light: the next splat makes all of it anew.
     void drop_light();
@@ -133,10 +133,7 @@ class Renderer {
     RenderProgress progress_;
     std::optional<ImageScene> image_;      // as it was set
     std::optional<AssembledScene> scene_;  // none: it has not been assembled
-    bool is_edited_ = false;
-    SurfacesAhead ahead_;                   // of the next frame
-    std::optional<AssembledScene> before_;  // what the scene reuses when it is assembled
-    LightSplatter splatter_;
+    SceneCache cache_;
     DeepShadows light_;             // of the scene; empty: not splatted
     std::uint64_t splat_rays_ = 0;  // since the last image
     std::optional<LayerPlan> plan_;

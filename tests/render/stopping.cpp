@@ -104,7 +104,9 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
     /// How many rays are traced after the first `until` of them.
     static std::size_t rays_after_stop(std::size_t until) {
         const SceneDesc desc = scene();
-        AssembledScene assembled = assemble_scene(SceneDesc(desc), [](const std::string&) {});
+        SceneCache cache;
+        AssembledScene assembled =
+            assemble_scene(SceneDesc(desc), cache, [](const std::string&) {});
         const auto surfaces = std::make_shared<StoppingSurfaces>(assembled.surfaces, until);
         assembled.surfaces = surfaces;
         const LayerPlan plan = layer_plan(assembled.image, "default");
