@@ -58,19 +58,20 @@ const AssembledScene& Renderer::assemble() {
     return *scene_;
 }
 
-const DeepShadows& Renderer::splat() {
-    build();
-    if (light_.empty())
-        splat(deep_shadow_options(scene_->desc().render.quality, scene_->water.medium));
-    return light_;
+// At the resolution of the scene that was set, of which `scene` may be a part of the exposure.
+DeepShadows Renderer::light_of(const AssembledScene& scene, const ShareCallback& progress) {
+    DeepShadows light = cache_.light(
+        scene, deep_shadow_options(scene_->desc().render.quality, scene_->water.medium), progress);
+    splat_rays_ += cache_.splat_counts().rays;
+    return light;
 }
 
-const DeepShadows& Renderer::splat(const DeepShadowOptions& options) {
+const DeepShadows& Renderer::splat() {
     build();
-    light_.clear();
-    begin("splat");
-    light_ = cache_.light(*scene_, options, [this](double share) { tell("splat", share); });
-    splat_rays_ += cache_.splat_counts().rays;
+    if (light_.empty()) {
+        begin("splat");
+        light_ = light_of(*scene_, [this](double share) { tell("splat", share); });
+    }
     return light_;
 }
 
@@ -165,14 +166,6 @@ void Renderer::warn_of_multiple_error() {
         100 * *report_.multiple_error));
 }
 
-DeepShadows Renderer::light_of_part(const AssembledScene& part) {
-    if (!needs_light()) return {};
-    const DeepShadows light = cache_.light(
-        part, deep_shadow_options(scene_->desc().render.quality, scene_->water.medium));
-    splat_rays_ += cache_.splat_counts().rays;
-    return light;
-}
-
 void Renderer::render_film(const RenderOptions& options) {
     LightTransport own;
     if (!options.transport) own = make_light_transport(*scene_, light_);
@@ -202,8 +195,10 @@ void Renderer::render_film(const RenderOptions& options) {
             "open; give --samples instead");
     render_exposure(
         exposure, *scene_, transport,
-        [this](const AssembledScene& part) { return light_of_part(part); }, *plan_, *colour_,
-        *film_, progress, reached, others.matchers(), cache_);
+        [this](const AssembledScene& part) {
+            return needs_light() ? light_of(part, [](double) {}) : DeepShadows();
+        },
+        *plan_, *colour_, *film_, progress, reached, others.matchers(), cache_);
 }
 
 const Film& Renderer::render(const RenderOptions& options) {

@@ -23,7 +23,7 @@ struct RenderOptions {
     std::optional<PixelWindow> window{};        // the pixels wanted; none: the whole image
     PathRequest paths{};                        // of integrators that trace paths
     std::int64_t frame = 0;                     // number, on which the sensor's noise depends
-    const LightTransport* transport = nullptr;  // instead of the scene's, for tests; not owned
+    const LightTransport* transport = nullptr;  // instead of the scene's; not owned
 };
 
 /// What an image was made of, and the warnings about it.
@@ -100,10 +100,6 @@ class Renderer {
     /// Likewise the light of its lamps, at the resolution that its quality requires. For an
     /// integrator that needs no light, forward scatter takes the columns from it if it is there.
     const DeepShadows& splat();
-    /// At this resolution, replacing the light there is.
-    const DeepShadows& splat(const DeepShadowOptions& options);
-    /// Of the last splat.
-    const SplatCounts& splat_counts() const { return cache_.splat_counts(); }
     /// The light transport of the scene's integrator, with its light if it needs any.
     LightTransport make_transport();
 
@@ -128,7 +124,7 @@ class Renderer {
     void warn_of_error(const PathRequest& request);
     void warn_of_multiple_error();
     void render_film(const RenderOptions& options);
-    DeepShadows light_of_part(const AssembledScene& part);
+    DeepShadows light_of(const AssembledScene& scene, const ShareCallback& progress);
 
     RenderProgress progress_;
     std::optional<ImageScene> image_;      // as it was set

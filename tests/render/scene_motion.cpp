@@ -253,12 +253,12 @@ TEST_F(Motion, OnlyWhatMovesIsMadeAnew) {
     const SceneDesc scene = load_camera(k_ahead, rest);
     Renderer renderer;
     renderer.set_scene(scene_of_image(scene, {0}));
-    renderer.splat();
+    renderer.render();
     const Surfaces* const surfaces = renderer.assembled().surfaces.get();
     renderer.set_scene(scene_of_image(scene, {1}));
-    renderer.splat();
+    renderer.render();
     EXPECT_EQ(renderer.assembled().surfaces.get(), surfaces);
-    EXPECT_EQ(renderer.splat_counts().rays, 0U);
+    EXPECT_EQ(renderer.report().splat_rays, 0U);
 }
 
 }  // namespace

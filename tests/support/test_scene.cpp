@@ -46,10 +46,12 @@ GeometryDesc plane_at_z(double z) {
     return plane;
 }
 
-TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options) {
-    scene_.set_scene(SceneDesc(desc));
-    if (integrator_kind(desc.render.integrator).needs_deep_shadows) scene_.splat(options);
-    transport_ = scene_.make_transport();
+TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options)
+    : scene_(assemble_scene(SceneDesc(desc), cache_, [](const std::string& /*stage*/) {})) {
+    scene_.slabs = place_slabs(scene_);
+    if (integrator_kind(desc.render.integrator).needs_deep_shadows)
+        light_ = cache_.light(scene_, options);
+    transport_ = make_light_transport(scene_, light_);
     pixels_ = std::make_unique<PixelRenderer>(pixel_renderer(assembled(), transport_));
 }
 
