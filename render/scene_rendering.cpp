@@ -39,15 +39,14 @@ bool paths_at_nodes(const RenderDesc& render) {
 PassList make_passes(const ImageScene& image, const PathRequest& paths, std::int64_t frame) {
     const SceneDesc& scene = image.desc();
     const RenderDesc& render = scene.render;
-    PassList passes;
-    if (integrator_kind(render.integrator).traces_paths) {
+    PassList passes;  // check_integrator refuses those that do not go together
+    if (paths_at_nodes(render)) passes.add<AllLightPass>();
+    if (scene.water.snow) passes.add<SnowPass>(*scene.water.snow);
+    if (integrator_kind(render.integrator).traces_paths)
         passes.add<PathPass>(render, paths);
-    } else {
-        if (paths_at_nodes(render)) passes.add<AllLightPass>();
-        if (scene.water.snow) passes.add<SnowPass>(*scene.water.snow);
+    else
         passes.add<PixelPass>(render);
-        if (scene.water.forward_scatter.K > 0) passes.add<ForwardPass>();
-    }
+    if (scene.water.forward_scatter.K > 0) passes.add<ForwardPass>();
     passes.add<TruthPass>(image.choice().frame.has_value(), scene.cameras.size() > 1);
     if (scene.camera.sensor) passes.add<SensorPass>(*scene.camera.sensor, frame);
     return passes;

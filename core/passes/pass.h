@@ -34,8 +34,8 @@ struct PathAccuracy {
 
 /// What the passes of an image have reached.
 struct ImageProgress {
-    /// Of an image of light paths: so far, while it is rendered; it changes only between two calls
-    /// of the progress callback.
+    /// What an image of light paths has reached so far; it changes only between two calls of the
+    /// progress callback.
     PathAccuracy paths;
     /// The stated standard error of light scattered more than once, where AllLightPass renders it,
     /// relative to the image's mean.
@@ -112,7 +112,7 @@ class Pass {
     const std::string& stage() const { return stage_; }
     Of of() const { return of_; }
 
-    /// For an image with these layers.
+    /// What has to be there for an image with these layers.
     virtual PassNeeds needs(const LayerPlan& plan) const;
     /// Adds the layers that it provides, apart from those that every image has.
     virtual void provide(LayerSupply& supply) const;

@@ -12,7 +12,7 @@ namespace uw {
 /// are wanted.
 class SensorPass final : public Pass {
   public:
-    /// Of frame number `frame`, on which the noise depends.
+    /// `frame`: the number of the image, on which the noise depends.
     SensorPass(const SensorDesc& desc, std::int64_t frame);
 
     void provide(LayerSupply& supply) const override;

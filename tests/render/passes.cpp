@@ -28,6 +28,7 @@ class Passes : public testing::Test {
     Passes() {
         desc_.geometry = {plane_at_z(4)};
         desc_.lamps = {isotropic_lamp({-0.5, 0, 0}, 10)};
+        desc_.render.samples.reset();  // more than one
     }
 
     ImageScene image() const { return {SceneDesc(desc_), choice_}; }

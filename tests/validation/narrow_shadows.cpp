@@ -1,4 +1,4 @@
-// ctest labels: analytic
+// ctest labels: analytic slow
 // Scenes whose light or shadows are narrower than what the methods step over by themselves.
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@
 namespace uw {
 namespace {
 
-using Json = nlohmann::json;
+using ParsedJson = nlohmann::json;
 
 constexpr double k_thickness = 0.5;
 
@@ -31,7 +31,7 @@ class DraftContrastTest : public test::CliTest {
         slab.file_from_index = Affine::scale(Vector3(k_thickness / 10));
         test::write_fixture(folder_ / "slab.vdb", {slab});
     }
-    Json survey(double depth, const std::string& more = "") const {
+    ParsedJson survey(double depth, const std::string& more = "") const {
         write("slab.yaml", R"(uwvdb: 1
 camera: {resolution: [256, 144], intrinsics: {fov_x: 4}, pose: {position: [0, 0, 6], look_at: [0, 0, 0]}}
 water: {absorption: 0, scattering: {b: 0, phase: {type: hg, g: 0}}}
@@ -41,10 +41,10 @@ volumes: [{file: slab.vdb, centering: cell, grids: {density: {absorption: )" +
                                std::to_string(depth / k_thickness) + "}}}]\n" + more);
         const test::ProgramResult result = run({"info", "slab.yaml", "--json"});
         EXPECT_EQ(result.exit_code, 0) << result.err;
-        return Json::parse(result.out);
+        return ParsedJson::parse(result.out);
     }
-    static bool warns(const Json& json) {
-        return std::ranges::any_of(json.at("warnings"), [](const Json& line) {
+    static bool warns(const ParsedJson& json) {
+        return std::ranges::any_of(json.at("warnings"), [](const ParsedJson& line) {
             return line.get<std::string>().find("change the picture by") != std::string::npos;
         });
     }
@@ -52,7 +52,7 @@ volumes: [{file: slab.vdb, centering: cell, grids: {density: {absorption: )" +
 
 TEST_F(DraftContrastTest, OfAnAbsorbingSlabIsOneLessItsTransmittance) {
     for (const double depth : {0.1, 0.7, 2.0}) {
-        const Json contrast = survey(depth).at("contrast");
+        const ParsedJson contrast = survey(depth).at("contrast");
         // Drafts are within 3 % of the transmittance, and the wall's light within 1 % of its mean.
         EXPECT_NEAR(contrast.at("contrast").get<double>(), 1 - std::exp(-depth),
                     0.03 * std::exp(-depth) + 0.01);
@@ -64,8 +64,8 @@ TEST_F(DraftContrastTest, OfAnAbsorbingSlabIsOneLessItsTransmittance) {
 }
 
 TEST_F(DraftContrastTest, BelowFivePerCentThereIsAWarningThatSaysWhatToDo) {
-    EXPECT_FALSE(warns(survey(0.1)));  // 9.5 %
-    const Json faint = survey(0.03);   // 3 %
+    EXPECT_FALSE(warns(survey(0.1)));       // 9.5 %
+    const ParsedJson faint = survey(0.03);  // 3 %
     ASSERT_TRUE(warns(faint)) << faint.at("warnings");
     const std::string line = faint.at("warnings").back().get<std::string>();
     EXPECT_NE(line.find("raise the ppm per unit"), std::string::npos) << line;
@@ -88,7 +88,7 @@ TEST_F(DraftContrastTest, WaterInFrontCounts) {
     }());
     const test::ProgramResult result = run({"info", "hazy.yaml", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    const Json json = Json::parse(result.out);
+    const ParsedJson json = ParsedJson::parse(result.out);
     EXPECT_LT(json.at("contrast").at("contrast").get<double>(), k_hardly_seen);
     EXPECT_TRUE(warns(json));
     EXPECT_NE(json.at("warnings").dump().find("move the lamps away from the camera"),
@@ -99,7 +99,7 @@ TEST_F(DraftContrastTest, WaterInFrontCounts) {
 TEST_F(DraftContrastTest, WithoutVolumesOrLampsThereIsNone) {
     const test::ProgramResult result = run({"info", "scene.yaml", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_TRUE(Json::parse(result.out).at("contrast").is_null());
+    EXPECT_TRUE(ParsedJson::parse(result.out).at("contrast").is_null());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace uw {
 namespace {
 
-using Json = nlohmann::json;
+using ParsedJson = nlohmann::json;
 
 class Sequences : public test::CliTest {
   protected:
@@ -25,15 +25,15 @@ class Sequences : public test::CliTest {
         bar.file_from_index = Affine::scale(Vector3(0.05));
         test::write_fixture(folder_ / ("s_" + std::to_string(1000 + number) + ".vdb"), {bar});
     }
-    Json info(const std::vector<std::string>& more = {}) const {
+    ParsedJson info(const std::vector<std::string>& more = {}) const {
         std::vector<std::string> arguments{"info", "s_####.vdb", "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const test::ProgramResult result = run(arguments);
         EXPECT_EQ(result.exit_code, 0) << result.err;
-        return Json::parse(result.out);
+        return ParsedJson::parse(result.out);
     }
-    static bool says(const Json& json, const std::string& part) {
-        return std::ranges::any_of(json.at("advice").at("lines"), [&](const Json& line) {
+    static bool says(const ParsedJson& json, const std::string& part) {
+        return std::ranges::any_of(json.at("advice").at("lines"), [&](const ParsedJson& line) {
             return line.get<std::string>().find(part) != std::string::npos;
         });
     }
@@ -44,10 +44,10 @@ TEST_F(Sequences, EmptyFramesAreNamedAndDoNotStopTheAdvice) {
     frame(2, 0);
     frame(3, 10);
     frame(4, 20);
-    const Json json = info();
-    EXPECT_EQ(json.at("sequence").at("empty"), Json({1001, 1002}));
+    const ParsedJson json = info();
+    EXPECT_EQ(json.at("sequence").at("empty"), ParsedJson({1001, 1002}));
     EXPECT_EQ(json.at("sequence").at("frame"), 1003);
-    EXPECT_EQ(json.at("advice").at("map"), Json({"density"}));
+    EXPECT_EQ(json.at("advice").at("map"), ParsedJson({"density"}));
     const test::ProgramResult text = run({"info", "s_####.vdb"});
     EXPECT_NE(text.out.find("hold nothing to map: 1001-1002"), std::string::npos) << text.out;
 }
@@ -56,16 +56,16 @@ TEST_F(Sequences, HaveOneAdviceWhicheverFrameIsLookedAt) {
     frame(1, 0);
     frame(2, 10, 0.5);
     frame(3, 30);
-    const Json all = info();
+    const ParsedJson all = info();
     for (const char* number : {"1001", "1002", "1003"}) {
-        const Json one = info({"--frame", number});
+        const ParsedJson one = info({"--frame", number});
         EXPECT_EQ(one.at("sequence").at("frame").dump(), number);
         EXPECT_EQ(one.at("advice"), all.at("advice")) << number;
     }
     // Bounds of the longest frame: 30 nodes, each with its cell.
-    const Json& bounds = all.at("advice").at("world_bounds");
+    const ParsedJson& bounds = all.at("advice").at("world_bounds");
     EXPECT_NEAR(bounds.at("max")[0].get<double>() - bounds.at("min")[0].get<double>(), 1.5, 1e-6);
-    EXPECT_EQ(all.at("sequence").at("largest"), Json({0.5, 1.0}));
+    EXPECT_EQ(all.at("sequence").at("largest"), ParsedJson({0.5, 1.0}));
     EXPECT_TRUE(says(all, "the largest value lies between 0.5 (frame 1002) and 1 (frame 1003)"));
 }
 
@@ -73,7 +73,7 @@ TEST_F(Sequences, SayWhereTheirRangeFlickers) {
     frame(1, 20, 1);
     frame(2, 20, 10);
     frame(3, 20, 9);
-    const Json json = info();
+    const ParsedJson json = info();
     EXPECT_TRUE(says(json, "changes by a factor of 10 from frame 1001 to frame 1002"));
     EXPECT_FALSE(says(json, "from frame 1002 to frame 1003"));
 }
@@ -81,18 +81,18 @@ TEST_F(Sequences, SayWhereTheirRangeFlickers) {
 TEST_F(Sequences, WithNothingInThemSaySo) {
     frame(1, 0);
     frame(2, 0);
-    const Json json = info();
+    const ParsedJson json = info();
     EXPECT_TRUE(says(json, "No frame of the sequence holds anything to map"));
-    EXPECT_EQ(json.at("sequence").at("empty"), Json({1001, 1002}));
+    EXPECT_EQ(json.at("sequence").at("empty"), ParsedJson({1001, 1002}));
     expect_failure({"info", "s_####.vdb", "--scene"}, 3, "Nothing to map");
 }
 
 TEST_F(Sequences, AFrameThatCannotBeReadIsNamed) {
     frame(1, 10);
     write("s_1002.vdb", "this is no volume");
-    const Json json = info();
+    const ParsedJson json = info();
     EXPECT_TRUE(says(json, "A frame cannot be read: s_1002.vdb"));
-    EXPECT_EQ(json.at("advice").at("map"), Json({"density"}));
+    EXPECT_EQ(json.at("advice").at("map"), ParsedJson({"density"}));
 }
 
 }  // namespace

@@ -14,34 +14,34 @@
 namespace uw {
 namespace {
 
-using Json = nlohmann::json;
+using ParsedJson = nlohmann::json;
 
 const std::string k_plume =
     std::string(UWVDB_SOURCE_DIR) + "/assets/grids/plume128_blosc_half_0030.vdb";
 
 class Info : public test::CliTest {
   protected:
-    Json json_of(const std::vector<std::string>& arguments) const {
+    ParsedJson json_of(const std::vector<std::string>& arguments) const {
         std::vector<std::string> all{"info", "--json"};
         all.insert(all.end(), arguments.begin(), arguments.end());
         const test::ProgramResult result = run(all);
         EXPECT_EQ(result.exit_code, 0) << result.err;
-        return Json::parse(result.out);
+        return ParsedJson::parse(result.out);
     }
-    static bool warns(const Json& json, const std::string& part) {
-        return std::ranges::any_of(json.at("warnings"), [&](const Json& line) {
+    static bool warns(const ParsedJson& json, const std::string& part) {
+        return std::ranges::any_of(json.at("warnings"), [&](const ParsedJson& line) {
             return line.get<std::string>().find(part) != std::string::npos;
         });
     }
 };
 
 TEST_F(Info, TellsOfEveryGridOfAFile) {
-    const Json json = json_of({k_plume});
+    const ParsedJson json = json_of({k_plume});
     EXPECT_EQ(json.at("format"), "vdb");
     EXPECT_EQ(json.at("version"), 224);
     EXPECT_TRUE(json.at("creator").is_null());
     ASSERT_EQ(json.at("grids").size(), 8U);
-    for (const Json& grid : json.at("grids")) {
+    for (const ParsedJson& grid : json.at("grids")) {
         for (const char* key : {"type", "class", "precision", "compression", "transform",
                                 "metres_per_voxel", "active_voxels", "world_bounds", "values"})
             EXPECT_TRUE(grid.contains(key)) << key;
@@ -50,11 +50,11 @@ TEST_F(Info, TellsOfEveryGridOfAFile) {
         EXPECT_EQ(grid.at("active_voxels"), 18076);
         EXPECT_NEAR(grid.at("metres_per_voxel")[0].get<double>(), 0.046875, 1e-6);
         std::int64_t in_bins = 0;
-        for (const Json& count : grid.at("values").at("histogram").at("counts"))
+        for (const ParsedJson& count : grid.at("values").at("histogram").at("counts"))
             in_bins += count.get<std::int64_t>();
         EXPECT_EQ(in_bins, 18076);
     }
-    EXPECT_EQ(json.at("advice").at("map"), Json({"density"}));
+    EXPECT_EQ(json.at("advice").at("map"), ParsedJson({"density"}));
     EXPECT_EQ(json.at("advice").at("up"), "z");
     EXPECT_EQ(json.at("advice").at("centering"), "cell");
     EXPECT_GT(json.at("advice").at("contrast").get<double>(), 0.3);
@@ -76,7 +76,7 @@ TEST_F(Info, TellsHowASceneIsRendered) {
     EXPECT_NE(text({"--set", "render.integrator=path", "--set", "render.samples=7"})
                   .find("all light, by 7 random paths per pixel"),
               std::string::npos);
-    const Json json = json_of(
+    const ParsedJson json = json_of(
         {"scene.yaml", "--set", "render.scattering=multiple", "--set", "water.absorption=12"});
     EXPECT_EQ(json.at("render").at("integrator"), "volume");
     EXPECT_EQ(json.at("render").at("scattering"), "multiple");
@@ -96,10 +96,10 @@ TEST_F(Info, CountsWhatIsBadInValues) {
     test::VdbFixture empty;
     empty.name = "flame";
     test::write_fixture(folder_ / "a.vdb", {fixture, empty});
-    const Json json = json_of({"a.vdb"});
-    const Json& values = json.at("grids")[1].at("name") == "smoke"
-                             ? json.at("grids")[1].at("values")
-                             : json.at("grids")[0].at("values");
+    const ParsedJson json = json_of({"a.vdb"});
+    const ParsedJson& values = json.at("grids")[1].at("name") == "smoke"
+                                   ? json.at("grids")[1].at("values")
+                                   : json.at("grids")[0].at("values");
     EXPECT_EQ(values.at("nan"), 2);
     EXPECT_EQ(values.at("infinite"), 1);
     EXPECT_EQ(values.at("negative"), 3);
@@ -114,7 +114,7 @@ TEST_F(Info, WhatHasNoFiniteValueHasNoRange) {
     fixture.max = {3, 3, 3};
     fixture.value = [](int, int, int) { return std::numeric_limits<double>::infinity(); };
     test::write_fixture(folder_ / "inf.vdb", {fixture});
-    const Json values = json_of({"inf.vdb"}).at("grids")[0].at("values");
+    const ParsedJson values = json_of({"inf.vdb"}).at("grids")[0].at("values");
     EXPECT_EQ(values.at("infinite"), 64);
     for (const char* key : {"min", "mean", "max"}) EXPECT_TRUE(values.at(key).is_null()) << key;
     EXPECT_TRUE(values.at("histogram").at("from").is_null());
@@ -149,9 +149,9 @@ TEST_F(Info, OptionsThatDoNotGoTogetherAreRefused) {
 TEST_F(Info, NamesTheMissingFramesOfASequence) {
     for (const char* frame : {"0003", "0004", "0007"})
         std::filesystem::copy_file(k_plume, folder_ / (std::string("p_") + frame + ".vdb"));
-    const Json json = json_of({"p_####.vdb"});
-    EXPECT_EQ(json.at("sequence").at("found"), Json({3, 4, 7}));
-    EXPECT_EQ(json.at("sequence").at("missing"), Json({5, 6}));
+    const ParsedJson json = json_of({"p_####.vdb"});
+    EXPECT_EQ(json.at("sequence").at("found"), ParsedJson({3, 4, 7}));
+    EXPECT_EQ(json.at("sequence").at("missing"), ParsedJson({5, 6}));
     EXPECT_EQ(json.at("sequence").at("frame"), 3);
     EXPECT_EQ(json_of({"p_%04d.vdb", "--frame", "7"}).at("sequence").at("frame"), 7);
     expect_failure({"info", "p_####.vdb", "--frame", "5"}, 4, "p_0005.vdb: no such file");
@@ -182,11 +182,11 @@ volumes: [{file: ')") + k_plume +
 geometry: [{type: plane, point: [0, 0, -4], normal: [0, 0, 1]}]
 lamps: [{name: left, position: [0.5, 0.2, 0], intensity: 50}]
 )");
-    const Json json = json_of({"plume.yaml"});
+    const ParsedJson json = json_of({"plume.yaml"});
     for (const char* key : {"water", "camera", "lamps", "geometry", "grids", "central_ray", "view",
                             "reach", "warnings", "sequences"})
         EXPECT_TRUE(json.contains(key)) << key;
-    const Json& grid = json.at("grids").at(0);
+    const ParsedJson& grid = json.at("grids").at(0);
     EXPECT_GT(grid.at("in_view").get<double>(), 0.9);
     EXPECT_GT(grid.at("in_reach").get<double>(), 0.99);
     EXPECT_EQ(json.at("central_ray").at("surface_distance"), 6.0);
@@ -221,7 +221,7 @@ camera: {resolution: [64, 64], intrinsics: {fx: 32, cx: 0, cy: 32}, pose: {posit
 volumes: [{file: bar.vdb, centering: cell, grids: {density: {large: 1}}}]
 lamps: [{position: [0, 0, 0], profile: {type: spot, beam: 90, edge: 0}, intensity: 1}]
 )");
-    const Json grid = json_of({"bar.yaml"}).at("grids").at(0);
+    const ParsedJson grid = json_of({"bar.yaml"}).at("grids").at(0);
     EXPECT_NEAR(grid.at("in_view").get<double>(), 0.5, 0.02);
 }
 

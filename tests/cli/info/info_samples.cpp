@@ -12,7 +12,7 @@
 namespace uw {
 namespace {
 
-using Json = nlohmann::json;
+using ParsedJson = nlohmann::json;
 
 struct Advice {
     const char* file;
@@ -83,13 +83,13 @@ TEST_P(InfoSamples, AreAdvisedRightly) {
     ASSERT_TRUE(std::filesystem::exists(file)) << file << " is missing";
     const test::ProgramResult result = run({"info", file.string(), "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    const Json json = Json::parse(result.out);
-    const Json& advice = json.at("advice");
+    const ParsedJson json = ParsedJson::parse(result.out);
+    const ParsedJson& advice = json.at("advice");
     std::string lines;
-    for (const Json& line : advice.at("lines")) lines += line.get<std::string>() + "\n";
+    for (const ParsedJson& line : advice.at("lines")) lines += line.get<std::string>() + "\n";
     for (const char* part : sample.parts)
         EXPECT_NE(lines.find(part), std::string::npos) << part << "\n" << lines;
-    EXPECT_EQ(advice.at("map"), Json(sample.map));
+    EXPECT_EQ(advice.at("map"), ParsedJson(sample.map));
     if (sample.map.empty()) {
         EXPECT_TRUE(advice.at("volumes").is_null());
         return;

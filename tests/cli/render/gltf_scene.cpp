@@ -16,16 +16,16 @@ const std::filesystem::path k_seabed =
     std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/meshes/seabed.glb";
 
 /// Blender's watts, and how it shades spots.
-struct Lamp {
+struct GltfLamp {
     const char* name;
     double watts;
     double color[3];
     bool is_spot;
 };
 // As set in Blender; colours are floats in the file. The spots are 70 degrees wide, blend 0.2.
-const Lamp k_lamps[] = {{"SpotLeft", 120, {1, 0.96, 0.9}, true},
-                        {"SpotRight", 80, {1, 1, 1}, true},
-                        {"PointFill", 30, {0.8, 0.9, 1}, false}};
+const GltfLamp k_lamps[] = {{"SpotLeft", 120, {1, 0.96, 0.9}, true},
+                            {"SpotRight", 80, {1, 1, 1}, true},
+                            {"PointFill", 30, {0.8, 0.9, 1}, false}};
 
 // As Cycles shades it in Blender 3.4, which wrote the file (kernel/light/common.h).
 double spot_falloff(double cosine) {
@@ -112,7 +112,7 @@ TEST_F(GltfScene, LampsShineWithBlendersWattsOverFourPi) {
                                  image.at("normal.Z", x, y));
             double expected[3] = {};
             bool beside_edge = false;
-            for (const Lamp& lamp : k_lamps) {
+            for (const GltfLamp& lamp : k_lamps) {
                 const Affine& world = truth_.node(lamp.name).world;
                 const Vector3 to_lamp = world * Point3{} - at;
                 const double r = glm::length(to_lamp);
@@ -144,7 +144,7 @@ TEST_F(GltfScene, LampsShineWithBlendersWattsOverFourPi) {
 
 TEST_F(GltfScene, ItsLampsHaveLayersOfTheirOwnAndShareTheEntrysTransform) {
     const test::ImageFile image = render({"--layers", "lamps,direct"});
-    for (const Lamp& lamp : k_lamps)
+    for (const GltfLamp& lamp : k_lamps)
         EXPECT_TRUE(image.channels.contains(std::string("lamp.") + lamp.name + ".R"));
     // Turned and moved as a whole, camera and lamps with it, everything looks the same.
     const test::ImageFile moved =

@@ -8,7 +8,7 @@
 namespace uw {
 namespace {
 
-using Json = nlohmann::json;
+using ParsedJson = nlohmann::json;
 
 constexpr const char* k_section = R"(variations:
   seed: 3
@@ -32,16 +32,16 @@ class RenderedVariations : public test::CliTest {
         EXPECT_TRUE(exists(a)) << a;
         EXPECT_TRUE(read(a) == read(b)) << a << " and " << b << " differ";
     }
-    Json manifest(const std::string& name = "varied.variations.json") const {
-        return Json::parse(read(name));
+    ParsedJson manifest(const std::string& name = "varied.variations.json") const {
+        return ParsedJson::parse(read(name));
     }
 };
 
 TEST_F(RenderedVariations, EachIsToTheByteTheSceneWithItsValuesSet) {
     expect_runs({"render", "varied.yaml", "--variations", "3", "-o", "out/x.exr"});
-    const Json variations = manifest("out/varied.variations.json").at("variations");
+    const ParsedJson variations = manifest("out/varied.variations.json").at("variations");
     ASSERT_EQ(variations.size(), 3U);
-    for (const Json& variation : variations) {
+    for (const ParsedJson& variation : variations) {
         std::vector<std::string> arguments{"render", "varied.yaml", "-o", "alone.exr"};
         for (const std::string value : variation.at("set"))
             arguments.insert(arguments.end(), {"--set", value});
@@ -67,11 +67,11 @@ TEST_F(RenderedVariations, OneAloneHasTheBytesThatItHasAmongOthers) {
 
 TEST_F(RenderedVariations, AnotherKeyChangesNoneOfTheOthers) {
     expect_runs({"render", "varied.yaml", "--variations", "2", "-o", "a.png"});
-    const Json before = manifest().at("variations");
+    const ParsedJson before = manifest().at("variations");
     write("varied.yaml", std::string(test::k_small_scene) + k_section +
                              "    camera.pose.position[2]: {normal: [0, 0.1]}\n");
     expect_runs({"render", "varied.yaml", "--variations", "2", "-o", "a.png"});
-    const Json after = manifest().at("variations");
+    const ParsedJson after = manifest().at("variations");
     for (std::size_t i = 0; i < 2; ++i)
         for (const auto& [key, value] : before[i].at("values").items())
             EXPECT_EQ(after[i].at("values").at(key), value) << key;
@@ -136,10 +136,10 @@ variations: {keys: {lamps.a.intensity: {uniform: [10, 90]}}}
     expect_runs({"render", "rig.yaml", "--variations", "2", "--stats", "stats.json"});
     for (const char* name : {"rig.v0000.left.exr", "rig.v0001.right.exr"})
         EXPECT_TRUE(exists(name)) << name;
-    const Json images = manifest("rig.variations.json").at("variations").at(1).at("images");
+    const ParsedJson images = manifest("rig.variations.json").at("variations").at(1).at("images");
     EXPECT_EQ(images.at(1).at("file"), "rig.v0001.right.exr");
     EXPECT_EQ(images.at(1).at("camera"), "right");
-    EXPECT_EQ(Json::parse(read("stats.json")).at("frames").size(), 4U);
+    EXPECT_EQ(ParsedJson::parse(read("stats.json")).at("frames").size(), 4U);
 }
 
 TEST_F(RenderedVariations, TheSceneItselfIsRenderedWithoutTheOption) {
