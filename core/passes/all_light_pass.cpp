@@ -574,12 +574,14 @@ void AllLightPass::provide(LayerSupply& supply) const {
 
 void AllLightPass::begin(Rendering& rendering) {
     light_.reset();
+    if (!rendering.pixels.transport().paths) return;
     rendering.steps.emplace_back([this](const RenderedPixel& pixel) {
         light_->add(pixel.view, pixel.light, pixel.first_sample, pixel.result);
     });
 }
 
 void AllLightPass::run(Rendering& rendering) {
+    if (!rendering.pixels.transport().paths) return;
     MultipleLightOptions options = options_of(rendering.desc.render.quality);
     options.lamps = rendering.plan.has_lamps();
     light_ = std::make_unique<MultipleLight>(rendering.pixels, options);

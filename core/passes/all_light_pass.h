@@ -40,7 +40,8 @@ class WeightLattice {
 ///
 /// Each pixel's light is added to multiple_volume, multiple_surface and the lamps as it is
 /// rendered. The stated standard error (ImageProgress::multiple_error) is the RMS over the nodes
-/// over the mean of all light.
+/// over the mean of all light. A transport without light paths, which a caller may put in the place
+/// of the scene's, leaves this light out.
 class AllLightPass final : public Pass {
   public:
     AllLightPass();
