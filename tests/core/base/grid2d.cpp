@@ -38,12 +38,5 @@ TEST(Grid2D, HoldsNothingAtFirst) {
     EXPECT_EQ(grid.size(), 0U);
 }
 
-TEST(Grid2DDeathTest, APlaceOutsideIsAFault) {
-    const Grid2D<int> grid(3, 2);
-    EXPECT_DEATH(static_cast<void>(grid(3, 0)), "x < width_");
-    EXPECT_DEATH(static_cast<void>(grid(0, 2)), "y < height_");
-    EXPECT_DEATH(static_cast<void>(grid.row(-1)), "y >= 0");
-}
-
 }  // namespace
 }  // namespace uw::test

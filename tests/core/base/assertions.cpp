@@ -1,0 +1,21 @@
+// ctest labels: unit slow
+// Assertions are on in the presets dev and asan alone, which the full run builds.
+#include <gtest/gtest.h>
+
+#include "core/base/grid2d.h"
+
+namespace uw::test {
+namespace {
+
+TEST(AssertionsDeathTest, APlaceOutsideAGridIsAFault) {
+#ifdef NDEBUG
+    FAIL() << "this build has no assertions; use the preset dev";
+#endif
+    const Grid2D<int> grid(3, 2);
+    EXPECT_DEATH(static_cast<void>(grid(3, 0)), "x < width_");
+    EXPECT_DEATH(static_cast<void>(grid(0, 2)), "y < height_");
+    EXPECT_DEATH(static_cast<void>(grid.row(-1)), "y >= 0");
+}
+
+}  // namespace
+}  // namespace uw::test
