@@ -24,7 +24,7 @@ struct Fog256 {
         scene.voxels = 256;
         renderer.set_scene(files.read(scene));
         renderer.assemble();
-        const Affine& pose = renderer.assembled().desc.camera.world_from_camera;
+        const Affine& pose = renderer.assembled().desc().camera.world_from_camera;
         for (int y0 = 0; y0 < 180; y0 += k_tile)
             for (int x0 = 0; x0 < 320; x0 += k_tile)
                 for (int y = y0; y < y0 + k_tile; ++y)

@@ -60,7 +60,7 @@ class ImageRun {
         });
         if (error_.pixels == 0) {
             const ReferenceEffort effort = reference_effort(case_);
-            error_ = compare_with_reference(scene(), layer_plan(scene().desc, k_layers), *film,
+            error_ = compare_with_reference(scene(), layer_plan(scene().image, k_layers), *film,
                                             effort.pixels, effort.step);
         }
         state.counters["splat_s"] = splat_s;

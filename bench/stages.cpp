@@ -34,14 +34,14 @@ class StageRun {
     }
 
     const AssembledScene& scene() const { return renderer_.assembled(); }
-    const SceneDesc& desc() const { return scene().desc; }
+    const SceneDesc& desc() const { return scene().desc(); }
     Renderer& renderer() { return renderer_; }
     const LightTransport& transport() {
         if (!transport_.integrator) transport_ = renderer_.make_transport();
         return transport_;
     }
     PixelRenderer pixels() { return pixel_renderer(scene(), transport(), {false, true}); }
-    LayerPlan plan() const { return layer_plan(desc(), "default"); }
+    LayerPlan plan() const { return layer_plan(scene().image, "default"); }
     Film film() const {
         const CameraDesc& camera = desc().camera;
         return {camera.width,
@@ -138,7 +138,7 @@ void forward_scatter(StageRun& run, benchmark::State& state) {
     state.counters["render_s"] = process_cpu_seconds() - begin;
     run.measure(state, [&] {
         run.render(renderer, plan, film, [&](Rendering& rendering) {
-            make_passes(run.desc()).run(Pass::Of::light, rendering);
+            make_passes(run.scene().image).run(Pass::Of::light, rendering);
         });
     });
 }
@@ -161,7 +161,7 @@ void store_film(StageRun& run, benchmark::State& state) {
 }
 
 Film rendered(StageRun& run, const char* layers) {
-    const LayerPlan plan = layer_plan(run.desc(), layers);
+    const LayerPlan plan = layer_plan(run.scene().image, layers);
     const CameraDesc& camera = run.desc().camera;
     Film film(camera.width, camera.height, {0, 0, camera.width, camera.height},
               plan.channel_names());

@@ -25,8 +25,9 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "render/exposure.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_assembly.h"
+#include "render/scene_cache.h"
 #include "render/scene_loading.h"
 #include "render/view_matcher.h"
 
@@ -231,17 +232,17 @@ Options points_options(PointsArguments& a, std::string table_name, std::string t
 
 /// The scene that the arguments name as one camera sees it, without what neither refracts nor
 /// occludes: volumes and lamps.
-ResolvedScene observed_scene(const PointsArguments& a) {
+ImageScene observed_scene(const PointsArguments& a) {
     SceneDesc desc = load_scene(a.scene, a.overrides);
     desc.volumes.clear();
     if (a.size) resize_images(desc, (*a.size)[0], (*a.size)[1]);
-    ResolvedScene scene(scene_of_image(desc, {a.frame, chosen_camera(a.camera, desc.cameras)}));
-    scene.edit().lamps.clear();
-    return scene;
+    const ImageChoice choice{a.frame, chosen_camera(a.camera, desc.cameras)};
+    return ImageScene(std::move(desc), choice).with([](SceneDesc& seen) { seen.lamps.clear(); });
 }
 
-AssembledScene with_surfaces(const ResolvedScene& scene) {
-    AssembledScene assembled = assemble_scene(scene.desc(), [](const std::string& /*stage*/) {});
+AssembledScene with_surfaces(const ImageScene& scene) {
+    SceneCache cache;
+    AssembledScene assembled = assemble_scene(scene, cache, [](const std::string& /*stage*/) {});
     for (const std::string& warning : assembled.geometry_warnings)
         print_message(fmt::format("warning: {}\n", warning));
     return assembled;
@@ -249,8 +250,8 @@ AssembledScene with_surfaces(const ResolvedScene& scene) {
 
 void run_project(const PointsArguments& a) {
     const ThreadLimit limit(a.threads);
-    const ResolvedScene observed = observed_scene(a);
-    const Camera camera = camera_of_truth(observed.desc());
+    const ImageScene observed = observed_scene(a);
+    const Camera camera = camera_of_truth(observed);
     const AssembledScene scene = with_surfaces(observed);
     const std::array<std::vector<std::string_view>, 1> names{{{"x", "y", "z"}}};
     const CoordinateTable points = read_coordinates(a.table, names);
@@ -279,8 +280,8 @@ void run_project(const PointsArguments& a) {
 
 void run_rays(const PointsArguments& a) {
     const ThreadLimit limit(a.threads);
-    const ResolvedScene scene = observed_scene(a);
-    const Camera camera = camera_of_truth(scene.desc());
+    const ImageScene scene = observed_scene(a);
+    const Camera camera = camera_of_truth(scene);
     const std::array<std::vector<std::string_view>, 2> names{{{"pixel_x", "pixel_y"}, {"x", "y"}}};
     const CoordinateTable pixels = read_coordinates(a.table, names);
     std::atomic<std::size_t> outside = 0, without_ray = 0;

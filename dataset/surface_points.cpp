@@ -10,7 +10,7 @@
 #include "camera/camera.h"
 #include "core/base/error.h"
 #include "core/image/pixel_image.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/view_matcher.h"
 
 namespace uw {
@@ -75,9 +75,8 @@ std::vector<SurfacePoint> point_seeds(const DatasetDefinition& definition, std::
     std::vector<SurfacePoint> points;
     for (std::size_t i = 0; i < views; ++i) {
         const View view = definition.view(draw * all + i * all / views);
-        const ResolvedScene resolved(
-            scene_of_image(without_light, choice_of(definition, scene, view)));
-        const Camera camera(resolved.desc().camera);
+        const ImageScene image = scene_of_image(without_light, choice_of(definition, scene, view));
+        const Camera camera(image.desc().camera);
         for (int row = 0; row < side; ++row)
             for (int column = 0; column < side; ++column) {
                 const auto ray = camera.refracted_ray((column + 0.5) / side * camera.width(),

@@ -11,7 +11,7 @@
 #include "python/objects.h"
 #include "python/scene.h"
 #include "render/exposure.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/view_matcher.h"
 
 namespace py = pybind11;
@@ -38,9 +38,8 @@ CameraObject camera_of_scene(const SceneObject& scene, std::size_t camera,
                              std::optional<int> frame) {
     SceneDesc desc = *scene.desc();
     desc.volumes.clear();
-    ResolvedScene resolved(scene_of_image(desc, {frame, camera}));
-    Camera made = camera_of_truth(resolved.desc());
-    return {resolved.desc().camera, std::move(made)};
+    const ImageScene image(std::move(desc), {frame, camera});
+    return {image.desc().camera, camera_of_truth(image)};
 }
 
 py::tuple rays(const CameraObject& self, const DoubleRows& pixels) {

@@ -27,7 +27,7 @@
 #include "python/scene.h"
 #include "render/image_derivative.h"
 #include "render/image_header.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_loading.h"
 #include "run/job.h"
 #include "run/run_engine.h"
@@ -324,18 +324,18 @@ class RendererObject : public RunClient {
         engine_.emplace();
     }
 
-    WantedImage want(std::size_t /*place*/, ResolvedScene& /*scene*/) override {
+    WantedImage want(std::size_t /*place*/, ImageScene& /*scene*/) override {
         return {wanted_->options};
     }
 
     ImageWork take(std::size_t /*place*/, FinishedImage there) override {
-        image_ =
-            std::make_shared<ImageObject>(ImageObject{std::move(there.film),
-                                                      std::move(there.metadata),
-                                                      std::move(there.report),
-                                                      engine_->renderer().scene().water.bands_nm,
-                                                      {},
-                                                      {}});
+        image_ = std::make_shared<ImageObject>(
+            ImageObject{std::move(there.film),
+                        std::move(there.metadata),
+                        std::move(there.report),
+                        engine_->renderer().scene().desc().water.bands_nm,
+                        {},
+                        {}});
         if (requests_ids(wanted_->options.layers)) {
             const SurfaceNames& names = there.surfaces->names();
             add_id_names(names, image_->metadata);

@@ -18,7 +18,7 @@
 #include "media/volumes/array_grid.h"
 #include "python/bindings.h"
 #include "python/objects.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_loading.h"
 
 namespace py = pybind11;

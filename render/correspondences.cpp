@@ -6,9 +6,9 @@
 
 #include "camera/camera.h"
 #include "core/base/error.h"
-#include "core/geometry/geometry_scene.h"
 #include "render/exposure.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
+#include "render/scene_cache.h"
 #include "render/view_matcher.h"
 
 namespace uw {
@@ -29,41 +29,26 @@ void refuse_rolling_surfaces(const SceneDesc& scene) {
         scene.camera.where, entry->where));
 }
 
-/// The frame `step` later, with an image of this scene's size; none if there is none.
-std::optional<SceneDesc> neighbour(const SceneDesc& scene, int step) {
-    if (!scene.whole || !scene.choice.frame) return std::nullopt;
-    const int frame = *scene.choice.frame + step;
-    if (!has_frame(*scene.whole, frame)) return std::nullopt;
-    ResolvedScene resolved(scene_of_image(*scene.whole, {frame, scene.choice.camera}));
-    SceneDesc desc = std::move(resolved).release();
-    resize_image(desc.camera, scene.camera.width, scene.camera.height);
-    return desc;
-}
-
-/// The camera of the same moment that is another of the rig.
-Camera other_camera(const SceneDesc& scene, std::size_t index) {
-    SceneDesc other = scene;
-    other.camera = scene.cameras[index].camera;
-    other.choice.camera = index;
-    return camera_of_truth(other);
+/// The frame `step` later, with an image of this one's size; none if there is none.
+std::optional<ImageScene> neighbour(const ImageScene& scene, int step) {
+    const std::optional<ImageScene> other = scene.neighbour(step);
+    if (!other) return std::nullopt;
+    const CameraDesc& camera = scene.desc().camera;
+    return other->with(
+        [&](SceneDesc& desc) { resize_image(desc.camera, camera.width, camera.height); });
 }
 
 std::shared_ptr<const Surfaces> surfaces_of(const SceneDesc& next, const AssembledScene& scene,
-                                            SurfacesAhead& ahead) {
-    if (next.geometry == scene.desc.geometry) return scene.surfaces;
-    if (!ahead.are_of(next)) {
-        ahead = {next.geometry, next.water.bands_nm, nullptr, {}};
-        ahead.surfaces =
-            build_surfaces(next.geometry, next.water.bands_nm, ahead.warnings, *scene.meshes);
-    }
-    return ahead.surfaces;
+                                            SceneCache& cache) {
+    if (next.geometry == scene.desc().geometry) return scene.surfaces;
+    return cache.surfaces_ahead(next).surfaces;
 }
 
 }  // namespace
 
 Correspondences::Correspondences(const AssembledScene& scene, const LayerPlan& plan,
-                                 SurfacesAhead& ahead) {
-    const SceneDesc& now = scene.desc;
+                                 SceneCache& cache) {
+    const SceneDesc& now = scene.desc();
     for (const LayerKind& kind : k_layers)
         if (kind.content == LayerContent::match && plan.has(kind.layer))
             refuse_rolling_surfaces(now);
@@ -72,19 +57,19 @@ Correspondences::Correspondences(const AssembledScene& scene, const LayerPlan& p
         return object_motions(now, then, scene.surfaces->names(), warnings_);
     };
     if (plan.has(Layer::flow) || finds_occluded) {
-        if (const auto next = neighbour(now, 1))
-            next_.emplace(camera_of_truth(*next), motions_until(*next),
-                          finds_occluded ? surfaces_of(*next, scene, ahead) : nullptr);
+        if (const auto next = neighbour(scene.image, 1))
+            next_.emplace(camera_of_truth(*next), motions_until(next->desc()),
+                          finds_occluded ? surfaces_of(next->desc(), scene, cache) : nullptr);
     }
     if (plan.has(Layer::flow_back)) {
-        if (const auto previous = neighbour(now, -1))
-            previous_.emplace(camera_of_truth(*previous), motions_until(*previous), nullptr);
+        if (const auto previous = neighbour(scene.image, -1))
+            previous_.emplace(camera_of_truth(*previous), motions_until(previous->desc()), nullptr);
     }
     if (!plan.has(Layer::disparity) && !plan.has(Layer::disparity_occluded)) return;
     if (now.cameras.size() < 2) return;
-    is_first_camera_ = now.choice.camera == 0;
-    other_camera_.emplace(other_camera(now, is_first_camera_ ? 1 : 0), ObjectMotions(),
-                          scene.surfaces);
+    is_first_camera_ = scene.image.choice().camera == 0;
+    other_camera_.emplace(camera_of_truth(scene.image.seen_by(is_first_camera_ ? 1 : 0)),
+                          ObjectMotions(), scene.surfaces);
 }
 
 PointMatchers Correspondences::matchers() const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,30 +10,18 @@
 
 namespace uw {
 
-/// Surfaces built for a frame that is not rendered yet, and what they were built of.
-struct SurfacesAhead {
-    std::vector<GeometryDesc> geometry;
-    std::vector<double> bands_nm;
-    std::shared_ptr<const Surfaces> surfaces;  // null: none
-    std::vector<std::string> warnings;
-
-    bool are_of(const SceneDesc& scene) const {
-        return surfaces && geometry == scene.geometry && bands_nm == scene.water.bands_nm;
-    }
-};
-
 /// Where the points of an image are in the next and the previous frame and in another camera of the
 /// rig, as far as layers about that are in the image.
 ///
 /// Neighbours are the frames with the numbers one higher and one lower, made of the scene as it was
-/// read (SceneDesc::whole). There is none before frame 0 and where a trajectory has no pose. Of a
+/// read (ImageScene::whole). There is none before frame 0 and where a trajectory has no pose. Of a
 /// rig the other camera is the second for the first, and the first for all others.
 class Correspondences {
   public:
     /// `scene` outlives this. Surfaces of the next frame are `scene`'s if nothing of them moves,
-    /// else taken from `ahead`, or built and kept there. Throws as ResolvedScene, build_surfaces
-    /// and object_motions.
-    Correspondences(const AssembledScene& scene, const LayerPlan& plan, SurfacesAhead& ahead);
+    /// else those that `cache` keeps ahead. Throws as ImageScene, build_surfaces and
+    /// object_motions.
+    Correspondences(const AssembledScene& scene, const LayerPlan& plan, SceneCache& cache);
 
     PointMatchers matchers() const;
     const std::vector<std::string>& warnings() const { return warnings_; }

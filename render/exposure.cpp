@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/light/integrator_table.h"
 #include "core/passes/pixel_layers.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/view_matcher.h"
 
 namespace uw {
@@ -28,16 +28,11 @@ constexpr int k_most_parts = 64;
 // Samples for a blur that is the mean over them, as for an aperture's.
 constexpr int k_samples = 64;
 
-std::vector<SceneDesc> scenes_over(const SceneDesc& scene, const TimeSpan& span, int count) {
-    std::vector<SceneDesc> scenes;
+std::vector<ImageScene> scenes_over(const ImageScene& scene, const TimeSpan& span, int count) {
+    std::vector<ImageScene> scenes;
     for (int i = 0; i < count; ++i)
-        scenes.push_back(
-            scene_at(scene, *scene.time + span.begin + span.length() * i / (count - 1)));
+        scenes.push_back(scene.at(*scene.time() + span.begin + span.length() * i / (count - 1)));
     return scenes;
-}
-
-bool can_move(const SceneDesc& scene) {
-    return scene.whole && scene.time && has_motion(*scene.whole);
 }
 
 bool same_lamps(const SceneDesc& a, const SceneDesc& b) {
@@ -113,13 +108,15 @@ std::vector<TrackedPoint> origins(const SceneDesc& scene, const SurfaceNames& na
 
 }  // namespace
 
-std::shared_ptr<const CameraMotion> camera_motion(const SceneDesc& scene, const TimeSpan& span) {
-    if (!can_move(scene) || !(span.length() > 0)) return nullptr;
+std::shared_ptr<const CameraMotion> camera_motion(const ImageScene& scene, const TimeSpan& span) {
+    if (!scene.time() || !(span.length() > 0)) return nullptr;
+    const Affine& now = scene.desc().camera.world_from_camera;
     std::vector<TimedPose> poses;
     bool moves = false;
-    for (const SceneDesc& then : scenes_over(scene, span, k_poses)) {
-        moves = moves || then.camera.world_from_camera != scene.camera.world_from_camera;
-        poses.push_back({*then.time - *scene.time, pose_of(then.camera.world_from_camera)});
+    for (const ImageScene& then : scenes_over(scene, span, k_poses)) {
+        const Affine& pose = then.desc().camera.world_from_camera;
+        moves = moves || pose != now;
+        poses.push_back({*then.time() - *scene.time(), pose_of(pose)});
     }
     if (!moves) return nullptr;
     const Trajectory trajectory(poses, Interpolation::smooth);
@@ -130,17 +127,18 @@ std::shared_ptr<const CameraMotion> camera_motion(const SceneDesc& scene, const 
     return std::make_shared<CameraMotion>(std::move(table), span);
 }
 
-Camera camera_of_truth(const SceneDesc& scene) {
-    const RowExposure rows{.line_time = scene.camera.line_time, .height = scene.camera.height};
-    if (rows.line_time == 0) return Camera(scene.camera);
+Camera camera_of_truth(const ImageScene& scene) {
+    const CameraDesc& camera = scene.desc().camera;
+    const RowExposure rows{.line_time = camera.line_time, .height = camera.height};
+    if (rows.line_time == 0) return Camera(camera);
     // Points outside the image are found by rows that go on by half of its height.
     const TimeSpan all = rows.all();
-    return {scene.camera, camera_motion(scene, {2 * all.begin, 2 * all.end}), rows};
+    return {camera, camera_motion(scene, {2 * all.begin, 2 * all.end}), rows};
 }
 
 Exposure::Exposure(const AssembledScene& scene) : scene_(scene) {
-    const SceneDesc& desc = scene.desc;
-    if (!can_move(desc)) return;
+    if (!scene.image.time()) return;
+    const SceneDesc& desc = scene.desc();
     const bool is_path = integrator_kind(desc.render.integrator).traces_paths;
     const bool has_shutter = desc.render.shutter > 0;
     const int samples =
@@ -149,22 +147,24 @@ Exposure::Exposure(const AssembledScene& scene) : scene_(scene) {
              .line_time = desc.camera.line_time,
              .height = desc.camera.height};
     if (!(rows_.all().length() > 0)) return;
-    const std::vector<SceneDesc> moments = scenes_over(desc, rows_.all(), k_moments);
-    if (std::ranges::all_of(moments, [&](const SceneDesc& then) { return same_poses(desc, then); }))
+    const std::vector<ImageScene> moments = scenes_over(scene.image, rows_.all(), k_moments);
+    if (std::ranges::all_of(moments,
+                            [&](const ImageScene& then) { return same_poses(desc, then.desc()); }))
         return;
-    camera_ = camera_motion(desc, rows_.all());
+    camera_ = camera_motion(scene.image, rows_.all());
     measure(moments);
     divide(samples);
 }
 
-void Exposure::measure(const std::vector<SceneDesc>& moments) {
-    const SceneDesc& now = scene_.desc;
+void Exposure::measure(const std::vector<ImageScene>& moments) {
+    const SceneDesc& now = scene_.desc();
     const SurfaceNames& names = scene_.surfaces->names();
     std::vector<TrackedPoint> points = seen_points(scene_);
     std::vector<ObjectMotions> motions;
     std::vector<Camera> cameras;
     std::vector<std::string> no_warnings;  // files of an exposure are one
-    for (const SceneDesc& then : moments) {
+    for (const ImageScene& moment : moments) {
+        const SceneDesc& then = moment.desc();
         motions.push_back(object_motions(now, then, names, no_warnings));
         cameras.emplace_back(then.camera);
         moves_surfaces_ = moves_surfaces_ || then.geometry != now.geometry;
@@ -183,8 +183,8 @@ void Exposure::measure(const std::vector<SceneDesc>& moments) {
             // The light of a lamp that moves is taken to move with it.
             for (std::size_t j = 0; j < light.size(); ++j) {
                 const Affine before = now.lamps[j].world_from_frame(now.camera.world_from_camera);
-                const Affine after =
-                    moments[m].lamps[j].world_from_frame(moments[m].camera.world_from_camera);
+                const SceneDesc& then = moments[m].desc();
+                const Affine after = then.lamps[j].world_from_frame(then.camera.world_from_camera);
                 if (!now.lamps[j].sun)
                     light[j].go_on(still, after * before.inverse() * point.position);
             }
@@ -204,7 +204,7 @@ void Exposure::divide(int samples) {
     const double share = rows_.shutter / rows_in_all;  // of a row's exposure in that of all
     double parts = std::max(surface_pixels_ / k_surface_step, light_pixels_ / k_light_step);
     if (view_pixels_ * share > k_view_step) parts = std::max(parts, view_pixels_ / k_view_step);
-    const bool is_path = integrator_kind(scene_.desc.render.integrator).traces_paths;
+    const bool is_path = integrator_kind(scene_.desc().render.integrator).traces_paths;
     // Light paths tell their error by two of them.
     const double most_in_a_row = is_path ? samples / 2 : samples;
     parts = std::min(parts, static_cast<double>(k_most_parts));
@@ -238,15 +238,17 @@ bool Exposure::has_middle(int part, int row) const {
     return middle >= bound(part) && middle < bound(part + 1);
 }
 
-AssembledScene Exposure::part(int part) const {
+AssembledScene Exposure::part(int part, SceneCache& cache) const {
     const RowExposure rows = rows_of(part);
-    SceneDesc desc = scene_at(scene_.desc, *scene_.desc.time + rows.part.middle());
-    desc.render.samples = samples_of_part_;
-    // What snow streaks over; volumes are blurred already.
-    if (rows_.shutter > 0) desc.render.shutter = rows.part.length();
-    auto camera = camera_ ? std::make_unique<Camera>(desc.camera, camera_, rows)
-                          : std::make_unique<Camera>(desc.camera);
-    AssembledScene scene = with_moved(scene_, std::move(desc), std::move(camera));
+    const ImageScene& now = scene_.image;
+    ImageScene then = now.at(*now.time() + rows.part.middle()).with([&](SceneDesc& desc) {
+        desc.render.samples = samples_of_part_;
+        // What snow streaks over; volumes are blurred already.
+        if (rows_.shutter > 0) desc.render.shutter = rows.part.length();
+    });
+    auto camera = camera_ ? std::make_unique<Camera>(then.desc().camera, camera_, rows)
+                          : std::make_unique<Camera>(then.desc().camera);
+    AssembledScene scene = with_moved(scene_, std::move(then), std::move(camera), cache);
     if (rows_.shutter == 0) return scene;
     scene.total_samples = parts_ * samples_of_part_;
     scene.first_sample = part * samples_of_part_;
@@ -293,9 +295,9 @@ class ReachedByParts {
 
 }  // namespace
 
-void render_exposure(const Exposure& exposure, const AssembledScene& scene, PassList& passes,
-                     const LightOfPart& light_of_part, Rendering& rendering) {
-    const SceneDesc& desc = scene.desc;
+void render_exposure(const Exposure& exposure, const AssembledScene& scene, SceneCache& cache,
+                     PassList& passes, const LightOfPart& light_of_part, Rendering& rendering) {
+    const SceneDesc& desc = scene.desc();
     if (desc.water.snow && desc.water.snow->in_ground_truth)
         throw InputError(
             "water.snow.ground_truth: held is for images in which nothing but the snow moves while "
@@ -306,12 +308,13 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Pass
     const int parts = exposure.part_count();
     ReachedByParts reached_by_parts;
     ExposureMean mean(plan, rendering.colour, film);
-    const Camera truth_camera = camera_of_truth(desc);
+    const Camera truth_camera = camera_of_truth(scene.image);
     const auto find_truth = [&](const AssembledScene& then, const LightTransport& transport,
                                 const std::function<bool(int row)>& has_truth) {
         const PixelRenderer pixels(truth_camera, then.lit(), transport, {}, {},
-                                   SensorModel(then.desc), {}, rendering.pixels.matchers());
-        Rendering truth{.desc = then.desc,
+                                   SensorModel(then.desc()), {}, rendering.pixels.matchers());
+        Rendering truth{.desc = then.desc(),
+                        .time = then.image.time().value_or(0),
                         .pixels = pixels,
                         .light = {},
                         .snow = nullptr,
@@ -330,7 +333,7 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Pass
             return rendering.progress("render", (k + done) / parts);
         };
         if (!tell("", 0)) throw Interrupted();
-        const AssembledScene part = exposure.part(k);
+        const AssembledScene part = exposure.part(k, cache);
         const DeepShadows light = light_of_part(part);
         const LightTransport transport = make_light_transport(part, light, needs.paths);
         const PixelWindow rows = rows_of_part(exposure, k, needs.whole_image, film.window());
@@ -338,7 +341,8 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Pass
             Film image(film.width(), film.height(), rows, film.channel_names());
             const PixelRenderer pixels = pixel_renderer(part, transport, in_scatter_parts(plan));
             ImageProgress reached;
-            Rendering of_part{.desc = part.desc,
+            Rendering of_part{.desc = part.desc(),
+                              .time = part.image.time().value_or(0),
                               .pixels = pixels,
                               .light = light,
                               .snow = part.snow.get(),

@@ -36,7 +36,7 @@ class Exposure {
     bool moves_surfaces() const { return moves_surfaces_; }
 
     /// The scene of part `part`, from 0 on, assembled.
-    AssembledScene part(int part) const;
+    AssembledScene part(int part, SceneCache& cache) const;
     /// The share that a part has of the exposure of pixel row `row`.
     double share(int part, int row) const { return rows_of(part).share(row); }
     /// Whether the middle of the row's exposure, which its ground truth is of, is in the part.
@@ -45,7 +45,7 @@ class Exposure {
   private:
     double bound(int part) const;
     RowExposure rows_of(int part) const;
-    void measure(const std::vector<SceneDesc>& moments);
+    void measure(const std::vector<ImageScene>& moments);
     void divide(int samples);
 
     const AssembledScene& scene_;
@@ -58,12 +58,12 @@ class Exposure {
     double view_pixels_ = 0, surface_pixels_ = 0, light_pixels_ = 0;
 };
 
-/// How the camera of a resolved scene moves around its time [s] over `span`; null if it stands
-/// still, or if nothing of the scene moves.
-std::shared_ptr<const CameraMotion> camera_motion(const SceneDesc& scene, const TimeSpan& span);
+/// How the camera of an image moves around its time [s] over `span`; null if it stands still, or if
+/// nothing of the scene moves.
+std::shared_ptr<const CameraMotion> camera_motion(const ImageScene& scene, const TimeSpan& span);
 
-/// The camera of a resolved scene as ground truth has it: each row in the middle of its exposure.
-Camera camera_of_truth(const SceneDesc& scene);
+/// The camera of an image as ground truth has it: each row in the middle of its exposure.
+Camera camera_of_truth(const ImageScene& scene);
 
 /// Makes the light of the lamps of a part of an exposure, if its integrator needs any.
 using LightOfPart = std::function<DeepShadows(const AssembledScene& part)>;
@@ -72,7 +72,7 @@ using LightOfPart = std::function<DeepShadows(const AssembledScene& part)>;
 /// film whose values are 0: the light as the mean over the exposure's parts, the ground truth that
 /// of the middle, or with a rolling shutter of the middle of each row's exposure. Runs all of
 /// `passes` but those of the whole image; all of it is the stage "render".
-void render_exposure(const Exposure& exposure, const AssembledScene& scene, PassList& passes,
-                     const LightOfPart& light_of_part, Rendering& rendering);
+void render_exposure(const Exposure& exposure, const AssembledScene& scene, SceneCache& cache,
+                     PassList& passes, const LightOfPart& light_of_part, Rendering& rendering);
 
 }  // namespace uw

@@ -23,11 +23,11 @@ void refuse_other_light(const AssembledScene& scene, const std::string& name) {
     const auto refuse = [&](const char* what) {
         throw UsageError(fmt::format("derivative {}: {}", name, what));
     };
-    if (scene.desc.render.integrator != RenderDesc::Integrator::volume)
+    if (scene.desc().render.integrator != RenderDesc::Integrator::volume)
         refuse(
             "it is computed term by term from the sums of integrator volume, which others do not "
             "have; choose integrator volume");
-    const LayerPlan plan = layer_plan(scene.desc, {});
+    const LayerPlan plan = layer_plan(scene.image, {});
     if (plan.is_provided(Layer::multiple))
         refuse(
             "light scattered more than once is the mean over random paths and has none; set "
@@ -131,7 +131,7 @@ std::vector<Spectrum> shares_of_scattering(const Medium& medium) {
 
 ParticleDerivative derivative_by_particles(const AssembledScene& scene, const std::string& name) {
     try {
-        return particle_derivative(scene.desc.water, scene.desc.volumes,
+        return particle_derivative(scene.desc().water, scene.desc().volumes,
                                    name == k_small ? WaterParticles::small : WaterParticles::large);
     } catch (const UsageError& fault) {
         throw UsageError(fmt::format("derivative {}: {}", name, fault.what()));

@@ -108,8 +108,9 @@ void describe(const SensorDesc& sensor, ImageMetadata& m) {
 
 }  // namespace
 
-ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
+ImageMetadata metadata_of(const ImageScene& image, std::optional<int> frame,
                           const PathRequest& paths) {
+    const SceneDesc& scene = image.desc();
     const std::string quantity = SensorModel(scene).description();
     ImageMetadata m{{"software", "uwvdb " + program_version()},
                     {"uwvdb/scene", scene.file.filename().string()},
@@ -131,7 +132,7 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
         m["uwvdb/error_requested"] = *paths.error;
     }
     if (frame) m["uwvdb/frame"] = fmt::format("{}", *frame);
-    if (scene.time) m["uwvdb/time_s"] = *scene.time;
+    if (image.time()) m["uwvdb/time_s"] = *image.time();
     if (scene.render.shutter > 0) m["uwvdb/shutter_s"] = scene.render.shutter;
     if (scene.camera.line_time > 0) m["uwvdb/line_time_s"] = scene.camera.line_time;
     if (!scene.camera_name.empty()) m["uwvdb/camera"] = scene.camera_name;
@@ -164,7 +165,7 @@ ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
 
 ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
                           const PathRequest& paths, const RenderReport& report) {
-    ImageMetadata m = metadata_of(scene.desc, frame, paths);
+    ImageMetadata m = metadata_of(scene.image, frame, paths);
     if (report.paths.samples > 0) m["uwvdb/samples"] = static_cast<double>(report.paths.samples);
     if (report.paths.error) m["uwvdb/error"] = *report.paths.error;
     if (report.multiple_error) m["uwvdb/multiple_error"] = *report.multiple_error;

@@ -27,7 +27,7 @@ void write_id_table(OutputFile& out, const SurfaceNames& names);
 
 /// The part of an image's header that follows from the scene's description alone: images of the
 /// same scene, frame, request and program have the same.
-ImageMetadata metadata_of(const SceneDesc& scene, std::optional<int> frame,
+ImageMetadata metadata_of(const ImageScene& image, std::optional<int> frame,
                           const PathRequest& paths = {});
 
 /// The whole header of an image; `report` is about it.

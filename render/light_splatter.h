@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "media/light/deep_shadow_map.h"
-#include "render/scene_assembly.h"
+#include "render/assembled_scene.h"
 
 namespace uw {
 

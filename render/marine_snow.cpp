@@ -92,11 +92,10 @@ Affine moved(const Trajectory& trajectory, double from, double to, const Affine&
 
 }  // namespace
 
-std::vector<ExposureView> exposure_views(const SceneDesc& scene) {
+std::vector<ExposureView> exposure_views(const SceneDesc& scene, double middle) {
     std::vector<ExposureView> views{{Camera(scene.camera), 0, {}}};
     const double half = 0.5 * scene.render.shutter;
     if (!(half > 0)) return views;
-    const double middle = scene.time.value_or(0);
     const TrajectoryDesc* trajectory = trajectory_of(scene);
     for (const double offset : {-half, half}) {
         CameraDesc camera = scene.camera;
@@ -473,11 +472,11 @@ void SnowPass::run(Rendering& rendering) {
     const PixelRenderer& pixels = rendering.pixels;
     WaterVeil veil(pixels.rays(), *pixels.transport().integrator, depth);
     const SnowLighting lighting(pixels.scene(), rendering.light);
-    const std::vector<ExposureView> views = exposure_views(desc);
+    const std::vector<ExposureView> views = exposure_views(desc, rendering.time);
     const SensorModel sensor(desc);
     const SnowPlacing placing{.model = model,
                               .desc = *desc.water.snow,
-                              .time = desc.time.value_or(0),
+                              .time = rendering.time,
                               .views = views,
                               .surfaces = *pixels.scene().surfaces,
                               .lighting = lighting,

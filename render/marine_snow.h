@@ -31,10 +31,10 @@ struct ExposureView {
     Affine middle_from_moment;  // takes what it sees to where that is seen in the middle
 };
 
-/// The camera of a resolved scene when the shutter opens, in the middle and when it closes; in the
+/// The camera of an image's scene when the shutter opens, in the middle and when it closes; in the
 /// middle alone without a shutter (RenderDesc::shutter), and without the ends that its trajectory
-/// does not reach. The middle is the first.
-std::vector<ExposureView> exposure_views(const SceneDesc& scene);
+/// does not reach. The `middle` [s] is the first.
+std::vector<ExposureView> exposure_views(const SceneDesc& scene, double middle);
 
 /// A convex body around all that an image sees up to a distance while its shutter is open, through
 /// all of the lens's aperture: of what drifts, where it is in the middle of the exposure.

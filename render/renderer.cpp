@@ -35,76 +35,63 @@ void Renderer::tell(const std::string& stage, double fraction) const {
     if (progress_ && !progress_(stage, fraction)) throw Interrupted();
 }
 
-void Renderer::set_scene(ResolvedScene scene) {
-    AssembledScene next, nothing;
-    next.desc = std::move(scene).release();
-    if (is_edited_) before_ = std::move(nothing);
-    if (is_assembled_ && !is_edited_) before_ = std::move(scene_);
-    scene_ = std::move(next);
-    is_assembled_ = is_edited_ = false;
+void Renderer::set_scene(ImageScene scene) {
+    scene_.reset();
+    image_ = std::move(scene);
     light_.clear();
     colour_.reset();
 }
 
 void Renderer::build() {
-    if (is_assembled_) return;
-    AssembledScene before;
-    std::swap(before, before_);
-    if (ahead_.are_of(scene_.desc) && before.desc.water.bands_nm == ahead_.bands_nm) {
-        before.desc.geometry = std::move(ahead_.geometry);
-        before.surfaces = std::move(ahead_.surfaces);
-        before.geometry_warnings = std::move(ahead_.warnings);
-        ahead_ = {};
-    }
-    AssembledScene assembled = assemble_scene(
-        scene_.desc, [this](const std::string& stage) { begin(stage); }, std::move(before));
-    assembled.desc = std::move(scene_.desc);
-    scene_ = std::move(assembled);
-    is_assembled_ = true;
+    if (!scene_)
+        scene_ =
+            assemble_scene(*image_, cache_, [this](const std::string& stage) { begin(stage); });
 }
 
 const AssembledScene& Renderer::assemble() {
     build();
-    if (!scene_.slabs) scene_.slabs = place_slabs(scene_);
-    return scene_;
+    if (!scene_->slabs) scene_->slabs = place_slabs(*scene_);
+    return *scene_;
+}
+
+// At the resolution of the scene that was set, of which `scene` may be a part of the exposure.
+DeepShadows Renderer::light_of(const AssembledScene& scene, const ShareCallback& progress) {
+    DeepShadows light = cache_.light(
+        scene, deep_shadow_options(scene_->desc().render.quality, scene_->water.medium), progress);
+    splat_rays_ += cache_.splat_counts().rays;
+    return light;
 }
 
 const DeepShadows& Renderer::splat() {
     build();
-    if (light_.empty()) splat(deep_shadow_options(scene_.desc.render.quality, scene_.water.medium));
-    return light_;
-}
-
-const DeepShadows& Renderer::splat(const DeepShadowOptions& options) {
-    build();
-    light_.clear();
-    begin("splat");
-    light_ = splatter_.splat(scene_, options, [this](double share) { tell("splat", share); });
-    splat_rays_ += splatter_.counts().rays;
+    if (light_.empty()) {
+        begin("splat");
+        light_ = light_of(*scene_, [this](double share) { tell("splat", share); });
+    }
     return light_;
 }
 
 LightTransport Renderer::make_transport() {
     assemble();
-    const PassNeeds needs = make_passes(scene_.desc).needs(layer_plan(scene_.desc, {}));
+    const PassNeeds needs = make_passes(*image_).needs(layer_plan(*image_, {}));
     if (needs.light) splat();
-    return make_light_transport(scene_, light_, needs.paths);
+    return make_light_transport(*scene_, light_, needs.paths);
 }
 
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
     assemble();
-    is_edited_ = true;
     light_.clear();
-    change(scene_);
+    change(*scene_);
+    image_ = scene_->image;
 }
 
 void Renderer::drop_light() {
-    splatter_ = {};
+    cache_.drop_light();
     light_.clear();
 }
 
 void Renderer::fit_film(const RenderOptions& options) {
-    const CameraDesc& camera = scene_.desc.camera;
+    const CameraDesc& camera = image_->desc().camera;
     window_ = options.window.value_or(whole_image(camera));
     check_window(window_, camera);
     const PixelWindow rendered = needs_.whole_image ? whole_image(camera) : window_;
@@ -121,10 +108,11 @@ void Renderer::fit_film(const RenderOptions& options) {
 
 void Renderer::prepare(const RenderOptions& options) {
     report_ = {};
-    plan_ = layer_plan(scene_.desc, options.layers, options.paths);
-    if (!colour_) colour_ = make_band_colour(scene_.desc.render.colour, scene_.desc.water.bands_nm);
-    passes_ = make_passes(scene_.desc, options.paths, options.frame);
-    passes_.prepare(scene_.desc, *plan_);
+    const SceneDesc& desc = image_->desc();
+    plan_ = layer_plan(*image_, options.layers, options.paths);
+    if (!colour_) colour_ = make_band_colour(desc.render.colour, desc.water.bands_nm);
+    passes_ = make_passes(*image_, options.paths, options.frame);
+    passes_.prepare(desc, *plan_);
     needs_ = passes_.needs(*plan_);
     fit_film(options);
     report_.pixels = static_cast<std::uint64_t>(film_->window().width()) *
@@ -134,12 +122,13 @@ void Renderer::prepare(const RenderOptions& options) {
     else
         build();
     if (!colour_->warning().empty()) report_.warnings.push_back(colour_->warning());
-    report_.warnings.insert(report_.warnings.end(), scene_.warnings.begin(), scene_.warnings.end());
-    if (const auto warning = far_lamp_warning(scene_)) report_.warnings.push_back(*warning);
+    report_.warnings.insert(report_.warnings.end(), scene_->warnings.begin(),
+                            scene_->warnings.end());
+    if (const auto warning = far_lamp_warning(*scene_)) report_.warnings.push_back(*warning);
 }
 
 void Renderer::count_work() {
-    const auto samples = static_cast<std::uint64_t>(samples_of(scene_.desc.render));
+    const auto samples = static_cast<std::uint64_t>(samples_of(scene_->desc().render));
     // One ray per sample, and one more for the pixel's centre unless that is the sample: its water
     // and ground truth.
     report_.camera_rays = report_.pixels * (samples == 1 ? 1 : samples + 1);
@@ -147,13 +136,13 @@ void Renderer::count_work() {
         report_.camera_rays = report_.pixels * static_cast<std::uint64_t>(report_.paths.samples);
     report_.splat_rays = std::exchange(splat_rays_, 0);
     for (const auto& field : light_) report_.light_bytes += field->bytes();
-    for (const VolumeReport& volume : scene_.volume_reports) {
+    for (const VolumeReport& volume : scene_->volume_reports) {
         report_.active_voxels += static_cast<std::uint64_t>(volume.statistics.active_voxels);
         report_.grid_bytes += volume.bytes;
     }
-    report_.triangles = scene_.surfaces->triangle_count();
-    report_.lamps = scene_.lamps.size();
-    report_.bands = static_cast<std::uint64_t>(scene_.water.medium.band_count());
+    report_.triangles = scene_->surfaces->triangle_count();
+    report_.lamps = scene_->lamps.size();
+    report_.bands = static_cast<std::uint64_t>(scene_->water.medium.band_count());
 }
 
 void Renderer::warn_of_error(const PathRequest& request) {
@@ -165,7 +154,7 @@ void Renderer::warn_of_error(const PathRequest& request) {
 }
 
 void Renderer::warn_of_multiple_error() {
-    const bool is_draft = scene_.desc.render.quality == RenderDesc::Quality::draft;
+    const bool is_draft = scene_->desc().render.quality == RenderDesc::Quality::draft;
     if (is_draft || !(report_.multiple_error > k_most_multiple_error)) return;
     report_.warnings.push_back(fmt::format(
         "multiple scattering: its standard error is {:.2g} % of the image's mean; for less, use "
@@ -173,34 +162,27 @@ void Renderer::warn_of_multiple_error() {
         100 * *report_.multiple_error));
 }
 
-DeepShadows Renderer::light_of_part(const AssembledScene& part) {
-    if (!needs_.light) return {};
-    const DeepShadows light =
-        splatter_.splat(part, deep_shadow_options(scene_.desc.render.quality, scene_.water.medium));
-    splat_rays_ += splatter_.counts().rays;
-    return light;
-}
-
 void Renderer::render_film(const RenderOptions& options, PassList& passes) {
     LightTransport own;
-    if (!options.transport) own = make_light_transport(scene_, light_, needs_.paths);
+    if (!options.transport) own = make_light_transport(*scene_, light_, needs_.paths);
     const LightTransport& transport = options.transport ? *options.transport : own;
-    const Correspondences others(scene_, *plan_, ahead_);
+    const Correspondences others(*scene_, *plan_, cache_);
     report_.warnings.insert(report_.warnings.end(), others.warnings().begin(),
                             others.warnings().end());
     const RenderProgress progress = [this](const std::string& stage, double fraction) {
         return !progress_ || progress_(stage, fraction);
     };
-    const Exposure exposure(scene_);
+    const Exposure exposure(*scene_);
     report_.exposure_parts = static_cast<std::uint64_t>(exposure.part_count());
     report_.exposure_samples = static_cast<std::uint64_t>(exposure.samples());
     report_.motion_pixels = exposure.motion_pixels();
     const PixelRenderer pixels =
-        pixel_renderer(scene_, transport, in_scatter_parts(*plan_), others.matchers());
-    Rendering rendering{.desc = scene_.desc,
+        pixel_renderer(*scene_, transport, in_scatter_parts(*plan_), others.matchers());
+    Rendering rendering{.desc = scene_->desc(),
+                        .time = scene_->image.time().value_or(0),
                         .pixels = pixels,
                         .light = light_,
-                        .snow = scene_.snow.get(),
+                        .snow = scene_->snow.get(),
                         .plan = *plan_,
                         .colour = *colour_,
                         .film = *film_,
@@ -214,8 +196,11 @@ void Renderer::render_film(const RenderOptions& options, PassList& passes) {
                 "--error: is not known of an image in which something moves while the shutter is "
                 "open; give --samples instead");
         render_exposure(
-            exposure, scene_, passes,
-            [this](const AssembledScene& part) { return light_of_part(part); }, rendering);
+            exposure, *scene_, cache_, passes,
+            [this](const AssembledScene& part) {
+                return needs_.light ? light_of(part, [](double) {}) : DeepShadows();
+            },
+            rendering);
     }
     passes.run(Pass::Of::image, rendering);
 }

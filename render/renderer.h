@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "render/correspondences.h"
-#include "render/light_splatter.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_assembly.h"
+#include "render/scene_cache.h"
 #include "render/scene_rendering.h"
 
 namespace uw {
@@ -22,7 +22,7 @@ struct RenderOptions {
     std::optional<PixelWindow> window{};        // the pixels wanted; none: the whole image
     PathRequest paths{};                        // of integrators that trace paths
     std::int64_t frame = 0;                     // number, on which the sensor's noise depends
-    const LightTransport* transport = nullptr;  // instead of the scene's, for tests; not owned
+    const LightTransport* transport = nullptr;  // instead of the scene's; not owned
 };
 
 /// What an image was made of, and the warnings about it.
@@ -48,9 +48,10 @@ struct RenderReport : ImageProgress {
 ///     renderer.set_scene(load_scene("scene.yaml", {}));
 ///     write_exr("image.exr", renderer.render(), {});
 ///
-/// Water, volumes, surfaces and light are kept from one image to the next as far as they are
-/// unchanged; every image is the same to the bit as from a new renderer. It neither prints nor ends
-/// the program. Faults in files are an InputError or IoError, in options a UsageError.
+/// Water, volumes, surfaces and light are kept from one image to the next as far as they and their
+/// files are unchanged (SceneCache); every image is the same to the bit as from a new renderer. It
+/// neither prints nor ends the program. Faults in files are an InputError or IoError, in options a
+/// UsageError.
 ///
 /// Stages, in this order: "volumes", "geometry", "splat", and those of the image's passes
 /// (make_passes): "multiple scattering" if the integrator volume renders it, "snow" if there is
@@ -62,11 +63,10 @@ class Renderer {
   public:
     explicit Renderer(RenderProgress progress = {}) : progress_(std::move(progress)) {}
 
-    /// Sets the scene of the images to come. Loads nothing yet: what is the same as in the scene
-    /// before is reused as it is, even if its files have changed since.
-    void set_scene(ResolvedScene scene);
-    /// Precondition of this and all that follows: set_scene was called.
-    const SceneDesc& scene() const { return scene_.desc; }
+    /// Sets the scene of the images to come. Loads nothing yet.
+    void set_scene(ImageScene scene);
+    /// As it was set, or edited since. Precondition of this and all that follows: it was set.
+    const ImageScene& scene() const { return *image_; }
 
     /// Allocates an image and assembles its scene: then the report has its warnings and its pixels.
     /// render() does so itself; call this to learn of them beforehand.
@@ -93,19 +93,15 @@ class Renderer {
     /// Likewise the light of its lamps, at the resolution that its quality requires. For an
     /// integrator that needs no light, forward scatter takes the columns from it if it is there.
     const DeepShadows& splat();
-    /// At this resolution, replacing the light there is.
-    const DeepShadows& splat(const DeepShadowOptions& options);
-    /// Of the last splat.
-    const SplatCounts& splat_counts() const { return splatter_.counts(); }
     /// The light transport of the scene's integrator, with its light if it needs any.
     LightTransport make_transport();
 
     /// What assemble() and splat() returned last. Precondition: they have been called.
-    const AssembledScene& assembled() const { return scene_; }
+    const AssembledScene& assembled() const { return *scene_; }
     const DeepShadows& light() const { return light_; }
 
     /// Changes the assembled scene by hand: for water, volumes and slabs that no description can
-    /// express. The next scene that is set reuses nothing.
+    /// express. The next scene that is set has nothing of it.
     void edit(const std::function<void(AssembledScene&)>& change);
     /// Frees the light: the next splat makes all of it anew.
     void drop_light();
@@ -120,14 +116,12 @@ class Renderer {
     void warn_of_error(const PathRequest& request);
     void warn_of_multiple_error();
     void render_film(const RenderOptions& options, PassList& passes);
-    DeepShadows light_of_part(const AssembledScene& part);
+    DeepShadows light_of(const AssembledScene& scene, const ShareCallback& progress);
 
     RenderProgress progress_;
-    AssembledScene scene_;  // its `desc` alone until it is assembled
-    bool is_assembled_ = false, is_edited_ = false;
-    SurfacesAhead ahead_;    // of the next frame
-    AssembledScene before_;  // what the scene reuses when it is assembled
-    LightSplatter splatter_;
+    std::optional<ImageScene> image_;      // as it was set
+    std::optional<AssembledScene> scene_;  // none: it has not been assembled
+    SceneCache cache_;
     DeepShadows light_;             // of the scene; empty: not splatted
     std::uint64_t splat_rays_ = 0;  // since the last image
     std::optional<LayerPlan> plan_;

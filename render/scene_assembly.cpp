@@ -7,16 +7,14 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/geometry/geometry_scene.h"
 #include "core/light/integrator_table.h"
 #include "core/light/lamp_factory.h"
 #include "core/light/medium.h"
 #include "core/light/planes_integrator.h"
 #include "core/passes/forward_images.h"
-#include "core/passes/marine_snow.h"
 #include "core/paths/path_tracer.h"
-#include "media/volumes/grid_field.h"
 #include "media/volumes/load_volumes.h"
+#include "render/scene_cache.h"
 
 namespace uw {
 
@@ -66,65 +64,18 @@ void check_forward_scatter_of(const SceneDesc& scene, const Medium& medium) {
     check_blur_length(medium, desc.where);
 }
 
-// Whether the descriptions give the same water; the volumes' files do not matter.
-bool same_water(const SceneDesc& a, const SceneDesc& b) {
-    return a.water == b.water &&
-           std::ranges::equal(a.volumes, b.volumes, {}, &VolumeDesc::grids, &VolumeDesc::grids);
-}
-
-WaterModel build_water(const SceneDesc& desc) {
-    WaterModel water = build_water_model(desc.water, desc.volumes);
-    const std::optional<SnowDesc>& snow = desc.water.snow;
-    if (snow && snow->mean == SnowDesc::Mean::added) add_snow(*snow, water.medium);
-    return water;
-}
-
-void take_over_volumes(const std::vector<VolumeDesc>& volumes, AssembledScene& scene,
-                       AssembledScene& before) {
-    bool all = volumes.size() == before.volumes.size() && before.field != nullptr &&
-               before.field->constituent_count() == scene.water.medium.constituent_count();
-    scene.volumes.resize(volumes.size());
-    for (std::size_t v = 0; v < volumes.size(); ++v) {
-        const bool same = v < before.volumes.size() && before.desc.volumes[v] == volumes[v] &&
-                          before.water.loads[v] == scene.water.loads[v];
-        if (same) scene.volumes[v] = std::move(before.volumes[v]);
-        all = all && same;
-    }
-    if (all) scene.field = before.field;
-    before.volumes.clear();
-    before.field.reset();
-}
-
-/// `interpolates`: columns to lamps are.
-void load_volumes(const std::vector<VolumeDesc>& volumes, bool interpolates,
-                  AssembledScene& scene) {
-    for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
-        LoadedVolume& volume = scene.volumes[v];
-        if (volume.grids.empty()) volume = load_volume(volumes[v], scene.water.loads[v]);
+void report_volumes(AssembledScene& scene) {
+    const bool interpolates_columns =
+        integrator_kind(scene.desc().render.integrator).needs_deep_shadows;
+    for (const LoadedVolume& volume : scene.volumes) {
         append(scene.warnings, volume.warnings);
         for (const VolumeReport& report : volume.reports)
             if (const auto warning = coarse_voxel_warning(report, scene.water.medium);
-                warning && interpolates)
+                warning && interpolates_columns)
                 scene.warnings.push_back(*warning);
         scene.volume_reports.insert(scene.volume_reports.end(), volume.reports.begin(),
                                     volume.reports.end());
     }
-    if (scene.field) return;
-    std::vector<GridVolume> grids;
-    for (const LoadedVolume& volume : scene.volumes)
-        grids.insert(grids.end(), volume.grids.begin(), volume.grids.end());
-    scene.field =
-        std::make_shared<GridField>(std::move(grids), scene.water.medium.constituent_count());
-}
-
-void take_over_surfaces(const SceneDesc& desc, AssembledScene& scene, AssembledScene& before) {
-    if (before.surfaces && before.desc.geometry == desc.geometry &&
-        before.desc.water.bands_nm == desc.water.bands_nm) {
-        scene.surfaces = before.surfaces;
-        scene.geometry_warnings = std::move(before.geometry_warnings);
-    }
-    before.surfaces.reset();
-    scene.meshes = before.meshes ? std::move(before.meshes) : std::make_shared<MeshStore>();
 }
 
 void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
@@ -139,13 +90,13 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
 
 LightTransport transport_in(const Medium& medium, const PathWeight& path_weight,
                             const AssembledScene& scene, const DeepShadows& deep_shadows) {
-    const RenderDesc& render = scene.desc.render;
+    const RenderDesc& render = scene.desc().render;
     LitScene lit = scene.lit();
     lit.medium = &medium;
     lit.path_weight = path_weight;
     return integrator_kind(render.integrator)
         .make({lit,
-               scene.desc.camera.world_from_camera,
+               scene.desc().camera.world_from_camera,
                scene.slabs.value_or(Slabs{}),
                render.quality,
                {deep_shadows.begin(), deep_shadows.end()}});
@@ -159,13 +110,14 @@ void weigh_as_output(const SceneDesc& desc, LightTransport& transport) {
 
 }  // namespace
 
-AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage,
-                              AssembledScene before) {
-    AssembledScene scene;
+AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
+                              const StageCallback& begin_stage) {
+    AssembledScene scene(image);
+    const SceneDesc& desc = scene.desc();
     check_integrator(desc);
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
-    scene.water = before.camera && same_water(before.desc, desc) ? before.water : build_water(desc);
+    scene.water = cache.water(desc);
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
     check_forward_scatter_of(desc, medium);
@@ -173,42 +125,39 @@ AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_
         scene.snow = make_snow_model(*desc.water.snow, *scene.camera, medium);
         if (scene.snow->warning) scene.warnings.push_back(*scene.snow->warning);
     }
-    take_over_volumes(desc.volumes, scene, before);
-    take_over_surfaces(desc, scene, before);
+    cache.keep_only(desc, scene.water);
     begin_stage("volumes");
-    load_volumes(desc.volumes, integrator_kind(desc.render.integrator).needs_deep_shadows, scene);
+    VolumeSet volumes = cache.volumes(desc, scene.water);
+    scene.volumes = std::move(volumes.volumes);
+    scene.field = std::move(volumes.field);
+    report_volumes(scene);
     begin_stage("geometry");
-    if (!scene.surfaces)
-        scene.surfaces = build_surfaces(desc.geometry, medium.wavelengths_nm,
-                                        scene.geometry_warnings, *scene.meshes);
+    const SurfaceSet& built = cache.surfaces(desc);
+    scene.surfaces = built.surfaces;
+    scene.geometry_warnings = built.warnings;
     append(scene.warnings, scene.geometry_warnings);
     place_lamps(desc, scene);
     warn_of_lamps_at_the_camera(desc, scene);
     return scene;
 }
 
-AssembledScene assemble_scene(const SceneDesc& desc, const StageCallback& begin_stage) {
-    return assemble_scene(desc, begin_stage, AssembledScene());
-}
-
 Slabs place_slabs(const AssembledScene& scene) {
-    return place_slabs(scene.desc.render.planes, *scene.camera, scene.lit());
+    return place_slabs(scene.desc().render.planes, *scene.camera, scene.lit());
 }
 
-AssembledScene with_moved(const AssembledScene& scene, SceneDesc desc,
-                          std::unique_ptr<Camera> camera) {
-    AssembledScene moved;
+AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
+                          std::unique_ptr<Camera> camera, SceneCache& cache) {
+    AssembledScene moved(std::move(then));
+    const SceneDesc& desc = moved.desc();
     moved.camera = std::move(camera);
     moved.water = scene.water;
     moved.snow = scene.snow;
     moved.field = scene.field;
     moved.surfaces = scene.surfaces;
-    if (desc.geometry != scene.desc.geometry)
-        moved.surfaces = build_surfaces(desc.geometry, scene.water.medium.wavelengths_nm,
-                                        moved.geometry_warnings, *scene.meshes);
+    if (desc.geometry != scene.desc().geometry)
+        moved.surfaces = cache.surfaces_of_moment(desc).surfaces;
     place_lamps(desc, moved);
     moved.warnings.clear();
-    moved.desc = std::move(desc);
     if (scene.slabs) moved.slabs = place_slabs(moved);
     return moved;
 }
@@ -223,19 +172,19 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
         transport.integrator =
             std::make_unique<BeyondSnow>(make(scene.snow->water).integrator,
                                          make(scene.snow->alone).integrator, scene.snow->parts());
-    if (with_paths && integrator_kind(scene.desc.render.integrator).traces_paths)
+    if (with_paths && integrator_kind(scene.desc().render.integrator).traces_paths)
         transport.paths = std::make_shared<PathTracer>(scene.lit());
     else if (with_paths)
         transport.paths = std::make_shared<PathTracer>(
             scene.lit(), PathOptions{{deep_shadows.begin(), deep_shadows.end()}});
-    weigh_as_output(scene.desc, transport);
+    weigh_as_output(scene.desc(), transport);
     return transport;
 }
 
 LightTransport make_single_scattering(const AssembledScene& scene, const DeepShadows& deep_shadows,
                                       const Medium& medium, const PathWeight& path_weight) {
     LightTransport transport = transport_in(medium, path_weight, scene, deep_shadows);
-    weigh_as_output(scene.desc, transport);
+    weigh_as_output(scene.desc(), transport);
     return transport;
 }
 

@@ -9,6 +9,7 @@
 #include "camera/calibration.h"
 #include "camera/camera.h"
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/text.h"
 #include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh_reader.h"
@@ -18,6 +19,7 @@
 #include "core/scene/scene_desc.h"
 #include "core/scene/variations.h"
 #include "core/scene/yaml_document.h"
+#include "render/image_scene.h"
 
 namespace uw {
 
@@ -183,10 +185,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Walks through a scene description and collects the files that it names.
+/// Walks through a scene description and collects the files that it names for a frame.
 class InputCollection {
   public:
-    explicit InputCollection(MeshSideFiles& known) : known_(known) {}
+    InputCollection(std::optional<int> frame, MeshSideFiles& known)
+        : frame_(frame), known_(known) {}
 
     void add(const SceneDesc& scene) {
         add(scene.file, "the scene", true);
@@ -208,6 +211,9 @@ class InputCollection {
     std::vector<InputFile> take() && { return std::move(files_); }
 
   private:
+    fs::path file_of(const auto& input) const {
+        return frame_ && input.is_sequence ? file_of_frame(input.file, *frame_) : input.file;
+    }
     void add(const fs::path& file, const char* what, bool is_hashed = false) {
         if (!file.empty()) files_.push_back({file, what, is_hashed});
     }
@@ -234,36 +240,35 @@ class InputCollection {
         if (spectrum.type == LampSpectrumDesc::Type::file) add(spectrum.file, what);
     }
     void add(const VolumeDesc& volume) {
-        add(volume.file, "a volume of the scene");
-        if (volume.motion) add(volume.motion->file, "a velocity file of the scene");
+        add(file_of(volume), "a volume of the scene");
+        if (volume.motion) add(file_of(*volume.motion), "a velocity file of the scene");
         for (const GridMappingDesc& grid : volume.grids)
             if (grid.optics && grid.optics->phase) add(*grid.optics->phase);
     }
     void add(const GeometryDesc& geometry) {
         add(geometry.trajectory);
         if (geometry.type != GeometryDesc::Type::file) return;
-        add(geometry.file, "a mesh of the scene");
-        const auto [found, is_new] = known_.try_emplace(geometry.file);
-        if (is_new) found->second = files_named_by_mesh(geometry.file);
+        const fs::path mesh = file_of(geometry);
+        add(mesh, "a mesh of the scene");
+        const auto [found, is_new] = known_.try_emplace(mesh);
+        if (is_new) found->second = files_named_by_mesh(mesh);
         for (const fs::path& file : found->second)
             add(file, "a texture, buffer or material library of a mesh");
     }
 
+    std::optional<int> frame_;
     MeshSideFiles& known_;
     std::vector<InputFile> files_;
 };
 
 }  // namespace
 
-std::vector<InputFile> input_files(const SceneDesc& scene, MeshSideFiles& known) {
-    InputCollection collection(known);
-    collection.add(scene);
+std::vector<InputFile> input_files(const SceneDesc& whole, const ImageChoice& choice,
+                                   MeshSideFiles& known) {
+    check_moment(whole, choice);
+    InputCollection collection(choice.frame, known);
+    collection.add(whole);
     return std::move(collection).take();
-}
-
-std::vector<InputFile> input_files(const SceneDesc& scene) {
-    MeshSideFiles known;
-    return input_files(scene, known);
 }
 
 }  // namespace uw

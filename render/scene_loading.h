@@ -86,10 +86,11 @@ struct InputFile {
 /// The files that glTF and OBJ files refer to, by that file: looked up once for many frames.
 using MeshSideFiles = std::map<std::filesystem::path, std::vector<std::filesystem::path>>;
 
-/// Every file that the scene of one image is read from, the scene file itself first: the one answer
-/// to which files a scene depends on. A file that serves two purposes is listed twice. Missing or
-/// broken files are not an error here. `known` is looked up and added to.
-std::vector<InputFile> input_files(const SceneDesc& scene, MeshSideFiles& known);
-std::vector<InputFile> input_files(const SceneDesc& scene);
+/// Every file that an image of a scene is read from, the scene file itself first: the one answer to
+/// which files it depends on. Sequences without a frame are listed by their own names. A file that
+/// serves two purposes is listed twice. Missing or broken files are not an error here. `known` is
+/// looked up and added to. Throws InputError for a frame that a trajectory does not have.
+std::vector<InputFile> input_files(const SceneDesc& whole, const ImageChoice& choice,
+                                   MeshSideFiles& known);
 
 }  // namespace uw

@@ -36,7 +36,8 @@ bool paths_at_nodes(const RenderDesc& render) {
 
 }  // namespace
 
-PassList make_passes(const SceneDesc& scene, const PathRequest& paths, std::int64_t frame) {
+PassList make_passes(const ImageScene& image, const PathRequest& paths, std::int64_t frame) {
+    const SceneDesc& scene = image.desc();
     const RenderDesc& render = scene.render;
     PassList passes;  // check_integrator refuses those that do not go together
     if (paths_at_nodes(render)) passes.add<AllLightPass>();
@@ -46,12 +47,13 @@ PassList make_passes(const SceneDesc& scene, const PathRequest& paths, std::int6
     else
         passes.add<PixelPass>(render);
     if (scene.water.forward_scatter.K > 0) passes.add<ForwardPass>();
-    passes.add<TruthPass>(scene);
+    passes.add<TruthPass>(image.choice().frame.has_value(), scene.cameras.size() > 1);
     if (scene.camera.sensor) passes.add<SensorPass>(*scene.camera.sensor, frame);
     return passes;
 }
 
-LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const PathRequest& paths) {
+LayerPlan layer_plan(const ImageScene& image, std::string_view request, const PathRequest& paths) {
+    const SceneDesc& scene = image.desc();
     const bool traces_paths = integrator_kind(scene.render.integrator).traces_paths;
     for (const auto& [requested, option] :
          {std::pair{paths.error.has_value(), "--error"}, std::pair{paths.orders > 0, "--orders"}})
@@ -61,7 +63,7 @@ LayerPlan layer_plan(const SceneDesc& scene, std::string_view request, const Pat
     std::vector<std::string> names;
     names.reserve(scene.lamps.size());
     for (const LampDesc& lamp : scene.lamps) names.push_back(lamp.name);
-    return {request, scene.water.bands_nm, names, make_passes(scene, paths).supply()};
+    return {request, scene.water.bands_nm, names, make_passes(image, paths).supply()};
 }
 
 DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium& medium) {
@@ -78,21 +80,21 @@ DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium&
 
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts, const PointMatchers& matchers) {
-    int samples = samples_of(scene.desc.render);
-    if (integrator_kind(scene.desc.render.integrator).traces_paths)
+    int samples = samples_of(scene.desc().render);
+    if (integrator_kind(scene.desc().render.integrator).traces_paths)
         samples = std::min(samples, k_most_samples_beside_paths);
     return {*scene.camera,
             scene.lit(),
             transport,
             {samples, scene.total_samples, scene.first_sample},
             scene.slabs.value_or(Slabs{}),
-            SensorModel(scene.desc),
+            SensorModel(scene.desc()),
             parts,
             matchers};
 }
 
 std::optional<std::string> far_lamp_warning(const AssembledScene& scene) {
-    if (!paths_at_nodes(scene.desc.render)) return std::nullopt;
+    if (!paths_at_nodes(scene.desc().render)) return std::nullopt;
     const std::optional<double> depth = depth_of_nearest_lamp(scene);
     if (!depth || *depth <= k_most_depth) return std::nullopt;
     return fmt::format(

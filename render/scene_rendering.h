@@ -13,13 +13,14 @@
 
 namespace uw {
 
-/// The passes of an image of `scene`, the only place that knows which ones it takes.
-/// `frame`: the image's number, on which the sensor's noise depends.
-PassList make_passes(const SceneDesc& scene, const PathRequest& paths = {}, std::int64_t frame = 0);
+/// The passes of an image, the only place that knows which ones it takes.
+/// `frame`: its number, on which the sensor's noise depends.
+PassList make_passes(const ImageScene& image, const PathRequest& paths = {},
+                     std::int64_t frame = 0);
 
-/// The layers of an image of `scene`, resolved: `request` is what LayerPlan takes. Throws as it
-/// does, and UsageError if `paths` is requested of an integrator that traces none.
-LayerPlan layer_plan(const SceneDesc& scene, std::string_view request,
+/// The layers of an image: `request` is what LayerPlan takes. Throws as it does, and UsageError if
+/// `paths` is requested of an integrator that traces none.
+LayerPlan layer_plan(const ImageScene& image, std::string_view request,
                      const PathRequest& paths = {});
 
 /// The resolution at which lamps are splatted into water of `medium` for an image of this quality.

@@ -14,12 +14,13 @@ void shrink_image(CameraDesc& camera, int most_width, int most_height) {
     resize_image(camera, width, std::clamp(static_cast<int>(std::lround(height)), 1, most_height));
 }
 
-ResolvedScene draft_of(ResolvedScene scene, int most_width, int most_height) {
-    ImageRequest draft;
-    draft.quality = "draft";
-    apply_request(draft, scene.edit());
-    shrink_image(scene.edit().camera, most_width, most_height);
-    return scene;
+ImageScene draft_of(const ImageScene& scene, int most_width, int most_height) {
+    return scene.with([&](SceneDesc& desc) {
+        ImageRequest draft;
+        draft.quality = "draft";
+        apply_request(draft, desc);
+        shrink_image(desc.camera, most_width, most_height);
+    });
 }
 
 }  // namespace uw

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "core/scene/camera_desc.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 namespace uw {
 
@@ -14,7 +14,7 @@ void shrink_image(CameraDesc& camera, int most_width,
 
 /// The scene of a small, quickly rendered picture of the same view: draft quality, as many samples
 /// as the drafts of its integrator have, and the size of shrink_image.
-ResolvedScene draft_of(ResolvedScene scene, int most_width,
-                       int most_height = std::numeric_limits<int>::max());
+ImageScene draft_of(const ImageScene& scene, int most_width,
+                    int most_height = std::numeric_limits<int>::max());
 
 }  // namespace uw

@@ -30,33 +30,33 @@ const SceneDesc& JobScenes::of(int number) {
     return *scene_;
 }
 
-ResolvedScene JobScenes::resolved(const JobImage& image) {
-    SceneDesc scene = scene_of_image(of(image.scene), image.choice);
+ImageScene JobScenes::made(const JobImage& image) {
+    SceneDesc scene = of(image.scene);
     scene.warnings.insert(scene.warnings.end(), warnings_.begin(), warnings_.end());
-    return {std::move(scene)};
+    return {std::move(scene), image.choice};
 }
 
-ResolvedScene JobScenes::take(const JobImage& image) {
-    if (!ahead_ || image != ahead_image_) return resolved(image);
+ImageScene JobScenes::take(const JobImage& image) {
+    if (!ahead_ || image != ahead_image_) return made(image);
     return *std::exchange(ahead_, std::nullopt);
 }
 
-const SceneDesc& JobScenes::look_at(const JobImage& image) {
+const ImageScene& JobScenes::look_at(const JobImage& image) {
     if (!ahead_ || image != ahead_image_) {
-        ahead_ = resolved(image);
+        ahead_ = made(image);
         ahead_image_ = image;
     }
-    return ahead_->desc();
+    return *ahead_;
 }
 
 fs::file_time_type InputTimes::last_change(const JobImage& image) {
     // The cameras of a moment have their files in common.
     if (image_ && image_->scene == image.scene && image_->choice.frame == image.choice.frame)
         return last_;
-    const SceneDesc scene = scene_of_image(scenes_.of(image.scene), image.choice);
+    const SceneDesc& scene = scenes_.of(image.scene);
     last_ = fs::file_time_type::min();
     image_ = image;
-    for (const InputFile& input : input_files(scene, known_)) {
+    for (const InputFile& input : input_files(scene, image.choice, known_)) {
         if (input.is_hashed) continue;
         std::error_code error;
         const auto written = fs::last_write_time(input.file, error);
@@ -120,11 +120,11 @@ std::vector<InputFile> check_inputs(const Job& job) {
         check_sequences(frames, scene);
         std::vector<VolumeSequenceCheck> checks(frames.empty() ? 0 : scene.volumes.size());
         for (const JobImage& image : of_scene) {
-            const SceneDesc of_image = scene_of_image(scene, image.choice);
-            if (image.choice.camera == of_scene.front().choice.camera)
+            if (image.choice.frame && image.choice.camera == of_scene.front().choice.camera)
                 for (std::size_t v = 0; v < checks.size(); ++v)
-                    if (scene.volumes[v].is_sequence) checks[v].take(of_image.volumes[v]);
-            std::ranges::move(input_files(of_image, known), std::back_inserter(inputs));
+                    if (scene.volumes[v].is_sequence)
+                        checks[v].take(volume_of_frame(scene.volumes[v], *image.choice.frame));
+            std::ranges::move(input_files(scene, image.choice, known), std::back_inserter(inputs));
         }
     }
     return inputs;

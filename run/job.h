@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/scene/scene_desc.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_loading.h"
 
 namespace uw {
@@ -35,25 +35,25 @@ class JobScenes {
     /// reader does.
     const SceneDesc& of(int number);
 
-    /// The scene of an image, ready to be rendered. Throws as scene_of_image and ResolvedScene do.
-    ResolvedScene take(const JobImage& image);
+    /// The scene of an image, ready to be rendered. Throws as ImageScene does.
+    ImageScene take(const JobImage& image);
 
     /// The same ahead of the image's turn: it is kept until it is taken, so that its glTF files
     /// are imported once.
-    const SceneDesc& look_at(const JobImage& image);
+    const ImageScene& look_at(const JobImage& image);
 
     /// Adds a warning about the whole job to those of each image's scene.
     void warn(std::string line) { warnings_.push_back(std::move(line)); }
 
   private:
-    ResolvedScene resolved(const JobImage& image);
+    ImageScene made(const JobImage& image);
 
     Reader read_;
     std::vector<std::string> warnings_;
     int number_ = 0;
     std::optional<SceneDesc> scene_;  // of that number
     JobImage ahead_image_;
-    std::optional<ResolvedScene> ahead_;
+    std::optional<ImageScene> ahead_;
 };
 
 /// The images that are rendered, one after the other, and the scenes that they show.
@@ -68,7 +68,7 @@ class InputTimes {
   public:
     explicit InputTimes(JobScenes& scenes) : scenes_(scenes) {}
 
-    /// Throws as scene_of_image does.
+    /// Throws as input_files does.
     std::filesystem::file_time_type last_change(const JobImage& image);
 
   private:

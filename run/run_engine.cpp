@@ -70,7 +70,7 @@ void RunEngine::render(std::size_t place) {
     const JobImage& image = job_->images[place];
     place_ = place;
     warned_of_image_ = 0;
-    ResolvedScene scene = job_->scenes.take(image);
+    ImageScene scene = job_->scenes.take(image);
     WantedImage wanted = client_->want(place, scene);
     wanted.options.frame = image.choice.frame.value_or(0);
     const RenderOptions options = rendered_for(wanted, scene.desc().camera);
@@ -87,7 +87,7 @@ void RunEngine::render(std::size_t place) {
 }
 
 FinishedImage RunEngine::finished(const WantedImage& wanted) {
-    const SceneDesc& scene = renderer_.scene();
+    const ImageScene& scene = renderer_.scene();
     const RenderOptions& options = wanted.options;
     FinishedImage image{renderer_.release_film(),
                         layer_plan(scene, options.layers, options.paths),
@@ -97,8 +97,9 @@ FinishedImage RunEngine::finished(const WantedImage& wanted) {
                         renderer_.report(),
                         renderer_.assembled().surfaces};
     if (!wanted.camera_image) return image;
-    const PixelWindow window = window_of(wanted, scene.camera);
-    image.sensor = Development(*scene.camera.sensor)(image.film, window);
+    const CameraDesc& camera = scene.desc().camera;
+    const PixelWindow window = window_of(wanted, camera);
+    image.sensor = Development(*camera.sensor)(image.film, window);
     if (image.film.window() != window || image.film.channel_names() != image.plan.channel_names())
         image.film = with_channels(image.film, image.plan.channel_names(), window);
     return image;
@@ -146,9 +147,9 @@ std::string without_frame(std::string warning, const SceneDesc& frame, const Sce
 }  // namespace
 
 void RunEngine::warn(std::size_t place, const std::string& line) {
-    const SceneDesc& scene = renderer_.scene();
-    const SceneDesc& all_frames = scene.whole ? *scene.whole : scene;
-    if (warned_.insert(without_frame(line, scene, all_frames)).second) client_->warn(place, line);
+    const ImageScene& scene = renderer_.scene();
+    if (warned_.insert(without_frame(line, scene.desc(), scene.whole())).second)
+        client_->warn(place, line);
 }
 
 void RunEngine::warn_of_image() {

@@ -95,7 +95,7 @@ class RunClient {
     RunClient& operator=(RunClient&&) = delete;
 
     /// What is wanted of an image in its scene, which may be changed: to a draft, for instance.
-    virtual WantedImage want(std::size_t place, ResolvedScene& scene) = 0;
+    virtual WantedImage want(std::size_t place, ImageScene& scene) = 0;
     /// The image's scene has been loaded; nothing is rendered yet.
     virtual void loaded(std::size_t /*place*/) {}
     /// The image is there. The renderer still holds what it was made of.

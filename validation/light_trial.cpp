@@ -152,15 +152,17 @@ std::vector<Pixel> draw_pixels(int width, int height, std::size_t bands) {
 
 class AllLightTrial {
   public:
-    AllLightTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options,
-                  const TransportChange& under_test)
-        : scene_(std::move(scene)), options_(options), under_test_(under_test) {
-        SceneDesc& desc = scene_.edit();
-        show_radiance_in_water(desc, k_longest_side_in_all_light);
-        desc.render.scattering = RenderDesc::Scattering::multiple;
-        desc.render.samples = k_samples;
+    AllLightTrial(const ImageScene& scene, const std::string& name,
+                  const ValidationOptions& options, const TransportChange& under_test)
+        : scene_(scene.with([](SceneDesc& desc) {
+              show_radiance_in_water(desc, k_longest_side_in_all_light);
+              desc.render.scattering = RenderDesc::Scattering::multiple;
+              desc.render.samples = k_samples;
+          })),
+          options_(options),
+          under_test_(under_test) {
         result_.name = name + ", all light";
-        result_.bands_nm = desc.water.bands_nm;
+        result_.bands_nm = scene_.desc().water.bands_nm;
     }
 
     LightValidation run() {
@@ -178,9 +180,9 @@ class AllLightTrial {
     std::size_t bands() const { return result_.bands_nm.size(); }
 
     Renderer make_renderer(RenderDesc::Integrator integrator) {
-        scene_.edit().render.integrator = integrator;
         Renderer renderer([this](const std::string&, double) { return options_.proceed(); });
-        renderer.set_scene(scene_);
+        renderer.set_scene(
+            scene_.with([&](SceneDesc& desc) { desc.render.integrator = integrator; }));
         return renderer;
     }
 
@@ -306,7 +308,7 @@ class AllLightTrial {
                         pixels_.size(), k_rounds * k_paths_of_round)};
     }
 
-    ResolvedScene scene_;
+    ImageScene scene_;
     const ValidationOptions& options_;
     const TransportChange& under_test_;
     LightValidation result_;
@@ -340,15 +342,15 @@ LightValidation validate_by_table(const ValidationOptions& options) {
     return validate_by_table(k_table, options);
 }
 
-LightValidation validate_all_light(ResolvedScene scene, const std::string& name,
+LightValidation validate_all_light(const ImageScene& scene, const std::string& name,
                                    const ValidationOptions& options,
                                    const TransportChange& under_test) {
-    return AllLightTrial(std::move(scene), name, options, under_test).run();
+    return AllLightTrial(scene, name, options, under_test).run();
 }
 
-LightValidation validate_all_light(ResolvedScene scene, const std::string& name,
+LightValidation validate_all_light(const ImageScene& scene, const std::string& name,
                                    const ValidationOptions& options) {
-    return validate_all_light(std::move(scene), name, options, {});
+    return validate_all_light(scene, name, options, {});
 }
 
 }  // namespace uw

@@ -51,7 +51,7 @@ LightValidation validate_by_table(std::span<const LampTableRow> table,
                                   const ValidationOptions& options);
 
 /// As validate_all_light in validation.h, but of the fast form as `under_test` changes it.
-LightValidation validate_all_light(ResolvedScene scene, const std::string& name,
+LightValidation validate_all_light(const ImageScene& scene, const std::string& name,
                                    const ValidationOptions& options,
                                    const TransportChange& under_test);
 

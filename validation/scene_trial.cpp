@@ -45,8 +45,7 @@ const char* const k_volume_on_grids = "volume, own grids";
 const char* const k_reference_on_grids = "reference, own grids";
 const char* const k_direct_sum = "direct sum";
 
-ResolvedScene small_image(ResolvedScene scene) {
-    SceneDesc& small = scene.edit();
+void make_small(SceneDesc& small) {
     if (small.camera.distortion.model == DistortionDesc::Model::fisheye)
         throw InputError(
             "validate: it includes sums over slabs parallel to the image plane, but a fisheye lens "
@@ -56,7 +55,6 @@ ResolvedScene small_image(ResolvedScene scene) {
     small.render.scattering = RenderDesc::Scattering::single;
     small.render.quality = RenderDesc::Quality::exact;
     small.render.samples = 1;
-    return scene;
 }
 
 bool scatters_in_all_bands(const Medium& medium) {
@@ -68,9 +66,9 @@ bool scatters_in_all_bands(const Medium& medium) {
 /// Collects images and compares them.
 class SceneTrial {
   public:
-    SceneTrial(ResolvedScene scene, const std::string& name, const ValidationOptions& options,
+    SceneTrial(const ImageScene& scene, const std::string& name, const ValidationOptions& options,
                const TransportChange& under_test)
-        : scene_(small_image(std::move(scene))), options_(options), under_test_(under_test) {
+        : scene_(scene.with(make_small)), options_(options), under_test_(under_test) {
         result_.name = name;
         result_.width = scene_.desc().camera.width;
         result_.height = scene_.desc().camera.height;
@@ -177,7 +175,10 @@ class SceneTrial {
     // Does so by an integrator that uses no splatted light or columns.
     void scatter_without_splats(const std::string& method, TrialScene& trial,
                                 RenderDesc::Integrator which) {
-        trial.renderer.edit([&](AssembledScene& parts) { parts.desc.render.integrator = which; });
+        trial.renderer.edit([&](AssembledScene& parts) {
+            parts.image =
+                parts.image.with([&](SceneDesc& desc) { desc.render.integrator = which; });
+        });
         scatter(method, trial, trial.renderer.make_transport());
     }
 
@@ -239,7 +240,7 @@ class SceneTrial {
         result_.planes = std::move(sums.steps);
     }
 
-    ResolvedScene scene_;
+    ImageScene scene_;
     const ValidationOptions& options_;
     const TransportChange& under_test_;
     SceneValidation result_;
@@ -248,15 +249,15 @@ class SceneTrial {
 
 }  // namespace
 
-SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
+SceneValidation validate_scene(const ImageScene& scene, const std::string& name,
                                const ValidationOptions& options,
                                const TransportChange& under_test) {
-    return SceneTrial(std::move(scene), name, options, under_test).run();
+    return SceneTrial(scene, name, options, under_test).run();
 }
 
-SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
+SceneValidation validate_scene(const ImageScene& scene, const std::string& name,
                                const ValidationOptions& options) {
-    return validate_scene(std::move(scene), name, options, {});
+    return validate_scene(scene, name, options, {});
 }
 
 }  // namespace uw

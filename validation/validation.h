@@ -11,7 +11,7 @@
 
 #include "core/base/spectrum.h"
 #include "core/image/pixel_image.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 namespace uw {
 
@@ -84,7 +84,7 @@ struct SceneValidation {
 /// also its effect on each method's light: the finest sum over planes, the reference integrator, a
 /// VDB that holds half of the water, and a sum over all pairs of pixels against the volume
 /// integrator. Throws InputError, and Interrupted.
-SceneValidation validate_scene(ResolvedScene scene, const std::string& name,
+SceneValidation validate_scene(const ImageScene& scene, const std::string& name,
                                const ValidationOptions& options);
 
 /// How far single pixels are apart, over a number of them.
@@ -147,7 +147,7 @@ LightValidation validate_by_table(const ValidationOptions& options);
 /// light paths (integrator path) at pixels drawn at random all over the image: the parts
 /// multiple.volume and multiple.surface, and their sum, in units of both standard errors. The image
 /// is that of `scene` with at most 320 pixels a side. Throws InputError, and Interrupted.
-LightValidation validate_all_light(ResolvedScene scene, const std::string& name,
+LightValidation validate_all_light(const ImageScene& scene, const std::string& name,
                                    const ValidationOptions& options);
 
 }  // namespace uw

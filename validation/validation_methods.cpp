@@ -26,16 +26,16 @@ constexpr int k_mean_samples = 64;     // along each edge of the field's bounds
 constexpr int k_grid_side = 48;        // voxels of the constant grid along each edge
 constexpr double k_reach_depths = 15;  // optical depths that the constant grid extends
 
-Renderer make_renderer(const ResolvedScene& scene, const std::function<bool()>& proceed) {
+Renderer make_renderer(const ImageScene& scene, const std::function<bool()>& proceed) {
     Renderer renderer([proceed](const std::string&, double) { return proceed(); });
     renderer.set_scene(scene);
     return renderer;
 }
 
 // `scene` without its volumes, in the water of `medium`; not splatted.
-Renderer in_water(ResolvedScene scene, Medium medium, const std::function<bool()>& proceed) {
-    scene.edit().volumes.clear();
-    Renderer renderer = make_renderer(scene, proceed);
+Renderer in_water(const ImageScene& scene, Medium medium, const std::function<bool()>& proceed) {
+    Renderer renderer =
+        make_renderer(scene.with([](SceneDesc& desc) { desc.volumes.clear(); }), proceed);
     renderer.edit([&](AssembledScene& parts) { parts.water.medium = std::move(medium); });
     return renderer;
 }
@@ -113,11 +113,11 @@ void show_radiance_in_water(SceneDesc& scene, int longest_side) {
         std::visit([](auto& port) { port.fresnel = port.radiance_in_air = false; }, *camera.port);
 }
 
-TrialScene make_trial(const ResolvedScene& scene, const std::function<bool()>& proceed) {
+TrialScene make_trial(const ImageScene& scene, const std::function<bool()>& proceed) {
     return splatted(make_renderer(scene, proceed));
 }
 
-TrialScene homogenised(const TrialScene& trial, const ResolvedScene& scene,
+TrialScene homogenised(const TrialScene& trial, const ImageScene& scene,
                        const std::function<bool()>& proceed) {
     Medium medium = trial.scene().water.medium;
     const std::vector<double> mean = mean_concentrations(*trial.scene().field);
@@ -127,7 +127,7 @@ TrialScene homogenised(const TrialScene& trial, const ResolvedScene& scene,
     return splatted(in_water(scene, std::move(medium), proceed));
 }
 
-TrialScene with_constant_grid(const TrialScene& trial, const ResolvedScene& scene, double share,
+TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double share,
                               const std::function<bool()>& proceed) {
     Medium medium = trial.scene().water.medium;
     const OpticalCoefficients whole = medium.uniform;
@@ -164,15 +164,17 @@ TrialScene with_constant_grid(const TrialScene& trial, const ResolvedScene& scen
     renderer.edit([&](AssembledScene& parts) {
         parts.field =
             load_volumes({volume}, {{{GridLoad{0, 1.0}}}}, 1, parts.volume_reports, parts.warnings);
-        ForwardScatterDesc& forward = parts.desc.water.forward_scatter;
-        forward.G *= 1 - share;
-        forward.B *= 1 - share;
+        parts.image = parts.image.with([&](SceneDesc& desc) {
+            ForwardScatterDesc& forward = desc.water.forward_scatter;
+            forward.G *= 1 - share;
+            forward.B *= 1 - share;
+        });
     });
     return splatted(std::move(renderer));
 }
 
 Slabs planes_of(const TrialScene& trial, int count) {
-    PlanesDesc planes = trial.scene().desc.render.planes;
+    PlanesDesc planes = trial.scene().desc().render.planes;
     planes.count = count;
     return place_slabs(planes, *trial.scene().camera, trial.scene().lit());
 }
@@ -205,8 +207,8 @@ void render_forward_scatter(TrialScene& trial, const LightTransport& transport,
     const std::string layers = "forward,backscatter";
     const Film& film =
         trial.renderer.render({.layers = layers, .window = {}, .transport = &transport});
-    const LayerPlan plan = layer_plan(trial.scene().desc, layers);
-    const std::size_t bands = trial.scene().desc.water.bands_nm.size();
+    const LayerPlan plan = layer_plan(trial.scene().image, layers);
+    const std::size_t bands = trial.scene().desc().water.bands_nm.size();
     const auto read = [&](Layer layer, std::vector<Spectrum>& component) {
         const auto first = static_cast<std::size_t>(plan.first_channel(layer));
         for (int y = 0; y < film.height(); ++y) {
@@ -306,7 +308,7 @@ MethodImage sum_over(const TrialScene& uniform, int count, const std::function<b
 
 PlaneSums sum_planes_to_limit(const TrialScene& uniform, const std::vector<char>& smooth,
                               const PlaneSumOptions& options) {
-    const std::size_t bands = uniform.scene().desc.water.bands_nm.size();
+    const std::size_t bands = uniform.scene().desc().water.bands_nm.size();
     const auto rays_of = [&](int count) {
         return static_cast<std::size_t>(count) * uniform.scene().emitters.size() * smooth.size();
     };
@@ -409,7 +411,7 @@ class DirectSum {
     DirectSum(const TrialScene& trial, const std::function<bool()>& proceed)
         : trial_(trial),
           proceed_(proceed),
-          desc_(trial.scene().desc.water.forward_scatter),
+          desc_(trial.scene().desc().water.forward_scatter),
           plane_(scatter_plane(*trial.scene().camera)),
           bands_(static_cast<std::size_t>(trial.scene().water.medium.band_count())),
           pixels_(static_cast<std::size_t>(trial.width() * trial.height())) {}

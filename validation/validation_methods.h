@@ -30,11 +30,11 @@ struct TrialScene {
 
 /// Assembles `scene` and splats its lamps. This, and whatever is rendered of it, ends with
 /// Interrupted if `proceed` returns false; likewise the two functions that follow.
-TrialScene make_trial(const ResolvedScene& scene, const std::function<bool()>& proceed);
+TrialScene make_trial(const ImageScene& scene, const std::function<bool()>& proceed);
 
 /// `trial` with its grids replaced by their mean over the field's bounds: uniform water, which
 /// scatters forward with the scene's K, G and B. `scene` is what `trial` was made from.
-TrialScene homogenised(const TrialScene& trial, const ResolvedScene& scene,
+TrialScene homogenised(const TrialScene& trial, const ImageScene& scene,
                        const std::function<bool()>& proceed);
 
 /// `trial`, whose water is uniform, with a `share` of that water (above 0, at most 1) moved into a
@@ -42,7 +42,7 @@ TrialScene homogenised(const TrialScene& trial, const ResolvedScene& scene,
 /// the rest. It extends from all cameras, lamps and surfaces as far as 15 optical depths. G and B
 /// of forward scatter are relative to the uniform water that they describe (physics section 6): if
 /// some of it stays, they are reduced with it, so that the blur is the same.
-TrialScene with_constant_grid(const TrialScene& trial, const ResolvedScene& scene, double share,
+TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double share,
                               const std::function<bool()>& proceed);
 
 /// `count` of McGlamery's planes in the water of `trial`, placed as its scene says.

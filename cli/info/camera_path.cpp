@@ -8,19 +8,13 @@
 
 #include "cli/svg_plot.h"
 #include "core/base/text.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 namespace uw {
 
 namespace {
 
 constexpr int k_most_points = 2000;
-
-Affine world_from_camera(const SceneDesc& scene, int frame) {
-    SceneDesc at = scene_of_image(scene, {frame});
-    if (at.camera.has_pose) return at.camera.world_from_camera;
-    return ResolvedScene(std::move(at)).desc().camera.world_from_camera;  // a glTF file's
-}
 
 /// The surface between two points, by its name; empty: there is none.
 std::string surface_between(const Point3& from, const Point3& to, const Surfaces& surfaces) {
@@ -50,7 +44,7 @@ std::optional<PathSurvey> survey_path(const SceneDesc& scene, const Surfaces& su
         point.frame =
             frames->first + static_cast<int>(std::lround(share * (frames->last - frames->first)));
         point.time = time_of_frame(scene, point.frame);
-        const Affine pose = world_from_camera(scene, point.frame);
+        const Affine pose = world_from_camera(scene, {point.frame});
         point.position = at_origin_plus(pose.offset());
         up -= pose.linear()[1].y;
         path.points.push_back(point);

@@ -8,7 +8,7 @@
 #include "core/base/vector_math.h"
 #include "core/geometry/surfaces.h"
 #include "core/scene/scene_desc.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 namespace uw {
 

@@ -22,8 +22,8 @@
 #include "core/base/output_files.h"
 #include "core/base/text.h"
 #include "core/image/image_file.h"
+#include "render/image_scene.h"
 #include "render/renderer.h"
-#include "render/resolved_scene.h"
 #include "render/scene_loading.h"
 
 namespace uw {
@@ -163,9 +163,10 @@ VdbSurvey survey_vdb(const InfoArguments& a) {
 void write_picture(const VdbSurvey& survey, const fs::path& file) {
     SceneDesc desc = load_scene_text(survey.advice.scene, "scene.yaml");
     resize_image(desc.camera, k_proposed_width / 2, k_proposed_height / 2);
-    if (!survey.sequence.pattern.empty()) desc = scene_of_image(desc, {survey.sequence.frame});
+    ImageChoice choice;
+    if (!survey.sequence.pattern.empty()) choice.frame = survey.sequence.frame;
     Renderer renderer;
-    renderer.set_scene(std::move(desc));
+    renderer.set_scene({std::move(desc), choice});
     const Film& film = renderer.render();
     write_png(file, make_preview(film, automatic_exposure(film).value_or(1.0)), {});
     print_message(fmt::format("wrote {}\n", printable(file.string(), 300)));
@@ -193,25 +194,19 @@ std::string info_on_vdb(const InfoArguments& a) {
 }
 
 /// How clearly the volumes of a scene are seen in a draft of this width. Leaves them loaded.
-DraftContrast draft_contrast(Renderer& renderer, const SceneDesc& scene, int width) {
-    ResolvedScene with = single_draft_of(SceneDesc(scene), width);
-    ResolvedScene without = with;
-    without.edit().volumes.clear();
-    renderer.set_scene(std::move(without));
+DraftContrast draft_contrast(Renderer& renderer, const ImageScene& scene, int width) {
+    const ImageScene with = single_draft_of(scene, width);
+    renderer.set_scene(with.with([](SceneDesc& desc) { desc.volumes.clear(); }));
     renderer.render();
     const Film before = renderer.release_film();
-    renderer.set_scene(std::move(with));
+    renderer.set_scene(with);
     const Film& film = renderer.render();
     return compare_drafts(renderer.assembled(), film, before);
 }
 
 /// The same; none if the scene has no volume, or no lamp to see it by.
-std::optional<DraftContrast> draft_contrast(Renderer& renderer, const SceneDesc& scene) {
-    const bool has_lamps =
-        !scene.lamps.empty() || std::ranges::any_of(scene.geometry, [](const GeometryDesc& g) {
-            return g.import.any_lamps();
-        });
-    if (scene.volumes.empty() || !has_lamps) return std::nullopt;
+std::optional<DraftContrast> draft_contrast(Renderer& renderer, const ImageScene& scene) {
+    if (scene.desc().volumes.empty() || scene.desc().lamps.empty()) return std::nullopt;
     const DraftContrast draft = draft_contrast(renderer, scene, k_draft_width);
     if (draft.seen >= k_least_seen) return draft;
     return draft_contrast(renderer, scene, k_fine_draft_width);
@@ -247,7 +242,6 @@ std::string info_on_scene(const InfoArguments& a) {
     const SceneDesc all = load_scene(a.subject, a.overrides);
     if (!a.svg.empty() && !has_motion(all))
         throw UsageError("--svg: draws the path of a camera, but nothing in this scene moves");
-    SceneDesc desc = all;
     std::vector<SequenceReport> sequences;
     std::optional<int> frame = a.frame;
     const auto look = [&](const auto& input) {
@@ -255,13 +249,13 @@ std::string info_on_scene(const InfoArguments& a) {
         sequences.push_back(look_for_frames(input.file, frame));
         frame = sequences.back().frame;
     };
-    std::ranges::for_each(desc.volumes, look);
-    std::ranges::for_each(desc.geometry, look);
-    if (sequences.empty() && a.frame && !has_motion(desc)) refuse_frame(a.subject);
-    if (frame) desc = scene_of_image(desc, {frame});
+    std::ranges::for_each(all.volumes, look);
+    std::ranges::for_each(all.geometry, look);
+    if (sequences.empty() && a.frame && !has_motion(all)) refuse_frame(a.subject);
+    const ImageScene scene = scene_of_image(all, {frame});
     Renderer renderer;
-    const std::optional<DraftContrast> contrast = draft_contrast(renderer, desc);
-    renderer.set_scene(std::move(desc));
+    const std::optional<DraftContrast> contrast = draft_contrast(renderer, scene);
+    renderer.set_scene(scene);
     SceneSurvey survey = survey_scene(renderer.assemble(), contrast);
     survey.sequences = std::move(sequences);
     const Surfaces& surfaces = *renderer.assembled().surfaces;

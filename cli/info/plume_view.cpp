@@ -39,7 +39,7 @@ std::vector<double> luminances(const Film& film) {
 
 /// Optical depth of the volumes along the rays of all pixels up to the first surface.
 std::vector<double> volume_depths(const AssembledScene& scene) {
-    const int width = scene.desc.camera.width, height = scene.desc.camera.height;
+    const int width = scene.desc().camera.width, height = scene.desc().camera.height;
     std::vector<double> depths(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     const Bounds bounds = scene.field->bounds();
     if (bounds.empty()) return depths;
@@ -87,12 +87,13 @@ DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, cons
     return result;
 }
 
-ResolvedScene single_draft_of(ResolvedScene scene, int width) {
+ImageScene single_draft_of(const ImageScene& scene, int width) {
     constexpr int k_most_height = 1024;
-    RenderDesc& render = scene.edit().render;
-    render.integrator = RenderDesc::Integrator::volume;
-    render.scattering = RenderDesc::Scattering::single;
-    return draft_of(std::move(scene), width, k_most_height);
+    const ImageScene single = scene.with([](SceneDesc& desc) {
+        desc.render.integrator = RenderDesc::Integrator::volume;
+        desc.render.scattering = RenderDesc::Scattering::single;
+    });
+    return draft_of(single, width, k_most_height);
 }
 
 namespace {

@@ -6,7 +6,7 @@
 #include "core/base/ray.h"
 #include "core/image/film.h"
 #include "core/scene/volume_desc.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -31,7 +31,7 @@ struct DraftContrast {
 DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, const Film& without);
 
 /// The scene of a draft with light scattered once, at most `width` pixels wide (run/draft.h).
-ResolvedScene single_draft_of(ResolvedScene scene, int width);
+ImageScene single_draft_of(const ImageScene& scene, int width);
 
 /// The width of drafts, and of those of volumes too small to be seen in these.
 inline constexpr int k_draft_width = 128, k_fine_draft_width = 512;

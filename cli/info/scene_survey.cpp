@@ -13,6 +13,7 @@
 #include "core/base/text.h"
 #include "core/light/medium.h"
 #include "render/scene_assembly.h"
+#include "render/scene_rendering.h"
 
 namespace uw {
 
@@ -209,7 +210,7 @@ std::vector<GridSurvey> survey_grids(const AssembledScene& scene, const Reach& r
 
 CentralRaySurvey survey_central_ray(const AssembledScene& scene) {
     CentralRaySurvey survey;
-    const CameraDesc& camera = scene.desc.camera;
+    const CameraDesc& camera = scene.desc().camera;
     const auto ray = scene.camera->refracted_ray(0.5 * camera.width, 0.5 * camera.height);
     if (!ray) return survey;
     survey.enters = true;
@@ -236,8 +237,8 @@ ViewSurvey survey_view(const AssembledScene& scene, const Reach& reach) {
     for (int j = 0; j < k_rows; ++j)
         for (int i = 0; i < k_columns; ++i) {
             const auto ray =
-                scene.camera->refracted_ray((i + 0.5) / k_columns * scene.desc.camera.width,
-                                            (j + 0.5) / k_rows * scene.desc.camera.height);
+                scene.camera->refracted_ray((i + 0.5) / k_columns * scene.desc().camera.width,
+                                            (j + 0.5) / k_rows * scene.desc().camera.height);
             if (!ray) continue;
             ++rays;
             SurfaceHit hit;
@@ -275,7 +276,7 @@ SceneSurvey survey_scene(const AssembledScene& scene,
     survey.grids = survey_grids(scene, reach);
     survey.central_ray = survey_central_ray(scene);
     survey.view = survey_view(scene, reach);
-    const double width = scene.desc.camera.width, height = scene.desc.camera.height;
+    const double width = scene.desc().camera.width, height = scene.desc().camera.height;
     const auto ray = [&](double x, double y) { return scene.camera->refracted_ray(x, y); };
     survey.field_of_view = {degrees_between(ray(0, height / 2), ray(width, height / 2)),
                             degrees_between(ray(width / 2, 0), ray(width / 2, height))};

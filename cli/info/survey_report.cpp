@@ -49,10 +49,10 @@ Report report_on_water(const Medium& medium) {
 }
 
 Report report_on_camera(const SceneSurvey& survey) {
-    const CameraDesc& camera = survey.scene.desc.camera;
+    const CameraDesc& camera = survey.scene.desc().camera;
     const Vector3& at = camera.world_from_camera.offset();
     const Vector3 to = camera.world_from_camera.apply_to_vector({0, 0, 1});
-    const std::string& name = survey.scene.desc.camera_name;
+    const std::string& name = survey.scene.desc().camera_name;
     Report report("camera" + (name.empty() ? name : " '" + name + "', the first of the rig"));
     report.say(fmt::format("{} x {} pixels, {:.4g} x {:.4g} degrees in the water, {}", camera.width,
                            camera.height, survey.field_of_view[0], survey.field_of_view[1],
@@ -65,7 +65,7 @@ Report report_on_camera(const SceneSurvey& survey) {
                 {"port", camera.port.has_value()},
                 {"position", vector_json(at)},
                 {"direction", vector_json(to)}});
-    const double shutter = survey.scene.desc.render.shutter;
+    const double shutter = survey.scene.desc().render.shutter;
     if (shutter > 0) report.say(fmt::format("exposed for {:.4g} ms", 1e3 * shutter));
     if (camera.line_time > 0)
         report.say(fmt::format("a rolling shutter: {:.4g} us from row to row, {:.4g} ms in all",
@@ -93,7 +93,7 @@ Report report_on_lamp(const Lamp& lamp, int band_count) {
 }
 
 Report report_on_geometry(const AssembledScene& scene) {
-    const std::size_t entries = scene.desc.geometry.size();
+    const std::size_t entries = scene.desc().geometry.size();
     Report report(entries == 0 ? "no geometry" : "geometry");
     const auto triangles = scene.surfaces->triangle_count();
     const Bounds bounds = scene.surfaces->bounds();
@@ -227,7 +227,7 @@ Report report_on_scene(const SceneSurvey& survey) {
     const AssembledScene& scene = survey.scene;
     const Medium& medium = scene.water.medium;
     Report report;
-    report.set({{"uwvdb", program_version()}, {"scene", scene.desc.file.string()}});
+    report.set({{"uwvdb", program_version()}, {"scene", scene.desc().file.string()}});
     std::vector<Report> sequences, lamps, grids;
     for (const SequenceReport& s : survey.sequences) sequences.push_back(report_on_sequence(s));
     for (const Lamp& lamp : scene.lamps) lamps.push_back(report_on_lamp(lamp, medium.band_count()));
@@ -237,7 +237,7 @@ Report report_on_scene(const SceneSurvey& survey) {
     report.add("camera", report_on_camera(survey));
     report.add("lamps", lamps, lamps.empty() ? "no lamps" : "lamps");
     report.add("geometry", report_on_geometry(scene));
-    report.add("render", report_on_render(scene.desc.render));
+    report.add("render", report_on_render(scene.desc().render));
     report.add("grids", grids, grids.empty() ? "no volumes" : "");
     report.add("central_ray", report_on_central_ray(survey.central_ray));
     report.add("view", report_on_view(survey.view));

@@ -14,7 +14,7 @@
 #include "core/base/version.h"
 #include "core/scene/render_desc.h"
 #include "dataset/formats.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "render/scene_loading.h"
 
 namespace uw {

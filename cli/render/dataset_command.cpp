@@ -27,7 +27,7 @@
 #include "dataset/set_files.h"
 #include "dataset/surface_points.h"
 #include "dataset/view.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "run/draft.h"
 #include "run/job.h"
 #include "run/run_engine.h"
@@ -71,15 +71,15 @@ class ExposureDrafts : public ViewClient {
         return {image_.value_or(1), clean_.value_or(1)};
     }
 
-    WantedImage want(std::size_t /*place*/, ResolvedScene& scene) override {
-        scene = draft_of(std::move(scene), k_draft_width);
-        scene.edit().render.samples = 1;
+    WantedImage want(std::size_t /*place*/, ImageScene& scene) override {
+        scene =
+            draft_of(scene, k_draft_width).with([](SceneDesc& desc) { desc.render.samples = 1; });
         return {{.layers = with_clean_ ? "clean" : "depth"}};
     }
 
     ImageWork take(std::size_t /*place*/, FinishedImage image) override {
         lower(image_, image.film);
-        const SceneDesc& scene = engine_.renderer().scene();
+        const SceneDesc& scene = engine_.renderer().scene().desc();
         if (with_clean_)
             lower(clean_,
                   clean_film(image.film, image.plan, scene.render.colour, scene.water.bands_nm));
@@ -127,7 +127,7 @@ class ViewRenderer : public ViewClient {
     /// When each view was rendered.
     const std::vector<std::chrono::steady_clock::time_point>& ends() const { return ends_; }
 
-    WantedImage want(std::size_t place, ResolvedScene& scene) override {
+    WantedImage want(std::size_t place, ImageScene& scene) override {
         load_points(set_.definition.view(views_[place]).draw);
         const bool has_sensor = scene.desc().camera.sensor.has_value();
         return {{.layers = layers_of(set_.definition) + (has_sensor ? ",sensor" : "")}, has_sensor};
@@ -136,10 +136,11 @@ class ViewRenderer : public ViewClient {
     ImageWork take(std::size_t place, FinishedImage image) override {
         const DatasetDefinition& definition = set_.definition;
         const View view = definition.view(views_[place]);
-        const SceneDesc& scene = engine_.renderer().scene();
+        const ImageScene& rendered = engine_.renderer().scene();
+        const SceneDesc& scene = rendered.desc();
         const double number = definition.frames[view.frame].value_or(0);
         const auto images = std::make_shared<ViewImages>(
-            ViewImages{definition, view, scene.time.value_or(number / scene.render.fps),
+            ViewImages{definition, view, rendered.time().value_or(number / scene.render.fps),
                        scene.camera, scene.render.colour, scene.water.bands_nm,
                        std::move(image.film), image.plan, std::move(image.sensor), set_.exposures,
                        std::move(image.metadata), image.surfaces, points_});
@@ -228,10 +229,10 @@ void check(const DatasetDefinition& definition, JobScenes& scenes) {
     for (const std::optional<int>& frame : definition.frames) job.images.push_back({0, {frame, 0}});
     check_inputs(job);
     const SceneDesc& scene = scenes.of(0);
-    const ResolvedScene first(scene_of_image(scene, choice_of(definition, scene, {})));
+    const ImageScene first = scene_of_image(scene, choice_of(definition, scene, {}));
     for (const std::string& name : definition.formats)
         if (const auto check = dataset_format(name).check) check(definition, first.desc());
-    layer_plan(first.desc(), layers_of(definition));  // throws for what does not exist
+    layer_plan(first, layers_of(definition));  // throws for what does not exist
     const auto refuse_jpeg = [](const CameraDesc& camera) {
         if (camera.sensor && camera.sensor->image.format == DevelopmentDesc::Format::jpeg)
             throw UsageError(
@@ -373,7 +374,7 @@ class DatasetRun {
             set_.exposures = {*exposure, *exposure};
         else
             set_.exposures = find_exposures();
-        set_.facts = facts_of(scenes_.look_at(image_of({})));
+        set_.facts = facts_of(scenes_.look_at(image_of({})).desc());
         {
             const FolderLock lock(folder);  // of several that begin at once, one says what it is
             if (!read_dataset_file(folder))

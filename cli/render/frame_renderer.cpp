@@ -99,8 +99,8 @@ void FrameRenderer::begin_stage(const std::string& stage) {
         return;
     }
     const Renderer& renderer = engine_.renderer();
-    if (stage == "splat") show("lamps", static_cast<double>(renderer.scene().lamps.size()));
-    const bool paths = integrator_kind(renderer.scene().render.integrator).traces_paths;
+    if (stage == "splat") show("lamps", static_cast<double>(renderer.scene().desc().lamps.size()));
+    const bool paths = integrator_kind(renderer.scene().desc().render.integrator).traces_paths;
     if (stage == "render" && paths)
         show("", 1);  // of how many paths may not be known yet
     else if (stage == "render" || stage == "forward scatter")
@@ -110,7 +110,7 @@ void FrameRenderer::begin_stage(const std::string& stage) {
     if (stage != "forward scatter") stats_.begin_stage(stage);  // which is part of "render"
 }
 
-WantedImage FrameRenderer::want(std::size_t place, ResolvedScene& scene) {
+WantedImage FrameRenderer::want(std::size_t place, ImageScene& scene) {
     const Frame& frame = frames_[place];
     const std::vector<std::string> lamps = names_of(scene.desc().lamps);
     if (lamps != lamps_)
@@ -121,8 +121,7 @@ WantedImage FrameRenderer::want(std::size_t place, ResolvedScene& scene) {
     options_ = {.layers = arguments_.layers, .window = frame.window, .paths = arguments_.paths()};
     if (!arguments_.numbers.empty()) {
         options_.layers = (options_.layers.empty() ? "default" : options_.layers) + "," +
-                          layers_to_measure(scene.desc()) +
-                          (arguments_.parts.object.empty() ? "" : ",id");
+                          layers_to_measure(scene) + (arguments_.parts.object.empty() ? "" : ",id");
         measured_ = scene;
     }
     stage_.clear();
@@ -137,7 +136,8 @@ void FrameRenderer::loaded(std::size_t place) {
             print_message(describe_grid(report, scene.water.medium));
     engine_.warn_of_image();
     if (!arguments_.parts.object.empty())
-        chosen_object(arguments_.parts.object, renderer.scene().geometry, scene.surfaces->names());
+        chosen_object(arguments_.parts.object, renderer.scene().desc().geometry,
+                      scene.surfaces->names());
     if (frames_[place].files.irradiance_vdb.empty()) return;
     check_irradiance_vdb(scene);
     renderer.splat();
@@ -191,7 +191,7 @@ ImageWork FrameRenderer::take(std::size_t place, FinishedImage image) {
     stats_.end_stage();
     stats_.set_output(frame.files.main().filename().string(), frame.number);
     if (measured_) {
-        const LayerPlan plan = layer_plan(measured_->desc(), arguments_.layers, arguments_.paths());
+        const LayerPlan plan = layer_plan(*measured_, arguments_.layers, arguments_.paths());
         stats_.begin_stage("numbers");
         stats_.set_numbers(measure(image));
         stats_.end_stage();
@@ -200,7 +200,7 @@ ImageWork FrameRenderer::take(std::size_t place, FinishedImage image) {
     }
     const SequenceClock& clock = engine_.clock();
     ImageStorage storage{arguments_.exr(), exposure_.of(image.film), arguments_.is_preview_16_bit};
-    if (image.sensor) storage.camera = engine_.renderer().scene().camera.sensor->image;
+    if (image.sensor) storage.camera = engine_.renderer().scene().desc().camera.sensor->image;
     // One that cannot be copied would be no part of a function.
     const auto written = std::make_shared<Written>(
         Written{place, std::move(image), std::exchange(stats_, RunStats()), std::move(outputs),

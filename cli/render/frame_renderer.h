@@ -35,7 +35,7 @@ class FrameRenderer : public RunClient {
     /// last one of a run that was stopped.
     void run(JobScenes& scenes);
 
-    WantedImage want(std::size_t place, ResolvedScene& scene) override;
+    WantedImage want(std::size_t place, ImageScene& scene) override;
     void loaded(std::size_t place) override;
     ImageWork take(std::size_t place, FinishedImage image) override;
     void warn(std::size_t place, const std::string& line) override;
@@ -59,8 +59,8 @@ class FrameRenderer : public RunClient {
     RunExposure exposure_;
     RunStats stats_;  // of the image that is rendered
     Done done_;
-    RenderOptions options_;                  // likewise, with what is measured
-    std::optional<ResolvedScene> measured_;  // likewise, if it is measured
+    RenderOptions options_;               // likewise, with what is measured
+    std::optional<ImageScene> measured_;  // likewise, if it is measured
     std::string stage_;
     std::unique_ptr<Progress> progress_;  // of the stage
     std::string measuring_;               // what is rendered for its numbers only; empty: nothing

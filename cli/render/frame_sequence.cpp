@@ -14,7 +14,7 @@
 #include "core/base/output_files.h"
 #include "core/base/text.h"
 #include "render/image_header.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 namespace uw {
 

@@ -48,10 +48,9 @@ void leave_out_rendered(FrameSequence& sequence, RunScenes& scenes, const Render
     const ExrOptions storage = a.exr();
     const auto is_wanted = [&](const Frame& frame) {
         // Headers describe the camera that was rendered, possibly a glTF file's.
-        const ResolvedScene resolved(
-            scene_of_image(scenes.of(frame.variation), frame.image().choice));
-        const SceneDesc& scene = resolved.desc();
-        const ImageLayout layout{scene.camera.width, scene.camera.height, frame.window,
+        const ImageScene scene = scene_of_image(scenes.of(frame.variation), frame.image().choice);
+        const CameraDesc& camera = scene.desc().camera;
+        const ImageLayout layout{camera.width, camera.height, frame.window,
                                  layer_plan(scene, a.layers, paths).channel_names(), storage};
         return has_header_of(frame.files.image, layout, metadata_of(scene, frame.number, paths)) &&
                has_preview(frame.files, a, exposure.of_all());
@@ -209,7 +208,7 @@ void run_render(const RenderArguments& typed) {
     for (std::string& line : warnings_of(a, first, scenes.of(first.variation), scenes))
         scenes.job().warn(std::move(line));
     // Its lamps name layers, and all frames must have the same.
-    const SceneDesc first_scene = scenes.job().look_at(first.image());
+    const ImageScene first_scene = scenes.job().look_at(first.image());
     layer_plan(first_scene, a.layers, a.paths());  // throws for what does not exist
     const FrameSequence all = sequence;
     RunExposure exposure(a.exposure);
@@ -222,14 +221,14 @@ void run_render(const RenderArguments& typed) {
         write_contact_sheet(all, a.quiet);
         return;
     }
-    check_measures(a, first_scene, sequence.frames.front().window);
+    check_measures(a, first_scene.desc(), sequence.frames.front().window);
     check_frames(sequence, scenes.job());
     manifest.write(a.quiet);
     std::size_t done = 0;
     // Kept only if they are asked for: there may be many thousands.
     const bool keeps_stats = !sequence.stats.empty() || !a.numbers.empty();
     std::vector<RunStats> all_stats;
-    FrameRenderer renderer(a, sequence.frames, names_of(first_scene.lamps), exposure,
+    FrameRenderer renderer(a, sequence.frames, names_of(first_scene.desc().lamps), exposure,
                            std::move(stats), [&](const Frame& frame, RunStats of_frame) {
                                if (!frame.files.stats.empty())
                                    of_frame.write_json(frame.files.stats,

@@ -192,12 +192,11 @@ class SweepRun : public RunClient {
         return tell(stage == "render" ? k_rendering * fraction : 0);
     }
 
-    WantedImage want(std::size_t /*place*/, ResolvedScene& scene) override {
+    WantedImage want(std::size_t /*place*/, ImageScene& scene) override {
         scene_ = scene;
         sweep_.width = scene.desc().camera.width;
         sweep_.height = scene.desc().camera.height;
-        return {
-            {.layers = layers_to_measure(scene.desc()) + (a_.parts.object.empty() ? "" : ",id")}};
+        return {{.layers = layers_to_measure(scene) + (a_.parts.object.empty() ? "" : ",id")}};
     }
 
     ImageWork take(std::size_t place, FinishedImage image) override {
@@ -226,7 +225,7 @@ class SweepRun : public RunClient {
     const SweepArguments& a_;
     const SweepProgress& progress_;
     Sweep sweep_;
-    std::optional<ResolvedScene> scene_;  // of the picture
+    std::optional<ImageScene> scene_;  // of the picture
     TargetProbe probe_;
     RunEngine engine_;
 };
@@ -239,7 +238,7 @@ Sweep run_pictures(const SweepArguments& a, const SweepProgress& progress) {
     Job job{scenes, {}};
     for (std::size_t place = 0; place < a.grid.count(); ++place) {
         job.images.push_back({static_cast<int>(place), choice});
-        const SceneDesc& scene = scenes.look_at(job.images.back());
+        const SceneDesc& scene = scenes.look_at(job.images.back()).desc();
         check_parts(a.parts, scene, {0, 0, scene.camera.width, scene.camera.height});
     }
     return SweepRun(a, progress).measure(job);

@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
+#include "render/image_scene.h"
 #include "render/scene_loading.h"
 #include "render/scene_rendering.h"
 #include "validation/built_in_suite.h"
@@ -63,7 +64,8 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out) {
         scenes = {{a.scene.filename().string(), load_scene(a.scene, a.overrides)}};
         scenes[0].second.water.snow.reset();  // particles do not depend on the method
         all_light.clear();
-        if (layer_plan(scenes[0].second, {}).is_provided(Layer::multiple)) all_light = scenes;
+        if (layer_plan(scene_of_image(scenes[0].second, {}), {}).is_provided(Layer::multiple))
+            all_light = scenes;
     }
 
     ValidationOptions options;

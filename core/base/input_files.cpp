@@ -239,6 +239,19 @@ std::optional<FileStamp> stamp_of(const fs::path& file) {
                      status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
 }
 
+FileStamps::FileStamps(const std::vector<fs::path>& files) {
+    for (const fs::path& file : files) stamps_.emplace_back(file, stamp_of(file));
+}
+
+void FileStamps::add(const FileStamps& other) {
+    stamps_.insert(stamps_.end(), other.stamps_.begin(), other.stamps_.end());
+}
+
+bool FileStamps::are_current() const {
+    return std::ranges::all_of(stamps_,
+                               [](const auto& of) { return stamp_of(of.first) == of.second; });
+}
+
 void confine_inputs() {
     Registry& all = registry();
     const std::lock_guard lock(all.mutex);

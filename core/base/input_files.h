@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace uw {
@@ -50,6 +51,21 @@ struct FileStamp {
 
 /// The stamp of the file that a name leads to; none if there is no such file.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
+
+/// The stamps of all files that something was made of.
+class FileStamps {
+  public:
+    FileStamps() = default;
+    /// Takes the stamps that the files have now: to be called before they are read.
+    explicit FileStamps(const std::vector<std::filesystem::path>& files);
+
+    void add(const FileStamps& other);
+    /// Whether no file has changed since.
+    bool are_current() const;
+
+  private:
+    std::vector<std::pair<std::filesystem::path, std::optional<FileStamp>>> stamps_;
+};
 
 /// Remembers, until the program ends, that `file` was opened to be read for the user: AtomicFile
 /// never replaces it. To be called by whatever opens such a file, before it does. Throws InputError

@@ -130,19 +130,21 @@ std::shared_ptr<const FileSurfaces> surfaces_of(MeshFile file, const GeometryDes
     return surfaces;
 }
 
-}  // namespace
-
-MeshStore::Stamps MeshStore::stamps_of(const GeometryDesc& desc) {
+FileStamps files_of(const GeometryDesc& desc) {
     if (desc.mesh) return {};
-    Stamps stamps{{desc.file, stamp_of(desc.file)}};
+    std::vector<std::filesystem::path> files{desc.file};
     for (const std::filesystem::path& named : files_named_by_mesh(desc.file))
-        stamps.emplace_back(named, stamp_of(named));
-    return stamps;
+        files.push_back(named);
+    return FileStamps(files);
 }
 
-bool MeshStore::is_unchanged(const Kept& kept) {
-    return std::ranges::all_of(kept.stamps,
-                               [](const auto& of) { return stamp_of(of.first) == of.second; });
+}  // namespace
+
+FileStamps MeshStore::files() const {
+    FileStamps files;
+    for (const Kept& kept : kept_)
+        if (kept.is_used) files.add(kept.files);
+    return files;
 }
 
 void MeshStore::keep_only(const std::vector<GeometryDesc>& geometry) {
@@ -162,14 +164,14 @@ std::shared_ptr<const FileSurfaces> MeshStore::load(const GeometryDesc& desc,
     const auto known = std::ranges::find_if(kept_, [&](const Kept& kept) {
         return kept.desc == still && (kept.file || kept.before == before);
     });
-    if (known != kept_.end() && is_unchanged(*known)) {
+    if (known != kept_.end() && known->files.are_current()) {
         known->is_used = true;
         warnings.insert(warnings.end(), known->warnings.begin(), known->warnings.end());
         if (known->surfaces) return known->surfaces;
         return surfaces_of(*known->file, desc, before, reflectance);
     }
     if (known != kept_.end()) kept_.erase(known);
-    Kept kept{still, stamps_of(desc), {}, nullptr, nullptr, before, true};
+    Kept kept{still, files_of(desc), {}, nullptr, nullptr, before, true};
     MeshFile file = mesh_file(desc, kept.warnings);
     warnings.insert(warnings.end(), kept.warnings.begin(), kept.warnings.end());
     std::shared_ptr<const FileSurfaces> surfaces;

@@ -52,22 +52,20 @@ class MeshStore {
                                              const std::optional<Spectrum>& reflectance,
                                              std::vector<std::string>& warnings);
 
-  private:
-    using Stamps = std::vector<std::pair<std::filesystem::path, std::optional<FileStamp>>>;
+    /// The stamps of the files that the scene built last was read from, as they were then.
+    FileStamps files() const;
 
+  private:
     /// As it was read for `desc`, whose pose is left out if it moves.
     struct Kept {
         GeometryDesc desc;
-        Stamps stamps;  // of the file and those that it names
+        FileStamps files;  // the file and those that it names
         std::vector<std::string> warnings;
         std::shared_ptr<const MeshFile> file;          // of what moves
         std::shared_ptr<const FileSurfaces> surfaces;  // of what does not,
         IdsBefore before;                              // with these ids
         bool is_used = true;                           // by the scene built last
     };
-    static Stamps stamps_of(const GeometryDesc& desc);
-    static bool is_unchanged(const Kept& kept);
-
     std::vector<Kept> kept_;
 };
 

@@ -57,7 +57,7 @@ GltfItems read_gltf_items(const std::filesystem::path& file,
 /// into `scene.camera` and `scene.lamps`, placed by the files' nodes and the entries' transforms,
 /// with warnings about anything that cannot be used, and in a scene without lamps about
 /// lights that could be. A scene that requests nothing is otherwise left unchanged. Importing twice
-/// would duplicate every lamp: scenes to be rendered are imported by ResolvedScene alone.
+/// would duplicate every lamp: scenes to be rendered are imported by ImageScene alone.
 /// Precondition: a frame has been chosen for all sequences.
 ///
 /// - The camera supplies what the scene's own omits: the focal length from its vertical angle of

@@ -59,7 +59,8 @@ struct SnowModel;
 
 /// One image in the making, or that of a part of an exposure: what its passes work on.
 struct Rendering {
-    const SceneDesc& desc;        // resolved
+    const SceneDesc& desc;        // what it shows
+    double time = 0;              // the moment of that [s]; 0 where nothing moves
     const PixelRenderer& pixels;  // of the scene's rays, its water and surfaces, and their light
     /// The light of every emitter, splatted; empty if it was not needed.
     std::span<const std::shared_ptr<const DeepShadow>> light;

@@ -4,11 +4,6 @@
 
 namespace uw {
 
-TruthPass::TruthPass(const SceneDesc& scene)
-    : Pass({}, Of::truth),
-      has_other_frames_(scene.choice.frame.has_value()),
-      has_other_cameras_(scene.cameras.size() > 1) {}
-
 void TruthPass::provide(LayerSupply& supply) const {
     if (has_other_frames_) supply.layers |= {Layer::flow, Layer::flow_back, Layer::flow_occluded};
     if (has_other_cameras_) supply.layers |= {Layer::disparity, Layer::disparity_occluded};

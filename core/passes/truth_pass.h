@@ -9,7 +9,11 @@ namespace uw {
 /// of an exposure it is that of the middle, and takes rays of its own.
 class TruthPass final : public Pass {
   public:
-    explicit TruthPass(const SceneDesc& scene);
+    /// Whether the scene has other frames and other cameras, in which to look for what is seen.
+    TruthPass(bool has_other_frames, bool has_other_cameras)
+        : Pass({}, Of::truth),
+          has_other_frames_(has_other_frames),
+          has_other_cameras_(has_other_cameras) {}
 
     void provide(LayerSupply& supply) const override;
     void run(Rendering& rendering) override;

@@ -91,7 +91,7 @@ struct CameraDesc {
     std::optional<SensorDesc> sensor;
     Affine world_from_camera;  ///< rigid; x right, y down, z forward
     /// How it moves; then world_from_camera is that of the scene's moment
-    /// (render/resolved_scene.h).
+    /// (render/image_scene.h).
     std::optional<TrajectoryDesc> trajectory;
     /// A rolling shutter: from the exposure of one row to that of the next [s]; 0: all at once.
     double line_time = 0;

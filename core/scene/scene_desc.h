@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,21 +32,15 @@ struct ImageChoice {
     friend bool operator==(const ImageChoice&, const ImageChoice&) = default;
 };
 
-/// All of a scene file.
+/// What a scene says, section by section. As it is read it is about all of a file's images: about
+/// every frame, camera and moment. That of one image is made of it (render/image_scene.h).
 struct SceneDesc {
     std::filesystem::path file;          ///< the scene file itself
-    CameraDesc camera;                   ///< of a rig, the one rendered: initially its first
-    std::string camera_name;             ///< empty: the scene has one camera, no rig
+    CameraDesc camera;                   ///< of a rig, its first, or the one that sees the image
+    std::string camera_name;             ///< likewise; empty: the scene has one camera, no rig
     std::vector<RigCameraDesc> cameras;  ///< of a rig; else none
-    /// How the rig moves: until the scene's moment is set, its cameras and lamps have poses in the
-    /// rig's axes.
+    /// How the rig moves: as they are read, its cameras and lamps have poses in the rig's axes.
     std::optional<TrajectoryDesc> rig_trajectory;
-    /// The moment that all poses are of [s]; none: not set (render/resolved_scene.h).
-    std::optional<double> time;
-    /// The scene as it was read, of which this is the image `choice`, for what other frames show;
-    /// null: it is that itself (scene_of_image).
-    std::shared_ptr<const SceneDesc> whole;
-    ImageChoice choice;
     WaterDesc water;
     std::vector<VolumeDesc> volumes;
     std::vector<GeometryDesc> geometry;

@@ -371,7 +371,7 @@ PictureCallbacks EditSession::picture_callbacks() {
 
 void EditSession::take_shapes(const Renderer& renderer) {
     const AssembledScene& assembled = renderer.assembled();
-    const std::vector<GeometryDesc>& geometry = assembled.desc.geometry;
+    const std::vector<GeometryDesc>& geometry = assembled.desc().geometry;
     const bool is_other = !has_shapes_ || shapes_geometry_ != geometry;
     std::vector<OutlineSegment> outlines;
     if (is_other) outlines = scene_outlines(geometry);

@@ -17,7 +17,7 @@
 #include "core/base/spectrum.h"
 #include "core/scene/yaml_document.h"
 #include "edit/document/scene_text.h"
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 namespace uw {
 
@@ -34,10 +34,10 @@ struct EditedLamp {
 
 /// A scene as it is after a change, never changed itself.
 struct EditedScene {
-    explicit EditedScene(ResolvedScene resolved) : scene(std::move(resolved)) {}
+    explicit EditedScene(ImageScene resolved) : scene(std::move(resolved)) {}
 
     std::int64_t revision = 0;
-    ResolvedScene scene;
+    ImageScene scene;
     std::vector<EditedLamp> lamps;  // of `scene`, in their order
     std::string surrounding;        // identifies all but the lamps
     bool has_plain_colour = true;   // R, G and B are the three bands
@@ -53,7 +53,7 @@ struct EditedScene {
 };
 
 /// Reads a scene from the text of its file, as parsed; `off` are the names of lamps that are off.
-/// Throws as load_scene_text, ResolvedScene and make_lamp.
+/// Throws as load_scene_text, ImageScene and make_lamp.
 std::shared_ptr<const EditedScene> make_edited_scene(std::string_view text, const ConfigNode& tree,
                                                      const std::filesystem::path& file,
                                                      const std::vector<std::string>& off,

@@ -31,7 +31,7 @@ void light_up(LampDesc& lamp, const Spectrum& brightness, std::size_t bands) {
         lamp.intensity = PerBand(bands, 1);
 }
 
-std::string layers_of(const SceneDesc& scene, bool is_lit) {
+std::string layers_of(const ImageScene& scene, bool is_lit) {
     std::string layers = "direct,clean";
     layers += is_lit ? ",backscatter,irradiance" : ",depth,albedo";
     const LayerPlan plan = layer_plan(scene, {});
@@ -40,24 +40,23 @@ std::string layers_of(const SceneDesc& scene, bool is_lit) {
     return layers;
 }
 
-ResolvedScene scene_of_part(const EditedScene& edited, PictureQuality quality,
-                            std::optional<std::size_t> lamp) {
-    ResolvedScene scene = edited.scene;
-    SceneDesc& desc = scene.edit();
-    LampDesc only;
-    if (lamp) only = desc.lamps[*lamp];
-    desc.lamps.clear();
-    if (lamp) {
-        light_up(only, edited.lamps[*lamp].brightness, edited.bands());
-        desc.lamps.push_back(std::move(only));
-    }
-    const auto [width, height] = picture_size(quality, desc.camera.width, desc.camera.height);
-    resize_image(desc.camera, width, height);
-    if (quality != PictureQuality::final) {
-        desc.render.quality = RenderDesc::Quality::draft;
-        desc.render.samples = integrator_kind(desc.render.integrator).draft_samples;
-    }
-    return scene;
+ImageScene scene_of_part(const EditedScene& edited, PictureQuality quality,
+                         std::optional<std::size_t> lamp) {
+    return edited.scene.with([&](SceneDesc& desc) {
+        LampDesc only;
+        if (lamp) only = desc.lamps[*lamp];
+        desc.lamps.clear();
+        if (lamp) {
+            light_up(only, edited.lamps[*lamp].brightness, edited.bands());
+            desc.lamps.push_back(std::move(only));
+        }
+        const auto [width, height] = picture_size(quality, desc.camera.width, desc.camera.height);
+        resize_image(desc.camera, width, height);
+        if (quality != PictureQuality::final) {
+            desc.render.quality = RenderDesc::Quality::draft;
+            desc.render.samples = integrator_kind(desc.render.integrator).draft_samples;
+        }
+    });
 }
 
 // Surfaces that emit light do so beside every lamp, but that light belongs to the unlit part.

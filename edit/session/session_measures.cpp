@@ -40,7 +40,7 @@ SuggestRequest::Objective objective_member(const Json& request) {
     throw UsageError("objective: use contrast, signal_to_backscatter or irradiance");
 }
 
-std::size_t lamp_member(const Json& request, const char* key, const ResolvedScene& scene) {
+std::size_t lamp_member(const Json& request, const char* key, const ImageScene& scene) {
     const std::string name = text_member(request, key);
     const auto& lamps = scene.desc().lamps;
     const auto found = std::ranges::find(lamps, name, &LampDesc::name);
@@ -65,7 +65,7 @@ Json lamp_place_json(const LampDesc& lamp) {
 
 // What a window asks of the search for a lamp's place (docs/edit-api.md). Throws UsageError where
 // the request is malformed, or names lamps that are not in `scene`.
-SuggestRequest suggest_request(const Json& request, const ResolvedScene& scene) {
+SuggestRequest suggest_request(const Json& request, const ImageScene& scene) {
     SuggestRequest wanted;
     wanted.lamp = lamp_member(request, "lamp", scene);
     if (request.contains("mirror") && !request["mirror"].is_null())
@@ -148,12 +148,12 @@ Json suggestion_json(const Suggestion& found) {
 constexpr double k_patch_share = 0.2;
 
 // The scene without the lamps that are off.
-ResolvedScene lit_scene(const EditedScene& edited) {
-    ResolvedScene scene = edited.scene;
-    std::vector<LampDesc>& lamps = scene.edit().lamps;
-    for (std::size_t i = lamps.size(); i-- > 0;)
-        if (!edited.lamps[i].on) lamps.erase(lamps.begin() + static_cast<std::ptrdiff_t>(i));
-    return scene;
+ImageScene lit_scene(const EditedScene& edited) {
+    return edited.scene.with([&](SceneDesc& desc) {
+        std::vector<LampDesc>& lamps = desc.lamps;
+        for (std::size_t i = lamps.size(); i-- > 0;)
+            if (!edited.lamps[i].on) lamps.erase(lamps.begin() + static_cast<std::ptrdiff_t>(i));
+    });
 }
 
 // The part of the full image, or of a picture of it, that is meant.
@@ -294,7 +294,7 @@ Json SessionMeasures::suggest(const Json& request) {
     const std::lock_guard lock(search_mutex_);
     const std::shared_ptr<const EditedScene> edited = session_.scene();
     if (!edited) throw ConflictError("there is no scene yet");
-    ResolvedScene scene = lit_scene(*edited);
+    ImageScene scene = lit_scene(*edited);
     const SuggestRequest wanted = suggest_request(request, scene);
     is_cancelled_ = true;
     if (searching_.joinable()) searching_.join();
@@ -309,7 +309,7 @@ void SessionMeasures::cancel_suggest() {
     is_cancelled_ = true;
 }
 
-void SessionMeasures::search(std::int64_t id, const ResolvedScene& scene,
+void SessionMeasures::search(std::int64_t id, const ImageScene& scene,
                              const SuggestRequest& request) {
     work_in_background();
     Json event = {{"id", id}, {"samples", request.samples}};

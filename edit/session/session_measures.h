@@ -10,8 +10,8 @@
 #include "core/base/json.h"
 #include "edit/session/edit_session.h"
 #include "edit/session/suggest.h"
+#include "render/image_scene.h"
 #include "render/measures/target_probe.h"
-#include "render/resolved_scene.h"
 
 namespace uw {
 
@@ -49,7 +49,7 @@ class SessionMeasures {
 
   private:
     Json curves(const EditedScene& scene);
-    void search(std::int64_t id, const ResolvedScene& scene, const SuggestRequest& request);
+    void search(std::int64_t id, const ImageScene& scene, const SuggestRequest& request);
     void tell(Json event);
 
     EditSession& session_;

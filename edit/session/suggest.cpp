@@ -98,7 +98,7 @@ LampDesc at_mirrored_place(LampDesc other, const LampDesc& lamp, const Affine& w
 
 class Search {
   public:
-    Search(TargetProbe& probe, const ResolvedScene& scene, const SuggestRequest& request,
+    Search(TargetProbe& probe, const ImageScene& scene, const SuggestRequest& request,
            const SuggestProgress& progress)
         : probe_(probe), scene_(scene), request_(request), progress_(progress) {}
 
@@ -218,7 +218,7 @@ class Search {
     }
 
     TargetProbe& probe_;
-    const ResolvedScene& scene_;
+    const ImageScene& scene_;
     const SuggestRequest& request_;
     const SuggestProgress& progress_;
     std::vector<LampOnTarget> light_;  // of all lamps, as they are being tried
@@ -231,7 +231,7 @@ LampDesc mirrored_lamp(const LampDesc& lamp, const Affine& world_from_camera) {
     return at_mirrored_place(lamp, lamp, world_from_camera);
 }
 
-Suggestion suggest_position(TargetProbe& probe, const ResolvedScene& scene,
+Suggestion suggest_position(TargetProbe& probe, const ImageScene& scene,
                             const SuggestRequest& request, const SuggestProgress& progress) {
     check_request(request, scene.desc().lamps);
     return Search(probe, scene, request, progress).run();

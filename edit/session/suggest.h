@@ -66,7 +66,7 @@ using SuggestProgress = std::function<bool(const Suggestion& so_far)>;
 /// where none is better, until they are below 1 cm or the request's positions are used up. The same
 /// request gives the same result. `probe` keeps what is rendered. Throws UsageError for a request
 /// that makes no sense, Interrupted, and as Renderer.
-Suggestion suggest_position(TargetProbe& probe, const ResolvedScene& scene,
+Suggestion suggest_position(TargetProbe& probe, const ImageScene& scene,
                             const SuggestRequest& request, const SuggestProgress& progress = {});
 
 /// `lamp` on the other side of the camera: its position and direction mirrored, left for right, in

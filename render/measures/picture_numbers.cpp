@@ -205,7 +205,7 @@ Distribution distribution_of(const MeasuredImage& image, std::initializer_list<L
 
 }  // namespace
 
-std::string layers_to_measure(const SceneDesc& scene) {
+std::string layers_to_measure(const ImageScene& scene) {
     std::string layers = k_picture_layers;
     if (layer_plan(scene, {}).is_provided(Layer::multiple))
         layers += ",multiple.volume,multiple.surface";
@@ -238,17 +238,15 @@ std::vector<PartNumbers> part_numbers(const MeasuredImage& image,
     return numbers;
 }
 
-std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ResolvedScene& scene,
+std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ImageScene& scene,
                                       const RenderOptions& options,
                                       const std::vector<PicturePart>& parts,
                                       const std::function<void(std::size_t image)>& begin) {
     RenderOptions measured = options;
-    measured.layers = layers_to_measure(scene.desc());
+    measured.layers = layers_to_measure(scene);
     const auto render = [&](std::vector<LampDesc> lamps, std::size_t image) {
         if (begin) begin(image);
-        ResolvedScene part = scene;
-        part.edit().lamps = std::move(lamps);
-        renderer.set_scene(std::move(part));
+        renderer.set_scene(scene.with([&](SceneDesc& desc) { desc.lamps = std::move(lamps); }));
         renderer.render(measured);
         return renderer.release_film();
     };

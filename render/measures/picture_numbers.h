@@ -150,8 +150,8 @@ struct MeasuredImage {
     const Film* emitted = nullptr;
 };
 
-/// The layers that light_numbers reads, of an image of `scene`: an argument of --layers.
-std::string layers_to_measure(const SceneDesc& scene);
+/// The layers that light_numbers reads, of an image: an argument of --layers.
+std::string layers_to_measure(const ImageScene& scene);
 
 /// Precondition: there are pixels, and all lie within the film's window, by whose rows they are
 /// counted.
@@ -179,7 +179,7 @@ std::vector<PartNumbers> part_numbers(const MeasuredImage& image,
 /// lamps alone, and once without any for what surfaces emit. `options` are those of the image; the
 /// layers in them do not matter. `begin` is called before each with its index, 0 to the number of
 /// lamps. Throws as Renderer.
-std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ResolvedScene& scene,
+std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ImageScene& scene,
                                       const RenderOptions& options,
                                       const std::vector<PicturePart>& parts,
                                       const std::function<void(std::size_t image)>& begin = {});

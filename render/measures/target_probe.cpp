@@ -161,12 +161,12 @@ void TargetProbe::enter(const SceneDesc& scene) {
 LampOnTarget TargetProbe::render(const LampDesc& lamp, double distance,
                                  const std::function<bool()>& go_on) {
     const std::size_t bands = surrounding_->water.bands_nm.size();
-    SceneDesc scene = *surrounding_;
-    scene.geometry = {target_at(scene.camera, distance, bands)};
-    scene.lamps = {unit_lamp(lamp, bands)};
-    const LayerPlan plan = layer_plan(scene, "direct,backscatter,irradiance");
+    SceneDesc desc = *surrounding_;
+    desc.geometry = {target_at(desc.camera, distance, bands)};
+    desc.lamps = {unit_lamp(lamp, bands)};
+    renderer_.set_scene(std::move(desc));
+    const LayerPlan plan = layer_plan(renderer_.scene(), "direct,backscatter,irradiance");
     go_on_ = &go_on;
-    renderer_.set_scene(std::move(scene));
     const Film& film = renderer_.render({.layers = "direct,backscatter,irradiance"});
     go_on_ = nullptr;
     LampOnTarget light;
@@ -187,7 +187,7 @@ LampOnTarget TargetProbe::render(const LampDesc& lamp, double distance,
     return light;
 }
 
-LampOnTarget TargetProbe::lamp_on_target(const ResolvedScene& scene, const LampDesc& lamp,
+LampOnTarget TargetProbe::lamp_on_target(const ImageScene& scene, const LampDesc& lamp,
                                          double distance, const std::function<bool()>& go_on) {
     if (!(distance > 0) || !std::isfinite(distance))
         throw UsageError(
@@ -208,7 +208,7 @@ LampOnTarget TargetProbe::lamp_on_target(const ResolvedScene& scene, const LampD
             intensity * found->second.irradiance};
 }
 
-std::vector<LampOnTarget> TargetProbe::lamps_on_target(const ResolvedScene& scene, double distance,
+std::vector<LampOnTarget> TargetProbe::lamps_on_target(const ImageScene& scene, double distance,
                                                        const std::function<bool()>& go_on) {
     std::vector<LampOnTarget> lamps;
     for (const LampDesc& lamp : scene.desc().lamps)
@@ -216,7 +216,7 @@ std::vector<LampOnTarget> TargetProbe::lamps_on_target(const ResolvedScene& scen
     return lamps;
 }
 
-std::vector<TargetNumbers> TargetProbe::curve(const ResolvedScene& scene,
+std::vector<TargetNumbers> TargetProbe::curve(const ImageScene& scene,
                                               std::span<const double> distances,
                                               const std::function<bool()>& go_on) {
     std::vector<TargetNumbers> numbers;

@@ -75,14 +75,14 @@ class TargetProbe {
 
     /// One per lamp of the scene. If `go_on` returns false the work ends with Interrupted; what was
     /// rendered until then is kept. Throws as Renderer.
-    std::vector<LampOnTarget> lamps_on_target(const ResolvedScene& scene, double distance,
+    std::vector<LampOnTarget> lamps_on_target(const ImageScene& scene, double distance,
                                               const std::function<bool()>& go_on = {});
     /// Of a lamp that may not be the scene's: its brightness and place are those of `lamp`.
-    LampOnTarget lamp_on_target(const ResolvedScene& scene, const LampDesc& lamp, double distance,
+    LampOnTarget lamp_on_target(const ImageScene& scene, const LampDesc& lamp, double distance,
                                 const std::function<bool()>& go_on = {});
 
     /// The numbers of the scene's target at each distance.
-    std::vector<TargetNumbers> curve(const ResolvedScene& scene, std::span<const double> distances,
+    std::vector<TargetNumbers> curve(const ImageScene& scene, std::span<const double> distances,
                                      const std::function<bool()>& go_on = {});
 
     /// Targets rendered so far: what the others were remembered from.

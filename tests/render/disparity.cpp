@@ -94,7 +94,7 @@ TEST_F(Disparity, OfAnyPairIsFromCameraToCamera) {
 
 TEST_F(Disparity, AndFlowAreNotInAll) {
     const SceneDesc scene = load("camera: {resolution: [30, 20], intrinsics: {fx: 25}}\n");
-    const SceneDesc image = scene_of_image(scene, {1});
+    const ImageScene image = scene_of_image(scene, {1});
     EXPECT_FALSE(layer_plan(image, "all").has(Layer::flow));
     EXPECT_TRUE(layer_plan(image, "all,flow").has(Layer::flow));
     EXPECT_NE(message_of<UsageError>([&] {

@@ -32,7 +32,7 @@ constexpr Layer k_layers[] = {Layer::direct, Layer::forward, Layer::backscatter}
 class PlainFilm {
   public:
     explicit PlainFilm(const SceneDesc& desc)
-        : plan_(layer_plan(desc, k_names)), film_(rendered(desc)) {
+        : plan_(layer_plan(SceneDesc(desc), k_names)), film_(rendered(desc)) {
         EXPECT_FALSE(plan_.has_lamps());
     }
     int width() const { return film_.width(); }

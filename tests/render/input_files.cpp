@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/scene_folder.h"
 
@@ -60,9 +60,11 @@ class InputFiles : public testing::Test {
         folder_.write("scene.yaml", k_scene);
     }
 
-    std::multiset<std::string> names_of(const SceneDesc& scene) const {
+    std::multiset<std::string> names_of(const SceneDesc& scene,
+                                        const ImageChoice& choice = {}) const {
         std::multiset<std::string> names;
-        for (const InputFile& input : input_files(scene))
+        MeshSideFiles known;
+        for (const InputFile& input : input_files(scene, choice, known))
             names.insert(input.file.lexically_relative(folder_.path()).string());
         return names;
     }
@@ -73,12 +75,13 @@ class InputFiles : public testing::Test {
 TEST_F(InputFiles, AreAllThatASceneNames) {
     const SceneDesc scene = load_scene(folder_.path() / "scene.yaml", {});
     EXPECT_EQ(
-        names_of(scene_of_image(scene, {1})),
+        names_of(scene, {1}),
         (std::multiset<std::string>{"scene.yaml", "rig.yaml", "rig.yaml", "rig.yaml", "water.csv",
                                     "smoke_0001.vdb", "wind_0001.vdb", "smoke.csv", "wall.obj",
                                     "sub/ship_0001.gltf", "sub/ship one.bin", "sub/hull.png",
                                     "lamp.ies", "spectrum.csv", "camera.csv", "white.csv"}));
-    for (const InputFile& input : input_files(scene)) {
+    MeshSideFiles known;
+    for (const InputFile& input : input_files(scene, {}, known)) {
         const std::string name = input.file.filename().string();
         EXPECT_EQ(input.is_hashed, name == "scene.yaml" || name == "rig.yaml") << name;
         EXPECT_FALSE(input.what.empty()) << name;
@@ -106,9 +109,9 @@ TEST_F(InputFiles, OfASceneWithoutAnyAreTheSceneAlone) {
 
 TEST_F(InputFiles, ThatAreMissingOrBrokenAreListedAllTheSame) {
     const SceneDesc scene = load_scene(folder_.path() / "scene.yaml", {});
-    EXPECT_EQ(names_of(scene_of_image(scene, {7})).count("sub/ship_0007.gltf"), 1U);
+    EXPECT_EQ(names_of(scene, {7}).count("sub/ship_0007.gltf"), 1U);
     folder_.write("sub/ship_0001.gltf", R"({"asset":{"version":"2.0"},"buffers":[7,{"uri":[]}]})");
-    EXPECT_EQ(names_of(scene_of_image(scene, {1})).count("sub/ship_0001.gltf"), 1U);
+    EXPECT_EQ(names_of(scene, {1}).count("sub/ship_0001.gltf"), 1U);
 }
 
 }  // namespace

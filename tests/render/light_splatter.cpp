@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "render/renderer.h"
+#include "render/scene_cache.h"
 #include "tests/support/field_maker.h"
 #include "tests/support/suns.h"
 #include "tests/support/test_scene.h"
@@ -22,8 +22,7 @@ class LightReuse : public testing::Test {
         desc_.lamps = {isotropic_lamp({-0.5, -0.2, 0}, 40), isotropic_lamp({0.6, 0.3, 0.1}, 30)};
         for (LampDesc& lamp : desc_.lamps) lamp.fixed_to_camera = false;
         desc_.volumes = {volume(1.0)};
-        renderer_.set_scene(SceneDesc(desc_));
-        renderer_.assemble();
+        assemble();
     }
 
     VolumeDesc volume(double value) {
@@ -38,23 +37,23 @@ class LightReuse : public testing::Test {
     /// Another scene, with what is the same taken over.
     void change(const std::function<void(SceneDesc&)>& edit) {
         edit(desc_);
-        renderer_.set_scene(SceneDesc(desc_));
-        renderer_.assemble();
+        scene_.reset();
+        assemble();
     }
 
     /// Splats and holds the light against light that nothing was taken over for: to the bit.
     void expect_splat(std::size_t shadow_maps, std::size_t column_maps,
                       const DeepShadowOptions& options = k_options) {
-        const DeepShadows& light = renderer_.splat(options);
+        const DeepShadows light = cache_.light(scene(), options);
         EXPECT_EQ(counts().shadow_maps, shadow_maps);
         EXPECT_EQ(counts().column_maps, column_maps);
         if (shadow_maps + column_maps == 0) {
             EXPECT_EQ(counts().rays, 0U);
         }
-        Renderer fresh;
-        fresh.set_scene(SceneDesc(desc_));
-        ASSERT_EQ(light.size(), fresh.splat(options).size());
-        const auto a = renderer_.make_transport(), b = fresh.make_transport();
+        const TestScene fresh(desc_, options);
+        ASSERT_EQ(light.size(), fresh.light().size());
+        const auto a = make_light_transport(scene(), light, false);
+        const auto b = make_light_transport(fresh.assembled(), fresh.light(), false);
         const Camera& camera = *scene().camera;
         double brightest = 0;
         for (int y = 0; y < camera.height(); ++y) {
@@ -75,13 +74,21 @@ class LightReuse : public testing::Test {
         EXPECT_GT(brightest, 0);
     }
 
-    const AssembledScene& scene() const { return renderer_.assembled(); }
-    const SplatCounts& counts() const { return renderer_.splat_counts(); }
+    const AssembledScene& scene() const { return *scene_; }
+    const SplatCounts& counts() const { return cache_.splat_counts(); }
 
     static constexpr DeepShadowOptions k_options{64, 2, std::size_t{32} << 20};
     FieldMaker maker_;
     SceneDesc desc_;
-    Renderer renderer_;
+
+  private:
+    void assemble() {
+        scene_ = assemble_scene(SceneDesc(desc_), cache_, [](const std::string&) {});
+        scene_->slabs = place_slabs(*scene_);
+    }
+
+    SceneCache cache_;
+    std::optional<AssembledScene> scene_;
 };
 
 TEST_F(LightReuse, WhatLeavesPositionsAsTheyAreNeedsNoSplat) {

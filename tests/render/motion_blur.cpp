@@ -20,8 +20,8 @@ TEST(MotionBlur, IsThatOfEveryIntegrator) {
     for (const std::string integrator : {"planes", "reference", "path"}) {
         SCOPED_TRACE(integrator);
         const std::string common = ", shutter: 0.04, samples: ";
-        SceneDesc volume = moving_scene(common + "64");
-        SceneDesc other =
+        const ImageScene volume = moving_scene(common + "64");
+        const ImageScene other =
             moving_scene(common + (integrator == "path" ? "1024, scattering: multiple" : "64") +
                          ", integrator: " + integrator);
         const PixelWindow window{12, 10, 28, 26};
@@ -47,8 +47,9 @@ TEST(MotionBlur, LeavesLayersThatAddUpToTheTotal) {
           Case{", integrator: path", "",
                "direct,forward,backscatter,multiple,multiple.volume,multiple.surface"}}) {
         SCOPED_TRACE(c.render + c.water);
-        SceneDesc scene = moving_scene(", samples: 8, shutter: 0.04" + c.render, c.water);
-        scene.render.quality = RenderDesc::Quality::draft;
+        const ImageScene scene =
+            moving_scene(", samples: 8, shutter: 0.04" + c.render, c.water)
+                .with([](SceneDesc& desc) { desc.render.quality = RenderDesc::Quality::draft; });
         const Film film = image_of(scene, {.layers = c.layers});
         const std::size_t channels = film.channel_names().size();
         int lit = 0;
@@ -90,7 +91,7 @@ TEST(MotionBlur, LeavesGroundTruthAsItIsInTheMiddle) {
 }
 
 TEST(MotionBlur, IsTheSameForThreadsAndCrops) {
-    const SceneDesc scene = moving_scene(", samples: 16, shutter: 0.04");
+    const ImageScene scene = moving_scene(", samples: 16, shutter: 0.04");
     const RenderOptions layers{.layers = "direct,backscatter,transmittance,depth"};
     const Film whole = image_of(scene, layers);
     {
@@ -112,10 +113,11 @@ TEST(MotionBlur, GoesOnBeyondTheEndsOfATrajectory) {
         "keyframes: [{time: 0, rotate: [0, 0, 0]}, {time: 1, position: [3, 0, 0], rotate: [0, 90, "
         "0]}]}}\n",
         "scene.yaml");
-    const SceneDesc first = scene_of_image(all, {0});
-    const SceneDesc before = scene_at(first, -0.02), after = scene_at(first, 0.02);
-    EXPECT_NEAR(before.camera.world_from_camera.offset().x, -0.06, 1e-12);
-    const Affine both = before.camera.world_from_camera * after.camera.world_from_camera;
+    const ImageScene first = scene_of_image(all, {0});
+    const Affine before = first.at(-0.02).desc().camera.world_from_camera;
+    const Affine after = first.at(0.02).desc().camera.world_from_camera;
+    EXPECT_NEAR(before.offset().x, -0.06, 1e-12);
+    const Affine both = before * after;
     EXPECT_NEAR(both.linear()[2][0], 0, 1e-12);  // as far round to one side as to the other
 }
 

@@ -13,13 +13,13 @@ namespace {
 
 /// The mean over instants in the middle of `count` equal parts of the shutter's time, and their
 /// scene without a shutter.
-std::vector<double> mean_over_instants(const SceneDesc& scene, int count,
+std::vector<double> mean_over_instants(const ImageScene& scene, int count,
                                        const RenderOptions& options) {
     std::vector<double> mean;
     for (int i = 0; i < count; ++i) {
-        SceneDesc instant = scene_at(scene, *scene.time + k_shutter * ((i + 0.5) / count - 0.5));
-        instant.render.shutter = 0;
-        const Film film = image_of(std::move(instant), options);
+        const ImageScene instant = scene.at(*scene.time() + k_shutter * ((i + 0.5) / count - 0.5))
+                                       .with([](SceneDesc& desc) { desc.render.shutter = 0; });
+        const Film film = image_of(instant, options);
         mean.resize(film.values().size());
         for (std::size_t k = 0; k < mean.size(); ++k)
             mean[k] += static_cast<double>(film.values()[k]) / count;
@@ -30,13 +30,14 @@ std::vector<double> mean_over_instants(const SceneDesc& scene, int count,
 // The greatest errors of total, direct light, backscatter, irradiance and clean.
 void check_mean_over_instants(Moves moves, const std::array<double, 5>& tolerances) {
     const RenderOptions layers{.layers = "direct,backscatter,irradiance,clean"};
-    const SceneDesc blurred = moving_scene(", samples: 256, shutter: 0.04", "", moves);
-    SceneDesc sharp = blurred;
-    sharp.render.shutter = 0;
-    sharp.render.samples = 16;
+    const ImageScene blurred = moving_scene(", samples: 256, shutter: 0.04", "", moves);
+    const ImageScene sharp = blurred.with([](SceneDesc& desc) {
+        desc.render.shutter = 0;
+        desc.render.samples = 16;
+    });
     const std::vector<double> truth = mean_over_instants(sharp, 64, layers);
     Renderer renderer;
-    renderer.set_scene(SceneDesc(blurred));
+    renderer.set_scene(blurred);
     const Film& film = renderer.render(layers);
     const Film still = image_of(sharp, layers);
     // The first three channels are the total, then there is A.

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/image_scene.h"
 #include "render/renderer.h"
-#include "render/resolved_scene.h"
 #include "render/scene_loading.h"
 #include "tests/support/image_of.h"
 
@@ -18,13 +18,13 @@ namespace {
 constexpr int k_frame = 10;
 constexpr double k_shutter = 0.04;
 
-SceneDesc frame_of(const std::string& text) {
+ImageScene frame_of(const std::string& text) {
     return scene_of_image(load_scene_text("uwvdb: 1\n" + text, "scene.yaml"), {k_frame});
 }
 
 /// A bar of 6 x 20 pixels at 1 m in clear water, lit evenly by a lamp far behind the camera, that
 /// moves by 100 pixels per second and metre of `velocity`, through the image's centre at 1 s.
-SceneDesc bar_scene(double velocity, const std::string& render, const std::string& camera = "") {
+ImageScene bar_scene(double velocity, const std::string& render, const std::string& camera = "") {
     return frame_of(
         "camera: {resolution: [48, 32], intrinsics: {fx: 100}, pose: {rotate: [0, 0, 0]}" + camera +
         "}\n"

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "render/image_scene.h"
 #include "render/renderer.h"
-#include "render/resolved_scene.h"
 #include "render/scene_loading.h"
 #include "tests/support/meshes/vehicle_gltf.h"
 #include "tests/support/scene_folder.h"
@@ -22,11 +22,12 @@ class ObjectMotion : public testing::Test {
                           {});
     }
     ObjectMotions motions(const SceneDesc& scene, int from, int to) {
-        const SceneDesc now = scene_of_image(scene, {from}), then = scene_of_image(scene, {to});
+        const ImageScene now = scene_of_image(scene, {from}), then = scene_of_image(scene, {to});
         Renderer renderer;
-        renderer.set_scene(scene_of_image(scene, {from}));
+        renderer.set_scene(now);
         warnings_.clear();
-        return object_motions(now, then, renderer.assemble().surfaces->names(), warnings_);
+        return object_motions(now.desc(), then.desc(), renderer.assemble().surfaces->names(),
+                              warnings_);
     }
     SceneFolder folder_;
     std::vector<std::string> warnings_;

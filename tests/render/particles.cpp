@@ -78,7 +78,6 @@ TEST(SnowParticles, AMovingCameraDrawsParticlesOut) {
     TrajectoryDesc trajectory;
     trajectory.trajectory = std::make_shared<Trajectory>(poses, Interpolation::linear);
     desc.camera.trajectory = trajectory;
-    desc.time = 0;
     const Film moving = image_of(desc), drifting = image_of(drifts);
     for (int x = 0; x < 64; ++x)
         EXPECT_NEAR(moving.pixel(x, 32)[k_snow], drifting.pixel(x, 32)[k_snow],

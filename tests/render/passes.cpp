@@ -31,20 +31,22 @@ class Passes : public testing::Test {
         desc_.render.samples.reset();  // more than one
     }
 
-    LayerSet provided() const { return make_passes(desc_).supply().layers; }
+    ImageScene image() const { return {SceneDesc(desc_), choice_}; }
+    LayerSet provided() const { return make_passes(image()).supply().layers; }
     PassNeeds needs(const char* layers = "depth") const {
-        return make_passes(desc_).needs(layer_plan(desc_, layers));
+        return make_passes(image()).needs(layer_plan(image(), layers));
     }
 
     SceneDesc desc_ = pinhole_scene(8, 6);
+    ImageChoice choice_;
 };
 
 TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
     Renderer renderer;
-    renderer.set_scene(SceneDesc(desc_));
+    renderer.set_scene(image());
     const LightTransport transport = renderer.make_transport();
     const PixelRenderer pixels = pixel_renderer(renderer.assembled(), transport);
-    const LayerPlan plan = layer_plan(desc_, "depth");
+    const LayerPlan plan = layer_plan(image(), "depth");
     const BandColour colour(desc_.water.bands_nm);
     Film film(8, 6, {0, 0, 8, 6}, plan.channel_names());
     std::vector<std::string> notes;
@@ -98,7 +100,7 @@ TEST_F(Passes, NeedAndProvideWhatTheSceneAsksFor) {
     EXPECT_FALSE(needs().light);
     EXPECT_TRUE(provided().has(Layer::multiple_surface));
     EXPECT_TRUE(provided().has(Layer::error));
-    EXPECT_EQ(make_passes(desc_, {.orders = 3}).supply().orders, 3);
+    EXPECT_EQ(make_passes(image(), {.orders = 3}).supply().orders, 3);
     desc_.render.samples = 1;
     EXPECT_FALSE(provided().has(Layer::error));
 }
@@ -108,8 +110,8 @@ TEST_F(Passes, ProvideEveryLayerThatHasToBeProvided) {
     desc_.render.scattering = RenderDesc::Scattering::multiple;
     desc_.water.snow.emplace();
     desc_.camera.sensor.emplace();
-    desc_.choice.frame = 1;
-    desc_.cameras.resize(2);
+    choice_.frame = 1;
+    desc_.cameras.assign(2, {"", desc_.camera});
     LayerSet all = provided();
     desc_.render.integrator = RenderDesc::Integrator::path;
     all |= provided();

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "render/image_scene.h"
 #include "render/renderer.h"
-#include "render/resolved_scene.h"
 #include "render/scene_loading.h"
 
 namespace uw::test {

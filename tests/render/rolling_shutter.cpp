@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "render/image_scene.h"
 #include "render/renderer.h"
-#include "render/resolved_scene.h"
 #include "render/scene_loading.h"
 #include "tests/support/image_of.h"
 #include "tests/support/message_of.h"
@@ -52,7 +52,7 @@ double time_of_row(int y) {
 /// In row y the pole is where the camera of that time sees it: v t f / Z to the left, with edges
 /// 5 pixels around.
 TEST(RollingShutter, LeansAPole) {
-    const SceneDesc scene = scene_of_image(pole_scene("line_time: 0.0005, ", "samples: 64"), {10});
+    const ImageScene scene = scene_of_image(pole_scene("line_time: 0.0005, ", "samples: 64"), {10});
     const Film film = image_of(scene, {.layers = "clean,depth,id"});
     for (int y = 0; y < k_height; ++y) {
         const double t = time_of_row(y);
@@ -76,10 +76,9 @@ TEST(RollingShutter, LeansAPole) {
 
 TEST(RollingShutter, BlursEachRowOverItsOwnExposure) {
     // 20 ms: the pole moves by 2 px, over all rows by 4.
-    const SceneDesc scene =
+    const ImageScene scene =
         scene_of_image(pole_scene("line_time: 0.0005, ", "samples: 256, shutter: 0.02"), {10});
-    SceneDesc instants = scene;
-    instants.render.shutter = 0;
+    const ImageScene instants = scene.with([](SceneDesc& desc) { desc.render.shutter = 0; });
     const Film film = image_of(scene, {.layers = "clean"});
     const Film sharp = image_of(instants, {.layers = "clean"});
     for (int y = 0; y < k_height; ++y) {
@@ -109,13 +108,13 @@ TEST(RollingShutter, RowsAreThoseOfInstants) {
     const std::string pole =
         ", trajectory: {keyframes: [{time: 0, position: [2, 0, 0.5], rotate: [0, 0, 0]}, {time: "
         "2, position: [-2, 0, -0.5], rotate: [0, 0, 0]}]}";
-    const SceneDesc rolling =
+    const ImageScene rolling =
         scene_of_image(pole_scene("line_time: 0.0005, ", "samples: 16", pole), {10});
     const RenderOptions layers{.layers = "direct,backscatter,clean,depth,position,id"};
     const Film film = image_of(rolling, layers);
     for (const int y : {0, 7, 20, 33, 39}) {
-        SceneDesc instant = scene_at(rolling, 1 + time_of_row(y));
-        instant.camera.line_time = 0;
+        const ImageScene instant =
+            rolling.at(1 + time_of_row(y)).with([](SceneDesc& desc) { desc.camera.line_time = 0; });
         const Film row = image_of(instant, layers);
         double difference = 0, sum = 0, off = 0;
         for (int x = 0; x < k_width; ++x) {
@@ -148,7 +147,7 @@ TEST(RollingShutter, FlowLeadsToTheRowThatIsExposedThen) {
         "geometry:\n"
         "  - {type: plane, point: [0, 0, 3], normal: [0.1, 0.2, -1]}\n"
         "render: {samples: 1, fps: 10}\n");
-    const SceneDesc now = scene_of_image(all, {10}), next = scene_of_image(all, {11});
+    const ImageScene now = scene_of_image(all, {10}), next = scene_of_image(all, {11});
     const Film film = image_of(now, {.layers = "position,depth,flow,flow_back"});
     double largest = 0;
     for (int y = 1; y < k_height; y += 6)
@@ -156,9 +155,10 @@ TEST(RollingShutter, FlowLeadsToTheRowThatIsExposedThen) {
             const auto p = film.pixel(x, y);
             // Channels are in the order of the layers: depth, position, flow, flow_back.
             const Point3 point{p[5], p[6], p[7]};
-            const auto seen_at = [&](const SceneDesc& frame, double row) {
-                SceneDesc instant = scene_at(frame, *frame.time + (row - 0.5 * k_height) * k_line);
-                return Camera(instant.camera).project(point).value();
+            const auto seen_at = [&](const ImageScene& frame, double row) {
+                const ImageScene instant =
+                    frame.at(*frame.time() + (row - 0.5 * k_height) * k_line);
+                return Camera(instant.desc().camera).project(point).value();
             };
             // Its own row sees it at its own place.
             const ImagePoint own = seen_at(now, y + 0.5);
@@ -202,7 +202,7 @@ TEST(RollingShutter, RefusesFlowOfSurfacesThatMove) {
     const std::string pole =
         ", trajectory: {keyframes: [{time: 0, rotate: [0, 0, 0]}, {time: 2, position: [1, 0, 0], "
         "rotate: [0, 0, 0]}]}";
-    const SceneDesc scene =
+    const ImageScene scene =
         scene_of_image(pole_scene("line_time: 0.0005, ", "samples: 1", pole), {10});
     const std::string message =
         message_of<InputError>([&] { image_of(scene, {.layers = "flow"}); });
@@ -213,7 +213,7 @@ TEST(RollingShutter, RefusesFlowOfSurfacesThatMove) {
 }
 
 TEST(RollingShutter, IsTheSameForThreadsAndCrops) {
-    const SceneDesc scene =
+    const ImageScene scene =
         scene_of_image(pole_scene("line_time: 0.0005, ", "samples: 8, shutter: 0.02"), {10});
     const RenderOptions layers{.layers = "direct,backscatter,depth,flow"};
     const Film whole = image_of(scene, layers);

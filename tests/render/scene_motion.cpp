@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -31,8 +31,8 @@ class Motion : public testing::Test {
     SceneFolder folder_;
 };
 
-Vector3 camera_place(const SceneDesc& scene) {
-    return scene.camera.world_from_camera.offset();
+Vector3 camera_place(const ImageScene& scene) {
+    return scene.desc().camera.world_from_camera.offset();
 }
 
 TEST_F(Motion, AFrameIsAtItsNumberOverTheFrameRate) {
@@ -42,7 +42,7 @@ TEST_F(Motion, AFrameIsAtItsNumberOverTheFrameRate) {
     EXPECT_EQ(frames_of(scene)->first, 0);
     EXPECT_EQ(frames_of(scene)->last, 50);
     EXPECT_NEAR(camera_place(scene_of_image(scene, {10})).x, 0.4, 1e-15);
-    EXPECT_EQ(scene_of_image(scene, {10}).time, 0.4);
+    EXPECT_EQ(scene_of_image(scene, {10}).time(), 0.4);
     const SceneDesc slow = load_camera(k_ahead, "render: {fps: 2}\n");
     EXPECT_NEAR(camera_place(scene_of_image(slow, {3})).x, 1.5, 1e-15);
     EXPECT_EQ(frames_of(slow)->last, 4);
@@ -56,7 +56,7 @@ TEST_F(Motion, WithoutAFrameItIsTheFirstMoment) {
     const SceneDesc scene = load_camera(late);
     EXPECT_EQ(first_time(scene), 3);
     EXPECT_EQ(camera_place(scene_of_image(scene, {})).x, 3);
-    EXPECT_EQ(camera_place(ResolvedScene(load_camera(late)).desc()).x, 3);
+    EXPECT_EQ(camera_place(load_camera(late)).x, 3);
     const SceneDesc early = load_camera(
         "{interpolation: linear, keyframes: [{time: -1, rotate: [0, 0, 0]}, {time: 1, position: "
         "[2, 0, 0], rotate: [0, 0, 0]}]}");
@@ -83,10 +83,10 @@ TEST_F(Motion, FramesMayBeTheTrajectorysOwnPoses) {
     // The lamp's poses begin half a second earlier on the scene's clock, and end there.
     EXPECT_EQ(frames_of(scene)->first, 0);
     EXPECT_EQ(frames_of(scene)->last, 2);
-    const SceneDesc third = scene_of_image(scene, {2});
-    EXPECT_EQ(third.time, 1.5);
+    const ImageScene third = scene_of_image(scene, {2});
+    EXPECT_EQ(third.time(), 1.5);
     EXPECT_EQ(camera_place(third).x, 5);
-    EXPECT_NEAR(third.lamps[0].world_from_mount.offset().x, 6, 1e-12);
+    EXPECT_NEAR(third.desc().lamps[0].world_from_mount.offset().x, 6, 1e-12);
     EXPECT_NE(message_of<InputError>([&] {
                   scene_of_image(scene, {4});
               }).find("render.times: there is no frame 4; the trajectory has the poses 0-3"),
@@ -97,7 +97,8 @@ TEST_F(Motion, FramesMayBeTheTrajectorysOwnPoses) {
               }).find("lamps[0].trajectory: has no pose for frame 3, at 2.5 s"),
               std::string::npos);
     // A trajectory's file is an input whose content is in the hash.
-    const std::vector<InputFile> inputs = input_files(scene);
+    MeshSideFiles known;
+    const std::vector<InputFile> inputs = input_files(scene, {}, known);
     const auto found = std::ranges::find(inputs, file, &InputFile::file);
     ASSERT_NE(found, inputs.end());
     EXPECT_TRUE(found->is_hashed);
@@ -128,8 +129,9 @@ TEST_F(Motion, ARigCarriesItsCamerasAndLamps) {
         "rotate: [0, 0, 0]}}\n"
         "lamps: [{position: [0, 0, 2], intensity: 1}, {position: [0, 0, 2], intensity: 1, frame: "
         "camera}, {position: [0, 0, 2], intensity: 1, frame: world}]\n");
-    const SceneDesc right = scene_of_image(scene, {25, 1});
-    EXPECT_LT(glm::length(camera_place(right) - Vector3(0, 1, -1)), 1e-14);
+    const ImageScene of_right = scene_of_image(scene, {25, 1});
+    const SceneDesc& right = of_right.desc();
+    EXPECT_LT(glm::length(camera_place(of_right) - Vector3(0, 1, -1)), 1e-14);
     EXPECT_LT(glm::length(right.cameras[0].camera.world_from_camera.offset() - Vector3(0, 1, 0)),
               1e-14);
     const auto lamp_place = [&](std::size_t lamp) {
@@ -139,7 +141,8 @@ TEST_F(Motion, ARigCarriesItsCamerasAndLamps) {
     EXPECT_LT(distance(lamp_place(1), {2, 1, 0}), 1e-14);
     EXPECT_LT(distance(lamp_place(2), {0, 0, 2}), 1e-14);
     // Fixed to the rig, a lamp stays where it is in every camera.
-    const SceneDesc first = scene_of_image(scene, {0, 1});
+    const ImageScene of_first = scene_of_image(scene, {0, 1});
+    const SceneDesc& first = of_first.desc();
     EXPECT_LT(distance(right.camera.world_from_camera.inverse() * lamp_place(0),
                        first.camera.world_from_camera.inverse() *
                            (first.lamps[0].world_from_mount * first.lamps[0].position)),
@@ -181,9 +184,9 @@ TEST_F(Motion, NodesOfGltfFilesMoveWithTheFrames) {
     EXPECT_EQ(frames_of(scene)->first, 0);
     EXPECT_EQ(frames_of(scene)->last, 12);
     for (const VehicleFrame& frame : k_vehicle_frames) {
-        const ResolvedScene resolved(scene_of_image(scene, {frame.frame}));
-        const Affine& pose = resolved.desc().camera.world_from_camera;
-        const LampDesc& lamp = resolved.desc().lamps.at(0);
+        const ImageScene image = scene_of_image(scene, {frame.frame});
+        const Affine& pose = image.desc().camera.world_from_camera;
+        const LampDesc& lamp = image.desc().lamps.at(0);
         for (int i = 0; i < 3; ++i) {
             const auto& row = frame.eye[static_cast<std::size_t>(i)];
             // y and z are turned from glTF's camera to ours.
@@ -201,17 +204,18 @@ TEST_F(Motion, NodesOfGltfFilesMoveWithTheFrames) {
         "camera: {resolution: [64, 36]}\n"
         "geometry: [{file: 'vehicle_####.gltf', camera: true}]\n");
     EXPECT_FALSE(has_motion(sequence));
-    EXPECT_FALSE(scene_of_image(sequence, {3}).geometry[0].time);
+    EXPECT_FALSE(scene_of_image(sequence, {3}).desc().geometry[0].time);
 }
 
 /// While a frame is exposed: at the time of another frame everything is where that one has it.
 TEST_F(Motion, GoesOnWhileAFrameIsExposed) {
     folder_.write("vehicle.gltf", vehicle_gltf());
     const auto check = [](const SceneDesc& scene) {
-        const ResolvedScene shown(scene_of_image(scene, {2}));
+        const ImageScene shown = scene_of_image(scene, {2});
         for (const int frame : {0, 5, 12}) {
-            const ResolvedScene other(scene_of_image(scene, {frame}));
-            const SceneDesc then = scene_at(shown.desc(), *other.desc().time);
+            const ImageScene other = scene_of_image(scene, {frame});
+            const ImageScene moved = shown.at(*other.time());
+            const SceneDesc& then = moved.desc();
             EXPECT_EQ(then.camera.world_from_camera, other.desc().camera.world_from_camera);
             EXPECT_NE(then.camera.world_from_camera, shown.desc().camera.world_from_camera);
             EXPECT_EQ(then.geometry, other.desc().geometry);
@@ -249,12 +253,12 @@ TEST_F(Motion, OnlyWhatMovesIsMadeAnew) {
     const SceneDesc scene = load_camera(k_ahead, rest);
     Renderer renderer;
     renderer.set_scene(scene_of_image(scene, {0}));
-    renderer.splat();
+    renderer.render();
     const Surfaces* const surfaces = renderer.assembled().surfaces.get();
     renderer.set_scene(scene_of_image(scene, {1}));
-    renderer.splat();
+    renderer.render();
     EXPECT_EQ(renderer.assembled().surfaces.get(), surfaces);
-    EXPECT_EQ(renderer.splat_counts().rays, 0U);
+    EXPECT_EQ(renderer.report().splat_rays, 0U);
 }
 
 }  // namespace

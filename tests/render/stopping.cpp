@@ -104,16 +104,17 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
     /// How many rays are traced after the first `until` of them.
     static std::size_t rays_after_stop(std::size_t until) {
         const SceneDesc desc = scene();
-        AssembledScene assembled = assemble_scene(desc, [](const std::string&) {});
-        assembled.desc = desc;
+        SceneCache cache;
+        AssembledScene assembled =
+            assemble_scene(SceneDesc(desc), cache, [](const std::string&) {});
         const auto surfaces = std::make_shared<StoppingSurfaces>(assembled.surfaces, until);
         assembled.surfaces = surfaces;
-        const LayerPlan plan = layer_plan(desc, "default");
+        const LayerPlan plan = layer_plan(assembled.image, "default");
         const BandColour colour = make_band_colour(desc.render.colour, desc.water.bands_nm);
         Film film(desc.camera.width, desc.camera.height,
                   {0, 0, desc.camera.width, desc.camera.height}, plan.channel_names());
         const auto render = [&] {
-            PassList passes = make_passes(desc);
+            PassList passes = make_passes(assembled.image);
             const PassNeeds needs = passes.needs(plan);
             if (needs.slabs) assembled.slabs = place_slabs(assembled);
             const DeepShadows light = LightSplatter().splat(

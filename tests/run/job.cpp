@@ -21,8 +21,8 @@ TEST(JobScenes, AreReadWhenTheyAreDue) {
     });
     scenes.warn("of the job");
     EXPECT_EQ(scenes.of(1).camera.width, 5);
-    EXPECT_EQ(scenes.look_at({1, {}}).camera.width, 5);
-    const ResolvedScene other = scenes.take({2, {}});
+    EXPECT_EQ(scenes.look_at({1, {}}).desc().camera.width, 5);
+    const ImageScene other = scenes.take({2, {}});
     EXPECT_EQ(other.desc().camera.width, 6);
     EXPECT_EQ(other.desc().warnings, (std::vector<std::string>{"its own", "of the job"}));
     EXPECT_EQ(scenes.take({1, {}}).desc().camera.width, 5);  // kept since it was looked at
@@ -42,7 +42,7 @@ TEST(ValueGrid, GoesAlongItsFirstAxisFirst) {
 }
 
 TEST(Draft, ShowsTheSameViewSmaller) {
-    const ResolvedScene draft = draft_of(pinhole_scene(640, 480), 160);
+    const ImageScene draft = draft_of(pinhole_scene(640, 480), 160);
     const SceneDesc& scene = draft.desc();
     EXPECT_EQ(scene.camera.width, 160);
     EXPECT_EQ(scene.camera.height, 120);

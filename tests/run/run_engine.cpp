@@ -27,7 +27,7 @@ SceneDesc scene_of(int number) {
 /// Keeps what it is told, and the films.
 class Recorder : public RunClient {
   public:
-    WantedImage want(std::size_t place, ResolvedScene& /*scene*/) override {
+    WantedImage want(std::size_t place, ImageScene& /*scene*/) override {
         told.push_back("want " + std::to_string(place));
         return {{.layers = "depth"}};
     }

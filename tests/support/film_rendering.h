@@ -13,7 +13,7 @@ namespace uw::test {
 class RenderedFilm {
   public:
     explicit RenderedFilm(const SceneDesc& desc)
-        : plan_(layer_plan(desc, k_layers)), film_(rendered(desc, warnings_)) {}
+        : plan_(layer_plan(SceneDesc(desc), k_layers)), film_(rendered(desc, warnings_)) {}
 
     const Film& film() const { return film_; }
     const std::vector<std::string>& warnings() const { return warnings_; }

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/light/integrator_table.h"
 
 namespace uw::test {
 
@@ -46,10 +45,12 @@ GeometryDesc plane_at_z(double z) {
     return plane;
 }
 
-TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options) {
-    scene_.set_scene(SceneDesc(desc));
-    if (integrator_kind(desc.render.integrator).needs_deep_shadows) scene_.splat(options);
-    transport_ = scene_.make_transport();
+TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options)
+    : scene_(assemble_scene(SceneDesc(desc), cache_, [](const std::string& /*stage*/) {})) {
+    scene_.slabs = place_slabs(scene_);
+    const PassNeeds needs = make_passes(scene_.image).needs(layer_plan(scene_.image, {}));
+    if (needs.light) light_ = cache_.light(scene_, options);
+    transport_ = make_light_transport(scene_, light_, needs.paths);
     pixels_ = std::make_unique<PixelRenderer>(pixel_renderer(assembled(), transport_));
 }
 

@@ -23,13 +23,16 @@ class TestScene {
   public:
     explicit TestScene(const SceneDesc& desc, const DeepShadowOptions& options = {});
 
-    const AssembledScene& assembled() const { return scene_.assembled(); }
+    const AssembledScene& assembled() const { return scene_; }
+    const DeepShadows& light() const { return light_; }
     const Integrator& integrator() const { return *transport_.integrator; }
     PixelResult pixel(int x, int y) const;
     std::vector<PixelResult> image() const;
 
   private:
-    Renderer scene_;
+    SceneCache cache_;
+    AssembledScene scene_;
+    DeepShadows light_;
     LightTransport transport_;
     std::unique_ptr<PixelRenderer> pixels_;
 };

@@ -146,5 +146,17 @@ TEST(FileStamp, ChangesWithAllThatTellsFilesApart) {
     EXPECT_NE(stamp_of(file), first);
 }
 
+TEST(FileStamps, AreCurrentUntilOneFileChanges) {
+    const test::TempDir folder;
+    EXPECT_TRUE(FileStamps().are_current());
+    const auto write = [&](const char* name) { std::ofstream(folder / name) << name; };
+    write("a");
+    FileStamps stamps({folder / "a"});
+    stamps.add(FileStamps({folder / "b"}));
+    EXPECT_TRUE(stamps.are_current());
+    write("b");  // which there was not
+    EXPECT_FALSE(stamps.are_current());
+}
+
 }  // namespace
 }  // namespace uw

@@ -26,7 +26,7 @@ class MultipleLights : public testing::Test {
     Film render(const SceneDesc& desc, const RenderOptions& options = {.layers = "all"}) {
         Renderer renderer;
         renderer.set_scene(SceneDesc(desc));
-        plan_ = layer_plan(desc, options.layers, options.paths);
+        plan_ = layer_plan(renderer.scene(), options.layers, options.paths);
         Film film = renderer.render(options);
         const RenderReport& report = renderer.report();
         error_ = report.multiple_error.value_or(report.paths.error.value_or(0));

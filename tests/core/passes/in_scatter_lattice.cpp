@@ -28,7 +28,7 @@ class MixedImage {
           pixels_(pixel_renderer(renderer_.assembled(), transport_, parts)) {}
 
     std::vector<PixelResult> render(double tolerance) const {
-        const CameraDesc& camera = renderer_.scene().camera;
+        const CameraDesc& camera = renderer_.scene().desc().camera;
         return render(tolerance, {0, 0, camera.width, camera.height});
     }
     std::vector<PixelResult> render(double tolerance, const PixelWindow& window) const {

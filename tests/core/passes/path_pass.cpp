@@ -31,7 +31,7 @@ class PathFilms : public testing::Test {
     Film render(const RenderOptions& options = {.layers = "all"}) {
         Renderer renderer;
         renderer.set_scene(SceneDesc(desc_));
-        plan_ = layer_plan(desc_, options.layers, options.paths);
+        plan_ = layer_plan(renderer.scene(), options.layers, options.paths);
         Film film = renderer.render(options);
         report_ = renderer.report();
         return film;

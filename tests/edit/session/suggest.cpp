@@ -36,7 +36,7 @@ TEST(Suggest, FindsTheLampsPlaceOfMostLight) {
     TargetProbe probe({.rays = 1});
     SuggestRequest request = along_x(-1.7, 2.3);
     request.objective = SuggestRequest::Objective::irradiance;
-    const Suggestion line = suggest_position(probe, ResolvedScene{SceneDesc(desc)}, request);
+    const Suggestion line = suggest_position(probe, ImageScene{SceneDesc(desc)}, request);
     // Steps are halved until they are below 1 cm.
     EXPECT_NEAR(line.best.position.x, 0, 0.01);
     EXPECT_EQ(line.best.position.y, 0.1);
@@ -46,7 +46,7 @@ TEST(Suggest, FindsTheLampsPlaceOfMostLight) {
     request.from = {-1, 0.9, -0.2};
     request.to = {1.3, -0.6, 0.4};
     request.samples = 400;
-    const Suggestion box = suggest_position(probe, ResolvedScene{SceneDesc(desc)}, request);
+    const Suggestion box = suggest_position(probe, ImageScene{SceneDesc(desc)}, request);
     EXPECT_NEAR(box.best.position.x, 0, 0.01);
     EXPECT_NEAR(box.best.position.y, 0, 0.01);
     EXPECT_EQ(box.best.position.z, 0.4) << "the nearest to the target";
@@ -59,12 +59,12 @@ TEST(Suggest, FindsTheBestContrastOfABar) {
     const SceneDesc desc = rig();
     const SuggestRequest request = along_x(-1.5, 0.5);
     TargetProbe probe;
-    const Suggestion found = suggest_position(probe, ResolvedScene{SceneDesc(desc)}, request);
+    const Suggestion found = suggest_position(probe, ImageScene{SceneDesc(desc)}, request);
     const auto contrast_at = [&](double x) {
         SceneDesc moved = desc;
         moved.lamps[0].position.x = x;
         TargetProbe fresh;
-        return fresh.curve(ResolvedScene{std::move(moved)}, std::vector{2.0}).front().contrast;
+        return fresh.curve(ImageScene{std::move(moved)}, std::vector{2.0}).front().contrast;
     };
     double best = 0;
     for (int i = 0; i <= 200; ++i) best = std::max(best, contrast_at(-1.5 + 0.01 * i));
@@ -82,7 +82,7 @@ TEST(Suggest, FindsTheBestContrastOfABar) {
 }
 
 TEST(Suggest, GivesTheSameAnswerWhateverTheProbeHasKept) {
-    const ResolvedScene scene{rig()};
+    const ImageScene scene{rig()};
     const SuggestRequest request = along_x(-1.5, 0.5);
     TargetProbe used, fresh;
     used.curve(scene, target_distances());
@@ -111,7 +111,7 @@ TEST(Suggest, KeepsThePartnerOnTheOtherSide) {
     request.partner = 1;
     request.aim = SuggestRequest::Aim::target;
     TargetProbe probe;
-    const Suggestion found = suggest_position(probe, ResolvedScene{SceneDesc(desc)}, request);
+    const Suggestion found = suggest_position(probe, ImageScene{SceneDesc(desc)}, request);
     const Affine camera_from_world = desc.camera.world_from_camera.inverse();
     const Point3 lamp = found.lamp.position;
     const Point3 partner = camera_from_world * found.partner->position;
@@ -123,14 +123,14 @@ TEST(Suggest, KeepsThePartnerOnTheOtherSide) {
     // The numbers are those of the scene with both moved.
     desc.lamps = {found.lamp, *found.partner};
     TargetProbe fresh;
-    EXPECT_NEAR(fresh.curve(ResolvedScene{SceneDesc(desc)}, std::vector{2.0}).front().contrast,
+    EXPECT_NEAR(fresh.curve(ImageScene{SceneDesc(desc)}, std::vector{2.0}).front().contrast,
                 found.best.value, 1e-9);
 }
 
 TEST(Suggest, LeavesOutPlacesOfTooLittleLight) {
     SceneDesc desc = rig();
     desc.lamps.pop_back();
-    const ResolvedScene scene{std::move(desc)};
+    const ImageScene scene{std::move(desc)};
     SuggestRequest request = along_x(-3, 0);
     TargetProbe probe;
     const Suggestion free = suggest_position(probe, scene, request);
@@ -147,7 +147,7 @@ TEST(Suggest, LeavesOutPlacesOfTooLittleLight) {
 }
 
 TEST(Suggest, IsBoundedAndCanBeCancelled) {
-    const ResolvedScene scene{rig()};
+    const ImageScene scene{rig()};
     SuggestRequest request = along_x(-1.5, 0.5);
     request.samples = 12;
     TargetProbe probe({.rays = 1});

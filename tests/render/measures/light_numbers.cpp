@@ -60,11 +60,11 @@ TEST(LampNumbers, AddUpToThoseOfAllLight) {
     desc.lamps = {isotropic_lamp({-0.5, 0, 0}, 10), isotropic_lamp({0.4, 0.3, 0.5}, 5)};
     desc.lamps[0].name = "a";
     desc.lamps[1].name = "b";
-    const ResolvedScene scene(std::move(desc));
+    const ImageScene scene(std::move(desc));
     Renderer renderer;
     renderer.set_scene(scene);
-    const std::string layers = layers_to_measure(scene.desc());
-    const LayerPlan plan = layer_plan(scene.desc(), layers);
+    const std::string layers = layers_to_measure(scene);
+    const LayerPlan plan = layer_plan(scene, layers);
     const Film film = [&] {
         renderer.render({.layers = layers});
         return renderer.release_film();

@@ -167,7 +167,7 @@ TEST(PictureNumbers, OfARenderedImageAreThoseOfItsGeometry) {
     Renderer renderer;
     renderer.set_scene(SceneDesc(desc));
     const Film& film = renderer.render({.layers = k_picture_layers});
-    const LayerPlan plan = layer_plan(desc, k_picture_layers);
+    const LayerPlan plan = layer_plan(renderer.scene(), k_picture_layers);
     const PictureLayers layers = picture_layers(film, plan);
     const PictureNumbers middle = measure_picture(layers, {15, 10, 16, 11});
     double with_water = 0, without = 0, irradiance = 0;

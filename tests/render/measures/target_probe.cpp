@@ -58,7 +58,7 @@ struct RayTruth {
 
 TEST(TargetProbe, AgreesWithTheFormulasOfUniformWater) {
     const SceneDesc desc = two_lamps();
-    const ResolvedScene scene{SceneDesc(desc)};
+    const ImageScene scene{SceneDesc(desc)};
     TargetOptions options{.bright = 0.9, .dark = 0.05, .field = 0.6, .rays = 3};
     TargetProbe probe(options);
     for (const double distance : {0.5, 2.0, 6.0}) {
@@ -100,7 +100,7 @@ TEST(TargetProbe, SeesTheTargetsOwnContrastInWaterThatOnlyAbsorbs) {
         desc.water.absorption = PerBand(bands, 0.1);
         desc.water.scattering->b = PerBand(bands, 0.0);
         for (LampDesc& lamp : desc.lamps) lamp.intensity = PerBand(bands, 10.0);
-        const ResolvedScene scene{std::move(desc)};
+        const ImageScene scene{std::move(desc)};
         TargetProbe probe({.bright = 0.8, .dark = 0.2});
         for (const TargetNumbers& numbers : probe.curve(scene, target_distances(0.5, 10, 4))) {
             EXPECT_NEAR(numbers.contrast, 0.6, 1e-12);
@@ -111,7 +111,7 @@ TEST(TargetProbe, SeesTheTargetsOwnContrastInWaterThatOnlyAbsorbs) {
     SceneDesc dark = two_lamps();
     dark.lamps.clear();
     TargetProbe probe;
-    EXPECT_EQ(probe.curve(ResolvedScene{std::move(dark)}, std::vector{1.0}).front().contrast, 0);
+    EXPECT_EQ(probe.curve(ImageScene{std::move(dark)}, std::vector{1.0}).front().contrast, 0);
 }
 
 /// Two whole images, one of a bright wall and one of a dark one, rendered as users do, lamps of
@@ -144,7 +144,7 @@ TEST(TargetProbe, AgreesWithImagesOfTheTarget) {
     const double bright = mean_of(0.9), dark = mean_of(0.1);
     TargetProbe probe({.bright = 0.9, .dark = 0.1, .field = 1, .rays = 5});
     const TargetNumbers numbers =
-        probe.curve(ResolvedScene{SceneDesc(desc)}, std::vector{2.5}).front();
+        probe.curve(ImageScene{SceneDesc(desc)}, std::vector{2.5}).front();
     // The volume integrator's tolerance for in-scatter is 0.2 %.
     EXPECT_NEAR(numbers.contrast, (bright - dark) / (bright + dark), 1e-3);
     EXPECT_NEAR(numbers.signal + numbers.backscatter, bright, 1e-3 * bright);
@@ -154,14 +154,14 @@ TEST(TargetProbe, RendersOnlyWhatChanged) {
     SceneDesc desc = two_lamps();
     const std::vector<double> distances = target_distances(0.5, 10, 5);
     TargetProbe probe({.rays = 1});
-    const auto curve = [&] { return probe.curve(ResolvedScene{SceneDesc(desc)}, distances); };
+    const auto curve = [&] { return probe.curve(ImageScene{SceneDesc(desc)}, distances); };
     const auto expect_as_new = [&](std::uint64_t rendered) {
         const std::uint64_t before = probe.rendered();
         const std::vector<TargetNumbers> numbers = curve();
         EXPECT_EQ(probe.rendered() - before, rendered);
         TargetProbe fresh({.rays = 1});
         const std::vector<TargetNumbers> expected =
-            fresh.curve(ResolvedScene{SceneDesc(desc)}, distances);
+            fresh.curve(ImageScene{SceneDesc(desc)}, distances);
         for (std::size_t i = 0; i < distances.size(); ++i) {
             EXPECT_EQ(numbers[i].contrast, expected[i].contrast);
             EXPECT_EQ(numbers[i].irradiance, expected[i].irradiance);
@@ -190,7 +190,7 @@ TEST(TargetProbe, RendersOnlyWhatChanged) {
 }
 
 TEST(TargetProbe, CanBeCancelledAndRefusesWhatMakesNoSense) {
-    const ResolvedScene scene{two_lamps()};
+    const ImageScene scene{two_lamps()};
     TargetProbe probe({.rays = 1});
     int calls = 0;
     const std::function<bool()> stop = [&calls] { return ++calls < 20; };

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "render/image_scene.h"
 #include "render/renderer.h"
-#include "render/resolved_scene.h"
 #include "render/scene_loading.h"
 #include "tests/support/image_of.h"
 
@@ -20,8 +20,8 @@ inline constexpr double k_shutter = 0.04;
 enum class Moves { all, camera_alone };
 
 /// Camera, lamps and box move, each in its own way, in water.
-inline SceneDesc moving_scene(const std::string& render, const std::string& water = "",
-                              Moves moves = Moves::all) {
+inline ImageScene moving_scene(const std::string& render, const std::string& water = "",
+                               Moves moves = Moves::all) {
     SceneDesc scene = load_scene_text(
         "uwvdb: 1\n"
         "camera: {resolution: [40, 36], intrinsics: {fx: 40}, port: {distance: 0.02, thickness: "

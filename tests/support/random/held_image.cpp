@@ -48,8 +48,12 @@ class Oddities {
 /// One scene's image, held to all that can be said without knowing it.
 class HeldImage {
   public:
-    HeldImage(const SceneDesc& desc, InvariantCounts& counts)
-        : desc_(desc), counts_(counts), plan_(layer_plan(desc, k_options)), film_(first_image()) {}
+    HeldImage(const ImageScene& scene, InvariantCounts& counts)
+        : scene_(scene),
+          desc_(scene.desc()),
+          counts_(counts),
+          plan_(layer_plan(scene, k_options)),
+          film_(first_image()) {}
 
     void hold() {
         hold_each_value();
@@ -65,7 +69,7 @@ class HeldImage {
   private:
     Film first_image() {
         Renderer renderer;
-        renderer.set_scene(SceneDesc(desc_));
+        renderer.set_scene(scene_);
         Film film = rendered(renderer, 1, {.layers = k_options});
         for (const Lamp& lamp : renderer.assembled().emitters) {
             has_lamp_at_plane_ |= is_at_plane(lamp, desc_);
@@ -218,7 +222,7 @@ class HeldImage {
 
     void hold_same_bytes() const {
         Renderer renderer;
-        renderer.set_scene(SceneDesc(desc_));
+        renderer.set_scene(scene_);
         const Film three = rendered(renderer, 3, {.layers = k_options});
         EXPECT_TRUE(same(film_, three)) << "three threads";
         const PixelWindow window{film_.width() / 3, film_.height() / 3, (2 * film_.width() + 2) / 3,
@@ -242,9 +246,8 @@ class HeldImage {
         // Which its warning tells (voxel_depth.h).
         const double share = has_coarse_voxels_ ? 5 : 1;
         const double brightest = brightest_total();
-        ReferencePixels reference(desc_);
-        SceneDesc open = desc_;
-        open.geometry.clear();
+        ReferencePixels reference(scene_);
+        const ImageScene open = scene_.with([](SceneDesc& desc) { desc.geometry.clear(); });
         const int width = film_.width(), height = film_.height();
         for (const auto& [x, y] :
              {std::pair{width / 4, height / 3}, {2 * width / 3, 2 * height / 3}}) {
@@ -271,7 +274,8 @@ class HeldImage {
         }
     }
 
-    const SceneDesc& desc_;
+    const ImageScene& scene_;
+    const SceneDesc& desc_;  // that of `scene_`
     InvariantCounts& counts_;
     LayerPlan plan_;
     double brightest_lamp_ = 0;  // of its intensities
@@ -281,8 +285,8 @@ class HeldImage {
 
 }  // namespace
 
-void hold_image(const SceneDesc& desc, InvariantCounts& counts) {
-    HeldImage(desc, counts).hold();
+void hold_image(const ImageScene& scene, InvariantCounts& counts) {
+    HeldImage(scene, counts).hold();
 }
 
 }  // namespace uw::test

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/scene/scene_desc.h"
+#include "render/image_scene.h"
 
 namespace uw::test {
 
@@ -28,6 +28,6 @@ struct InvariantCounts {
 /// - a sensor's numbers are within its bits;
 /// - three threads give the bytes of one, and a part of the image is that part of the whole;
 /// - the fast integrator agrees with the reference at two pixels.
-void hold_image(const SceneDesc& desc, InvariantCounts& counts);
+void hold_image(const ImageScene& scene, InvariantCounts& counts);
 
 }  // namespace uw::test

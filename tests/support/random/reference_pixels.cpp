@@ -25,13 +25,14 @@ bool is_at_plane(const Lamp& lamp, const SceneDesc& scene) {
     });
 }
 
-ReferencePixels::ReferencePixels(SceneDesc scene) : bands_(scene.water.bands_nm.size()) {
-    scene.render.integrator = RenderDesc::Integrator::reference;
+ReferencePixels::ReferencePixels(const ImageScene& scene)
+    : bands_(scene.desc().water.bands_nm.size()) {
+    renderer_.set_scene(scene.with(
+        [](SceneDesc& desc) { desc.render.integrator = RenderDesc::Integrator::reference; }));
     // With three bands, R G B are the total.
-    first_ = bands_ == 3
-                 ? 0
-                 : static_cast<std::size_t>(layer_plan(scene, k_total).first_channel(Layer::total));
-    renderer_.set_scene(std::move(scene));
+    first_ = bands_ == 3 ? 0
+                         : static_cast<std::size_t>(
+                               layer_plan(renderer_.scene(), k_total).first_channel(Layer::total));
 }
 
 std::vector<double> ReferencePixels::at(int x, int y) {

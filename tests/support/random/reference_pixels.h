@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/light/lamp.h"
-#include "core/scene/scene_desc.h"
+#include "render/image_scene.h"
 #include "render/renderer.h"
 
 namespace uw::test {
@@ -16,7 +16,7 @@ bool is_at_plane(const Lamp& lamp, const SceneDesc& scene);
 /// Single pixels of a scene by the reference integrator.
 class ReferencePixels {
   public:
-    explicit ReferencePixels(SceneDesc scene);
+    explicit ReferencePixels(const ImageScene& scene);
 
     /// The total of all light in a pixel, as images hold it, per band.
     std::vector<double> at(int x, int y);

@@ -30,13 +30,13 @@ InvariantCounts hold_invariants(std::uint64_t first, int count, Scattered scatte
         const double start = cpu_seconds();
         SCOPED_TRACE(fmt::format("seed {}:\n{}", seed, text));
         try {
-            const ResolvedScene scene(load_scene_text(text, "random.yaml"));
+            const ImageScene scene(load_scene_text(text, "random.yaml"));
             if (scattered == Scattered::once &&
                 scattering_of(scene.desc().render) != RenderDesc::Scattering::single) {
                 ++counts.left_out;
                 continue;
             }
-            hold_image(scene.desc(), counts);
+            hold_image(scene, counts);
             ++counts.rendered;
         } catch (const InputError& error) {
             EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos);

@@ -1,4 +1,4 @@
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 #include <fmt/format.h>
 
@@ -91,7 +91,7 @@ Affine pose_at(const TrajectoryDesc& desc, double time, const SceneDesc& scene,
         frames ? fmt::format(", which is frames {}-{}", frames->first, frames->last) : ""));
 }
 
-/// Sets `scene.time`, and all poses to those that `pose_of` gives their trajectories.
+/// Sets all poses to those at `time` that `pose_of` gives their trajectories.
 void move_all(SceneDesc& scene, double time,
               const std::function<Affine(const TrajectoryDesc&)>& pose_of) {
     if (scene.camera.trajectory) scene.camera.world_from_camera = pose_of(*scene.camera.trajectory);
@@ -112,7 +112,6 @@ void move_all(SceneDesc& scene, double time,
             geometry.world_from_object = pose_of(*geometry.trajectory) * geometry.world_from_object;
         if (geometry.animation) geometry.time = time;
     }
-    scene.time = time;
 }
 
 }  // namespace
@@ -156,17 +155,6 @@ double first_time(const SceneDesc& scene) {
     return std::max(0.0, common_times(scene).first);
 }
 
-void set_time(SceneDesc& scene, double time, const std::string& subject) {
-    move_all(scene, time,
-             [&](const TrajectoryDesc& desc) { return pose_at(desc, time, scene, subject); });
-}
-
-void set_time_of_exposure(SceneDesc& scene, double time) {
-    move_all(scene, time, [&](const TrajectoryDesc& desc) {
-        return desc.trajectory->at_or_beyond(time).affine();
-    });
-}
-
 namespace {
 
 void refuse_open_sequences(const SceneDesc& scene) {
@@ -185,55 +173,99 @@ void refuse_open_sequences(const SceneDesc& scene) {
         if (geometry.is_sequence) refuse(geometry.where, geometry.file);
 }
 
+void choose_file(auto& input, int frame) {
+    if (!input.is_sequence) return;
+    input.file = file_of_frame(input.file, frame);
+    input.is_sequence = false;
+}
+
 // Sets camera and files; a scene without a choice of either keeps its own.
 void choose(SceneDesc& scene, const ImageChoice& choice) {
-    scene.choice = choice;
     if (!scene.cameras.empty()) {
         scene.camera = scene.cameras[choice.camera].camera;
         scene.camera_name = scene.cameras[choice.camera].name;
     }
     if (!choice.frame) return;
-    const auto choose_file = [&](auto& input) {
-        if (!input.is_sequence) return;
-        input.file = file_of_frame(input.file, *choice.frame);
-        input.is_sequence = false;
-    };
-    for (VolumeDesc& volume : scene.volumes) {
-        choose_file(volume);
-        if (volume.motion) choose_file(*volume.motion);
-    }
-    std::ranges::for_each(scene.geometry, choose_file);
+    for (VolumeDesc& volume : scene.volumes)
+        volume = volume_of_frame(std::move(volume), *choice.frame);
+    for (GeometryDesc& geometry : scene.geometry) choose_file(geometry, *choice.frame);
+}
+
+std::optional<double> moment_of(const SceneDesc& whole, const ImageChoice& choice) {
+    if (!has_motion(whole)) return std::nullopt;
+    return choice.frame ? time_of_frame(whole, *choice.frame) : first_time(whole);
+}
+
+/// What an image shows, but for what glTF files bring.
+SceneDesc chosen(const SceneDesc& whole, const ImageChoice& choice) {
+    SceneDesc scene = whole;
+    choose(scene, choice);
+    const std::optional<double> time = moment_of(whole, choice);
+    if (!time) return scene;
+    const std::string subject =
+        choice.frame ? fmt::format("frame {}", *choice.frame) : "the first moment";
+    move_all(scene, *time,
+             [&](const TrajectoryDesc& desc) { return pose_at(desc, *time, whole, subject); });
+    return scene;
 }
 
 }  // namespace
 
-SceneDesc scene_of_image(const SceneDesc& scene, const ImageChoice& choice) {
-    SceneDesc result = scene;
-    result.whole = std::make_shared<SceneDesc>(scene);
-    choose(result, choice);
-    if (!has_motion(scene)) return result;
-    if (choice.frame)
-        set_time(result, time_of_frame(scene, *choice.frame),
-                 fmt::format("frame {}", *choice.frame));
-    else
-        set_time(result, first_time(scene), "the first moment");
+VolumeDesc volume_of_frame(VolumeDesc volume, int frame) {
+    choose_file(volume, frame);
+    if (volume.motion) choose_file(*volume.motion, frame);
+    return volume;
+}
+
+Affine world_from_camera(const SceneDesc& whole, const ImageChoice& choice) {
+    const SceneDesc scene = chosen(whole, choice);
+    if (scene.camera.has_pose) return scene.camera.world_from_camera;
+    return scene_of_image(whole, choice).desc().camera.world_from_camera;  // a glTF file's
+}
+
+void check_moment(const SceneDesc& whole, const ImageChoice& choice) {
+    chosen(whole, choice);
+}
+
+ImageScene::ImageScene(std::shared_ptr<const SceneDesc> whole, const ImageChoice& choice)
+    : whole_(std::move(whole)),
+      choice_(choice),
+      time_(moment_of(*whole_, choice)),
+      desc_(chosen(*whole_, choice)) {
+    refuse_open_sequences(desc_);
+    import_gltf(desc_);
+    check_limits(desc_);
+}
+
+ImageScene::ImageScene(SceneDesc&& whole, const ImageChoice& choice)
+    : ImageScene(std::make_shared<const SceneDesc>(std::move(whole)), choice) {}
+
+ImageScene scene_of_image(const SceneDesc& whole, const ImageChoice& choice) {
+    return {SceneDesc(whole), choice};
+}
+
+ImageScene ImageScene::with(const std::function<void(SceneDesc&)>& change) const {
+    ImageScene result = *this;
+    change(result.desc_);
     return result;
 }
 
-SceneDesc scene_at(const SceneDesc& scene, double time) {
-    SceneDesc then = *scene.whole;
-    choose(then, scene.choice);
-    set_time_of_exposure(then, time);
+ImageScene ImageScene::at(double time) const {
+    SceneDesc then = *whole_;
+    choose(then, choice_);
+    move_all(then, time, [&](const TrajectoryDesc& desc) {
+        return desc.trajectory->at_or_beyond(time).affine();
+    });
     import_gltf(then);
-    SceneDesc result = scene;
-    result.time = time;
-    result.camera.world_from_camera = then.camera.world_from_camera;
-    for (std::size_t i = 0; i < result.geometry.size(); ++i) {
-        result.geometry[i].world_from_object = then.geometry[i].world_from_object;
-        result.geometry[i].time = then.geometry[i].time;
+    ImageScene result = *this;
+    result.time_ = time;
+    result.desc_.camera.world_from_camera = then.camera.world_from_camera;
+    for (std::size_t i = 0; i < result.desc_.geometry.size(); ++i) {
+        result.desc_.geometry[i].world_from_object = then.geometry[i].world_from_object;
+        result.desc_.geometry[i].time = then.geometry[i].time;
     }
     // An image may have fewer lamps than its scene.
-    for (LampDesc& lamp : result.lamps) {
+    for (LampDesc& lamp : result.desc_.lamps) {
         const auto moved = std::ranges::find(then.lamps, lamp.name, &LampDesc::name);
         if (moved == then.lamps.end()) continue;
         lamp.position = moved->position;
@@ -243,14 +275,17 @@ SceneDesc scene_at(const SceneDesc& scene, double time) {
     return result;
 }
 
-ResolvedScene::ResolvedScene(SceneDesc&& scene) : desc_(std::move(scene)) {
-    refuse_open_sequences(desc_);
-    if (!desc_.time && has_motion(desc_)) {
-        desc_.whole = std::make_shared<SceneDesc>(desc_);
-        set_time(desc_, first_time(desc_), "the first moment");
-    }
-    import_gltf(desc_);
-    check_limits(desc_);
+ImageScene ImageScene::seen_by(std::size_t camera) const {
+    ImageScene result = *this;
+    result.choice_.camera = camera;
+    result.desc_.camera = desc_.cameras[camera].camera;
+    result.desc_.camera_name = desc_.cameras[camera].name;
+    return result;
+}
+
+std::optional<ImageScene> ImageScene::neighbour(int step) const {
+    if (!choice_.frame || !has_frame(*whole_, *choice_.frame + step)) return std::nullopt;
+    return ImageScene(whole_, {*choice_.frame + step, choice_.camera});
 }
 
 }  // namespace uw

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "render/resolved_scene.h"
+#include "render/image_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@
 namespace uw::test {
 namespace {
 
-// Making a resolved scene is what imports. None is made from another, nor from a description that
-// others still use, but by a copy that one sees.
-static_assert(std::is_convertible_v<SceneDesc, ResolvedScene>);
-static_assert(!std::is_constructible_v<ResolvedScene, const SceneDesc&>);
-static_assert(!std::is_constructible_v<ResolvedScene, SceneDesc&>);
+// Making the scene of an image is what imports. None is made from another, nor from a description
+// that others still use, but by a copy that one sees.
+static_assert(std::is_convertible_v<SceneDesc, ImageScene>);
+static_assert(!std::is_constructible_v<ImageScene, const SceneDesc&>);
+static_assert(!std::is_constructible_v<ImageScene, SceneDesc&>);
 
 constexpr const char* k_world =
     "volumes: [{file: smoke_####.vdb, velocity: {grid: v, file: wind_####.vdb}, grids: {density: "
@@ -25,9 +25,9 @@ constexpr const char* k_world =
     "geometry: [{file: 'ship_####.gltf', lamps: all}]\n"
     "render: {shutter: 0.01}\n";
 
-class Resolved : public testing::Test {
+class OfAnImage : public testing::Test {
   protected:
-    Resolved() {
+    OfAnImage() {
         folder_.write("still.vdb", "");
         for (const char* name : {"smoke_0003.vdb", "wind_0003.vdb"}) folder_.write(name, "");
         folder_.write(
@@ -48,55 +48,63 @@ class Resolved : public testing::Test {
     SceneFolder folder_;
 };
 
-TEST_F(Resolved, FramesHaveTheirFiles) {
+TEST_F(OfAnImage, FramesHaveTheirFiles) {
     const SceneDesc all = load();
-    const SceneDesc third = scene_of_image(all, {3});
+    const ImageScene image = scene_of_image(all, {3});
+    const SceneDesc& third = image.desc();
     EXPECT_EQ(third.volumes[0].file, folder_.path() / "smoke_0003.vdb");
     EXPECT_EQ(third.volumes[0].motion->file, folder_.path() / "wind_0003.vdb");
     EXPECT_EQ(third.volumes[1].file, folder_.path() / "still.vdb");
     EXPECT_EQ(third.geometry[0].file, folder_.path() / "ship_0003.gltf");
     EXPECT_FALSE(third.volumes[0].is_sequence || third.volumes[0].motion->is_sequence ||
                  third.geometry[0].is_sequence);
-    EXPECT_TRUE(third.lamps.empty());  // not imported by that
-    EXPECT_TRUE(scene_of_image(all, {}).volumes[0].is_sequence);
+    EXPECT_TRUE(image.whole().volumes[0].is_sequence);
+    EXPECT_EQ(image.choice().frame, 3);
+    EXPECT_FALSE(image.time());
+    EXPECT_FALSE(image.neighbour(1));  // there is no such file
 }
 
-TEST_F(Resolved, RigsAreSeenByOneCamera) {
+TEST_F(OfAnImage, RigsAreSeenByOneCamera) {
     const SceneDesc rig = load(
         "cameras:\n  - {name: a, resolution: [4, 3], intrinsics: {fov_x: 60}}\n"
         "  - {name: b, resolution: [8, 6], intrinsics: {fov_x: 60}}\n");
     EXPECT_EQ(rig.camera.width, 4);
-    const SceneDesc second = scene_of_image(rig, {.frame = 3, .camera = 1});
-    EXPECT_EQ(second.camera.width, 8);
-    EXPECT_EQ(second.camera_name, "b");
+    const ImageScene second = scene_of_image(rig, {.frame = 3, .camera = 1});
+    EXPECT_EQ(second.desc().camera.width, 8);
+    EXPECT_EQ(second.desc().camera_name, "b");
+    const ImageScene first = second.seen_by(0);
+    EXPECT_EQ(first.desc().camera.width, 4);
+    EXPECT_EQ(first.desc().camera_name, "a");
+    EXPECT_EQ(first.choice().camera, 0U);
 }
 
-TEST_F(Resolved, ScenesHoldWhatGltfFilesBringOnce) {
-    ResolvedScene scene(scene_of_image(load(), {3}));
+TEST_F(OfAnImage, ItHoldsWhatGltfFilesBringOnce) {
+    const ImageScene scene = scene_of_image(load(), {3});
     ASSERT_EQ(scene.desc().lamps.size(), 1U);
     EXPECT_EQ(scene.desc().lamps[0].name, "Bulb");
-    scene.edit().lamps.clear();
-    const ResolvedScene copy = scene;
+    const ImageScene dark = scene.with([](SceneDesc& desc) { desc.lamps.clear(); });
+    const ImageScene copy = dark;
     EXPECT_TRUE(copy.desc().lamps.empty());
-    EXPECT_TRUE(std::move(scene).release().lamps.empty());
+    EXPECT_EQ(scene.desc().lamps.size(), 1U);
 }
 
-TEST_F(Resolved, SequencesWithoutAFrameAreRefused) {
-    const auto expect_refused = [](SceneDesc&& scene, const std::string& where) {
+TEST_F(OfAnImage, SequencesWithoutAFrameAreRefused) {
+    const auto expect_refused = [](const SceneDesc& scene, const std::string& where) {
         try {
-            const ResolvedScene resolved(std::move(scene));
+            scene_of_image(scene, {});
             FAIL();
         } catch (const InputError& error) {
             EXPECT_NE(std::string(error.what()).find(where), std::string::npos) << error.what();
         }
     };
     expect_refused(load(), "volumes[0].file: there is no");
-    SceneDesc wind = scene_of_image(load(), {3});
+    const SceneDesc third = scene_of_image(load(), {3}).desc();
+    SceneDesc wind = third;
     wind.volumes[0].motion->is_sequence = true;
-    expect_refused(std::move(wind), "volumes[0].velocity.file: there is no");
-    SceneDesc ship = scene_of_image(load(), {3});
+    expect_refused(wind, "volumes[0].velocity.file: there is no");
+    SceneDesc ship = third;
     ship.geometry[0].is_sequence = true;
-    expect_refused(std::move(ship), "geometry[0].file: there is no");
+    expect_refused(ship, "geometry[0].file: there is no");
 }
 
 }  // namespace

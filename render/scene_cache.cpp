@@ -1,0 +1,134 @@
+#include "render/scene_cache.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "media/volumes/grid_field.h"
+#include "render/marine_snow.h"
+
+namespace uw {
+
+namespace {
+
+std::vector<std::filesystem::path> files_of_water(const SceneDesc& scene) {
+    std::vector<std::filesystem::path> files;
+    const auto add = [&](const PhaseDesc& phase) {
+        if (const auto* table = std::get_if<TabulatedPhaseDesc>(&phase.function))
+            files.push_back(table->file);
+    };
+    if (scene.water.scattering) add(scene.water.scattering->phase);
+    for (const VolumeDesc& volume : scene.volumes)
+        for (const GridMappingDesc& grid : volume.grids)
+            if (grid.optics && grid.optics->phase) add(*grid.optics->phase);
+    return files;
+}
+
+std::vector<std::vector<GridMappingDesc>> grids_of(const SceneDesc& scene) {
+    std::vector<std::vector<GridMappingDesc>> grids;
+    for (const VolumeDesc& volume : scene.volumes) grids.push_back(volume.grids);
+    return grids;
+}
+
+WaterModel build_water(const SceneDesc& scene) {
+    WaterModel water = build_water_model(scene.water, scene.volumes);
+    const std::optional<SnowDesc>& snow = scene.water.snow;
+    if (snow && snow->mean == SnowDesc::Mean::added) add_snow(*snow, water.medium);
+    return water;
+}
+
+std::vector<std::filesystem::path> files_of(const VolumeDesc& volume) {
+    std::vector<std::filesystem::path> files{volume.file};
+    if (volume.motion) files.push_back(volume.motion->file);
+    return files;
+}
+
+}  // namespace
+
+// The volumes' files do not matter for the water, what their grids mean does.
+bool SceneCache::KeptWater::is_of(const SceneDesc& scene) const {
+    return desc == scene.water && files.are_current() &&
+           std::ranges::equal(grids, scene.volumes, {}, {}, &VolumeDesc::grids);
+}
+
+bool SceneCache::KeptVolume::is_of(const VolumeDesc& other,
+                                   const std::vector<std::vector<GridLoad>>& its) const {
+    return volume && desc == other && loads == its && files.are_current();
+}
+
+bool SceneCache::KeptSurfaces::is_of(const SceneDesc& scene) const {
+    return geometry == scene.geometry && bands_nm == scene.water.bands_nm && files.are_current();
+}
+
+const WaterModel& SceneCache::water(const SceneDesc& scene) {
+    if (!water_ || !water_->is_of(scene)) {
+        FileStamps files(files_of_water(scene));
+        water_ = KeptWater{scene.water, grids_of(scene), std::move(files), build_water(scene)};
+    }
+    return water_->model;
+}
+
+void SceneCache::keep_only(const SceneDesc& scene, const WaterModel& water) {
+    std::vector<KeptVolume> before = std::exchange(volumes_, {});
+    bool are_the_same = before.size() == scene.volumes.size();
+    for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
+        const bool is_kept = v < before.size() && before[v].is_of(scene.volumes[v], water.loads[v]);
+        volumes_.push_back(is_kept ? std::move(before[v])
+                                   : KeptVolume{scene.volumes[v], water.loads[v]});
+        are_the_same = are_the_same && is_kept;
+    }
+    if (!are_the_same ||
+        (field_ && field_->constituent_count() != water.medium.constituent_count()))
+        field_.reset();
+    if (surfaces_ && surfaces_->is_of(scene)) return;
+    surfaces_.reset();
+    if (ahead_ && ahead_->is_of(scene)) surfaces_ = std::exchange(ahead_, std::nullopt);
+}
+
+VolumeSet SceneCache::volumes(const SceneDesc& scene, const WaterModel& water) {
+    keep_only(scene, water);
+    VolumeSet set;
+    for (KeptVolume& kept : volumes_) {
+        if (!kept.volume) {
+            kept.files = FileStamps(files_of(kept.desc));
+            kept.volume = load_volume(kept.desc, kept.loads);
+        }
+        set.volumes.push_back(*kept.volume);
+    }
+    if (!field_) {
+        std::vector<GridVolume> grids;
+        for (const LoadedVolume& volume : set.volumes)
+            grids.insert(grids.end(), volume.grids.begin(), volume.grids.end());
+        field_ = std::make_shared<GridField>(std::move(grids), water.medium.constituent_count());
+    }
+    set.field = field_;
+    return set;
+}
+
+SceneCache::KeptSurfaces SceneCache::build(const SceneDesc& scene) {
+    KeptSurfaces built{scene.geometry, scene.water.bands_nm, {}, {}};
+    built.set = surfaces_of_moment(scene);
+    built.files = meshes_.files();
+    return built;
+}
+
+const SurfaceSet& SceneCache::surfaces(const SceneDesc& scene) {
+    if (!surfaces_ || !surfaces_->is_of(scene)) surfaces_ = build(scene);
+    return surfaces_->set;
+}
+
+const SurfaceSet& SceneCache::surfaces_ahead(const SceneDesc& next) {
+    if (!ahead_ || !ahead_->is_of(next)) {
+        ahead_.reset();
+        ahead_ = build(next);
+    }
+    return ahead_->set;
+}
+
+SurfaceSet SceneCache::surfaces_of_moment(const SceneDesc& then) {
+    SurfaceSet set;
+    set.surfaces = build_surfaces(then.geometry, then.water.bands_nm, set.warnings, meshes_);
+    return set;
+}
+
+}  // namespace uw

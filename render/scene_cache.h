@@ -1,0 +1,101 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/input_files.h"
+#include "core/geometry/geometry_scene.h"
+#include "core/scene/scene_desc.h"
+#include "media/volumes/load_volumes.h"
+#include "media/water/water_model.h"
+#include "render/light_splatter.h"
+
+namespace uw {
+
+/// The volumes of a scene, loaded.
+struct VolumeSet {
+    std::vector<LoadedVolume> volumes;                // in the scene's order
+    std::shared_ptr<const ConcentrationField> field;  // what they are together
+};
+
+/// The surfaces of a scene, ready for ray tracing.
+struct SurfaceSet {
+    std::shared_ptr<const Surfaces> surfaces;
+    std::vector<std::string> warnings;  // one line each
+};
+
+/// What is loaded and built for one scene and may serve the next: water, volumes, surfaces and the
+/// light of lamps. What is asked for is made, unless what is kept was made of the same description
+/// and of files that have not changed since (FileStamps); both are the same to the bit. The
+/// volumes and surfaces of the last scene are kept, and no earlier ones.
+class SceneCache {
+  public:
+    /// The water of a scene. Throws as build_water_model.
+    const WaterModel& water(const SceneDesc& scene);
+
+    /// Frees the volumes and surfaces that a scene in this water has no use for, so that there is
+    /// memory for those that it has.
+    void keep_only(const SceneDesc& scene, const WaterModel& water);
+
+    /// The volumes of a scene in this water. Throws as load_volume.
+    VolumeSet volumes(const SceneDesc& scene, const WaterModel& water);
+
+    /// The surfaces of a scene. Throws as build_surfaces, and so do the next two.
+    const SurfaceSet& surfaces(const SceneDesc& scene);
+    /// The surfaces of a scene that comes next. They are kept beside the last scene's until that
+    /// scene is asked for, or until others are built ahead.
+    const SurfaceSet& surfaces_ahead(const SceneDesc& next);
+    /// The surfaces of a moment of an exposure. They are not kept, but the meshes of their files
+    /// are.
+    SurfaceSet surfaces_of_moment(const SceneDesc& then);
+
+    /// The light of a scene's lamps (LightSplatter::splat).
+    DeepShadows light(
+        const AssembledScene& scene, const DeepShadowOptions& options,
+        const ShareCallback& progress = [](double) {}) {
+        return splatter_.splat(scene, options, progress);
+    }
+    /// Frees the light: what is asked for next is made anew.
+    void drop_light() { splatter_ = {}; }
+    /// What was made for the light asked for last.
+    const SplatCounts& splat_counts() const { return splatter_.counts(); }
+
+  private:
+    struct KeptWater {
+        WaterDesc desc;
+        std::vector<std::vector<GridMappingDesc>> grids;
+        FileStamps files;
+        WaterModel model;
+
+        bool is_of(const SceneDesc& scene) const;
+    };
+    struct KeptVolume {
+        VolumeDesc desc;
+        std::vector<std::vector<GridLoad>> loads;
+        FileStamps files{};
+        std::optional<LoadedVolume> volume{};  // none: it has not been loaded
+
+        bool is_of(const VolumeDesc& other, const std::vector<std::vector<GridLoad>>& its) const;
+    };
+    struct KeptSurfaces {
+        std::vector<GeometryDesc> geometry;
+        std::vector<double> bands_nm;
+        FileStamps files;
+        SurfaceSet set;
+
+        bool is_of(const SceneDesc& scene) const;
+    };
+
+    KeptSurfaces build(const SceneDesc& scene);
+
+    std::optional<KeptWater> water_;
+    std::vector<KeptVolume> volumes_;
+    std::shared_ptr<const ConcentrationField> field_;  // of `volumes_`; null: not made
+    MeshStore meshes_;
+    std::optional<KeptSurfaces> surfaces_, ahead_;
+    LightSplatter splatter_;
+};
+
+}  // namespace uw
