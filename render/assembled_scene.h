@@ -33,7 +33,7 @@ struct AssembledScene {
     std::vector<Lamp> lamps;     // as the description has them, each at its centre
     std::vector<Lamp> emitters;  // the points that they consist of (LitScene::emitters)
     std::optional<Slabs> slabs;  // none: they have not been placed (place_slabs)
-    /// Of a part of an exposure (render/exposure.h); 0: all of it.
+    /// The samples of a part of an exposure (render/exposure.h); 0: all of it.
     int first_sample = 0, total_samples = 0;
     std::vector<VolumeReport> volume_reports;
     std::vector<std::string> warnings;           // one line each, in the order met

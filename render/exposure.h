@@ -21,7 +21,7 @@ namespace uw {
 /// moves by four; but no more than 64, nor than there are samples.
 class Exposure {
   public:
-    /// Of an assembled scene; without motion there are no parts. `scene` outlives this.
+    /// The exposure of an assembled scene; without motion it has no parts. `scene` outlives this.
     explicit Exposure(const AssembledScene& scene);
 
     /// 0: the image is that of the frame's time, as nothing moves.

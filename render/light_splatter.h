@@ -38,7 +38,7 @@ class LightSplatter {
         const AssembledScene& scene, const DeepShadowOptions& options,
         const ShareCallback& progress = [](double) {});
 
-    /// Of the last splat.
+    /// The counts of the last splat.
     const SplatCounts& counts() const { return counts_; }
 
   private:

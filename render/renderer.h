@@ -36,8 +36,8 @@ struct RenderReport : ImageProgress {
     std::uint64_t active_voxels = 0;  // of all grids
     std::uint64_t grid_bytes = 0;
     std::uint64_t triangles = 0, lamps = 0, bands = 0;
-    /// Of an image during whose exposure something moves: its parts (Exposure), the samples per
-    /// pixel of all of them, and how far it moves in the image, at most [pixels]. 0: nothing does.
+    /// Where something moves during the exposure: its parts (Exposure), the samples per pixel of
+    /// all of them, and how far it moves in the image, at most [pixels]. 0: nothing moves.
     std::uint64_t exposure_parts = 0, exposure_samples = 0;
     double motion_pixels = 0;
 };

@@ -39,9 +39,9 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
 LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows,
                                     bool with_paths);
 
-/// The same of single scattering alone, with the scene's output, by the integrator volume, in
-/// another medium than the scene's, of the same constituents and phase functions, which outlives
-/// the result; and with light weighted by its path.
+/// The light transport of single scattering alone, with the scene's output, by the integrator
+/// volume, in another medium than the scene's, of the same constituents and phase functions, which
+/// outlives the result; and with light weighted by its path.
 LightTransport make_single_scattering(const AssembledScene& scene, const DeepShadows& deep_shadows,
                                       const Medium& medium, const PathWeight& path_weight);
 

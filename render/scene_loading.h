@@ -41,7 +41,7 @@ class SceneVariations {
     /// Reads the scene file with its overrides. Throws as read_scene_tree and read_variations, and
     /// UsageError for an override of what is drawn.
     SceneVariations(const std::filesystem::path& file, const std::vector<std::string>& overrides);
-    /// The same of a scene's tree. Throws as read_variations.
+    /// Reads the variations of a scene's tree. Throws as read_variations.
     SceneVariations(ConfigNode tree, std::filesystem::path file);
 
     /// What is drawn; none: the scene has no such section.

@@ -73,7 +73,7 @@ std::optional<Affine> inverse_of(const Affine& map) {
     return map.inverse();
 }
 
-/// Of the `count` objects of one entry of `geometry`.
+/// The motions of the `count` objects of one entry of `geometry`.
 ObjectMotions motions_of(const GeometryDesc& now, const GeometryDesc& then, std::size_t count,
                          std::vector<std::string>& warnings) {
     if (now.file != then.file) {

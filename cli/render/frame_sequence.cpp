@@ -189,7 +189,7 @@ fs::path of_one(const fs::path& file, std::string_view place, const std::string&
     return text;
 }
 
-// The same of all files of a frame but its statistics, and the irradiance.
+// Names all files of a frame in this way but its statistics and the irradiance.
 void name_images(OutputFiles& files, std::string_view place, const std::string& name,
                  const std::string& word) {
     for (fs::path* file : {&files.image, &files.preview, &files.sensor})

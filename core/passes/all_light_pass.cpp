@@ -117,7 +117,7 @@ void GlowSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& 
     }
 }
 
-// Of what it emits, and of the light of lamps that it reflects.
+// Adds what the surface emits, and the light of lamps that it reflects.
 void GlowSource::add_direct(const SurfaceSample& sample, const SurfaceLight& light,
                             std::size_t index, std::span<double> radiance) const {
     const std::size_t groups = estimator_.options().groups;
@@ -202,13 +202,14 @@ struct MultipleLightOptions {
     bool lamps = false;  // each lamp's light by itself
 };
 
-// Of a node: more would leave less noise than there is light between the nodes of a small image.
+// The paths of a node: more would leave less noise than there is light between the nodes of a small
+// image.
 constexpr int k_fewest_node_paths = 16, k_most_node_paths = 1024;
 // What smoothing leaves of the variance of nodes, in the example scenes: 0.03 to 0.06, in plumes
 // more.
 constexpr double k_smoothed_variance = 0.04;
 constexpr double k_least_share_of_paths = 0.2;
-// Of the paths, for the question how many are needed.
+// The share of the paths that go into the question how many are needed.
 constexpr double k_pilot_share = 0.05;
 // Nodes see the same surface as a pixel if its normal agrees with theirs (k_least_node_cosine) and
 // it lies no farther from their tangent plane than this, relative to its distance.

@@ -156,8 +156,8 @@ bool FineBeams::is_fine_in(const Bundle& bundle, const Beam& beam, double width)
 
 namespace {
 
-// Of the greatest light that particles of a square take away, the share by which interpolation may
-// miss it: what is found is a cloud beside the rays, not how its light varies.
+// Interpolation may miss this share of the greatest light that particles of a square take away:
+// what is found is a cloud beside the rays, not how its light varies.
 constexpr double k_missed = 0.25;
 // Less than that, of all light, is not looked for.
 constexpr double k_least = 1e-4;
@@ -217,7 +217,7 @@ bool FineParticles::has_any(int i, int j, int size, int spacing) {
     return false;
 }
 
-// Of what the probes `step` pixels apart say.
+// The range of what the probes `step` pixels apart say.
 Interval FineParticles::range(const Square& square, int step) {
     Interval found{1, 0};
     for (int y = 0; y <= square.height; y += step) {

@@ -217,7 +217,7 @@ void BeyondSnow::add_beyond(const Ray& ray, double begin, std::span<const double
             for (const Part& part : parts_) {
                 if (part.range >= distances[i]) continue;
                 Spectrum beyond = up_to(distances[i], lamp) - up_to(part.range, lamp);
-                // Of few slabs, the light of a part may be more than that of the whole.
+                // With few slabs, the light of a part may be more than that of the whole.
                 for (double& radiance : beyond.values) radiance = std::max(radiance, 0.0);
                 result.at(i, lamp) += part.share * beyond;
             }

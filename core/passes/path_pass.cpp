@@ -70,7 +70,7 @@ class PathPixels::Sum final : public PathTerms {
     void add_rays(std::size_t count) { pixel_.alpha += static_cast<double>(count); }
 
     void begin_batch() { batch_ = {}; }
-    /// Of all terms since begin_batch.
+    /// The sum of all terms since begin_batch.
     const Spectrum& batch() const { return batch_; }
 
     void add(const PathTerm& term) override {
@@ -319,7 +319,7 @@ class Spread {
             static_cast<float>((1 - share) * static_cast<double>(own[bands_]) + share * mean);
     }
 
-    /// Of the whole image, relative to its mean.
+    /// The standard error of the whole image, relative to its mean.
     double error() const {
         double variance = 0, mean = 0;
         for (int y = window_.y0; y < window_.y1; ++y) {

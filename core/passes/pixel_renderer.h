@@ -32,8 +32,8 @@ inline AperturePoint aperture_point(double a, double b) {
 /// The samples of every pixel.
 struct PixelSamples {
     int count = 1;  ///< >= 1; a single one lies at the pixel's centre
-    /// Of a part of an exposure, whose parts cover the pixel together: this many in all of them,
-    /// and how many in those before. 0: the image is no part.
+    /// The samples of an exposure whose parts cover the pixel together: how many there are in all
+    /// parts, and how many in those before this one. 0: the image is no part.
     int total = 0, first = 0;
 };
 
@@ -47,15 +47,16 @@ struct ImageOffset {
 /// as the same ones in all would show as many sharp images.
 class PixelSampling {
   public:
-    /// Of pixel (x, y).
+    /// The samples are those of pixel (x, y).
     PixelSampling(const PixelSamples& samples, int x, int y);
 
-    /// Of sample `i` < count. Hammersley points: every sample has its own row and column of the
-    /// pixel, a single one the centre. Of a part of an exposure, whose samples are in the order of
-    /// time, Halton points, of which those that follow each other cover the pixel, too.
+    /// The place of sample `i` < count. They are Hammersley points: every sample has its own row
+    /// and column of the pixel, and a single one has the centre. In a part of an exposure, whose
+    /// samples are in the order of time, they are Halton points: those that follow each other cover
+    /// the pixel, too.
     ImageOffset offset(int i) const;
     AperturePoint aperture(int i) const;
-    /// Of the exposure, or of its part, 0 to 1: one in each of `count` equal spans.
+    /// The moment of the exposure or of its part, 0 to 1: one in each of `count` equal spans.
     double moment(int i) const { return (i + shift_moment_) / samples_.count; }
 
   private:

@@ -15,7 +15,7 @@ namespace {
 // Smaller footprints [pixels, radius] are boxes with the same second moments, whose overlap with
 // each pixel is exact: within a pixel nothing else of a shape is seen.
 constexpr double k_small = 0.7;
-// Of a box: of a point in one pixel.
+// The least half width of a box, which is that of a point within one pixel.
 constexpr double k_least_half = 1e-6;
 // The steps of a path [pixels, or of the radius]: their spread, step^2 / 12, is less than 3 % of
 // that of a disk.
@@ -152,7 +152,7 @@ std::array<double, 2> Footprint::step_position(int step) const {
     return position(2 * (step + 0.5) / steps_ - 1);
 }
 
-/// Of one position, with what it moves during its step.
+/// The window of one position, with the way that it moves during its step.
 PixelWindow Footprint::window_around(const std::array<double, 2>& at) const {
     std::array<double, 2> half = half_;
     if (steps_ > 1)

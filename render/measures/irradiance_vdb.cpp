@@ -20,7 +20,7 @@ namespace uw {
 namespace {
 
 constexpr int k_longest_side = 256;
-// Of all grids together: 1 GiB here, and as much again in OpenVDB.
+// The most values in all grids together: 1 GiB here, and as much again in OpenVDB.
 constexpr double k_most_values = 1 << 28;
 
 struct Lattice {

@@ -164,7 +164,7 @@ std::optional<PixelWindow> patterned_part(const PictureLayers& picture, int side
         return table[at(x + side, y + side)] - table[at(x, y + side)] - table[at(x + side, y)] +
                table[at(x, y)];
     };
-    // Of equal surfaces it is 0 but for rounding, which is far below this; no surface that anyone
+    // For equal surfaces it is 0 but for rounding, which is far below this; no surface that anyone
     // would call patterned varies so little.
     constexpr double k_least_deviation = 0.01;
     double most = k_least_deviation * k_least_deviation;

@@ -24,7 +24,7 @@ struct PicturePlane {
     Spectrum gain;
 };
 
-/// Those of `layers` that an image has, times `gain`. Refers to `film`.
+/// The planes of those of `layers` that an image has, times `gain`. They refer to `film`.
 std::vector<PicturePlane> layer_planes(const Film& film, const LayerPlan& plan,
                                        std::initializer_list<Layer> layers, double gain = 1);
 
@@ -103,7 +103,7 @@ struct PictureNumbers {
     /// white pattern that fills the part, however its squares lie, neither its edges nor single
     /// pixels matter. 0 in the dark.
     double contrast = 0;
-    /// That of the same surfaces without water; none if the picture has no such layer.
+    /// The contrast of the same surfaces without water; none if the picture has no such layer.
     std::optional<double> clean_contrast;
     /// The share of the pixels whose signal is at least `ratio` times their backscatter.
     double share_above = 0;
@@ -170,15 +170,15 @@ struct PartNumbers {
     LightNumbers numbers;
 };
 
-/// Those of all light in an image that has the layers to measure.
+/// The numbers of all light in an image that has the layers to measure.
 std::vector<PartNumbers> part_numbers(const MeasuredImage& image,
                                       const std::vector<PicturePart>& parts,
                                       const std::string& lamp = {});
 
-/// Those of each lamp: `scene`, whose image the parts are of, is rendered again for each of its
-/// lamps alone, and once without any for what surfaces emit. `options` are those of the image; the
-/// layers in them do not matter. `begin` is called before each with its index, 0 to the number of
-/// lamps. Throws as Renderer.
+/// The numbers of each lamp's light: `scene`, whose image the parts are of, is rendered again for
+/// each of its lamps alone, and once without any for what surfaces emit. `options` are those of the
+/// image; the layers in them do not matter. `begin` is called before each with its index, 0 to the
+/// number of lamps. Throws as Renderer.
 std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ImageScene& scene,
                                       const RenderOptions& options,
                                       const std::vector<PicturePart>& parts,

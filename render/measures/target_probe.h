@@ -51,7 +51,7 @@ struct TargetNumbers {
     double irradiance = 0;               // [W m^-2]
 };
 
-/// Of the light of all `lamps` together. `bands`: how many the scene has.
+/// The numbers of the light of all `lamps` together. `bands`: how many the scene has.
 TargetNumbers target_numbers(std::span<const LampOnTarget> lamps, double distance,
                              std::size_t bands, const TargetOptions& options);
 
@@ -77,7 +77,8 @@ class TargetProbe {
     /// rendered until then is kept. Throws as Renderer.
     std::vector<LampOnTarget> lamps_on_target(const ImageScene& scene, double distance,
                                               const std::function<bool()>& go_on = {});
-    /// Of a lamp that may not be the scene's: its brightness and place are those of `lamp`.
+    /// The light of a lamp that may not be the scene's: its brightness and place are those of
+    /// `lamp`.
     LampOnTarget lamp_on_target(const ImageScene& scene, const LampDesc& lamp, double distance,
                                 const std::function<bool()>& go_on = {});
 
