@@ -54,7 +54,7 @@ class StageRun {
     void render(const PixelRenderer& pixels, const LayerPlan& plan, Film& film,
                 const std::function<void(Rendering&)>& run) {
         const BandColour colour(desc().water.bands_nm);
-        const RenderProgress progress = [](const std::string&, double) { return true; };
+        const ProgressCallback progress = [](const std::string&, double) {};
         ImageProgress reached;
         Rendering rendering{.desc = desc(),
                             .pixels = pixels,
@@ -119,7 +119,7 @@ void march(StageRun& run, benchmark::State& state) {
     run.measure(state, [&] {
         render_tiles(
             renderer, in_scatter_tolerance(run.desc().render), {},
-            {0, 0, camera.width, camera.height}, [](double) { return true; },
+            {0, 0, camera.width, camera.height}, [](double) {},
             [](int, int, const PixelResult& pixel) {
                 double red = pixel.backscatter[0];
                 benchmark::DoNotOptimize(red);

@@ -52,10 +52,6 @@ void begin_orderly_stop() {
     g_orderly = 1;
 }
 
-bool stop_requested() {
-    return g_stop;
-}
-
 const std::atomic<bool>& stop_flag() {
     return g_stop;
 }

@@ -8,13 +8,11 @@ namespace uw {
 /// right as long as nothing is being written.
 void install_stop_signal();
 
-/// From now on Ctrl-C requests an orderly stop, which stop_requested() reports; a second one ends
-/// the program at once.
+/// From now on Ctrl-C requests an orderly stop, which sets stop_flag(); a second one ends the
+/// program at once.
 void begin_orderly_stop();
 
-/// Whether an orderly stop has been requested; the same for a StopScope around work that is given
-/// up in the middle.
-bool stop_requested();
+/// Whether an orderly stop has been requested: for a StopScope around the work.
 const std::atomic<bool>& stop_flag();
 
 /// For a program that has nothing to do until it is stopped, instead of the above: Ctrl-C waits for

@@ -156,7 +156,7 @@ constexpr std::size_t k_most_on_page = 240;
 
 class Completion {
   public:
-    Completion(const fs::path& folder, const DatasetFile& set, const CompletionProgress& progress)
+    Completion(const fs::path& folder, const DatasetFile& set, const ShareCallback& progress)
         : folder_(folder),
           set_(set),
           definition_(set.definition),
@@ -180,7 +180,8 @@ class Completion {
 
   private:
     void tell(double share) const {
-        if (!progress_(share)) throw Interrupted();
+        progress_(share);
+        throw_if_stopped();
     }
 
     /// Checks all views' files by their content.
@@ -322,7 +323,7 @@ class Completion {
     const DatasetFile& set_;
     const DatasetDefinition& definition_;
     std::string sum_;
-    const CompletionProgress& progress_;
+    const ShareCallback& progress_;
     Manifest manifest_;
     SetFiles files_;
     std::uint64_t view_bytes_ = 0;
@@ -333,7 +334,7 @@ class Completion {
 }  // namespace
 
 void complete_dataset(const fs::path& folder, const DatasetFile& set, bool check,
-                      const CompletionProgress& progress) {
+                      const ShareCallback& progress) {
     Completion(folder, set, progress).run(check);
 }
 

@@ -1,14 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 
+#include "core/base/progress.h"
 #include "dataset/definition.h"
 
 namespace uw {
-
-/// Receives the share of the work that is done (0..1); returns false to stop.
-using CompletionProgress = std::function<bool(double share)>;
 
 /// Writes what a set has once all of its views are there: the tables of its formats, manifest, data
 /// card, contact sheet, page and checksums; and removes what processes that were killed have left.
@@ -16,6 +13,6 @@ using CompletionProgress = std::function<bool(double share)>;
 /// checksums of all views' files are computed again. Throws InputError that names the frames which
 /// are missing or damaged; IoError; Interrupted.
 void complete_dataset(const std::filesystem::path& folder, const DatasetFile& set, bool check,
-                      const CompletionProgress& progress);
+                      const ShareCallback& progress);
 
 }  // namespace uw

@@ -46,8 +46,7 @@ std::vector<WatchedTask::News> WatchedTask::take_news() {
     return std::exchange(news_, {});
 }
 
-bool WatchedTask::tell(const std::string& stage, double fraction) {
-    if (is_cancelled_) return false;
+void WatchedTask::tell(const std::string& stage, double fraction) {
     const std::lock_guard lock(mutex_);
     const bool goes_on =
         !news_.empty() && news_.back().stage == stage && fraction > 0 && news_.back().fraction > 0;
@@ -55,7 +54,6 @@ bool WatchedTask::tell(const std::string& stage, double fraction) {
         news_.back().fraction = fraction;
     else
         news_.push_back({stage, fraction});
-    return true;
 }
 
 void WatchedTask::run(const std::function<void()>& work, const Watch& watch) {
@@ -352,9 +350,7 @@ class RendererObject : public RunClient {
         // The image's report has all warnings; Python gives them once it is there.
     }
 
-    bool proceed(const std::string& stage, double fraction) override {
-        return task_.tell(stage, fraction);
-    }
+    void tell(const std::string& stage, double fraction) override { task_.tell(stage, fraction); }
 
   private:
     void work(const SceneDesc& desc) {
@@ -419,7 +415,6 @@ py::list validate(const SceneObject& scene, double tolerance, std::size_t camera
     WatchedTask task;
     ValidationOptions options;
     options.tolerance = tolerance;
-    options.proceed = [&task] { return task.tell("validation", 0); };
     SceneValidation validation;
     run_interruptible(task, [&] {
         validation = validate_scene(scene_of_image(desc, {frame, camera}),

@@ -32,8 +32,8 @@ class WatchedTask {
     /// Runs `work` to its end and returns, or throws what `watch` threw, else what `work` threw.
     void run(const std::function<void()>& work, const Watch& watch);
 
-    /// For the work, from any of its threads: how far a stage is. False: it is to end.
-    bool tell(const std::string& stage, double fraction);
+    /// For the work, from any of its threads: how far a stage is.
+    void tell(const std::string& stage, double fraction);
 
   private:
     std::vector<News> take_news();

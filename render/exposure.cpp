@@ -328,11 +328,12 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
     };
     const bool truth_differs = exposure.is_rolling() && exposure.moves_surfaces();
     for (int k = 0; k < parts; ++k) {
-        const RenderProgress tell = [&](const std::string& stage, double fraction) {
+        const ProgressCallback tell = [&](const std::string& stage, double fraction) {
             const double done = stage == "render" ? fraction : stage == "forward scatter" ? 1 : 0;
-            return rendering.progress("render", (k + done) / parts);
+            rendering.progress("render", (k + done) / parts);
         };
-        if (!tell("", 0)) throw Interrupted();
+        tell("", 0);
+        throw_if_stopped();
         const AssembledScene part = exposure.part(k, cache);
         const DeepShadows light = light_of_part(part);
         const LightTransport transport = make_light_transport(part, light, needs.paths);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/available_memory.h"
+#include "core/base/error.h"
 #include "core/light/medium.h"
 
 namespace uw {
@@ -77,6 +78,7 @@ DeepShadows LightSplatter::splat(const AssembledScene& scene, const DeepShadowOp
                                             : splat_lamp(scene, emitter, before));
         expect_room(fields.size(), scene.emitters.size());
         progress(static_cast<double>(fields.size()) / static_cast<double>(scene.emitters.size()));
+        throw_if_stopped();
     }
     return fields;
 }

@@ -2,17 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "media/light/deep_shadow_map.h"
 #include "render/assembled_scene.h"
 
 namespace uw {
-
-/// Receives the fraction of the emitters that are done.
-using ShareCallback = std::function<void(double share)>;
 
 /// What one splat made rather than reused.
 struct SplatCounts {
@@ -32,8 +29,8 @@ class LightSplatter {
   public:
     /// The light of every emitter of `scene`, the same to the bit as from a new splatter. Surfaces
     /// and field are the same if they are the same objects. The surfaces are kept alive; a field is
-    /// not, so that its memory is free for the next one. What `progress` throws ends the splat.
-    /// Throws InputError if the maps of all emitters will not fit into free memory.
+    /// not, so that its memory is free for the next one. Throws Interrupted, and InputError if the
+    /// maps of all emitters will not fit into free memory.
     DeepShadows splat(
         const AssembledScene& scene, const DeepShadowOptions& options,
         const ShareCallback& progress = [](double) {});

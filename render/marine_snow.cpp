@@ -404,8 +404,7 @@ void place_layer(const SnowPlacing& scene, const CellLayer& layer, const PixelWi
 
 }  // namespace
 
-SnowSplats SnowPlacing::splats(const PixelWindow& window,
-                               const std::function<void(double fraction)>& progress) const {
+SnowSplats SnowPlacing::splats(const PixelWindow& window, const ShareCallback& progress) const {
     std::vector<ViewHull> hulls;
     std::vector<CellLayer> layers;
     hulls.reserve(model.ranges.size());
@@ -483,8 +482,7 @@ void SnowPass::run(Rendering& rendering) {
                               .veil = veil,
                               .sensor = sensor};
     const PixelWindow& window = rendering.film.window();
-    const SnowSplats splats =
-        placing.splats(window, [&](double fraction) { rendering.tell(stage(), fraction); });
+    const SnowSplats splats = placing.splats(window, rendering.progress_of(stage()));
     rendering.reached.snow_particles = splats.splats.size();
     layer_.emplace(SnowImage(window, model.water.wavelengths_nm.size(), splats), std::move(veil),
                    depth);

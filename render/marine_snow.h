@@ -92,9 +92,8 @@ struct SnowPlacing {
     const SensorModel& sensor;
 
     /// Every particle that touches a pixel of `window` and is not behind a surface, on all threads.
-    /// `progress` receives the fraction done, from any thread, and may throw.
-    SnowSplats splats(const PixelWindow& window,
-                      const std::function<void(double fraction)>& progress) const;
+    /// Throws Interrupted.
+    SnowSplats splats(const PixelWindow& window, const ShareCallback& progress) const;
 };
 
 /// Marine snow: places the particles, and adds to each pixel what they change in its light, and in

@@ -31,8 +31,9 @@ void check_window(const PixelWindow& window, const CameraDesc& camera) {
 
 }  // namespace
 
-void Renderer::tell(const std::string& stage, double fraction) const {
-    if (progress_ && !progress_(stage, fraction)) throw Interrupted();
+void Renderer::begin(const std::string& stage) const {
+    progress_(stage, 0);
+    throw_if_stopped();
 }
 
 void Renderer::set_scene(ImageScene scene) {
@@ -66,7 +67,7 @@ const DeepShadows& Renderer::splat() {
     build();
     if (light_.empty()) {
         begin("splat");
-        light_ = light_of(*scene_, [this](double share) { tell("splat", share); });
+        light_ = light_of(*scene_, [this](double share) { progress_("splat", share); });
     }
     return light_;
 }
@@ -169,9 +170,6 @@ void Renderer::render_film(const RenderOptions& options, PassList& passes) {
     const Correspondences others(*scene_, *plan_, cache_);
     report_.warnings.insert(report_.warnings.end(), others.warnings().begin(),
                             others.warnings().end());
-    const RenderProgress progress = [this](const std::string& stage, double fraction) {
-        return !progress_ || progress_(stage, fraction);
-    };
     const Exposure exposure(*scene_);
     report_.exposure_parts = static_cast<std::uint64_t>(exposure.part_count());
     report_.exposure_samples = static_cast<std::uint64_t>(exposure.samples());
@@ -186,7 +184,7 @@ void Renderer::render_film(const RenderOptions& options, PassList& passes) {
                         .plan = *plan_,
                         .colour = *colour_,
                         .film = *film_,
-                        .progress = progress,
+                        .progress = progress_,
                         .reached = report_};
     if (exposure.part_count() == 0) {
         passes.run(Pass::Of::light, rendering);

@@ -56,12 +56,12 @@ struct RenderReport : ImageProgress {
 /// Stages, in this order: "volumes", "geometry", "splat", and those of the image's passes
 /// (make_passes): "multiple scattering" if the integrator volume renders it, "snow" if there is
 /// some, "render" and, with forward scatter, "forward scatter". `progress` receives each with 0
-/// before it begins, on the calling thread. If it returns false, or throws, the work ends with
-/// Interrupted, or with what was thrown; the renderer stays usable, and the same image can be
-/// requested again.
+/// before it begins, on the calling thread. After Interrupted, or what `progress` throws, the
+/// renderer stays usable, and the same image can be requested again.
 class Renderer {
   public:
-    explicit Renderer(RenderProgress progress = {}) : progress_(std::move(progress)) {}
+    explicit Renderer(ProgressCallback progress = [](const std::string&, double) {})
+        : progress_(std::move(progress)) {}
 
     /// Sets the scene of the images to come. Loads nothing yet.
     void set_scene(ImageScene scene);
@@ -108,8 +108,7 @@ class Renderer {
     /// @}
 
   private:
-    void begin(const std::string& stage) const { tell(stage, 0); }
-    void tell(const std::string& stage, double fraction) const;
+    void begin(const std::string& stage) const;
     void build();
     void fit_film(const RenderOptions& options);
     void count_work();
@@ -118,7 +117,7 @@ class Renderer {
     void render_film(const RenderOptions& options, PassList& passes);
     DeepShadows light_of(const AssembledScene& scene, const ShareCallback& progress);
 
-    RenderProgress progress_;
+    ProgressCallback progress_;
     std::optional<ImageScene> image_;      // as it was set
     std::optional<AssembledScene> scene_;  // none: it has not been assembled
     SceneCache cache_;

@@ -11,13 +11,12 @@
 namespace uw {
 
 RunEngine::RunEngine()
-    : renderer_(
-          [this](const std::string& stage, double fraction) { return proceed(stage, fraction); }) {}
+    : renderer_([this](const std::string& stage, double fraction) { tell(stage, fraction); }) {}
 
-bool RunEngine::proceed(const std::string& stage, double fraction) {
+void RunEngine::tell(const std::string& stage, double fraction) {
     const std::lock_guard lock(mutex_);
     if (writing_ && writing_->is_done()) finish_writing();
-    return client_->proceed(stage, fraction);
+    client_->tell(stage, fraction);
 }
 
 void RunEngine::run(const Job& job, RunClient& client, const std::string& noun) {

@@ -79,7 +79,7 @@ struct FinishedImage {
 struct ImageWork {
     /// In the background, while the next image is rendered.
     std::function<void()> write{};
-    /// Once that is done: from any thread, but never beside RunClient::proceed.
+    /// Once that is done: from any thread, but never beside RunClient::tell.
     std::function<void()> written{};
 };
 
@@ -103,9 +103,8 @@ class RunClient {
 
     /// A warning that has not been given in this run; see RunEngine::warn.
     virtual void warn(std::size_t place, const std::string& line) = 0;
-    /// How far a stage of the image is (RenderProgress); from any thread, one call at a time.
-    /// Returns false to stop the run.
-    virtual bool proceed(const std::string& stage, double fraction) = 0;
+    /// How far a stage of the image is (ProgressCallback); from any thread, one call at a time.
+    virtual void tell(const std::string& stage, double fraction) = 0;
 };
 
 /// Goes through the images of a job: reads the scene of each, renders it, hands it to the command
@@ -141,7 +140,7 @@ class RunEngine {
     void warn_of_image();
 
   private:
-    bool proceed(const std::string& stage, double fraction);
+    void tell(const std::string& stage, double fraction);
     void render(std::size_t place);
     FinishedImage finished(const WantedImage& wanted);
     void begin_writing(ImageWork work, std::size_t bytes);
@@ -155,7 +154,7 @@ class RunEngine {
     std::size_t warned_of_image_ = 0;  // so many of the renderer's warnings
     std::set<std::string> warned_;
     std::size_t written_ = 0;
-    std::mutex mutex_;  // of proceed
+    std::mutex mutex_;  // of tell
     std::function<void()> when_written_;
     std::unique_ptr<BackgroundTask> writing_;
 };

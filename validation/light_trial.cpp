@@ -9,7 +9,6 @@
 #include <numbers>
 #include <random>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/pixel_image.h"
 #include "core/light/lamp.h"
@@ -54,8 +53,7 @@ SceneDesc scene_of(const LampTableRow& row) {
     return desc;
 }
 
-void compare_row(const LampTableRow& row, const ValidationOptions& options,
-                 LightValidation& result) {
+void compare_row(const LampTableRow& row, LightValidation& result) {
     Renderer renderer;
     renderer.set_scene(scene_of(row));
     const LightTransport transport = renderer.make_transport();
@@ -64,11 +62,7 @@ void compare_row(const LampTableRow& row, const ValidationOptions& options,
     std::vector<PixelResult> rounds(k_rounds_of_row);
     parallel_for(rounds.size(), [&](std::size_t i) {
         paths.render(
-            0, 0, {static_cast<int>(i), k_paths_of_row_round},
-            [&](int) {
-                if (!options.proceed()) throw Interrupted();
-            },
-            rounds[i]);
+            0, 0, {static_cast<int>(i), k_paths_of_row_round}, [](int) {}, rounds[i]);
     });
     const auto compare = [&](const std::string& what, double truth, double most_error,
                              const auto& light_of) {
@@ -180,7 +174,7 @@ class AllLightTrial {
     std::size_t bands() const { return result_.bands_nm.size(); }
 
     Renderer make_renderer(RenderDesc::Integrator integrator) {
-        Renderer renderer([this](const std::string&, double) { return options_.proceed(); });
+        Renderer renderer;
         renderer.set_scene(
             scene_.with([&](SceneDesc& desc) { desc.render.integrator = integrator; }));
         return renderer;
@@ -252,9 +246,7 @@ class AllLightTrial {
         const LightTransport transport = renderer.make_transport();
         const PixelRenderer pixel = pixel_renderer(renderer.assembled(), transport);
         const PathPixels paths(pixel, 0);
-        const auto traced = [this](int) {
-            if (!options_.proceed()) throw Interrupted();
-        };
+        const auto traced = [](int) {};
         parallel_for(pixels_.size(), [&](std::size_t i) {
             PixelResult result;
             for (int round = 0; round < k_rounds; ++round) {
@@ -332,7 +324,7 @@ LightValidation validate_by_table(std::span<const LampTableRow> table,
     result.notes.push_back(
         fmt::format("{} paths for each row; deviations relative to the table's value",
                     k_rounds_of_row * k_paths_of_row_round));
-    for (const LampTableRow& row : table) compare_row(row, options, result);
+    for (const LampTableRow& row : table) compare_row(row, result);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     result.seconds = elapsed.count();
     return result;

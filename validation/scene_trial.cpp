@@ -77,10 +77,9 @@ class SceneTrial {
 
     SceneValidation run() {
         const auto start = std::chrono::steady_clock::now();
-        TrialScene trial = make_trial(scene_, options_.proceed);
-        TrialScene uniform = scene_.desc().volumes.empty()
-                                 ? make_trial(scene_, options_.proceed)
-                                 : homogenised(trial, scene_, options_.proceed);
+        TrialScene trial = make_trial(scene_);
+        TrialScene uniform =
+            scene_.desc().volumes.empty() ? make_trial(scene_) : homogenised(trial, scene_);
         result_.smooth = smooth_pixels(uniform);
         compare_before_forward_scatter(trial, uniform);
         if (scene_.desc().water.forward_scatter.K > 0) compare_forward_scatter(trial, uniform);
@@ -100,7 +99,7 @@ class SceneTrial {
         compare(k_volume, k_quadrature, both, {});
         sum_planes(uniform);
         compare(k_volume, k_planes_limit, both, {.where = k_smooth, .coarser = &coarser_sum_});
-        TrialScene grid = with_constant_grid(uniform, scene_, 1, options_.proceed);
+        TrialScene grid = with_constant_grid(uniform, scene_, 1);
         render(k_constant_grid, grid, on_trial(grid));
         compare(k_constant_grid, k_volume, both, {});
         render(k_reference, uniform, by_reference(uniform));
@@ -116,8 +115,8 @@ class SceneTrial {
         const std::vector<Component> both{k_forward, k_blurred_backscatter};
         scatter(k_volume, uniform, on_trial(uniform));
         options_.say(result_.name + ": " + k_direct_sum);
-        result_.images[k_direct_sum].forward = forward_by_direct_sum(
-            uniform, UniformWaterLighting(uniform.scene().lit()), options_.proceed);
+        result_.images[k_direct_sum].forward =
+            forward_by_direct_sum(uniform, UniformWaterLighting(uniform.scene().lit()));
         compare(k_volume, k_direct_sum, {k_forward},
                 {.tolerances = k_mixed_kernels, .dark = k_dark_in_mixtures});
         compare_half_constant_grid(uniform);
@@ -145,7 +144,7 @@ class SceneTrial {
                          ", forward scatter: left out; the water does not scatter in every band");
             return;
         }
-        TrialScene grid = with_constant_grid(uniform, scene_, 0.5, options_.proceed);
+        TrialScene grid = with_constant_grid(uniform, scene_, 0.5);
         scatter(k_constant_grid, grid, on_trial(grid));
         compare(k_constant_grid, k_volume, {k_forward, k_blurred_backscatter},
                 {.tolerances = k_other_slabs});
@@ -164,7 +163,7 @@ class SceneTrial {
     void render(const std::string& method, const TrialScene& trial,
                 const LightTransport& transport) {
         options_.say(result_.name + ": " + method);
-        result_.images[method] = render_method(trial, transport, options_.proceed);
+        result_.images[method] = render_method(trial, transport);
     }
 
     void scatter(const std::string& method, TrialScene& trial, const LightTransport& transport) {
@@ -232,7 +231,7 @@ class SceneTrial {
     void sum_planes(const TrialScene& uniform) {
         PlaneSums sums = sum_planes_to_limit(
             uniform, result_.smooth,
-            {options_.tolerance, k_most_planes, options_.proceed,
+            {options_.tolerance, k_most_planes,
              [&](const std::string& sum) { options_.say(result_.name + ": " + sum); }});
         result_.images[k_planes_limit] = std::move(sums.limit);
         result_.images[planes_name(sums.steps.back().count)] = std::move(sums.finest);

@@ -17,7 +17,6 @@ namespace uw {
 
 struct ValidationOptions {
     double tolerance = 1e-3;  // largest relative difference allowed at a smooth pixel
-    std::function<bool()> proceed = [] { return true; };  // false stops with Interrupted
     std::function<void(const std::string&)> say = [](const std::string&) {};
 };
 

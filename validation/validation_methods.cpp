@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "camera/camera.h"
-#include "core/base/error.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
@@ -26,16 +25,15 @@ constexpr int k_mean_samples = 64;     // along each edge of the field's bounds
 constexpr int k_grid_side = 48;        // voxels of the constant grid along each edge
 constexpr double k_reach_depths = 15;  // optical depths that the constant grid extends
 
-Renderer make_renderer(const ImageScene& scene, const std::function<bool()>& proceed) {
-    Renderer renderer([proceed](const std::string&, double) { return proceed(); });
+Renderer make_renderer(const ImageScene& scene) {
+    Renderer renderer;
     renderer.set_scene(scene);
     return renderer;
 }
 
 // `scene` without its volumes, in the water of `medium`; not splatted.
-Renderer in_water(const ImageScene& scene, Medium medium, const std::function<bool()>& proceed) {
-    Renderer renderer =
-        make_renderer(scene.with([](SceneDesc& desc) { desc.volumes.clear(); }), proceed);
+Renderer in_water(const ImageScene& scene, Medium medium) {
+    Renderer renderer = make_renderer(scene.with([](SceneDesc& desc) { desc.volumes.clear(); }));
     renderer.edit([&](AssembledScene& parts) { parts.water.medium = std::move(medium); });
     return renderer;
 }
@@ -113,22 +111,20 @@ void show_radiance_in_water(SceneDesc& scene, int longest_side) {
         std::visit([](auto& port) { port.fresnel = port.radiance_in_air = false; }, *camera.port);
 }
 
-TrialScene make_trial(const ImageScene& scene, const std::function<bool()>& proceed) {
-    return splatted(make_renderer(scene, proceed));
+TrialScene make_trial(const ImageScene& scene) {
+    return splatted(make_renderer(scene));
 }
 
-TrialScene homogenised(const TrialScene& trial, const ImageScene& scene,
-                       const std::function<bool()>& proceed) {
+TrialScene homogenised(const TrialScene& trial, const ImageScene& scene) {
     Medium medium = trial.scene().water.medium;
     const std::vector<double> mean = mean_concentrations(*trial.scene().field);
     for (std::size_t k = 0; k < mean.size(); ++k)
         add_scaled(medium.uniform, medium.constituents[k].per_unit, mean[k]);
     medium.constituents.clear();
-    return splatted(in_water(scene, std::move(medium), proceed));
+    return splatted(in_water(scene, std::move(medium)));
 }
 
-TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double share,
-                              const std::function<bool()>& proceed) {
+TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double share) {
     Medium medium = trial.scene().water.medium;
     const OpticalCoefficients whole = medium.uniform;
     const OpticalCoefficients none{{}, std::vector<Spectrum>(whole.scattering.size())};
@@ -160,7 +156,7 @@ TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, 
     volume.up = UpAxis::y;
     write_vdb(volume.file, {ones}, {{"creator", "uwvdb validate"}});
 
-    Renderer renderer = in_water(scene, std::move(medium), proceed);
+    Renderer renderer = in_water(scene, std::move(medium));
     renderer.edit([&](AssembledScene& parts) {
         parts.field =
             load_volumes({volume}, {{{GridLoad{0, 1.0}}}}, 1, parts.volume_reports, parts.warnings);
@@ -179,8 +175,7 @@ Slabs planes_of(const TrialScene& trial, int count) {
     return place_slabs(planes, *trial.scene().camera, trial.scene().lit());
 }
 
-MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
-                          const std::function<bool()>& proceed) {
+MethodImage render_method(const TrialScene& trial, const LightTransport& transport) {
     const auto pixels =
         static_cast<std::size_t>(trial.width()) * static_cast<std::size_t>(trial.height());
     MethodImage image;
@@ -189,7 +184,6 @@ MethodImage render_method(const TrialScene& trial, const LightTransport& transpo
     const PixelRenderer renderer(*trial.scene().camera, trial.scene().lit(), transport, {},
                                  trial.scene().slabs.value());
     parallel_for(static_cast<std::size_t>(trial.height()), [&](std::size_t row) {
-        if (!proceed()) throw Interrupted();
         PixelResult result;
         for (int x = 0; x < trial.width(); ++x) {
             renderer.render(x, static_cast<int>(row), result);
@@ -295,13 +289,13 @@ double largest_change(const MethodImage& from, const MethodImage& to,
     return largest;
 }
 
-MethodImage sum_over(const TrialScene& uniform, int count, const std::function<bool()>& proceed) {
+MethodImage sum_over(const TrialScene& uniform, int count) {
     const LightTransport transport{
         std::make_unique<PlanesIntegrator>(uniform.scene().lit(),
                                            uniform.scene().camera->world_from_camera(),
                                            planes_of(uniform, count)),
         std::make_unique<DirectLighting>(uniform.scene().lit())};
-    return render_method(uniform, transport, proceed);
+    return render_method(uniform, transport);
 }
 
 }  // namespace
@@ -321,7 +315,7 @@ PlaneSums sum_planes_to_limit(const TrialScene& uniform, const std::vector<char>
          count <= options.most_planes || (rays_of(count) <= k_most_shadow_rays && rough());
          count *= 2) {
         options.say(planes_name(count));
-        sums.push_back(sum_over(uniform, count, options.proceed));
+        sums.push_back(sum_over(uniform, count));
     }
     PlaneSums result{sums.back(), sums.back(), sums[sums.size() - 2], {}};
     for (std::size_t i = 0; i < result.limit.backscatter.size(); ++i)
@@ -408,9 +402,8 @@ struct SurfaceImage {
 
 class DirectSum {
   public:
-    DirectSum(const TrialScene& trial, const std::function<bool()>& proceed)
+    explicit DirectSum(const TrialScene& trial)
         : trial_(trial),
-          proceed_(proceed),
           desc_(trial.scene().desc().water.forward_scatter),
           plane_(scatter_plane(*trial.scene().camera)),
           bands_(static_cast<std::size_t>(trial.scene().water.medium.band_count())),
@@ -488,7 +481,6 @@ class DirectSum {
         const auto width = static_cast<std::size_t>(trial_.width());
         std::vector<Image> of_rows(height);
         parallel_for(height, [&](std::size_t y) {
-            if (!proceed_()) throw Interrupted();
             of_rows[y].resize(pixels_);
             for (std::size_t x = 0; x < width; ++x)
                 spread(static_cast<int>(x), static_cast<int>(y), light[y * width + x],
@@ -526,7 +518,6 @@ class DirectSum {
     }
 
     const TrialScene& trial_;
-    const std::function<bool()>& proceed_;
     ForwardScatterDesc desc_;
     ScatterPlane plane_;
     std::size_t bands_, pixels_;
@@ -535,9 +526,8 @@ class DirectSum {
 }  // namespace
 
 std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial,
-                                            const SurfaceLighting& lighting,
-                                            const std::function<bool()>& proceed) {
-    return DirectSum(trial, proceed).forward(lighting);
+                                            const SurfaceLighting& lighting) {
+    return DirectSum(trial).forward(lighting);
 }
 
 }  // namespace uw

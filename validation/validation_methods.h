@@ -28,30 +28,25 @@ struct TrialScene {
     int height() const { return scene().camera->height(); }
 };
 
-/// Assembles `scene` and splats its lamps. This, and whatever is rendered of it, ends with
-/// Interrupted if `proceed` returns false; likewise the two functions that follow.
-TrialScene make_trial(const ImageScene& scene, const std::function<bool()>& proceed);
+/// Assembles `scene` and splats its lamps. Throws Interrupted, as all that follows.
+TrialScene make_trial(const ImageScene& scene);
 
 /// `trial` with its grids replaced by their mean over the field's bounds: uniform water, which
 /// scatters forward with the scene's K, G and B. `scene` is what `trial` was made from.
-TrialScene homogenised(const TrialScene& trial, const ImageScene& scene,
-                       const std::function<bool()>& proceed);
+TrialScene homogenised(const TrialScene& trial, const ImageScene& scene);
 
 /// `trial`, whose water is uniform, with a `share` of that water (above 0, at most 1) moved into a
 /// VDB grid of constant value: the grid is written to a file and read back, and outside it is only
 /// the rest. It extends from all cameras, lamps and surfaces as far as 15 optical depths. G and B
 /// of forward scatter are relative to the uniform water that they describe (physics section 6): if
 /// some of it stays, they are reduced with it, so that the blur is the same.
-TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double share,
-                              const std::function<bool()>& proceed);
+TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double share);
 
 /// `count` of McGlamery's planes in the water of `trial`, placed as its scene says.
 Slabs planes_of(const TrialScene& trial, int count);
 
-/// Renders every pixel by `transport` before forward scatter. Throws Interrupted if `proceed`
-/// returns false.
-MethodImage render_method(const TrialScene& trial, const LightTransport& transport,
-                          const std::function<bool()>& proceed);
+/// Renders every pixel by `transport` before forward scatter.
+MethodImage render_method(const TrialScene& trial, const LightTransport& transport);
 
 /// Renders it with forward scatter, as `uwvdb render` does it: fills the other two components of
 /// `image`.
@@ -86,7 +81,6 @@ struct PlaneSums {
 struct PlaneSumOptions {
     double tolerance;  // sums are refined while they change by more [relative]
     int most_planes;   // slabs of the finest sum, and more where it is still rough
-    std::function<bool()> proceed;
     std::function<void(const std::string&)> say;  // gets the name of each sum
 };
 
@@ -105,10 +99,8 @@ std::string planes_name(int count);
 /// uniform water, written out as a sum over all pairs of pixels: every pixel's light times the
 /// closed form of its own kernel over every other pixel and its mirror images at the borders. No
 /// transforms, no interpolated kernel widths, no float: shares nothing with ForwardPass but the
-/// focal lengths in the water. Surfaces are lit by `lighting`. Cost: pixels^2. Throws Interrupted
-/// if `proceed` returns false.
+/// focal lengths in the water. Surfaces are lit by `lighting`. Cost: pixels^2.
 std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial,
-                                            const SurfaceLighting& lighting,
-                                            const std::function<bool()>& proceed);
+                                            const SurfaceLighting& lighting);
 
 }  // namespace uw

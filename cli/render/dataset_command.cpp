@@ -47,11 +47,10 @@ class ViewClient : public RunClient {
     ViewClient(std::size_t count, bool quiet)
         : progress_("views", "views", static_cast<double>(count), quiet) {}
 
-    bool proceed(const std::string& stage, double fraction) override {
+    void tell(const std::string& stage, double fraction) override {
         // Nearly all the time that a view takes is this stage.
         const double share = stage == "render" ? fraction : 0;
         progress_.update(engine_.clock().share_done(share));
-        return !stop_requested();
     }
 
   protected:
@@ -192,10 +191,7 @@ void complete(const fs::path& folder, const DatasetFile& set, bool check, bool q
     try {
         const StopScope scope(stop_flag());
         Progress progress("completing the set", "", 1, quiet);
-        complete_dataset(folder, set, check, [&](double share) {
-            progress.update(share);
-            return !stop_requested();
-        });
+        complete_dataset(folder, set, check, [&](double share) { progress.update(share); });
     } catch (const Interrupted&) {
         throw Interrupted("interrupted; the views are there, --merge completes the set");
     }

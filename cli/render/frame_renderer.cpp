@@ -78,11 +78,10 @@ void FrameRenderer::warn(std::size_t place, const std::string& line) {
         fmt::format("warning: {}{}\n", place == 0 ? "" : place_in_run(frames_[place]), line));
 }
 
-bool FrameRenderer::proceed(const std::string& stage, double fraction) {
+void FrameRenderer::tell(const std::string& stage, double fraction) {
     if (stage != stage_) begin_stage(stage);
     const PathAccuracy& paths = engine_.renderer().report().paths;
     if (progress_) progress_->update(fraction, stage == "render" ? describe(paths) : "");
-    return !stop_requested();
 }
 
 void FrameRenderer::begin_stage(const std::string& stage) {
@@ -167,10 +166,8 @@ void FrameRenderer::write_irradiance(OutputFile& out) {
     const SequenceClock& clock = engine_.clock();
     Progress progress(clock.label("irradiance"), "lamps", static_cast<double>(scene.lamps.size()),
                       arguments_.quiet, clock.seconds_left());
-    write_irradiance_vdb(out, scene, engine_.renderer().light(), [&](double share) {
-        progress.update(share);
-        return !stop_requested();
-    });
+    write_irradiance_vdb(out, scene, engine_.renderer().light(),
+                         [&](double share) { progress.update(share); });
 }
 
 ImageWork FrameRenderer::take(std::size_t place, FinishedImage image) {

@@ -39,7 +39,7 @@ class FrameRenderer : public RunClient {
     void loaded(std::size_t place) override;
     ImageWork take(std::size_t place, FinishedImage image) override;
     void warn(std::size_t place, const std::string& line) override;
-    bool proceed(const std::string& stage, double fraction) override;
+    void tell(const std::string& stage, double fraction) override;
 
   private:
     /// An image that is being written.

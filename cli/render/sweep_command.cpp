@@ -172,7 +172,7 @@ SceneDesc scene_at(const SweepArguments& a, std::size_t place) {
 /// Measures the pictures of a sweep.
 class SweepRun : public RunClient {
   public:
-    SweepRun(const SweepArguments& arguments, const SweepProgress& progress)
+    SweepRun(const SweepArguments& arguments, const ShareCallback& progress)
         : a_(arguments), progress_(progress) {
         sweep_.keys = a_.grid.keys();
     }
@@ -188,8 +188,8 @@ class SweepRun : public RunClient {
         return std::move(sweep_);
     }
 
-    bool proceed(const std::string& stage, double fraction) override {
-        return tell(stage == "render" ? k_rendering * fraction : 0);
+    void tell(const std::string& stage, double fraction) override {
+        progress_(engine_.clock().share_done(stage == "render" ? k_rendering * fraction : 0));
     }
 
     WantedImage want(std::size_t /*place*/, ImageScene& scene) override {
@@ -206,9 +206,8 @@ class SweepRun : public RunClient {
         SweepPoint point{
             a_.grid.values_at(place), part_numbers({image.film, image.plan}, parts), {}};
         if (a_.target)
-            point.target = target_numbers(
-                probe_.lamps_on_target(*scene_, *a_.target, [this] { return tell(k_rendering); }),
-                *a_.target, scene.water.bands_nm.size(), probe_.options());
+            point.target = target_numbers(probe_.lamps_on_target(*scene_, *a_.target), *a_.target,
+                                          scene.water.bands_nm.size(), probe_.options());
         sweep_.points.push_back(std::move(point));
         return {};
     }
@@ -218,12 +217,8 @@ class SweepRun : public RunClient {
     }
 
   private:
-    bool tell(double share_of_picture) const {
-        return progress_(engine_.clock().share_done(share_of_picture));
-    }
-
     const SweepArguments& a_;
-    const SweepProgress& progress_;
+    const ShareCallback& progress_;
     Sweep sweep_;
     std::optional<ImageScene> scene_;  // of the picture
     TargetProbe probe_;
@@ -232,7 +227,7 @@ class SweepRun : public RunClient {
 
 }  // namespace
 
-Sweep run_pictures(const SweepArguments& a, const SweepProgress& progress) {
+Sweep run_pictures(const SweepArguments& a, const ShareCallback& progress) {
     JobScenes scenes([&a](int place) { return scene_at(a, static_cast<std::size_t>(place)); });
     const ImageChoice choice{a.frame, chosen_camera(a.camera, scenes.of(0).cameras)};
     Job job{scenes, {}};
@@ -427,10 +422,7 @@ void run_sweep(const SweepArguments& a) {
     {
         const StopScope scope(stop_flag());
         Progress progress("sweep", "pictures", static_cast<double>(a.grid.count()), a.quiet);
-        sweep = run_pictures(a, [&](double share) {
-            progress.update(share);
-            return !stop_requested();
-        });
+        sweep = run_pictures(a, [&](double share) { progress.update(share); });
     }
     for (const std::string& warning : sweep.warnings)
         print_message(fmt::format("warning: {}\n", warning));

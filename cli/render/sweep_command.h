@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/render/picture_numbers.h"
 #include "cli/svg_plot.h"
+#include "core/base/progress.h"
 #include "render/measures/picture_numbers.h"
 #include "render/measures/target_probe.h"
 #include "run/job.h"
@@ -62,12 +62,10 @@ struct Sweep {
     bool is_complete = false;
 };
 
-/// Called with the share of the pictures that is done; false ends the sweep with what there is.
-using SweepProgress = std::function<bool(double share)>;
-
 /// Reads the scene with all choices, and only if all of them can be read renders and measures one
-/// after the other. Throws UsageError, InputError and IoError.
-Sweep run_pictures(const SweepArguments& arguments, const SweepProgress& progress);
+/// after the other; a sweep that is stopped has those measured until then. `progress` receives the
+/// share of the pictures that is done. Throws UsageError, InputError and IoError.
+Sweep run_pictures(const SweepArguments& arguments, const ShareCallback& progress);
 
 /// A row for each picture and part of it: the values that were varied, then what was measured.
 std::string sweep_csv(const Sweep& sweep);

@@ -70,7 +70,6 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out) {
 
     ValidationOptions options;
     options.tolerance = a.tolerance;
-    options.proceed = [] { return !stop_requested(); };
     if (!a.quiet) options.say = [](const std::string& what) { print_message(what + "\n"); };
     std::vector<SceneValidation> results;
     std::vector<LightValidation> lights;

@@ -8,7 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
 #include "core/paths/multiple_nodes.h"
@@ -240,15 +239,12 @@ int node_count(const RaySource& rays, int spacing) {
 /// The light of AllLightPass in one image.
 class MultipleLight {
   public:
-    /// Receives the share that is done, on any thread; returns false to stop.
-    using Progress = std::function<bool(double share)>;
-
     /// `pixels` must outlive this object; its transport has paths.
     MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options);
 
-    /// Estimates the light of the pixels of `window`. Throws Interrupted if `progress` returned
-    /// false, InputError if the nodes do not fit into free memory.
-    void prepare(const PixelWindow& window, const Progress& progress);
+    /// Estimates the light of the pixels of `window`. Throws Interrupted, and InputError if the
+    /// nodes do not fit into free memory.
+    void prepare(const PixelWindow& window, const ShareCallback& progress);
 
     /// Adds a pixel's light to multiple_volume, multiple_surface and the lamps of `result`. The
     /// samples of `view` begin at `first_sample` of `light`. Thread safe.
@@ -315,7 +311,7 @@ void MultipleLight::limit_paths(double error) {
     if (needed < most) estimator_.set_paths(static_cast<int>(std::max(needed, least)));
 }
 
-void MultipleLight::prepare(const PixelWindow& window, const Progress& progress) {
+void MultipleLight::prepare(const PixelWindow& window, const ShareCallback& progress) {
     // The corners of all cells in the window, and what these are fitted to.
     constexpr int k_margin = k_smoothing_reach + k_search + 1;
     const RaySource& rays = pixels_.rays();
@@ -339,8 +335,7 @@ void MultipleLight::prepare(const PixelWindow& window, const Progress& progress)
         estimator_.estimate((column_ + i) * static_cast<double>(spacing_),
                             (row_ + j) * static_cast<double>(spacing_),
                             PathRandom::seed_of(column, row), raw(i, j));
-        if (!progress(static_cast<double>(++done) / static_cast<double>(count)))
-            throw Interrupted();
+        progress(static_cast<double>(++done) / static_cast<double>(count));
     });
     take_away_glow(raw);
     weight_lattice_ = WeightLattice(rays, weights_, window);

@@ -115,8 +115,8 @@ class ForwardScattering {
     /// Stores what the second pass needs of a pixel. Thread safe.
     void keep(const RenderedPixel& pixel);
 
-    /// Scatters everything stored. Throws Interrupted if `progress` returned false.
-    void run(const ProgressCallback& progress);
+    /// Scatters everything stored. Throws Interrupted.
+    void run(const ShareCallback& progress);
 
     /// Adds the result to a film that holds the first pass and whose window is the whole image.
     void write(const LayerPlan& plan, const BandColour& colour, Film& film) const;
@@ -333,12 +333,13 @@ void ForwardScattering::add_surface(const RenderedPixel& pixel, std::size_t samp
     }
 }
 
-void ForwardScattering::run(const ProgressCallback& progress) {
+void ForwardScattering::run(const ShareCallback& progress) {
     // Before all surfaces the error of a slab is of second order in its thickness.
     if (spacing_ > 1) in_scatter_.join_pairs(water_.extent().nearest, first_slab_);
     const auto steps = static_cast<double>(in_scatter_.count()) + 1;
     const auto report = [&](std::size_t done) {
-        if (!progress(static_cast<double>(done) / steps)) throw Interrupted();
+        progress(static_cast<double>(done) / steps);
+        throw_if_stopped();
     };
     scatter_surfaces();
     report(1);

@@ -4,10 +4,6 @@
 
 namespace uw {
 
-void Rendering::tell(const std::string& stage, double fraction) const {
-    if (!progress(stage, fraction)) throw Interrupted();
-}
-
 PassNeeds Pass::needs(const LayerPlan& /*plan*/) const {
     return {};
 }
@@ -42,7 +38,8 @@ void PassList::run(Pass::Of of, Rendering& rendering) {
         if (pass->of() == of) pass->begin(rendering);
     for (const auto& pass : passes_) {
         if (pass->of() != of) continue;
-        if (!pass->stage().empty()) rendering.tell(pass->stage(), 0);
+        if (!pass->stage().empty()) rendering.progress(pass->stage(), 0);
+        throw_if_stopped();
         pass->run(rendering);
     }
 }

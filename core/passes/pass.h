@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/image/colour.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
@@ -17,12 +18,6 @@
 #include "core/scene/scene_desc.h"
 
 namespace uw {
-
-/// Receives the progress of a stage (0..1), on any thread; returns false to stop.
-using RenderProgress = std::function<bool(const std::string& stage, double fraction)>;
-
-/// Receives the fraction of one stage that is done, from any thread; returns false to stop.
-using ProgressCallback = std::function<bool(double fraction)>;
 
 /// What an image of light paths has reached.
 struct PathAccuracy {
@@ -68,18 +63,16 @@ struct Rendering {
     const LayerPlan& plan;
     const BandColour& colour;
     Film& film;  // its window is what is rendered
-    const RenderProgress& progress;
+    const ProgressCallback& progress;
     ImageProgress& reached;
     /// The rows whose ground truth TruthPass finds; empty: all of them.
     std::function<bool(int row)> has_truth{};
     /// In the order in which they are done to a pixel, before it is stored.
     std::vector<PixelStep> steps{};
 
-    /// Tells how far a stage is. Throws Interrupted if that is as far as it should get.
-    void tell(const std::string& stage, double fraction) const;
-    /// Tells the same of one stage, without throwing.
-    ProgressCallback progress_of(const std::string& stage) const {
-        return [this, stage](double fraction) { return progress(stage, fraction); };
+    /// What tells `progress` how far this stage is.
+    ShareCallback progress_of(const std::string& stage) const {
+        return [this, stage](double share) { progress(stage, share); };
     }
 };
 
@@ -121,8 +114,7 @@ class Pass {
     /// Adds its step to the rendering, if it takes part in each pixel. All passes begin before the
     /// first is run.
     virtual void begin(Rendering& rendering);
-    /// Does its work. Throws Interrupted if the progress callback says so; InputError if there is
-    /// not enough memory.
+    /// Does its work. Throws Interrupted, and InputError if there is not enough memory.
     virtual void run(Rendering& rendering) = 0;
 
   private:

@@ -175,6 +175,7 @@ void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& s
     thread_local std::vector<const SurfaceSample*> surfaces;
     thread_local SurfaceLight light;
     for (int first = 0; first < batch.samples; first += k_together) {
+        throw_if_stopped();
         const int end = std::min(first + k_together, batch.samples);
         rays.clear();
         indices.clear();
@@ -271,7 +272,7 @@ namespace {
 
 // Pixels that one task renders, in a row.
 constexpr int k_run = 8;
-// Paths between two reports of progress, at which an image can be stopped: milliseconds of work.
+// Paths between two reports of progress: milliseconds of work.
 constexpr std::uint64_t k_report = 64;
 // The error of so many paths is no more than a guess: more of them than it says are traced.
 constexpr double k_margin = 1.05;
@@ -360,7 +361,7 @@ class Spread {
 /// Tells how far an image has got, whose number of paths may not be known yet.
 class RoundProgress {
   public:
-    RoundProgress(const ProgressCallback& progress, const PixelWindow& window)
+    RoundProgress(const ShareCallback& progress, const PixelWindow& window)
         : progress_(progress), pixels_(static_cast<double>(window.width()) * window.height()) {}
 
     void begin_round(double samples_in_all) { all_ = pixels_ * samples_in_all; }
@@ -372,12 +373,11 @@ class RoundProgress {
         if (before / k_report == (before + more) / k_report) return;
         // The rest may take longer than foreseen.
         constexpr double k_almost = 0.99;
-        if (!progress_(std::min(k_almost, static_cast<double>(before + more) / all_)))
-            throw Interrupted();
+        progress_(std::min(k_almost, static_cast<double>(before + more) / all_));
     }
 
   private:
-    const ProgressCallback& progress_;
+    const ShareCallback& progress_;
     double pixels_;
     double all_ = 1;  // paths
     std::atomic<std::uint64_t> done_ = 0;
@@ -418,7 +418,7 @@ void PathPass::provide(LayerSupply& supply) const {
 void PathPass::run(Rendering& rendering) {
     const LayerPlan& plan = rendering.plan;
     const PathGoal goal{samples_of(rendering.desc.render), request_.error};
-    const ProgressCallback progress = rendering.progress_of(stage());
+    const ShareCallback progress = rendering.progress_of(stage());
     const PathPixels pixels(rendering.pixels, plan.order_count());
     Film& film = rendering.film;
     const PixelWindow& window = film.window();
@@ -458,7 +458,7 @@ void PathPass::run(Rendering& rendering) {
         for (int y = window.y0; y < window.y1; ++y)
             for (int x = window.x0; x < window.x1; ++x)
                 spread.store_error(x, y, plan.channels(Layer::error, film.pixel(x, y)));
-    rendering.tell(stage(), 1);
+    progress(1);
 }
 
 }  // namespace uw

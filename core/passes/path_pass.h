@@ -25,7 +25,7 @@ struct PathRound {
 /// standard error.
 class PathPixels {
   public:
-    /// Receives the number of paths traced since it was last called; may throw.
+    /// Receives the number of paths traced since it was last called.
     using TracedCallback = std::function<void(int paths)>;
 
     /// `pixels` renders everything that is not a mean over paths, and its light transport has
@@ -34,7 +34,7 @@ class PathPixels {
         : pixels_(pixels), order_count_(order_count) {}
 
     /// Renders pixel (x, y). The same for any number of threads, and for any part of the image. In
-    /// rounds after the first, only what is a mean over paths. Thread safe.
+    /// rounds after the first, only what is a mean over paths. Thread safe. Throws Interrupted.
     void render(int x, int y, const PathRound& round, const TracedCallback& traced,
                 PixelResult& result) const;
 

@@ -134,7 +134,7 @@ double in_scatter_tolerance(const RenderDesc& render) {
 
 void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
                   std::span<const PixelStep> steps, const PixelWindow& window,
-                  const ProgressCallback& progress, const PixelCallback& done) {
+                  const ShareCallback& progress, const PixelCallback& done) {
     const PixelWindow image{0, 0, renderer.rays().width(), renderer.rays().height()};
     const int left = window.x0 / k_tile, top = window.y0 / k_tile;
     const int columns = (window.x1 + k_tile - 1) / k_tile - left;
@@ -152,7 +152,8 @@ void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
         const PixelWindow wanted = tile_within(x0, y0, window);
         for (int y = wanted.y0; y < wanted.y1; ++y) {
             for (int x = wanted.x0; x < wanted.x1; ++x) done(x, y, tile_renderer->render(x, y));
-            if (!progress(static_cast<double>(++rows_done) / all)) throw Interrupted();
+            progress(static_cast<double>(++rows_done) / all);
+            throw_if_stopped();
         }
         pool.give_back(std::move(tile_renderer));
     });

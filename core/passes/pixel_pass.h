@@ -19,11 +19,10 @@ using PixelCallback = std::function<void(int x, int y, const PixelResult& pixel)
 /// Renders every pixel of a window of the image on all permitted threads, tile by tile: the
 /// surfaces that rays hit, the in-scatter on the way, and `steps` (Rendering). The pixels depend
 /// neither on the number of threads nor on the window. `in_scatter_tolerance`: that of
-/// InScatterLattice; 0 integrates every pixel's own ray. Throws Interrupted if `progress` returned
-/// false.
+/// InScatterLattice; 0 integrates every pixel's own ray. Throws Interrupted.
 void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
                   std::span<const PixelStep> steps, const PixelWindow& window,
-                  const ProgressCallback& progress, const PixelCallback& done);
+                  const ShareCallback& progress, const PixelCallback& done);
 
 /// Renders the pixels of the film's window by single scattering and the steps of other passes.
 class PixelPass final : public Pass {

@@ -60,11 +60,6 @@ void EventLog::close() {
     changed_.notify_all();
 }
 
-bool EventLog::is_closed() const {
-    const std::lock_guard lock(mutex_);
-    return is_closed_;
-}
-
 namespace {
 
 // A file is written in several steps: it is looked at once nothing has happened for so long [ms].

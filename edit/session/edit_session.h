@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -49,14 +50,15 @@ class EventLog {
 
     /// Ends all waiting.
     void close();
-    bool is_closed() const;
+    /// Set once it is closed: for a StopScope around work that nobody waits for any more.
+    const std::atomic<bool>& is_closed() const { return is_closed_; }
 
   private:
     mutable std::mutex mutex_;
     mutable std::condition_variable changed_;
     std::deque<Event> events_;
     std::uint64_t last_ = 0;
-    bool is_closed_ = false;
+    std::atomic<bool> is_closed_ = false;
 };
 
 /// Calls back, on a thread of its own, shortly after a file of a folder was written, replaced or

@@ -82,14 +82,13 @@ PictureRenderer::PictureRenderer(PictureCallbacks callbacks)
           if (stage == "render" && callbacks_.progress)
               callbacks_.progress(
                   quality_, (static_cast<double>(part_) + fraction) / static_cast<double>(parts_));
-          return !is_stopping_ && !(is_outdated_ && quality_ != PictureQuality::small);
       }),
       thread_([this] { run(); }) {}
 
 PictureRenderer::~PictureRenderer() {
     {
         const std::lock_guard lock(mutex_);
-        is_stopping_ = true;
+        is_stopping_ = is_outdated_ = true;
         changed_.notify_all();
     }
     thread_.join();
@@ -187,7 +186,10 @@ PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, Pictur
     renderer_.set_scene(scene_of_part(scene, quality, lamp));
     const std::string layers = layers_of(renderer_.scene(), lamp.has_value());
     LayerPlan plan = layer_plan(renderer_.scene(), layers);
-    renderer_.render({.layers = layers});
+    {
+        const StopScope scope(quality == PictureQuality::small ? is_stopping_ : is_outdated_);
+        renderer_.render({.layers = layers});
+    }
     const Spectrum brightness =
         lamp ? renderer_.assembled().lamps.front().axis_intensity() : Spectrum{};
     if (!std::exchange(is_announced_, true)) callbacks_.assembled(renderer_);

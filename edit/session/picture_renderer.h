@@ -67,7 +67,7 @@ class PictureRenderer {
     std::shared_ptr<const EditedScene> current_, next_;  // being rendered, to be rendered
     std::shared_ptr<const Picture> picture_;
     std::atomic<bool> is_stopping_ = false;
-    std::atomic<bool> is_outdated_ = false;  // the next picture is another than the current one
+    std::atomic<bool> is_outdated_ = false;  // stopping, or the next picture is another one
     std::atomic<std::size_t> rendered_ = 0;
     std::atomic<PictureQuality> quality_ = PictureQuality::small;  // being rendered
 

@@ -187,20 +187,23 @@ void check_part(const PixelWindow& part, const CameraDesc& camera) {
 SessionMeasures::~SessionMeasures() {
     cancel_suggest();
     ++newest_curves_;
+    are_curves_outdated_ = true;
     if (searching_.joinable()) searching_.join();
 }
 
 Json SessionMeasures::curves(const EditedScene& scene) {
     const std::int64_t own = ++newest_curves_;
+    are_curves_outdated_ = true;
     const std::lock_guard lock(probe_mutex_);
-    const auto is_newest = [&] { return newest_curves_ == own; };
+    are_curves_outdated_ = false;
+    if (newest_curves_ != own) are_curves_outdated_ = true;  // a request came before that
+    const StopScope scope(are_curves_outdated_);
     try {
         Json curves = {{"distance", Json::array()},
                        {"contrast", Json::array()},
                        {"signal_to_backscatter", Json::array()},
                        {"irradiance", Json::array()}};
-        for (const TargetNumbers& numbers :
-             probe_.curve(lit_scene(scene), target_distances(), is_newest)) {
+        for (const TargetNumbers& numbers : probe_.curve(lit_scene(scene), target_distances())) {
             const Json point = target_numbers_json(numbers);
             for (auto& [name, values] : curves.items()) values.push_back(point[name]);
         }
@@ -270,9 +273,8 @@ std::string SessionMeasures::numbers_csv(const NumbersRequest& request) {
 std::string SessionMeasures::picture_png(std::optional<double> exposure) {
     const std::shared_ptr<const EditedScene> scene = session_.scene();
     if (!scene) throw ConflictError("there is no scene yet");
-    Renderer renderer([this](const std::string& /*stage*/, double /*fraction*/) {
-        return !session_.events().is_closed();
-    });
+    const StopScope scope(session_.events().is_closed());
+    Renderer renderer;
     renderer.set_scene(lit_scene(*scene));
     const Film& film = renderer.render();
     const double used = exposure ? *exposure : automatic_exposure(film).value_or(1.0);
@@ -314,6 +316,7 @@ void SessionMeasures::search(std::int64_t id, const ImageScene& scene,
     work_in_background();
     Json event = {{"id", id}, {"samples", request.samples}};
     try {
+        const StopScope scope(is_cancelled_);
         TargetProbe probe;
         std::size_t told = 0;
         const Suggestion found =
@@ -327,7 +330,6 @@ void SessionMeasures::search(std::int64_t id, const ImageScene& scene,
                     progress["best"] = suggest_point_json(so_far.best);
                     tell(std::move(progress));
                 }
-                return !is_cancelled_;
             });
         event["state"] = "found";
         event.update(suggestion_json(found));

@@ -56,6 +56,7 @@ class SessionMeasures {
     std::mutex probe_mutex_;
     TargetProbe probe_;
     std::atomic<std::int64_t> newest_curves_ = 0;
+    std::atomic<bool> are_curves_outdated_ = false;  // those being made
 
     std::mutex search_mutex_;
     std::int64_t last_search_ = 0;

@@ -159,7 +159,8 @@ class Search {
     }
 
     void tell() const {
-        if (progress_ && !progress_(found_)) throw Interrupted();
+        if (progress_) progress_(found_);
+        throw_if_stopped();
     }
 
     /// Returns where the best of the grid is.

@@ -58,9 +58,8 @@ struct Suggestion {
     std::size_t tried = 0;
 };
 
-/// Called after each position tried, with its map and best so far; false ends the search with
-/// Interrupted.
-using SuggestProgress = std::function<bool(const Suggestion& so_far)>;
+/// Called after each position tried, with its map and best so far.
+using SuggestProgress = std::function<void(const Suggestion& so_far)>;
 
 /// Tries positions on a grid, and then goes from the best of them along its axes, in steps halved
 /// where none is better, until they are below 1 cm or the request's positions are used up. The same

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
 #include "core/base/output_files.h"
+#include "core/base/progress.h"
 #include "core/light/integrator.h"
 #include "render/scene_assembly.h"
 
@@ -18,9 +18,9 @@ void check_irradiance_vdb(const AssembledScene& scene);
 /// volumes (of all surfaces and lamps if there are no volumes). Voxels are those of the finest
 /// grid, or large enough that the longest side has at most 256 and all grids together at most 2^28
 /// values. World space, y up as in the scene's world. All of a VDB file, for `out` to be committed.
-/// Throws IoError; Interrupted, also if `progress`, called from any thread, returns false.
+/// Throws IoError and Interrupted.
 void write_irradiance_vdb(OutputFile& out, const AssembledScene& scene,
                           const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
-                          const std::function<bool(double share)>& progress);
+                          const ShareCallback& progress);
 
 }  // namespace uw

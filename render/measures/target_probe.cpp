@@ -139,10 +139,7 @@ TargetNumbers target_numbers(std::span<const LampOnTarget> lamps, double distanc
     return numbers;
 }
 
-TargetProbe::TargetProbe(const TargetOptions& options)
-    : options_(options), renderer_([this](const std::string&, double) {
-          return go_on_ == nullptr || !*go_on_ || (*go_on_)();
-      }) {
+TargetProbe::TargetProbe(const TargetOptions& options) : options_(options) {
     if (!(options.dark >= 0 && options.dark < options.bright && options.bright <= 1))
         throw UsageError("target: its reflectances must be 0 <= dark < bright <= 1");
     if (!(options.field > 0 && options.field <= 1))
@@ -158,17 +155,14 @@ void TargetProbe::enter(const SceneDesc& scene) {
     surrounding_ = std::move(surrounding);
 }
 
-LampOnTarget TargetProbe::render(const LampDesc& lamp, double distance,
-                                 const std::function<bool()>& go_on) {
+LampOnTarget TargetProbe::render(const LampDesc& lamp, double distance) {
     const std::size_t bands = surrounding_->water.bands_nm.size();
     SceneDesc desc = *surrounding_;
     desc.geometry = {target_at(desc.camera, distance, bands)};
     desc.lamps = {unit_lamp(lamp, bands)};
     renderer_.set_scene(std::move(desc));
     const LayerPlan plan = layer_plan(renderer_.scene(), "direct,backscatter,irradiance");
-    go_on_ = &go_on;
     const Film& film = renderer_.render({.layers = "direct,backscatter,irradiance"});
-    go_on_ = nullptr;
     LampOnTarget light;
     const auto add_to = [&](Spectrum& sum, Layer layer, std::span<const float> pixel) {
         const auto first = static_cast<std::size_t>(plan.first_channel(layer));
@@ -188,7 +182,7 @@ LampOnTarget TargetProbe::render(const LampDesc& lamp, double distance,
 }
 
 LampOnTarget TargetProbe::lamp_on_target(const ImageScene& scene, const LampDesc& lamp,
-                                         double distance, const std::function<bool()>& go_on) {
+                                         double distance) {
     if (!(distance > 0) || !std::isfinite(distance))
         throw UsageError(
             fmt::format("target: {} m is no distance; give one greater than 0", distance));
@@ -196,8 +190,8 @@ LampOnTarget TargetProbe::lamp_on_target(const ImageScene& scene, const LampDesc
     const std::string key = key_of(lamp, distance);
     auto found = kept_.find(key);
     if (found == kept_.end()) {
-        if (go_on && !go_on()) throw Interrupted();
-        found = kept_.emplace(key, render(lamp, distance, go_on)).first;
+        throw_if_stopped();
+        found = kept_.emplace(key, render(lamp, distance)).first;
     }
     std::vector<std::string> warnings;  // those of the scene's own picture
     const SceneDesc& desc = scene.desc();
@@ -208,20 +202,18 @@ LampOnTarget TargetProbe::lamp_on_target(const ImageScene& scene, const LampDesc
             intensity * found->second.irradiance};
 }
 
-std::vector<LampOnTarget> TargetProbe::lamps_on_target(const ImageScene& scene, double distance,
-                                                       const std::function<bool()>& go_on) {
+std::vector<LampOnTarget> TargetProbe::lamps_on_target(const ImageScene& scene, double distance) {
     std::vector<LampOnTarget> lamps;
     for (const LampDesc& lamp : scene.desc().lamps)
-        lamps.push_back(lamp_on_target(scene, lamp, distance, go_on));
+        lamps.push_back(lamp_on_target(scene, lamp, distance));
     return lamps;
 }
 
 std::vector<TargetNumbers> TargetProbe::curve(const ImageScene& scene,
-                                              std::span<const double> distances,
-                                              const std::function<bool()>& go_on) {
+                                              std::span<const double> distances) {
     std::vector<TargetNumbers> numbers;
     for (const double distance : distances)
-        numbers.push_back(target_numbers(lamps_on_target(scene, distance, go_on), distance,
+        numbers.push_back(target_numbers(lamps_on_target(scene, distance), distance,
                                          scene.desc().water.bands_nm.size(), options_));
     return numbers;
 }

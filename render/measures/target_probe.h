@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -73,25 +72,21 @@ class TargetProbe {
 
     const TargetOptions& options() const { return options_; }
 
-    /// One per lamp of the scene. If `go_on` returns false the work ends with Interrupted; what was
-    /// rendered until then is kept. Throws as Renderer.
-    std::vector<LampOnTarget> lamps_on_target(const ImageScene& scene, double distance,
-                                              const std::function<bool()>& go_on = {});
+    /// One per lamp of the scene. Throws as Renderer; what was rendered until Interrupted is kept.
+    std::vector<LampOnTarget> lamps_on_target(const ImageScene& scene, double distance);
     /// The light of a lamp that may not be the scene's: its brightness and place are those of
     /// `lamp`.
-    LampOnTarget lamp_on_target(const ImageScene& scene, const LampDesc& lamp, double distance,
-                                const std::function<bool()>& go_on = {});
+    LampOnTarget lamp_on_target(const ImageScene& scene, const LampDesc& lamp, double distance);
 
     /// The numbers of the scene's target at each distance.
-    std::vector<TargetNumbers> curve(const ImageScene& scene, std::span<const double> distances,
-                                     const std::function<bool()>& go_on = {});
+    std::vector<TargetNumbers> curve(const ImageScene& scene, std::span<const double> distances);
 
     /// Targets rendered so far: what the others were remembered from.
     std::uint64_t rendered() const { return rendered_; }
 
   private:
     void enter(const SceneDesc& scene);
-    LampOnTarget render(const LampDesc& lamp, double distance, const std::function<bool()>& go_on);
+    LampOnTarget render(const LampDesc& lamp, double distance);
 
     TargetOptions options_;
     /// The scene around targets, as the probe sees it, for which lamps are kept; none at first.
@@ -99,7 +94,6 @@ class TargetProbe {
     /// The light of lamps of intensity 1, by lamp and distance.
     std::unordered_map<std::string, LampOnTarget> kept_;
     Renderer renderer_;
-    const std::function<bool()>* go_on_ = nullptr;  // while it renders
     std::uint64_t rendered_ = 0;
 };
 

@@ -28,9 +28,9 @@ TEST_P(StopSignal, AsksForAnOrderlyStopFromThenOn) {
         {
             install_stop_signal();
             begin_orderly_stop();
-            const bool before = stop_requested();
+            const bool before = stop_flag();
             std::raise(GetParam());
-            std::_Exit(!before && stop_requested() ? 7 : 1);
+            std::_Exit(!before && stop_flag() ? 7 : 1);
         },
         testing::ExitedWithCode(7), "^$");
 }
@@ -50,7 +50,7 @@ TEST_P(StopSignal, ASecondOneEndsTheProgramAtOnce) {
 INSTANTIATE_TEST_SUITE_P(Signals, StopSignal, testing::Values(SIGINT, SIGTERM));
 
 TEST(StopSignalAlone, NothingWasAskedFor) {
-    EXPECT_FALSE(stop_requested());
+    EXPECT_FALSE(stop_flag());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Which passes an image is made of, and how a list of them is run.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -50,11 +51,10 @@ TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
     const BandColour colour(desc_.water.bands_nm);
     Film film(8, 6, {0, 0, 8, 6}, plan.channel_names());
     std::vector<std::string> notes;
-    bool goes_on = true;
-    const RenderProgress progress = [&](const std::string& stage, double fraction) {
+    std::atomic<bool> stop = false;
+    const ProgressCallback progress = [&](const std::string& stage, double fraction) {
         EXPECT_EQ(fraction, 0);
         notes.push_back("stage " + stage);
-        return goes_on;
     };
     ImageProgress reached;
     Rendering rendering{.desc = desc_,
@@ -74,7 +74,8 @@ TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
     EXPECT_EQ(notes, (std::vector<std::string>{"begin one", "begin two", "stage one", "run one",
                                                "stage two", "run two"}));
     notes.clear();
-    goes_on = false;
+    stop = true;
+    const StopScope scope(stop);
     EXPECT_THROW(passes.run(Pass::Of::truth, rendering), Interrupted);
     EXPECT_EQ(notes, (std::vector<std::string>{"begin truth", "stage truth"}));
 }

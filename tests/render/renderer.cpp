@@ -137,18 +137,23 @@ TEST_F(Images, CanBeCancelledInEveryStageAndAskedForAgain) {
     plain.set_scene(SceneDesc(desc_));
     const Film expected = plain.render();
     for (const std::string stop : {"volumes", "geometry", "splat", "render", "forward scatter"}) {
-        std::atomic<bool> asked = true;
-        Renderer renderer(
-            [&](const std::string& stage, double) { return !(asked && stage == stop); });
+        bool asked = false;
+        std::atomic<bool> flag = false;
+        const StopScope scope(flag);
+        Renderer renderer([&](const std::string& stage, double) {
+            if (asked && stage == stop) flag = true;
+        });
+        const auto expect_stopped = [&] {
+            asked = true;
+            EXPECT_THROW(renderer.render(), Interrupted) << stop;
+            asked = flag = false;
+        };
         renderer.set_scene(SceneDesc(desc_));
-        EXPECT_THROW(renderer.render(), Interrupted) << stop;
-        asked = false;
+        expect_stopped();
         EXPECT_TRUE(std::ranges::equal(renderer.render().values(), expected.values())) << stop;
         // And a scene that takes over what there was when it was cancelled.
-        asked = true;
         renderer.set_scene(SceneDesc(desc_));
-        EXPECT_THROW(renderer.render(), Interrupted) << stop;
-        asked = false;
+        expect_stopped();
         expect_as_new(renderer);
     }
 }
@@ -167,7 +172,6 @@ TEST_F(Images, TellTheirStagesInOrderFromZeroToOne) {
         EXPECT_GE(fraction, 0);
         EXPECT_LE(fraction, 1);
         reached = fraction;
-        return true;
     });
     renderer.set_scene(SceneDesc(desc_));
     EXPECT_TRUE(stages.empty());  // nothing is loaded by that

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
 #include <vector>
 
@@ -41,14 +42,15 @@ class Recorder : public RunClient {
     void warn(std::size_t place, const std::string& line) override {
         warnings.push_back(std::to_string(place) + ": " + line);
     }
-    bool proceed(const std::string& /*stage*/, double /*fraction*/) override {
-        return films.size() < stop_after;
+    void tell(const std::string& /*stage*/, double /*fraction*/) override {
+        if (films.size() >= stop_after) stop = true;
     }
 
     std::vector<std::string> told, warnings;
     std::vector<Film> films;
     std::function<void(std::size_t place)> write = [](std::size_t) {};
     std::size_t stop_after = 100;  // images
+    std::atomic<bool> stop = false;
 };
 
 std::vector<JobImage> images_of_scenes(std::initializer_list<int> numbers) {
@@ -123,10 +125,12 @@ TEST(RunEngine, StopsAsItsClientSays) {
     JobScenes scenes(scene_of);
     Recorder client;
     client.stop_after = 2;
+    const StopScope scope(client.stop);
     RunEngine engine;
     EXPECT_THROW(engine.run({scenes, images_of_scenes({1, 2, 3})}, client), Interrupted);
     EXPECT_EQ(engine.written(), 2U);
     client.stop_after = 100;  // it stays usable
+    client.stop = false;
     engine.run({scenes, images_of_scenes({1})}, client);
     EXPECT_EQ(engine.written(), 1U);
 }

@@ -35,7 +35,7 @@ class MixedImage {
         std::vector<PixelResult> pixels(static_cast<std::size_t>(window.width()) *
                                         static_cast<std::size_t>(window.height()));
         render_tiles(
-            pixels_, tolerance, {}, window, [](double) { return true; },
+            pixels_, tolerance, {}, window, [](double) {},
             [&](int x, int y, const PixelResult& pixel) {
                 pixels[static_cast<std::size_t>((y - window.y0) * window.width() + x - window.x0)] =
                     pixel;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <utility>
@@ -150,7 +151,6 @@ TEST_F(PathFilms, GoOnUntilTheErrorIsSmall) {
         if (stage == "render") last = fraction;
         const PathAccuracy& now = renderer.report().paths;
         if (rounds.empty() || rounds.back().samples != now.samples) rounds.push_back(now);
-        return true;
     });
     renderer.set_scene(SceneDesc(desc_));
     renderer.render({.layers = "error", .paths = {.error = 0.05}});
@@ -172,21 +172,22 @@ TEST_F(PathFilms, SayWhatTheyReachedIfTheErrorIsTooSmall) {
 }
 
 TEST_F(PathFilms, CanBeStopped) {
-    Renderer renderer([](const std::string& stage, double fraction) {
-        return stage != "render" || fraction == 0;
+    std::atomic<bool> stop = false;
+    const StopScope scope(stop);
+    Renderer renderer([&](const std::string& stage, double fraction) {
+        if (stage == "render" && fraction > 0) stop = true;
     });
     desc_.render.samples = 4096;
     renderer.set_scene(SceneDesc(desc_));
     EXPECT_THROW(renderer.render(), Interrupted);
 }
 
-TEST_F(PathFilms, CanBeStoppedAfterEach64Paths) {
+TEST_F(PathFilms, TellOfTheirProgressEvery64Paths) {
     int reports = 0;
     std::mutex mutex;
     Renderer renderer([&](const std::string& stage, double) {
         const std::lock_guard lock(mutex);
         reports += stage == "render" ? 1 : 0;
-        return true;
     });
     desc_.render.samples = 32;
     renderer.set_scene(SceneDesc(desc_));

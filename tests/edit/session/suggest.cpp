@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -152,15 +153,17 @@ TEST(Suggest, IsBoundedAndCanBeCancelled) {
     request.samples = 12;
     TargetProbe probe({.rays = 1});
     std::size_t told = 0;
-    const Suggestion found = suggest_position(probe, scene, request, [&](const Suggestion& sofar) {
-        EXPECT_EQ(sofar.tried, ++told);
-        return true;
-    });
+    const Suggestion found = suggest_position(
+        probe, scene, request, [&](const Suggestion& sofar) { EXPECT_EQ(sofar.tried, ++told); });
     EXPECT_LE(found.tried, 12U);
     EXPECT_EQ(found.tried, told);
-    EXPECT_THROW(suggest_position(probe, scene, request,
-                                  [](const Suggestion& sofar) { return sofar.tried < 5; }),
-                 Interrupted);
+    {
+        std::atomic<bool> stop = false;
+        const StopScope scope(stop);
+        EXPECT_THROW(suggest_position(probe, scene, request,
+                                      [&](const Suggestion& sofar) { stop = sofar.tried >= 5; }),
+                     Interrupted);
+    }
     const auto refused = [&](const std::function<void(SuggestRequest&)>& change) {
         SuggestRequest wrong = request;
         change(wrong);

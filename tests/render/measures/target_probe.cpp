@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "core/base/error.h"
@@ -192,13 +194,16 @@ TEST(TargetProbe, RendersOnlyWhatChanged) {
 TEST(TargetProbe, CanBeCancelledAndRefusesWhatMakesNoSense) {
     const ImageScene scene{two_lamps()};
     TargetProbe probe({.rays = 1});
-    int calls = 0;
-    const std::function<bool()> stop = [&calls] { return ++calls < 20; };
-    EXPECT_THROW(probe.curve(scene, target_distances(), stop), Interrupted);
-    EXPECT_LT(probe.rendered(), 20U);
-    const std::uint64_t before = probe.rendered();
-    EXPECT_EQ(probe.curve(scene, target_distances()).size(), 20U);
-    EXPECT_EQ(probe.rendered(), 40U) << "what was rendered before is kept: " << before;
+    const std::vector<double> distances = target_distances();
+    probe.curve(scene, std::span(distances).first(7));
+    {
+        const std::atomic<bool> stop = true;
+        const StopScope scope(stop);
+        EXPECT_THROW(probe.curve(scene, distances), Interrupted);
+    }
+    EXPECT_EQ(probe.rendered(), 14U);
+    EXPECT_EQ(probe.curve(scene, distances).size(), 20U);
+    EXPECT_EQ(probe.rendered(), 40U) << "what was rendered before is kept";
     EXPECT_NE(message_of<UsageError>([&] { probe.curve(scene, std::vector{0.0}); }), "");
     EXPECT_NE(message_of<UsageError>([&] { TargetProbe({.bright = 0.1, .dark = 0.2}); }), "");
     EXPECT_NE(message_of<UsageError>([&] { TargetProbe({.field = 0}); }), "");
