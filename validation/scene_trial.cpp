@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
@@ -78,8 +79,9 @@ class SceneTrial {
     SceneValidation run() {
         const auto start = std::chrono::steady_clock::now();
         TrialScene trial = make_trial(scene_);
-        TrialScene uniform =
-            scene_.desc().volumes.empty() ? make_trial(scene_) : homogenised(trial, scene_);
+        std::optional<TrialScene> mixed;
+        if (!scene_.desc().volumes.empty()) mixed = homogenised(trial, scene_);
+        TrialScene& uniform = mixed ? *mixed : trial;
         result_.smooth = smooth_pixels(uniform);
         compare_before_forward_scatter(trial, uniform);
         if (scene_.desc().water.forward_scatter.K > 0) compare_forward_scatter(trial, uniform);

@@ -51,15 +51,8 @@ void unpack(ByteReader& in, const std::filesystem::path& file, bool zip, Buffer&
     }
 }
 
-/// A decompressed grid, suitably aligned for its nodes.
-struct NvdbBytes {
-    std::shared_ptr<const std::uint8_t> data;
-    std::uint64_t size = 0;
-};
+}  // namespace
 
-/// Reads and decompresses the bytes of `grid`. Of their contents, only the grid header's magic
-/// number and its claimed size are checked. Throws InputError starting with `where`; std::bad_alloc
-/// if memory does not suffice.
 NvdbBytes read_nvdb_bytes(const VdbHeader& header, const GridSummary& grid,
                           const SourceLocation& where) {
     ByteReader in(header.file, where);
@@ -80,6 +73,8 @@ NvdbBytes read_nvdb_bytes(const VdbHeader& header, const GridSummary& grid,
         in.fail_damaged();
     return {{storage, buffer.data()}, bytes};
 }
+
+namespace {
 
 constexpr std::size_t k_alignment = NANOVDB_DATA_ALIGNMENT;
 

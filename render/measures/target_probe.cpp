@@ -16,9 +16,11 @@ namespace {
 
 constexpr std::size_t k_most_kept = 10000;  // of about 1 KB each
 
-/// A camera whose pixels, few as they are, share out the part of the image in the middle.
+/// A camera whose pixels, few as they are, share out the part of the image in the middle. It stands
+/// where the scene's is at the image's moment.
 CameraDesc probe_camera(const CameraDesc& camera, const TargetOptions& options) {
     CameraDesc probe = camera;
+    probe.trajectory.reset();
     const double n = options.rays;
     const double x_scale = n / (options.field * camera.width);
     const double y_scale = n / (options.field * camera.height);
@@ -61,9 +63,11 @@ GeometryDesc target_at(const CameraDesc& camera, double distance, std::size_t ba
     return target;
 }
 
-/// The lamp with a radiant intensity of 1 W/sr on its axis in each band.
+/// The lamp with a radiant intensity of 1 W/sr on its axis in each band, where it is at the image's
+/// moment.
 LampDesc unit_lamp(const LampDesc& lamp, std::size_t bands) {
     LampDesc unit = lamp;
+    unit.trajectory.reset();
     unit.power.reset();
     unit.lumens.reset();
     unit.spectrum.reset();

@@ -85,6 +85,7 @@ TEST(DepthOfField, IsTheMeanOverPinholesAllOverTheLens) {
     std::vector<double> truth(32 * 24 * 3), water(32 * 24 * 3);
     constexpr int k_rings = 8;
     int count = 0;
+    Renderer renderer;  // one, which keeps what does not move: the light of the lamp
     for (int i = 0; i < k_rings; ++i) {
         const int around = 6 * i + 3;  // equal areas, nearly
         for (int j = 0; j < around; ++j, ++count) {
@@ -97,7 +98,8 @@ TEST(DepthOfField, IsTheMeanOverPinholesAllOverTheLens) {
             displaced.camera.world_from_camera = Affine::translation({u, v, 0});
             displaced.camera.intrinsics.cx += displaced.camera.intrinsics.fx * u / k_focus;
             displaced.camera.intrinsics.cy += displaced.camera.intrinsics.fy * v / k_focus;
-            const Film film = backscatter_of(displaced);
+            renderer.set_scene(std::move(displaced));
+            const Film& film = renderer.render({.layers = "backscatter"});
             std::size_t k = 0;
             for (int y = 0; y < 24; ++y)
                 for (int x = 0; x < 32; ++x)

@@ -58,9 +58,9 @@ double trapezoid(double x, double width, double way) {
 }
 
 TEST(MovingBar, IsATrapezoidAndKeepsItsLight) {
+    const Film sharp = image_of(bar_scene(0, "samples: 256"), {});
     for (const double way : {3.0, 9.0, 20.0}) {  // pixels
         const double velocity = way / 100 / k_shutter;
-        const Film sharp = image_of(bar_scene(0, "samples: 256"), {});
         const Film blurred = image_of(bar_scene(velocity, "samples: 512, shutter: 0.04"), {});
         const double bright = static_cast<double>(sharp.pixel(24, 16)[0]);
         ASSERT_GT(bright, 0);

@@ -50,9 +50,10 @@ TEST_F(LoadVolumes, TellOfVoxelsOfManyOpticalDepths) {
     test::add_particles(medium, {1, 2}, {3, 4});
     fixture_.file_from_index = Affine::scale({0.05, 0.1, 0.02});
     // At most 0.5 per unit, 6 1/m per ppm, 0.1 m: 0.3 optical depths per unit.
-    const LoadedVolume thin = load(13.33), dense = load(14);
+    // The warning begins at 4, told here to 1e-5, as far as 32-bit values tell it.
+    const LoadedVolume thin = load(13.3333), dense = load(14);
     EXPECT_FALSE(coarse_voxel_warning(thin.reports.at(0), medium));
-    EXPECT_TRUE(coarse_voxel_warning(load(13.34).reports.at(0), medium));
+    EXPECT_TRUE(coarse_voxel_warning(load(13.33336).reports.at(0), medium));
     EXPECT_EQ(coarse_voxel_warning(dense.reports.at(0), medium)
                   .value_or("")
                   .find("cloud.vdb: grid 'density': its densest voxels are 4.2 optical depths"),

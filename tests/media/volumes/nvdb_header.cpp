@@ -37,8 +37,12 @@ TEST_F(NvdbHeader, IsToldByItsFirstBytes) {
     for (const char* magic : {"NanoVDB0", "NanoVDB2"})
         EXPECT_TRUE(header_of(magic + rest).is_nano) << magic;
     expect_refused("NanoVDB1" + rest, "holds a bare NanoVDB grid");
-    for (const char* magic : {"NanoVDB3", "nanoVDB0"})
+    const std::string with_bytes_swapped("\0\0\0\0VDB ", 8);
+    for (const std::string& magic :
+         {std::string("NanoVDB3"), std::string("nanoVDB0"), with_bytes_swapped})
         expect_refused(magic + rest, "is not a VDB file");
+    // So begins a VDB file, whose version then follows.
+    expect_refused(std::string(" BDV\0\0\0\0", 8) + rest, "is a VDB file of version ");
 }
 
 TEST_F(NvdbHeader, SaysWhatTheGridIs) {

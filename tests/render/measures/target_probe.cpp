@@ -13,6 +13,7 @@
 #include "tests/support/adaptive_quadrature.h"
 #include "tests/support/film_rendering.h"
 #include "tests/support/message_of.h"
+#include "tests/support/motion/moving_scene.h"
 
 namespace uw::test {
 namespace {
@@ -189,6 +190,27 @@ TEST(TargetProbe, RendersOnlyWhatChanged) {
     const std::vector<TargetNumbers> twice = curve();
     desc.lamps[0].intensity = PerBand{1, 2, 3};
     EXPECT_DOUBLE_EQ(twice[0].irradiance, 2 * curve()[0].irradiance);
+}
+
+// The same as in a scene that stands still as the moving one is at the image's moment, which is not
+// the first at which it has poses.
+TEST(TargetProbe, LooksFromWhereTheCameraIsAtTheImagesMoment) {
+    const ImageScene moving = moving_scene("");
+    SceneDesc still = moving.desc();
+    still.camera.trajectory.reset();
+    still.geometry.clear();
+    for (LampDesc& lamp : still.lamps) lamp.trajectory.reset();
+    const std::vector<double> distances{0.5, 3.0};
+    TargetProbe probe({.rays = 1}), other({.rays = 1});
+    const std::vector<TargetNumbers> found = probe.curve(moving, distances);
+    const std::vector<TargetNumbers> expected =
+        other.curve(ImageScene{std::move(still)}, distances);
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+        EXPECT_GT(expected[i].contrast, 0);
+        EXPECT_EQ(found[i].contrast, expected[i].contrast);
+        EXPECT_EQ(found[i].irradiance, expected[i].irradiance);
+        EXPECT_EQ(found[i].backscatter, expected[i].backscatter);
+    }
 }
 
 TEST(TargetProbe, CanBeCancelledAndRefusesWhatMakesNoSense) {
