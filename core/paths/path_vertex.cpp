@@ -89,6 +89,13 @@ Vector3 cosine_direction(const Vector3& normal, double u, double azimuth) {
 
 void PathVertex::scatter(const VertexTables& tables, const Point3& x, const Vector3& direction,
                          const WaterPoint& point, const Spectrum& throughput) {
+    scatter_plainly(tables, x, direction, point, throughput);
+    find_lobes(throughput);
+}
+
+void PathVertex::scatter_plainly(const VertexTables& tables, const Point3& x,
+                                 const Vector3& direction, const WaterPoint& point,
+                                 const Spectrum& throughput) {
     tables_ = tables;
     x_ = x;
     incoming_ = direction;
@@ -101,7 +108,8 @@ void PathVertex::scatter(const VertexTables& tables, const Point3& x, const Vect
             total += throughput[band] * b[band];
         phase_cumulative_.push_back(total);
     }
-    find_lobes(throughput);
+    lobes_.clear();
+    lobe_cumulative_.clear();
 }
 
 void PathVertex::reflect(const VertexTables& tables, const WaterSegment& segment,

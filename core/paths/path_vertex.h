@@ -70,6 +70,9 @@ class PathVertex {
     /// coefficients there and must stay valid. `throughput` weighs the bands.
     void scatter(const VertexTables& tables, const Point3& x, const Vector3& direction,
                  const WaterPoint& point, const Spectrum& throughput);
+    /// The same without lobes, for paths that look for no lamp.
+    void scatter_plainly(const VertexTables& tables, const Point3& x, const Vector3& direction,
+                         const WaterPoint& point, const Spectrum& throughput);
     /// The path of `segment`, which must stay valid, is reflected by the surface at its end.
     void reflect(const VertexTables& tables, const WaterSegment& segment,
                  const Spectrum& throughput);
