@@ -465,17 +465,12 @@ const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
         if (!is_first && meets_surface_before(s)) return &w.segment;
         if (!(s < w.segment.length) || !go_to(s)) return nullptr;
         if (is_first) state_.distance = s;
-        const Point3 x = w.segment.ray.at(s);
-        w.vertex.scatter_plainly(tables_.vertices, x, w.segment.ray.direction, w.point, throughput);
+        const std::optional<Vector3> direction = scatter_plainly(
+            tables_.scattering, w.point, w.segment.ray.direction, random_, throughput.first(bands));
+        if (!direction) return nullptr;
         ++state_.scatterings;
-        const std::optional<DrawnDirection> drawn = w.vertex.draw(random_);
-        if (!drawn) return nullptr;
-        w.vertex.respond(drawn->direction, w.along_own.response);
         double weight = 0;
-        for (std::size_t b = 0; b < bands; ++b) {
-            throughput[b] *= w.along_own.response[b] / drawn->density;
-            weight += throughput[b] * tables_.light[b];
-        }
+        for (std::size_t b = 0; b < bands; ++b) weight += throughput[b] * tables_.light[b];
         // What little is left of a path goes on in few, and none goes on for ever.
         if (is_first) first_weight = weight;
         if (!(weight > 0)) return nullptr;
@@ -486,7 +481,7 @@ const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
             if (of_survival >= survival) return nullptr;
             for (double& value : throughput.first(bands)) value /= survival;
         }
-        optics.set({x, drawn->direction}, nullptr, w.segment);
+        optics.set({w.segment.ray.at(s), *direction}, nullptr, w.segment);
         std::ranges::fill(w.transmittance.first(bands), 0.0);
     }
 }

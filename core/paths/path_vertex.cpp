@@ -87,15 +87,30 @@ Vector3 cosine_direction(const Vector3& normal, double u, double azimuth) {
 
 }  // namespace
 
-void PathVertex::scatter(const VertexTables& tables, const Point3& x, const Vector3& direction,
-                         const WaterPoint& point, const Spectrum& throughput) {
-    scatter_plainly(tables, x, direction, point, throughput);
-    find_lobes(throughput);
+std::optional<Vector3> scatter_plainly(const ScatteringTables& tables, const WaterPoint& point,
+                                       const Vector3& direction, PathRandom& random,
+                                       std::span<double> throughput) {
+    thread_local std::vector<double> cumulative;
+    double u = random.next();
+    const double v = random.next(), azimuth = random.next();
+    double total = 0;
+    cumulative.clear();
+    for (const Spectrum& b : point.scattering) {
+        for (std::size_t band = 0; band < throughput.size(); ++band)
+            total += throughput[band] * b[band];
+        cumulative.push_back(total);
+    }
+    if (!(total > 0)) return std::nullopt;
+    const Choice chosen = choose(cumulative, u);
+    const Spectrum& b = point.scattering[chosen.index];
+    for (std::size_t band = 0; band < throughput.size(); ++band)
+        throughput[band] *= b[band] / chosen.probability;
+    const HalfTangentDensity& phase = tables.directions[chosen.index];
+    return direction_around(direction, phase.invert(v * phase.mass()), azimuth);
 }
 
-void PathVertex::scatter_plainly(const VertexTables& tables, const Point3& x,
-                                 const Vector3& direction, const WaterPoint& point,
-                                 const Spectrum& throughput) {
+void PathVertex::scatter(const VertexTables& tables, const Point3& x, const Vector3& direction,
+                         const WaterPoint& point, const Spectrum& throughput) {
     tables_ = tables;
     x_ = x;
     incoming_ = direction;
@@ -108,8 +123,7 @@ void PathVertex::scatter_plainly(const VertexTables& tables, const Point3& x,
             total += throughput[band] * b[band];
         phase_cumulative_.push_back(total);
     }
-    lobes_.clear();
-    lobe_cumulative_.clear();
+    find_lobes(throughput);
 }
 
 void PathVertex::reflect(const VertexTables& tables, const WaterSegment& segment,

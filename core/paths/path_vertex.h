@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/random.h"
@@ -58,6 +59,13 @@ struct VertexTables {
     const LampGlow* glow = nullptr;
 };
 
+/// The direction in which a path goes on that is scattered by the phase functions alone, where it
+/// travels along `direction`. Multiplies `throughput`, by band, by the scattering coefficients over
+/// the probability of what was drawn. Uses three random numbers; empty if nothing scatters.
+std::optional<Vector3> scatter_plainly(const ScatteringTables& tables, const WaterPoint& point,
+                                       const Vector3& direction, PathRandom& random,
+                                       std::span<double> throughput);
+
 /// Where a path from the camera turns: scattered by the water or reflected by a surface. Directions
 /// are drawn in two ways. Its own, in proportion to the phase function or BRDF, go on with the
 /// path. Lobes around the directions to the lamps, of the shape of the light that the water
@@ -70,9 +78,6 @@ class PathVertex {
     /// coefficients there and must stay valid. `throughput` weighs the bands.
     void scatter(const VertexTables& tables, const Point3& x, const Vector3& direction,
                  const WaterPoint& point, const Spectrum& throughput);
-    /// The same without lobes, for paths that look for no lamp.
-    void scatter_plainly(const VertexTables& tables, const Point3& x, const Vector3& direction,
-                         const WaterPoint& point, const Spectrum& throughput);
     /// The path of `segment`, which must stay valid, is reflected by the surface at its end.
     void reflect(const VertexTables& tables, const WaterSegment& segment,
                  const Spectrum& throughput);
