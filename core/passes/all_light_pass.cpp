@@ -1,16 +1,16 @@
 #include "core/passes/all_light_pass.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
+#include "core/paths/indirect_light.h"
 #include "core/paths/multiple_nodes.h"
+#include "core/paths/node_lattice.h"
 #include "core/paths/node_smoothing.h"
 #include "core/paths/surface_glow.h"
 
@@ -70,12 +70,14 @@ void WeightLattice::find(double x, double y, std::vector<float>& weights) const 
 namespace {
 
 /// The radiance of surfaces that SurfaceGlow blurs: by direct light and emission, which are exact,
-/// and roughly by the light that has been scattered or reflected before: as much as in proportion
-/// to the direct light and, beside it, from an even ambient light explains most of it.
+/// and by the indirect light.
 class GlowSource {
   public:
-    /// Estimates the rough part for each group and band. Both references must outlive this object.
-    GlowSource(const PixelRenderer& pixels, const MultipleNodes& estimator);
+    /// The references must outlive this object.
+    GlowSource(const PixelRenderer& pixels, const IndirectLight& indirect)
+        : pixels_(pixels),
+          indirect_(indirect),
+          bands_(static_cast<std::size_t>(pixels.band_count())) {}
 
     /// The radiance at the camera of `sample`, number `index` of `light`, by group and band. Thread
     /// safe.
@@ -83,45 +85,19 @@ class GlowSource {
                        std::span<double> radiance) const;
 
   private:
-    struct Indirect {
-        double per_direct = 0;
-        double ambient = 0;  // what a white surface would reflect [W m^-2 sr^-1]
-    };
-
-    void find_indirect();
-    void add_direct(const SurfaceSample& sample, const SurfaceLight& light, std::size_t index,
-                    std::span<double> radiance) const;
-
     const PixelRenderer& pixels_;
-    const MultipleNodes& estimator_;
+    const IndirectLight& indirect_;
     std::size_t bands_;
-    std::vector<Indirect> indirect_;  // by group and band
 };
-
-GlowSource::GlowSource(const PixelRenderer& pixels, const MultipleNodes& estimator)
-    : pixels_(pixels),
-      estimator_(estimator),
-      bands_(static_cast<std::size_t>(pixels.band_count())) {
-    find_indirect();
-}
 
 void GlowSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& light,
                                std::size_t index, std::span<double> radiance) const {
-    std::ranges::fill(radiance, 0.0);
-    add_direct(sample, light, index, radiance);
-    const std::span<const double> to_camera = light.to_camera(index);
-    for (std::size_t k = 0; k < radiance.size(); ++k) {
-        const double white = sample.hit.reflectance[k % bands_] * to_camera[k % bands_];
-        radiance[k] += indirect_[k].per_direct * radiance[k] + indirect_[k].ambient * white;
-    }
-}
-
-// Adds what the surface emits, and the light of lamps that it reflects.
-void GlowSource::add_direct(const SurfaceSample& sample, const SurfaceLight& light,
-                            std::size_t index, std::span<double> radiance) const {
-    const std::size_t groups = estimator_.options().groups;
+    const std::size_t groups = radiance.size() / bands_;
     const LitScene& scene = pixels_.scene();
     const std::span<const double> to_camera = light.to_camera(index);
+    indirect_.find(sample.hit, radiance);
+    for (std::size_t k = 0; k < radiance.size(); ++k)
+        radiance[k] *= sample.hit.reflectance[k % bands_] * to_camera[k % bands_];
     const SurfaceReflection reflection(*scene.surfaces, sample, static_cast<int>(bands_));
     if (reflection.emits())
         for (std::size_t b = 0; b < bands_; ++b)
@@ -137,60 +113,7 @@ void GlowSource::add_direct(const SurfaceSample& sample, const SurfaceLight& lig
     }
 }
 
-// By least squares over a few surfaces all over the image, whatever part of it is rendered.
-void GlowSource::find_indirect() {
-    constexpr int k_across = 16, k_paths = 64;
-    const RaySource& rays = pixels_.rays();
-    const std::size_t values = estimator_.options().groups * bands_;
-    // What the camera sees of a surface, by group and band.
-    struct Seen {
-        std::vector<double> direct, indirect, white;  // white: per ambient light
-    };
-    std::vector<Seen> seen(k_across * k_across);
-    parallel_for(seen.size(), [&](std::size_t at) {
-        const int i = static_cast<int>(at) % k_across, j = static_cast<int>(at) / k_across;
-        const double x = (i + 0.5) * rays.width() / k_across;
-        const double y = (j + 0.5) * rays.height() / k_across;
-        const std::optional<Ray> ray = rays.refracted_ray(x, y);
-        if (!ray) return;
-        SurfaceSample sample{*ray, {}, x, y};
-        if (!pixels_.scene().surfaces->closest_hit(*ray, k_far, sample.hit)) return;
-        SurfaceLight light;
-        pixels_.transport().surfaces->evaluate_one(sample, light);
-        Seen& of = seen[at];
-        of.direct.assign(values, 0.0);
-        add_direct(sample, light, 0, of.direct);
-        NodeLight diffuse;
-        estimator_.estimate_surface(sample, k_paths, diffuse);
-        for (std::size_t k = 0; k < values; ++k) {
-            of.white.push_back(sample.hit.reflectance[k % bands_] *
-                               std::as_const(light).to_camera(0)[k % bands_]);
-            of.indirect.push_back(static_cast<double>(diffuse.diffuse[k]) * of.white.back());
-        }
-    });
-    indirect_.assign(values, {});
-    for (std::size_t k = 0; k < values; ++k) {
-        double dd = 0, dw = 0, ww = 0, di = 0, wi = 0;
-        for (const Seen& of : seen) {
-            if (of.direct.empty()) continue;
-            dd += of.direct[k] * of.direct[k];
-            dw += of.direct[k] * of.white[k];
-            ww += of.white[k] * of.white[k];
-            di += of.direct[k] * of.indirect[k];
-            wi += of.white[k] * of.indirect[k];
-        }
-        // Neither may be negative; if one is, the other stands alone.
-        constexpr double k_independent = 1e-6;
-        const double determinant = dd * ww - dw * dw;
-        Indirect& of = indirect_[k];
-        if (determinant > k_independent * dd * ww) {
-            of.per_direct = (di * ww - wi * dw) / determinant;
-            of.ambient = (wi * dd - di * dw) / determinant;
-        }
-        if (!(of.ambient > 0)) of = {dd > 0 ? di / dd : 0, 0};
-        if (!(of.per_direct > 0)) of = {0, ww > 0 ? wi / ww : 0};
-    }
-}
+}  // namespace
 
 /// How much is spent on the light that was scattered or reflected more than once.
 struct MultipleLightOptions {
@@ -201,15 +124,8 @@ struct MultipleLightOptions {
     bool lamps = false;  // each lamp's light by itself
 };
 
-// The paths of a node: more would leave less noise than there is light between the nodes of a small
-// image.
-constexpr int k_fewest_node_paths = 16, k_most_node_paths = 1024;
-// What smoothing leaves of the variance of nodes, in the example scenes: 0.03 to 0.06, in plumes
-// more.
-constexpr double k_smoothed_variance = 0.04;
-constexpr double k_least_share_of_paths = 0.2;
-// The share of the paths that go into the question how many are needed.
-constexpr double k_pilot_share = 0.05;
+namespace {
+
 // Nodes see the same surface as a pixel if its normal agrees with theirs (k_least_node_cosine) and
 // it lies no farther from their tangent plane than this, relative to its distance.
 constexpr double k_most_slope = 0.35;
@@ -228,12 +144,6 @@ int spacing_for(const RaySource& rays, int nodes) {
     return std::max(1, static_cast<int>(std::ceil(std::sqrt(area / nodes))));
 }
 
-// In the whole image.
-int node_count(const RaySource& rays, int spacing) {
-    return ((rays.width() + spacing - 1) / spacing + 1) *
-           ((rays.height() + spacing - 1) / spacing + 1);
-}
-
 }  // namespace
 
 /// The light of AllLightPass in one image.
@@ -242,8 +152,8 @@ class MultipleLight {
     /// `pixels` must outlive this object; its transport has paths.
     MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options);
 
-    /// Estimates the light of the pixels of `window`. Throws Interrupted, and InputError if the
-    /// nodes do not fit into free memory.
+    /// Estimates the light of the pixels of `window`. Throws Interrupted if the work is to stop,
+    /// InputError if the nodes do not fit into free memory.
     void prepare(const PixelWindow& window, const ShareCallback& progress);
 
     /// Adds a pixel's light to multiple_volume, multiple_surface and the lamps of `result`. The
@@ -251,7 +161,7 @@ class MultipleLight {
     void add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
              PixelResult& result) const;
 
-    /// The standard error of this light: the RMS over the nodes over the mean of all light.
+    /// The standard error of this light (NodeLattice::error).
     double error() const { return error_; }
 
   private:
@@ -260,8 +170,7 @@ class MultipleLight {
         double weight;
     };
 
-    void limit_paths(double error);
-    void take_away_glow(Grid2D<MultipleNode>& raw);
+    void take_away_glow(NodeLattice& lattice, const IndirectLight& indirect);
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
                       std::vector<Corner>& matches) const;
@@ -274,100 +183,72 @@ class MultipleLight {
     void give(std::size_t group, std::size_t band, double radiance, PixelResult& result) const;
 
     const PixelRenderer& pixels_;
+    MultipleLightOptions options_;
     std::size_t bands_;
-    int spacing_ = 1;           // of the nodes [pixels]
-    int column_ = 0, row_ = 0;  // of the first node of nodes_
+    int spacing_ = 1;  // of the nodes [pixels]
     DistanceIntervals intervals_;
     IntervalWeights weights_;
     MultipleNodes estimator_;
     WeightLattice weight_lattice_;  // from prepare on, as the following
     Grid2D<SmoothNode> nodes_;
-    int cells_ = 0;
     std::optional<SurfaceGlow> glow_;
     double error_ = 0;
 };
 
 MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options)
     : pixels_(pixels),
+      options_(options),
       bands_(static_cast<std::size_t>(pixels.band_count())),
       spacing_(spacing_for(pixels.rays(), options.nodes)),
       intervals_(pixels.rays(), pixels.scene()),
       weights_(pixels.scene(), intervals_),
       estimator_(pixels.rays(), pixels.scene(), pixels.transport(), weights_,
-                 {options.lamps ? static_cast<std::size_t>(pixels.lamp_count()) + 1 : 1,
-                  std::clamp(options.paths / node_count(pixels.rays(), spacing_),
-                             k_fewest_node_paths, k_most_node_paths)}),
-      cells_(options.cells) {
-    if (options.error > 0) limit_paths(options.error);
-}
-
-// To those that are needed for a standard error.
-void MultipleLight::limit_paths(double error) {
-    const int most = estimator_.options().paths;
-    const double variance =
-        estimator_.relative_variance(k_pilot_share * most * node_count(pixels_.rays(), spacing_));
-    const double needed = k_smoothed_variance * variance / (error * error);
-    const double least = std::max<double>(k_fewest_node_paths, k_least_share_of_paths * most);
-    if (needed < most) estimator_.set_paths(static_cast<int>(std::max(needed, least)));
-}
+                 options.lamps ? static_cast<std::size_t>(pixels.lamp_count()) + 1 : 1) {}
 
 void MultipleLight::prepare(const PixelWindow& window, const ShareCallback& progress) {
+    const RaySource& rays = pixels_.rays();
+    NodeLattice lattice(estimator_, NodeLattice::Positions::over(rays, spacing_));
     // The corners of all cells in the window, and what these are fitted to.
     constexpr int k_margin = k_smoothing_reach + k_search + 1;
-    const RaySource& rays = pixels_.rays();
-    column_ = std::max(0, window.x0 / spacing_ - k_margin);
-    row_ = std::max(0, window.y0 / spacing_ - k_margin);
-    const int last_column = std::min((rays.width() + spacing_ - 1) / spacing_,
-                                     (window.x1 - 1) / spacing_ + 1 + k_margin);
-    const int last_row = std::min((rays.height() + spacing_ - 1) / spacing_,
-                                  (window.y1 - 1) / spacing_ + 1 + k_margin);
-    const int columns = last_column - column_ + 1, rows = last_row - row_ + 1;
-    Grid2D<MultipleNode> raw;
-    require_room_for_nodes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
-                           intervals_.count(), estimator_.options().groups, pixels_.scene());
-    raw.assign(columns, rows);
-    std::atomic<std::size_t> done = 0;
-    const std::size_t count = raw.size();
-    parallel_for(count, [&](std::size_t at) {
-        const int i = static_cast<int>(at) % columns, j = static_cast<int>(at) / columns;
-        const auto column = static_cast<std::uint64_t>(column_ + i);
-        const auto row = static_cast<std::uint64_t>(row_ + j);
-        estimator_.estimate((column_ + i) * static_cast<double>(spacing_),
-                            (row_ + j) * static_cast<double>(spacing_),
-                            PathRandom::seed_of(column, row), raw(i, j));
-        progress(static_cast<double>(++done) / static_cast<double>(count));
+    const NodeWindow nodes{std::max(0, window.x0 / spacing_ - k_margin),
+                           std::max(0, window.y0 / spacing_ - k_margin),
+                           std::min(lattice.all().i1, (window.x1 - 1) / spacing_ + 2 + k_margin),
+                           std::min(lattice.all().j1, (window.y1 - 1) / spacing_ + 2 + k_margin)};
+    require_room_for_nodes(nodes.size(), intervals_.count(), estimator_.groups(), pixels_.scene());
+    const NodePaths paths =
+        plan_paths(estimator_, {static_cast<double>(options_.paths),
+                                static_cast<int>(lattice.all().size()), options_.error});
+    constexpr double k_share_of_surfaces = 0.4;  // of the time
+    const IndirectLight indirect =
+        lattice.light_surfaces(paths, [&](double share) { progress(k_share_of_surfaces * share); });
+    lattice.light_water(nodes, paths, indirect, [&](double share) {
+        progress(k_share_of_surfaces + (1 - k_share_of_surfaces) * share);
     });
-    take_away_glow(raw);
+    take_away_glow(lattice, indirect);
     weight_lattice_ = WeightLattice(rays, weights_, window);
-    nodes_ = smoothed(raw, intervals_, estimator_.options().groups);
-    double variance = 0, light = 0;
-    for (const SmoothNode& node : nodes_) {
-        light += node.mean_light;
-        variance += node.variance;
-    }
-    const auto all = static_cast<double>(nodes_.size());
-    error_ = light > 0 ? std::sqrt(variance * all) / light : 0;
+    nodes_ = lattice.smoothed(nodes, intervals_);
+    error_ = lattice.error(nodes_, nodes);
 }
 
 // Computes the glow, and leaves in the nodes what they hold beside it.
-void MultipleLight::take_away_glow(Grid2D<MultipleNode>& raw) {
-    const std::size_t groups = estimator_.options().groups;
-    const GlowSource source(pixels_, estimator_);
+void MultipleLight::take_away_glow(NodeLattice& lattice, const IndirectLight& indirect) {
+    const std::size_t groups = estimator_.groups();
+    const GlowSource source(pixels_, indirect);
     const auto radiance = [&](const SurfaceSample& sample, const SurfaceLight& light,
                               std::size_t index, std::span<double> channels) {
         source.find_radiance(sample, light, index, channels);
     };
+    Grid2D<MultipleNode>& raw = lattice.raw();
     std::vector<SurfaceGlow::Position> positions;
     for (int j = 0; j < raw.height(); ++j)
         for (int i = 0; i < raw.width(); ++i)
-            positions.push_back({(column_ + i) * static_cast<double>(spacing_),
-                                 (row_ + j) * static_cast<double>(spacing_)});
+            positions.push_back({lattice.place(i, j).x, lattice.place(i, j).y});
     glow_.emplace(pixels_.rays(), pixels_.scene(), *pixels_.transport().surfaces, intervals_,
-                  groups * bands_, cells_, radiance, positions);
+                  groups * bands_, options_.cells, radiance, positions);
     const std::size_t values = groups * bands_;
     for (std::size_t n = 0; n < raw.size(); ++n) {
         MultipleNode& node = raw[n];
-        if (!node.has_ray) continue;
+        if (node.water_variance.empty()) continue;  // no ray, or outside the window
         const std::span<const float> glow = glow_->of_node(n);
         for (std::size_t i = 0; i < glow_->interval_count(); ++i) {
             if (intervals_.begin(i) >= node.reach) break;
@@ -385,7 +266,7 @@ void MultipleLight::take_away_glow(Grid2D<MultipleNode>& raw) {
 
 void MultipleLight::find_corners(double x, double y, std::vector<Corner>& corners) const {
     corners.clear();
-    const double u = x / spacing_ - column_, v = y / spacing_ - row_;
+    const double u = x / spacing_, v = y / spacing_;
     const int i = std::clamp(static_cast<int>(u), 0, nodes_.width() - 2);
     const int j = std::clamp(static_cast<int>(v), 0, nodes_.height() - 2);
     for (const int below : {0, 1})
@@ -405,7 +286,7 @@ void MultipleLight::add_water(const PixelView& view, std::span<double> light) co
     weight_lattice_.find(view.x, view.y, weights);
     find_corners(view.x, view.y, corners);
     const std::size_t intervals = intervals_.count();
-    const std::size_t groups = estimator_.options().groups;
+    const std::size_t groups = estimator_.groups();
     for (std::size_t d = 0; d < view.distances.size(); ++d) {
         for (std::size_t interval = 0; interval < intervals; ++interval) {
             const double begin = intervals_.begin(interval);
@@ -435,7 +316,7 @@ void MultipleLight::add_water(const PixelView& view, std::span<double> light) co
 // What nodes hold beside the glow is a difference, and so noisy; light is not below zero.
 void MultipleLight::add_volume(const PixelView& view, PixelResult& result) const {
     thread_local std::vector<double> light;
-    const std::size_t groups = estimator_.options().groups;
+    const std::size_t groups = estimator_.groups();
     light.assign(groups * bands_, 0.0);
     add_water(view, light);
     for (std::size_t d = 0; d < view.distances.size(); ++d)
@@ -472,7 +353,7 @@ void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit, doub
     std::erase_if(matches,
                   [&](const Corner& corner) { return corner.weight <= 0 || !sees(*corner.node); });
     if (!matches.empty()) return;
-    const double u = x / spacing_ - column_, v = y / spacing_ - row_;
+    const double u = x / spacing_, v = y / spacing_;
     for (int reach = 1; reach <= k_search && matches.empty(); ++reach) {
         for (int j = std::max(0, static_cast<int>(v) - reach);
              j <= std::min(nodes_.height() - 1, static_cast<int>(v) + 1 + reach); ++j) {
@@ -504,7 +385,7 @@ void MultipleLight::add_surface(const SurfaceSample& sample, std::span<const dou
         estimator_.estimate_mirrored(sample, std::max(1, k_mirrored_paths / pixels_.samples()),
                                      mirrored);
     const double weight = 1.0 / pixels_.samples();
-    for (std::size_t group = 0; group < estimator_.options().groups; ++group) {
+    for (std::size_t group = 0; group < estimator_.groups(); ++group) {
         for (std::size_t b = 0; b < bands_; ++b) {
             double diffuse = 0, glossy = 0;
             for (const Corner& match : matches) {

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
-#include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
 
 namespace uw {
@@ -23,7 +21,8 @@ enum NodeStream : std::uint64_t {
     k_node_diffuse = 2,
     k_node_glossy = 3,
     k_mirrored = 4,
-    k_pilot = 5
+    k_node_lit = 5,
+    k_scouting = 6
 };
 
 // The variance of the mean over a half's batches, from all batches' sum and sum of squares.
@@ -42,7 +41,7 @@ void store(std::span<const double> sums, double scale, std::vector<float>& value
 }  // namespace
 
 struct MultipleNodes::Workspace {
-    CameraSegment segment, surface_segment;
+    CameraSegment segment;
     SurfaceLight light;
     std::vector<double> seen;   // radiance of the surface
     std::vector<double> water;  // as MultipleNode::water
@@ -53,38 +52,47 @@ struct MultipleNodes::Workspace {
 /// Adds up terms by the interval in which they leave the camera ray.
 class MultipleNodes::WaterSum final : public PathTerms {
   public:
-    WaterSum(const DistanceIntervals& intervals, const MultipleNodeOptions& options,
-             std::size_t bands, Workspace& w)
-        : intervals_(intervals), options_(options), bands_(bands), w_(w) {}
+    WaterSum(const DistanceIntervals& intervals, std::size_t groups, std::size_t bands,
+             Workspace& w)
+        : intervals_(intervals), groups_(groups), bands_(bands), w_(w) {}
+
+    /// The terms that follow are those of one path among `count`.
+    void begin_path(int count) {
+        share_ = 1.0 / count;
+        path_ = 0;
+    }
+    /// The light of the path's terms, summed over the bands.
+    double of_path() const { return path_; }
 
     void add(const PathTerm& term) override {
         const std::size_t i = intervals_.at(term.distance);
-        const std::size_t group = std::min(term.lamp, options_.groups - 1);
-        double* sum = &w_.water[(i * options_.groups + group) * bands_];
+        const std::size_t group = std::min(term.lamp, groups_ - 1);
+        double* sum = &w_.water[(i * groups_ + group) * bands_];
         double mean = 0;
         for (std::size_t b = 0; b < bands_; ++b) {
-            sum[b] += term.radiance[b];
+            sum[b] += share_ * term.radiance[b];
             mean += term.radiance[b];
         }
-        w_.batch_mean[i] += mean;
+        w_.batch_mean[i] += share_ * mean;
+        path_ += mean;
     }
 
   private:
     const DistanceIntervals& intervals_;
-    const MultipleNodeOptions& options_;
-    std::size_t bands_;
+    std::size_t groups_, bands_;
     Workspace& w_;
+    double share_ = 1, path_ = 0;
 };
 
 class MultipleNodes::SurfaceSum final : public PathTerms {
   public:
-    SurfaceSum(const MultipleNodeOptions& options, std::size_t bands, std::vector<double>& sum,
+    SurfaceSum(std::size_t groups, std::size_t bands, std::vector<double>& sum,
                bool leaves_out_mirrored)
-        : options_(options), bands_(bands), sum_(sum), leaves_out_mirrored_(leaves_out_mirrored) {}
+        : groups_(groups), bands_(bands), sum_(sum), leaves_out_mirrored_(leaves_out_mirrored) {}
 
     void add(const PathTerm& term) override {
         if (leaves_out_mirrored_ && PathTracer::is_mirrored(term)) return;
-        const std::size_t group = std::min(term.lamp, options_.groups - 1);
+        const std::size_t group = std::min(term.lamp, groups_ - 1);
         for (std::size_t b = 0; b < bands_; ++b) sum_[group * bands_ + b] += term.radiance[b];
         for (const double radiance : term.radiance) batch_ += radiance;
     }
@@ -92,8 +100,7 @@ class MultipleNodes::SurfaceSum final : public PathTerms {
     double end_batch(double scale) { return std::exchange(batch_, 0.0) * scale; }
 
   private:
-    const MultipleNodeOptions& options_;
-    std::size_t bands_;
+    std::size_t groups_, bands_;
     std::vector<double>& sum_;
     bool leaves_out_mirrored_;
     double batch_ = 0;
@@ -104,43 +111,34 @@ MultipleNodes::Workspace& MultipleNodes::workspace_of_thread() {
     return workspace;
 }
 
-void MultipleNodes::estimate(double x, double y, std::uint64_t seed, MultipleNode& node) const {
+void MultipleNodes::estimate_surface(const Place& place, const NodePaths& paths,
+                                     MultipleNode& node) const {
     Workspace& w = workspace_of_thread();
     node = {};
-    const std::optional<Ray> ray = rays_.refracted_ray(x, y);
+    const std::optional<Ray> ray = rays_.refracted_ray(place.x, place.y);
     if (!ray) return;
-    SurfaceSample sample{*ray, {}, x, y};
+    SurfaceSample sample{*ray, {}, place.x, place.y};
     const bool has_hit = scene_.surfaces->closest_hit(*ray, k_far, sample.hit);
     begin(sample, has_hit, w, node);
-    trace_water(seed, w, node);
-    if (has_hit) trace_surface(seed, options_.paths, w, node);
+    if (has_hit) trace_surface(place.seed, paths.surface, w, node);
 }
 
-double MultipleNodes::relative_variance(double paths) const {
-    constexpr int k_fewest_across = 4, k_most_across = 16, k_paths = 64;
-    const int across =
-        std::clamp(static_cast<int>(std::sqrt(paths / k_paths)), k_fewest_across, k_most_across);
-    const auto count = static_cast<std::size_t>(across) * static_cast<std::size_t>(across);
-    MultipleNodeOptions options = options_;
-    options.paths = k_paths;
-    const MultipleNodes pilot(rays_, scene_, transport_, weights_, options);
-    std::vector<double> lights(count), variances(count);
-    parallel_for(lights.size(), [&](std::size_t at) {
-        const auto i = static_cast<int>(at) % across, j = static_cast<int>(at) / across;
-        MultipleNode node;
-        pilot.estimate((i + 0.5) * rays_.width() / across, (j + 0.5) * rays_.height() / across,
-                       PathRandom::seed_of(static_cast<std::uint64_t>(i),
-                                           static_cast<std::uint64_t>(j), k_pilot),
-                       node);
-        lights[at] = node.mean_light;
-        double variance = node.diffuse_variance * node.surface_seen * node.surface_seen;
-        for (const float of_interval : node.water_variance)
-            variance += static_cast<double>(of_interval);
-        variances[at] = variance * k_paths / 2;  // of either half's mean
-    });
-    const double light = std::accumulate(lights.begin(), lights.end(), 0.0);
-    const double variance = std::accumulate(variances.begin(), variances.end(), 0.0);
-    return light > 0 ? variance * static_cast<double>(count) / (light * light) : 0;
+Point3 MultipleNodes::find_lit_surfaces(const Place& place, int paths,
+                                        std::vector<SurfaceSample>& samples) const {
+    Workspace& w = workspace_of_thread();
+    samples.clear();
+    const std::optional<Ray> ray = rays_.refracted_ray(place.x, place.y);
+    if (!ray) return {};
+    SurfaceSample sample;
+    const bool has_hit = scene_.surfaces->closest_hit(*ray, k_far, sample.hit);
+    transport_.paths->begin(*ray, has_hit ? &sample.hit : nullptr, {}, w.segment);
+    for (int i = 0; i < paths; ++i) {
+        PathRandom random(PathRandom::seed_of(place.seed, k_scouting),
+                          static_cast<std::uint32_t>(i));
+        if (transport_.paths->find_lit_surface(w.segment, random, sample))
+            samples.push_back(sample);
+    }
+    return ray->origin;
 }
 
 void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths,
@@ -161,25 +159,18 @@ void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths,
 
 void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& w,
                           MultipleNode& node) const {
-    const auto bands = static_cast<std::size_t>(scene_.medium->band_count());
     node.has_ray = true;
     node.reach = has_hit ? sample.hit.distance : k_far;
-    weights_.find(sample.ray, node.weights);
-    for (std::size_t k = 0; k < node.weights.size(); ++k)
-        node.weights[k] *= static_cast<float>(intervals_.share(k / bands, k % bands, node.reach));
-    node.mean_weights.assign(intervals_.count(), 0.0F);
-    for (std::size_t k = 0; k < node.weights.size(); ++k)
-        node.mean_weights[k / bands] += node.weights[k] / static_cast<float>(bands);
     w.seen.clear();
     if (has_hit) {
         transport_.surfaces->evaluate_one(sample, w.light);
-        const SurfaceReflection reflection(*scene_.surfaces, sample, static_cast<int>(bands));
-        w.seen.assign(bands, 0.0);
+        const SurfaceReflection reflection(*scene_.surfaces, sample, static_cast<int>(bands()));
+        w.seen.assign(bands(), 0.0);
         Spectrum brdf;
         for (std::size_t j = 0; j < w.light.emitter_count(); ++j) {
             if (!w.light.visible(0, j)) continue;
             reflection.brdf(w.light.emitters()[j].origin(sample.hit.position), brdf);
-            for (std::size_t b = 0; b < bands; ++b)
+            for (std::size_t b = 0; b < bands(); ++b)
                 w.seen[b] += w.light.irradiance(0, j, b) * brdf[b];
         }
         node.surface = NodeSurface{sample.hit.object_id, sample.hit.position, sample.hit.normal,
@@ -189,36 +180,76 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
     node.mean_light = w.segment.light.own;
 }
 
-void MultipleNodes::trace_water(std::uint64_t seed, Workspace& w, MultipleNode& node) const {
-    const auto bands = static_cast<std::size_t>(scene_.medium->band_count());
-    const std::size_t intervals = intervals_.count();
-    const int in_batch = std::max(1, options_.paths / k_node_batches);
-    const double scale = 1.0 / (in_batch * static_cast<double>(bands));
-    w.interval_mean.assign(intervals, 0.0);
-    w.interval_squares.assign(intervals, 0.0);
-    w.batch_mean.assign(intervals, 0.0);
-    WaterSum sum(intervals_, options_, bands, w);
+void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
+                                   const IndirectLight& indirect, double typical_light,
+                                   MultipleNode& node) const {
+    Workspace& w = workspace_of_thread();
+    const std::optional<Ray> ray = rays_.refracted_ray(place.x, place.y);
+    if (!ray) return;
+    SurfaceHit hit;
+    const bool has_hit = scene_.surfaces->closest_hit(*ray, k_far, hit);
+    const std::size_t count = intervals_.count();
+    weights_.find(*ray, node.weights);
+    for (std::size_t k = 0; k < node.weights.size(); ++k)
+        node.weights[k] *=
+            static_cast<float>(intervals_.share(k / bands(), k % bands(), node.reach));
+    node.mean_weights.assign(count, 0.0F);
+    for (std::size_t k = 0; k < node.weights.size(); ++k)
+        node.mean_weights[k / bands()] += node.weights[k] / static_cast<float>(bands());
+    // No surface guides the paths that stay in the water.
+    transport_.paths->begin(*ray, has_hit ? &hit : nullptr, {}, w.segment);
+    w.segment.light.own = std::max(w.segment.light.own, node.mean_light);
+    if (weights_.vary()) {
+        // Particles may be lit up anywhere, of which the lamps' guides know nothing. What is
+        // typical is guessed without most of the scattered light: it is a few times as much.
+        constexpr double k_ambient = 10, k_least_own = 3;
+        CameraSegment::Light& light = w.segment.light;
+        light.ambient = std::max(light.ambient, k_ambient * typical_light);
+        light.own = std::max(light.own, k_least_own * typical_light);
+    }
+    const double per_band = 1.0 / static_cast<double>(bands());
+    w.interval_mean.assign(count, 0.0);
+    w.interval_squares.assign(count, 0.0);
+    w.batch_mean.assign(count, 0.0);
+    WaterSum sum(intervals_, groups_, bands(), w);
+    const auto trace = [&](NodeStream stream, int batch, int all, MultipleNode::Moments& moments,
+                           const auto& trace_one) {
+        const int in_batch = std::max(1, all / k_node_batches);
+        const int in_all = in_batch * k_node_batches;
+        for (int i = 0; i < in_batch; ++i) {
+            PathRandom random(
+                PathRandom::seed_of(place.seed, stream, static_cast<std::uint64_t>(batch)),
+                static_cast<std::uint32_t>(i));
+            sum.begin_path(in_batch);
+            trace_one(random);
+            const double of_path = sum.of_path() * per_band;
+            moments.mean += of_path / in_all;
+            moments.variance += of_path * of_path / in_all;
+        }
+    };
     for (int batch = 0; batch < k_node_batches; ++batch) {
         NodeLight& half = node.halves[static_cast<std::size_t>(batch / k_batches_of_half)];
         if (batch % k_batches_of_half == 0) {
-            w.water.assign(intervals * options_.groups * bands, 0.0);
-            half.water_mean.assign(intervals, 0.0F);
+            w.water.assign(count * groups_ * bands(), 0.0);
+            half.water_mean.assign(count, 0.0F);
         }
-        for (int i = 0; i < in_batch; ++i) {
-            PathRandom random(
-                PathRandom::seed_of(seed, k_node_water, static_cast<std::uint64_t>(batch)),
-                static_cast<std::uint32_t>(i));
-            transport_.paths->trace_water(w.segment, random, sum);
-        }
-        for (std::size_t i = 0; i < intervals; ++i) {
-            const double mean = std::exchange(w.batch_mean[i], 0.0) * scale;
+        trace(k_node_lit, batch, paths.lit, node.lit, [&](PathRandom& random) {
+            transport_.paths->trace_lit_surfaces(w.segment, indirect, random, sum);
+        });
+        trace(k_node_water, batch, paths.water, node.water, [&](PathRandom& random) {
+            transport_.paths->trace_water_alone(w.segment, random, sum);
+        });
+        for (std::size_t i = 0; i < count; ++i) {
+            const double mean = std::exchange(w.batch_mean[i], 0.0) * per_band;
             w.interval_mean[i] += mean;
             w.interval_squares[i] += mean * mean;
             half.water_mean[i] += static_cast<float>(mean / k_batches_of_half);
         }
-        store(w.water, 1.0 / (in_batch * k_batches_of_half), half.water);
+        store(w.water, 1.0 / k_batches_of_half, half.water);
     }
-    for (std::size_t i = 0; i < intervals; ++i) {
+    for (MultipleNode::Moments* moments : {&node.lit, &node.water})
+        moments->variance = std::max(0.0, moments->variance - moments->mean * moments->mean);
+    for (std::size_t i = 0; i < count; ++i) {
         node.water_variance.push_back(
             static_cast<float>(variance_of_half(w.interval_mean[i], w.interval_squares[i])));
         node.mean_light += w.interval_mean[i] / k_node_batches;
@@ -227,9 +258,8 @@ void MultipleNodes::trace_water(std::uint64_t seed, Workspace& w, MultipleNode& 
 
 void MultipleNodes::estimate_mirrored(const SurfaceSample& sample, int paths,
                                       std::vector<double>& radiance) const {
-    const auto bands = static_cast<std::size_t>(scene_.medium->band_count());
-    radiance.assign(options_.groups * bands, 0.0);
-    SurfaceSum sum(options_, bands, radiance, false);
+    radiance.assign(groups_ * bands(), 0.0);
+    SurfaceSum sum(groups_, bands(), radiance, false);
     const auto x = static_cast<std::uint64_t>(64 * sample.x);
     const auto y = static_cast<std::uint64_t>(64 * sample.y);
     SurfaceSample glossy = sample;
@@ -244,18 +274,18 @@ void MultipleNodes::estimate_mirrored(const SurfaceSample& sample, int paths,
 // Diffuse reflection as of a white surface, whose colour is that of each pixel; gloss as it is.
 void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
                                   MultipleNode& node) const {
-    const auto bands = static_cast<std::size_t>(scene_.medium->band_count());
+    const std::size_t bands = this->bands();
     const int in_batch = std::max(1, paths / k_node_batches);
     const auto trace = [&](NodeStream stream, double share, std::vector<float> NodeLight::*values) {
         std::array<double, k_node_batches> means{};
-        SurfaceSum sum(options_, bands, w.surface, stream == k_node_glossy);
+        SurfaceSum sum(groups_, bands, w.surface, stream == k_node_glossy);
         for (int batch = 0; batch < k_node_batches; ++batch) {
-            if (batch % k_batches_of_half == 0) w.surface.assign(options_.groups * bands, 0.0);
+            if (batch % k_batches_of_half == 0) w.surface.assign(groups_ * bands, 0.0);
             for (int i = 0; i < in_batch; ++i) {
                 PathRandom random(
                     PathRandom::seed_of(seed, stream, static_cast<std::uint64_t>(batch)),
                     static_cast<std::uint32_t>(i));
-                transport_.paths->trace_surface(w.surface_segment, random, sum);
+                transport_.paths->trace_surface(w.segment, random, sum);
             }
             const auto half = static_cast<std::size_t>(batch / k_batches_of_half);
             store(w.surface, 1.0 / (in_batch * k_batches_of_half * share),
@@ -265,8 +295,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
         }
         return means;
     };
-    w.surface_segment = w.segment;
-    SurfaceHit& hit = w.surface_segment.water.hit;
+    SurfaceHit& hit = w.segment.water.hit;
     for (std::size_t b = 0; b < bands; ++b)
         node.surface_seen += hit.reflectance[b] * w.segment.transmittance[b];
     node.surface_seen /= static_cast<double>(bands);
@@ -274,7 +303,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
     hit.has_material = false;
     // Weights are those of what the camera sees, so that paths end as they would in a pixel.
     const double share = std::max(node.surface_seen, k_least_seen);
-    std::ranges::fill(w.surface_segment.transmittance, share);
+    std::ranges::fill(w.segment.transmittance, share);
     double sum = 0, squares = 0;
     const auto means = trace(k_node_diffuse, share, &NodeLight::diffuse);
     for (std::size_t batch = 0; batch < means.size(); ++batch) {
@@ -287,7 +316,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
     if (!node.surface->is_glossy) return;
     hit.reflectance = {};
     hit.has_material = true;
-    std::ranges::fill(w.surface_segment.transmittance, 1.0);
+    std::ranges::fill(w.segment.transmittance, 1.0);
     trace(k_node_glossy, 1, &NodeLight::glossy);
 }
 

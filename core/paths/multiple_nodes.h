@@ -11,6 +11,7 @@
 #include "core/light/integrator.h"
 #include "core/light/integrator_kind.h"
 #include "core/paths/distance_intervals.h"
+#include "core/paths/indirect_light.h"
 #include "core/paths/path_tracer.h"
 
 namespace uw {
@@ -50,36 +51,53 @@ struct MultipleNode {
     // The variances of either half's means:
     std::vector<float> water_variance;
     double diffuse_variance = 0;
+    /// Of the paths of one kind, means over the bands.
+    struct Moments {
+        double mean = 0, variance = 0;  // of one path
+    };
+    Moments lit, water;  // NodePaths
 };
 
-/// How nodes are estimated.
-struct MultipleNodeOptions {
-    std::size_t groups = 1;  // one for all light, or one per lamp and one for emission
-    int paths = 512;         // per node, of each kind
+/// How many light paths of each kind a node gets.
+struct NodePaths {
+    int surface = 512;  // from its surface: indirect light on it
+    int lit = 512;      // to surfaces that are seen through scattering
+    int water = 512;    // in the water alone
 };
 
 /// Estimates nodes by light paths. Thread safe.
 class MultipleNodes {
   public:
-    /// All references must outlive this object; `transport` has paths.
+    /// All references must outlive this object; `transport` has paths. `groups`: one for all light,
+    /// or one per lamp and one for emission.
     MultipleNodes(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
-                  const IntervalWeights& weights, const MultipleNodeOptions& options)
+                  const IntervalWeights& weights, std::size_t groups)
         : rays_(rays),
           scene_(scene),
           transport_(transport),
           weights_(weights),
           intervals_(weights.intervals()),
-          options_(options) {}
+          groups_(groups) {}
 
-    const MultipleNodeOptions& options() const { return options_; }
-    void set_paths(int paths) { options_.paths = paths; }
+    std::size_t groups() const { return groups_; }
+    std::size_t bands() const { return static_cast<std::size_t>(scene_.medium->band_count()); }
+    const RaySource& rays() const { return rays_; }
 
-    /// The variance of one path of each kind over the squared mean of all light, on the average
-    /// over the image: from a few nodes all over it, by about so many paths, within limits.
-    double relative_variance(double paths) const;
-
-    /// The node at image position (x, y) [pixels]. `seed`: of its random numbers.
-    void estimate(double x, double y, std::uint64_t seed, MultipleNode& node) const;
+    /// What the ray of a node sees: in the image at (x, y) [pixels], with random numbers of `seed`.
+    struct Place {
+        double x = 0, y = 0;
+        std::uint64_t seed = 0;
+    };
+    /// Begins a node with the indirect light on its surface, if it has one.
+    void estimate_surface(const Place& place, const NodePaths& paths, MultipleNode& node) const;
+    /// The surfaces that some paths from a node meet first (PathTracer::find_lit_surface), and
+    /// where its ray begins in the water.
+    Point3 find_lit_surfaces(const Place& place, int paths,
+                             std::vector<SurfaceSample>& samples) const;
+    /// Adds the light of the water to a node that was begun. `indirect`: on all surfaces, by group
+    /// and band. `typical_light`: the mean of the begun nodes' `mean_light`; it guides paths.
+    void estimate_water(const Place& place, const NodePaths& paths, const IndirectLight& indirect,
+                        double typical_light, MultipleNode& node) const;
     /// The light on one surface sample alone, by this many paths.
     void estimate_surface(const SurfaceSample& sample, int paths, NodeLight& light) const;
     /// What the sample's specular lobe mirrors (PathTracer::trace_mirrored), by this many paths:
@@ -94,7 +112,6 @@ class MultipleNodes {
 
     static Workspace& workspace_of_thread();
     void begin(const SurfaceSample& sample, bool has_hit, Workspace& w, MultipleNode& node) const;
-    void trace_water(std::uint64_t seed, Workspace& w, MultipleNode& node) const;
     void trace_surface(std::uint64_t seed, int paths, Workspace& w, MultipleNode& node) const;
 
     const RaySource& rays_;
@@ -102,7 +119,7 @@ class MultipleNodes {
     const LightTransport& transport_;
     const IntervalWeights& weights_;
     const DistanceIntervals& intervals_;
-    MultipleNodeOptions options_;
+    std::size_t groups_;
 };
 
 /// The cosine of the largest angle between the normals at two places whose indirect light is
@@ -115,7 +132,7 @@ inline bool shows_interval(const MultipleNode& node, const DistanceIntervals& in
                            std::size_t interval) {
     constexpr double k_least_share = 0.3;
     constexpr float k_least_weight = 1e-30F;
-    return node.has_ray && node.mean_weights[interval] >= k_least_weight &&
+    return !node.mean_weights.empty() && node.mean_weights[interval] >= k_least_weight &&
            intervals.share(interval, 0, node.reach) >= k_least_share;
 }
 

@@ -165,15 +165,14 @@ void share(const NodeQuantity& quantity, std::size_t bands, Grid2D<MultipleNode>
 
 }  // namespace
 
-void share_outliers(Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
-                    std::size_t groups) {
-    std::size_t values = 0;
-    for (const MultipleNode& node : nodes) values = std::max(values, node.halves[0].water.size());
-    if (values == 0) return;
-    const std::size_t bands = values / (intervals.count() * groups);
+void share_surface_outliers(Grid2D<MultipleNode>& nodes, std::size_t bands) {
+    share(SurfaceQuantity(), bands, nodes);
+}
+
+void share_water_outliers(Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
+                          std::size_t groups, std::size_t bands) {
     for (std::size_t interval = 0; interval < intervals.count(); ++interval)
         share(WaterQuantity(intervals, interval, groups, bands), bands, nodes);
-    share(SurfaceQuantity(), bands, nodes);
 }
 
 namespace {
@@ -221,77 +220,75 @@ class Neighbourhood {
     double light_ = 0, weight_ = 0;
 };
 
-/// The nodes with each variance averaged over those around: that of a few batches says little by
-/// itself, and that of the whole neighbourhood would hide features of its dark parts. The water's
-/// is in proportion to the weights of its intervals, as that of counts to their expectation.
-Grid2D<MultipleNode> with_mean_variances(const Grid2D<MultipleNode>& raw) {
+// The mean of what `of` finds in the nodes around each: the variance of a few batches says little
+// by itself, and that of a whole neighbourhood would hide features of its dark parts.
+template <class Of>
+void average_around(const Grid2D<MultipleNode>& raw, std::size_t at, const Of& of) {
     constexpr int k_reach = k_variance_reach;
-    Grid2D<MultipleNode> nodes = raw;
-    std::size_t intervals = 0;
-    for (const MultipleNode& node : raw) intervals = std::max(intervals, node.mean_weights.size());
+    const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
+    for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v)
+        for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach); ++u)
+            of(raw(u, v));
+}
+
+void average_surface_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleNode>& nodes) {
     parallel_for(raw.size(), [&](std::size_t at) {
-        const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
-        MultipleNode& node = nodes(i, j);
-        std::ranges::fill(node.water_variance, 0.0F);
-        node.diffuse_variance = 0;
-        thread_local std::vector<double> variances, weights;
-        variances.assign(intervals, 0.0);
-        weights.assign(intervals, 0.0);
-        double surfaces = 0;
-        for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v) {
-            for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach);
-                 ++u) {
-                const MultipleNode& other = raw(u, v);
-                if (!other.has_ray) continue;
-                for (std::size_t k = 0; k < intervals; ++k) {
-                    variances[k] += static_cast<double>(other.water_variance[k]);
-                    weights[k] += static_cast<double>(other.mean_weights[k]);
-                }
-                if (!other.surface) continue;
-                ++surfaces;
-                node.diffuse_variance += other.diffuse_variance;
-            }
-        }
-        for (std::size_t k = 0; k < node.water_variance.size(); ++k)
-            if (weights[k] > 0)
-                node.water_variance[k] = static_cast<float>(
-                    variances[k] / weights[k] * static_cast<double>(node.mean_weights[k]));
-        node.diffuse_variance /= std::max(surfaces, 1.0);
+        double sum = 0, surfaces = 0;
+        average_around(raw, at, [&](const MultipleNode& other) {
+            if (!other.surface) return;
+            ++surfaces;
+            sum += other.diffuse_variance;
+        });
+        nodes[at].diffuse_variance = sum / std::max(surfaces, 1.0);
     });
-    return nodes;
+}
+
+// The water's is in proportion to the weights of its intervals, as that of counts to their
+// expectation.
+void average_water_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleNode>& nodes) {
+    parallel_for(raw.size(), [&](std::size_t at) {
+        std::vector<float>& of_node = nodes[at].water_variance;
+        thread_local std::vector<double> variances, weights;
+        variances.assign(of_node.size(), 0.0);
+        weights.assign(of_node.size(), 0.0);
+        average_around(raw, at, [&](const MultipleNode& other) {
+            if (other.water_variance.empty()) return;
+            for (std::size_t k = 0; k < variances.size(); ++k) {
+                variances[k] += static_cast<double>(other.water_variance[k]);
+                weights[k] += static_cast<double>(other.mean_weights[k]);
+            }
+        });
+        for (std::size_t k = 0; k < of_node.size(); ++k)
+            of_node[k] = weights[k] > 0
+                             ? static_cast<float>(variances[k] / weights[k] *
+                                                  static_cast<double>(nodes[at].mean_weights[k]))
+                             : 0.0F;
+    });
 }
 
 class NodeSmoothing {
   public:
-    NodeSmoothing(const Grid2D<MultipleNode>& raw, const DistanceIntervals& intervals,
-                  std::size_t groups, std::size_t bands)
-        : raw_(raw), intervals_(intervals), bands_(bands), values_(groups * bands) {}
+    NodeSmoothing(const Grid2D<MultipleNode>& raw, std::size_t groups, std::size_t bands)
+        : raw_(raw), bands_(bands), values_(groups * bands) {}
 
-    void smooth(int i, int j, SmoothNode& node) const {
-        const MultipleNode& own = raw_(i, j);
-        node.mean_light = own.mean_light;
-        smooth_water(i, j, node);
-        if (own.surface) smooth_surface(i, j, node);
-    }
-
-  private:
-    void smooth_water(int i, int j, SmoothNode& node) const;
+    void smooth_water(const DistanceIntervals& intervals, int i, int j, SmoothNode& node) const;
     void smooth_surface(int i, int j, SmoothNode& node) const;
 
+  private:
     const Grid2D<MultipleNode>& raw_;
-    const DistanceIntervals& intervals_;
     std::size_t bands_, values_;
 };
 
-void NodeSmoothing::smooth_water(int i, int j, SmoothNode& node) const {
+void NodeSmoothing::smooth_water(const DistanceIntervals& intervals, int i, int j,
+                                 SmoothNode& node) const {
     thread_local LatticeFit fit;
     thread_local Neighbourhood near;
     const MultipleNode& own = raw_(i, j);
-    node.light.water.assign(intervals_.count() * values_, 0.0F);
-    for (std::size_t interval = 0; interval < intervals_.count(); ++interval) {
+    node.light.water.assign(intervals.count() * values_, 0.0F);
+    for (std::size_t interval = 0; interval < intervals.count(); ++interval) {
         for (std::size_t half = 0; half < 2; ++half) {
             near.find(raw_, i, j, [&](const MultipleNode& other) -> std::optional<FitNode> {
-                if (!shows_interval(other, intervals_, interval)) return std::nullopt;
+                if (!shows_interval(other, intervals, interval)) return std::nullopt;
                 FitNode of;
                 of.weight = static_cast<double>(other.mean_weights[interval]);
                 of.value =
@@ -318,7 +315,7 @@ void NodeSmoothing::smooth_water(int i, int j, SmoothNode& node) const {
             }
             node.variance += 0.25 * fit.variance() * shown * shown;
         }
-        node.known_to = intervals_.end(interval);
+        node.known_to = intervals.end(interval);
     }
 }
 
@@ -365,22 +362,36 @@ void require_room_for_nodes(std::size_t nodes, std::size_t intervals, std::size_
                    "leave out the lamps' layers, use fewer bands, or --quality draft");
 }
 
-Grid2D<SmoothNode> smoothed(const Grid2D<MultipleNode>& raw, const DistanceIntervals& intervals,
-                            std::size_t groups) {
+Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<MultipleNode>& raw, std::size_t groups,
+                                     std::size_t bands) {
     Grid2D<SmoothNode> nodes;
     nodes.assign(raw.width(), raw.height());
-    std::size_t values = 0;
-    for (const MultipleNode& node : raw) values = std::max(values, node.halves[0].water.size());
-    if (values == 0) return nodes;
-    Grid2D<MultipleNode> averaged = with_mean_variances(raw);
-    share_outliers(averaged, intervals, groups);
-    const NodeSmoothing smoothing(averaged, intervals, groups,
-                                  values / (intervals.count() * groups));
+    Grid2D<MultipleNode> averaged = raw;
+    average_surface_variances(raw, averaged);
+    share_surface_outliers(averaged, bands);
+    const NodeSmoothing smoothing(averaged, groups, bands);
     parallel_for(raw.size(), [&](std::size_t at) {
-        const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
-        smoothing.smooth(i, j, nodes(i, j));
+        if (!raw[at].surface) return;
+        smoothing.smooth_surface(static_cast<int>(at) % raw.width(),
+                                 static_cast<int>(at) / raw.width(), nodes[at]);
     });
     return nodes;
+}
+
+void smooth_water(const Grid2D<MultipleNode>& raw, const NodeWindow& window,
+                  const DistanceIntervals& intervals, std::size_t groups, std::size_t bands,
+                  Grid2D<SmoothNode>& nodes) {
+    Grid2D<MultipleNode> averaged = raw;
+    average_water_variances(raw, averaged);
+    share_water_outliers(averaged, intervals, groups, bands);
+    const NodeSmoothing smoothing(averaged, groups, bands);
+    const int columns = window.i1 - window.i0;
+    parallel_for(window.size(), [&](std::size_t at) {
+        const int i = window.i0 + static_cast<int>(at) % columns;
+        const int j = window.j0 + static_cast<int>(at) / columns;
+        smoothing.smooth_water(intervals, i, j, nodes(i, j));
+        nodes(i, j).mean_light = raw(i, j).mean_light;
+    });
 }
 
 }  // namespace uw

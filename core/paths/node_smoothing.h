@@ -9,15 +9,17 @@
 
 namespace uw {
 
-/// How far away the nodes are, in steps of the lattice, on which a node depends by share_outliers.
+/// How far away the nodes are, in steps of the lattice, on which a node depends by the
+/// sharing of outliers.
 inline constexpr int k_sharing_reach = 6;
 
 /// Takes from nodes what rare bright paths have left there, and shares it among the nodes around:
 /// the sum stays what it was, and no node is far brighter than all others. The light of a feature
 /// shows in both halves of a node; a half is limited only as far as it exceeds the other half, too.
-/// `groups`: MultipleNodeOptions::groups.
-void share_outliers(Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
-                    std::size_t groups);
+/// `groups`: of MultipleNodes. One for the light on surfaces, one for the water's.
+void share_surface_outliers(Grid2D<MultipleNode>& nodes, std::size_t bands);
+void share_water_outliers(Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
+                          std::size_t groups, std::size_t bands);
 
 /// How far away the nodes are, in steps of the lattice, on which a smoothed node depends.
 inline constexpr int k_smoothing_reach = LatticeFit::k_reach + 2 + k_sharing_reach;
@@ -33,16 +35,29 @@ struct SmoothNode {
 };
 
 /// Throws InputError if so many nodes, with the copies that smoothing makes, do not fit into free
-/// memory. `groups`: MultipleNodeOptions::groups.
+/// memory. `groups`: of MultipleNodes.
 void require_room_for_nodes(std::size_t nodes, std::size_t intervals, std::size_t groups,
                             const LitScene& scene);
 
-/// Smooths the nodes of a lattice (share_outliers, then LatticeFit): the water's light interval by
-/// interval over the nodes whose rays reach it, the surfaces' over those that see the same surface.
-/// The neighbourhood for either half of the estimates is chosen by the other one: if a half chose
-/// its own, a rare bright path would stop the smoothing around it and be counted there once more.
-/// `groups`: MultipleNodeOptions::groups.
-Grid2D<SmoothNode> smoothed(const Grid2D<MultipleNode>& raw, const DistanceIntervals& intervals,
-                            std::size_t groups);
+/// A part of a lattice of nodes, by index.
+struct NodeWindow {
+    int i0 = 0, j0 = 0, i1 = 0, j1 = 0;  // [first, past the last)
+
+    std::size_t size() const {
+        return static_cast<std::size_t>(i1 - i0) * static_cast<std::size_t>(j1 - j0);
+    }
+};
+
+/// Smooths the nodes of a lattice (share_surface_outliers, share_water_outliers, then LatticeFit):
+/// first the surfaces' light over the nodes that see the same surface, and then, in a window, the
+/// water's interval by interval over the nodes whose rays reach it. The neighbourhood for
+/// either half of the estimates is chosen by the other one: if a half chose its own, a rare bright
+/// path would stop the smoothing around it and be counted there once more. `groups`: of
+/// MultipleNodes.
+Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<MultipleNode>& raw, std::size_t groups,
+                                     std::size_t bands);
+void smooth_water(const Grid2D<MultipleNode>& raw, const NodeWindow& window,
+                  const DistanceIntervals& intervals, std::size_t groups, std::size_t bands,
+                  Grid2D<SmoothNode>& nodes);
 
 }  // namespace uw

@@ -5,9 +5,11 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/numerics.h"
 #include "core/light/lamp.h"
 #include "core/light/ray_panels.h"
+#include "core/paths/indirect_light.h"
 #include "core/paths/lamp_gathering.h"
 #include "core/paths/path_vertex.h"
 #include "core/paths/scattering_tables.h"
@@ -120,6 +122,8 @@ class PathWalk {
         : tables_(tables), light_(light), random_(random), terms_(terms) {}
 
     PathState& state() { return state_; }
+    /// Ends the path at surfaces and leaves out what they emit and reflect.
+    void stay_in_water() { stays_in_water_ = true; }
 
     /// Begins with a scattering at `point` of `segment`, or with a reflection at its end.
     void from_water(const WaterSegment& segment, const WaterPoint& point);
@@ -127,6 +131,11 @@ class PathWalk {
     /// What the surface at the end of `segment` reflects of light that was scattered or reflected
     /// once before, and no more.
     void mirror(const WaterSegment& segment);
+    /// Is scattered on `segment`, and on by the phase function alone until it meets a surface,
+    /// which is the end of this; null if it meets none.
+    const WaterSegment* wander(const WaterSegment& segment);
+    /// The light of the surface at which it has ended.
+    void gather_lit_surface(const IndirectLight& indirect);
 
   private:
     struct Continuation;
@@ -143,17 +152,27 @@ class PathWalk {
     double branches(double value, double by_own, double by_lobe) const;
     PathState continued(const Continuation& along, double survival) const;
     void trace(const Ray& ray);
+    void find_transmittance();  // of the segment
     void follow(bool goes_on);
     // Each moves to the next vertex and on from there; false if the path ends.
     bool advance();
     bool reflect_at_end(double probability);
     bool scatter_on_the_way(double u);
+    // The distance of the next scattering on the segment, by w.shares of what the bands lose on the
+    // way to its end; its length if there is none.
+    double draw_distance(double u) const;
+    // Moves there; the shares are relative to all that may happen on the segment. False if the
+    // water does nothing there.
+    bool go_to(double distance);
+    // Whether there is a surface before; if so, it ends the segment.
+    bool meets_surface_before(double distance);
 
     const PathTables& tables_;
     const CameraSegment::Light& light_;
     PathRandom& random_;
     PathTerms& terms_;
     PathState state_;
+    bool stays_in_water_ = false;
 };
 
 /// A direction in which a path may go on from a vertex.
@@ -180,6 +199,7 @@ struct PathWalk::Workspace {
     PathVertex vertex;
     Continuation along_own, along_lobe;
     std::vector<double> chosen_lamp;  // a weight for each
+    std::vector<double> indirect;     // by lamp and band
     std::vector<Pending> pending;
 };
 
@@ -246,7 +266,7 @@ bool PathWalk::leave(const Point3& origin, bool is_last) {
     trace({origin, own->direction});
     tables_.lamps.gather_from_water(w.segment, w.along_own.lobe_densities, state, random_, terms_);
     double seen = 0;
-    if (w.segment.has_hit)
+    if (w.segment.has_hit && !stays_in_water_)
         seen =
             tables_.lamps.gather_from_surface(w.segment, w.transmittance, state, random_, terms_);
     if (by_own > 0) by_own = branches(w.along_own.value + seen, by_own, by_lobe);
@@ -312,9 +332,13 @@ PathState PathWalk::continued(const Continuation& along, double survival) const 
 }
 
 void PathWalk::trace(const Ray& ray) {
+    tables_.optics.trace(ray, workspace_of_thread().segment);
+    find_transmittance();
+}
+
+void PathWalk::find_transmittance() {
     Workspace& w = workspace_of_thread();
     const WaterOptics& optics = tables_.optics;
-    optics.trace(ray, w.segment);
     if (!w.segment.has_hit) {
         std::ranges::fill(w.transmittance.first(optics.bands()), 0.0);  // none returns from k_far
         return;
@@ -348,7 +372,7 @@ bool PathWalk::advance() {
         const double share = state_.throughput[b] * tables_.light[b];
         w.shares[b] = share * tables_.albedo[b];
         in_water += w.shares[b] * (1 - w.transmittance[b]);
-        if (w.segment.has_hit)
+        if (w.segment.has_hit && !stays_in_water_)
             at_surface += share * w.transmittance[b] *
                           std::max(k_least_reflectance, w.segment.hit.reflectance[b]);
     }
@@ -373,8 +397,17 @@ bool PathWalk::reflect_at_end(double probability) {
 
 bool PathWalk::scatter_on_the_way(double u) {
     Workspace& w = workspace_of_thread();
+    const double s = draw_distance(u);
+    if (!(s < w.segment.length) || !go_to(s)) return false;  // beyond k_far, or by rounding
+    const Point3 x = w.segment.ray.at(s);
+    w.vertex.scatter(tables_.vertices, x, w.segment.ray.direction, w.point, state_.throughput);
+    ++state_.scatterings;
+    return leave(x);
+}
+
+double PathWalk::draw_distance(double u) const {
+    Workspace& w = workspace_of_thread();
     const WaterOptics& optics = tables_.optics;
-    Spectrum& throughput = state_.throughput;
     const std::size_t bands = optics.bands();
     w.cumulative.resize(bands);
     double total = 0;
@@ -382,24 +415,116 @@ bool PathWalk::scatter_on_the_way(double u) {
         total += w.shares[b] * (1 - w.transmittance[b]);
         w.cumulative[b] = total;
     }
-    if (!(total > 0)) return false;
+    if (!(total > 0)) return w.segment.length;
     const std::size_t band = choose(w.cumulative, u).index;
     const double depth = -std::log1p(-u * (1 - w.transmittance[band]));
-    const double s = optics.distance_at_depth(w.segment, band, depth);
-    if (!(s < w.segment.length)) return false;  // beyond k_far, or by rounding
-    optics.look_up(w.segment, s, w.point);
+    return optics.distance_at_depth(w.segment, band, depth);
+}
+
+bool PathWalk::go_to(double distance) {
+    Workspace& w = workspace_of_thread();
+    const WaterOptics& optics = tables_.optics;
+    const std::size_t bands = optics.bands();
+    optics.look_up(w.segment, distance, w.point);
     optics.find_scattering(w.point);
     w.c.resize(bands);
     optics.attenuations(w.point, w.c);
-    optics.transmittances(s, w.point.column, w.transmittance);
+    optics.transmittances(distance, w.point.column, w.transmittance);
     double density = 0;
     for (std::size_t b = 0; b < bands; ++b) density += w.shares[b] * w.c[b] * w.transmittance[b];
     if (!(density > 0)) return false;
-    for (std::size_t b = 0; b < bands; ++b) throughput[b] *= w.transmittance[b] / density;
-    const Point3 x = w.segment.ray.at(s);
-    w.vertex.scatter(tables_.vertices, x, w.segment.ray.direction, w.point, throughput);
-    ++state_.scatterings;
-    return leave(x);
+    for (std::size_t b = 0; b < bands; ++b) state_.throughput[b] *= w.transmittance[b] / density;
+    return true;
+}
+
+// Directions towards lit surfaces are not worth guessing at: light that small angles lead there
+// comes from all over them.
+const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
+    constexpr double k_least_weight = 0.1, k_survival_of_many = 0.9;
+    constexpr int k_many = 100;  // scatterings, in water that absorbs next to nothing
+    Workspace& w = workspace_of_thread();
+    const WaterOptics& optics = tables_.optics;
+    if (optics.scene().surfaces->empty()) return nullptr;
+    const std::size_t bands = optics.bands();
+    Spectrum& throughput = state_.throughput;
+    w.segment = segment;
+    find_transmittance();
+    w.shares.resize(bands);
+    double first_weight = 0;
+    for (bool is_first = true;; is_first = false) {
+        // The first scattering has to be before the camera ray's surface. Later, the water decides
+        // how far the path goes, and then it is seen what is in its way.
+        double all = 0;
+        for (std::size_t b = 0; b < bands; ++b) {
+            w.shares[b] = throughput[b] * tables_.light[b];
+            all += w.shares[b] * (1 - w.transmittance[b]);
+        }
+        if (!(all > 0)) return nullptr;
+        for (double& share : w.shares) share /= all;
+        const double s = draw_distance(random_.next());
+        if (!is_first && meets_surface_before(s)) return &w.segment;
+        if (!(s < w.segment.length) || !go_to(s)) return nullptr;
+        if (is_first) state_.distance = s;
+        const std::optional<Vector3> direction = scatter_plainly(
+            tables_.scattering, w.point, w.segment.ray.direction, random_, throughput.first(bands));
+        if (!direction) return nullptr;
+        ++state_.scatterings;
+        double weight = 0;
+        for (std::size_t b = 0; b < bands; ++b) weight += throughput[b] * tables_.light[b];
+        // What little is left of a path goes on in few, and none goes on for ever.
+        if (is_first) first_weight = weight;
+        if (!(weight > 0)) return nullptr;
+        const double survival = std::min(weight / (k_least_weight * first_weight),
+                                         state_.scatterings > k_many ? k_survival_of_many : 1);
+        const double of_survival = random_.next();
+        if (survival < 1) {
+            if (of_survival >= survival) return nullptr;
+            for (double& value : throughput.first(bands)) value /= survival;
+        }
+        optics.set({w.segment.ray.at(s), *direction}, nullptr, w.segment);
+        std::ranges::fill(w.transmittance.first(bands), 0.0);
+    }
+}
+
+// What is left of each band on the way, relative to all, weighs the path if there is one.
+bool PathWalk::meets_surface_before(double distance) {
+    Workspace& w = workspace_of_thread();
+    const WaterOptics& optics = tables_.optics;
+    WaterSegment& segment = w.segment;
+    throw_if_stopped();
+    segment.has_hit =
+        optics.scene().surfaces->closest_hit(segment.ray, std::min(distance, k_far), segment.hit);
+    if (!segment.has_hit) return false;
+    segment.length = segment.hit.distance;
+    find_transmittance();
+    double all = 0;
+    for (std::size_t b = 0; b < optics.bands(); ++b) all += w.shares[b] * w.transmittance[b];
+    if (!(all > 0)) return false;
+    for (std::size_t b = 0; b < optics.bands(); ++b)
+        state_.throughput[b] *= w.transmittance[b] / all;
+    return true;
+}
+
+void PathWalk::gather_lit_surface(const IndirectLight& indirect) {
+    Workspace& w = workspace_of_thread();
+    const std::size_t bands = tables_.optics.bands();
+    for (double& value : w.transmittance.first(bands)) value = 1;  // the throughput has it already
+    tables_.lamps.gather_from_surface(w.segment, w.transmittance, state_, random_, terms_);
+    const SurfaceHit& hit = w.segment.hit;
+    if (hit.has_material && tables_.optics.scene().surfaces->material(hit).is_glossy) {
+        from_surface(w.segment);
+        return;
+    }
+    w.indirect.resize(indirect.values());
+    indirect.find(hit, w.indirect);
+    for (std::size_t first = 0; first < w.indirect.size(); first += bands) {
+        const std::span<double> radiance = std::span(w.indirect).subspan(first, bands);
+        for (std::size_t b = 0; b < bands; ++b)
+            radiance[b] *= hit.reflectance[b] * state_.throughput[b];
+        PathTerm term = state_.term(first / bands, radiance);
+        ++term.reflections;
+        terms_.add(term);
+    }
 }
 
 // Paths are not followed beyond this optical depth of the camera ray: e^-20 = 2e-9.
@@ -592,8 +717,9 @@ void PathTracer::trace_single(const CameraSegment& segment, PathRandom& random,
     tables.lamps.gather_from_water(segment.water, {}, state, random, terms);
 }
 
-void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
-                             PathTerms& terms) const {
+// A first scattering where the segment's light guides it.
+void PathTracer::scatter_first(const CameraSegment& segment, PathRandom& random, PathTerms& terms,
+                               bool stays_in_water) const {
     const PathTables& tables = choose_tables(random);
     double u = random.next();
     if (segment.cumulative.empty()) return;
@@ -607,6 +733,7 @@ void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
     optics.look_up(segment.water, s, w.point);
     optics.find_scattering(w.point);
     PathWalk walk(tables, segment.light, random, terms);
+    if (stays_in_water) walk.stay_in_water();
     PathState& state = walk.state();
     optics.transmittances(s, w.point.column, state.throughput);
     for (double& value : state.throughput.first(optics.bands()))
@@ -614,6 +741,51 @@ void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
     state.from_water = true;
     state.distance = s;
     walk.from_water(segment.water, w.point);
+}
+
+void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
+                             PathTerms& terms) const {
+    scatter_first(segment, random, terms, false);
+}
+
+void PathTracer::trace_water_alone(const CameraSegment& segment, PathRandom& random,
+                                   PathTerms& terms) const {
+    scatter_first(segment, random, terms, true);
+}
+
+namespace {
+
+class NoTerms final : public PathTerms {
+  public:
+    void add(const PathTerm&) override {}
+};
+
+PathWalk walk_into_water(const PathTables& tables, const CameraSegment& segment, PathRandom& random,
+                         PathTerms& terms) {
+    PathWalk walk(tables, segment.light, random, terms);
+    for (double& value : walk.state().throughput.first(tables.optics.bands())) value = 1;
+    walk.state().from_water = true;
+    return walk;
+}
+
+}  // namespace
+
+void PathTracer::trace_lit_surfaces(const CameraSegment& segment, const IndirectLight& indirect,
+                                    PathRandom& random, PathTerms& terms) const {
+    PathWalk walk = walk_into_water(choose_tables(random), segment, random, terms);
+    if (walk.wander(segment.water)) walk.gather_lit_surface(indirect);
+}
+
+bool PathTracer::find_lit_surface(const CameraSegment& segment, PathRandom& random,
+                                  SurfaceSample& sample) const {
+    NoTerms terms;
+    PathWalk walk = walk_into_water(*tables_.front(), segment, random, terms);
+    const WaterSegment* end = walk.wander(segment.water);
+    if (end) {
+        sample.ray = end->ray;
+        sample.hit = end->hit;
+    }
+    return end != nullptr;
 }
 
 void PathTracer::trace_surface(const CameraSegment& segment, PathRandom& random,

@@ -12,6 +12,7 @@
 
 namespace uw {
 
+class IndirectLight;
 struct LampView;
 struct PathTables;
 struct ScatteringTables;
@@ -41,6 +42,17 @@ class PathTracer {
     void trace_single(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
     /// The rest of the light that the water scatters towards the camera: `multiple.volume`.
     void trace_water(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+    /// The two parts of trace_water's light. That which no surface has reflected or emitted:
+    void trace_water_alone(const CameraSegment& segment, PathRandom& random,
+                           PathTerms& terms) const;
+    /// And that of surfaces, which the water scatters on its way to the camera. `indirect`: the
+    /// light on the first of them that is not direct, by lamp or all in one; from glossy ones paths
+    /// go on.
+    void trace_lit_surfaces(const CameraSegment& segment, const IndirectLight& indirect,
+                            PathRandom& random, PathTerms& terms) const;
+    /// The first surface that such a path meets, and the path's last ray; false if it meets none.
+    bool find_lit_surface(const CameraSegment& segment, PathRandom& random,
+                          SurfaceSample& sample) const;
     /// The light that the segment's surface reflects, other than direct light of lamps, and not
     /// what it emits: `multiple.surface`. Nothing without a surface.
     void trace_surface(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
@@ -55,6 +67,8 @@ class PathTracer {
 
   private:
     const PathTables& choose_tables(PathRandom& random) const;
+    void scatter_first(const CameraSegment& segment, PathRandom& random, PathTerms& terms,
+                       bool stays_in_water) const;
     void place_intervals(CameraSegment& segment) const;
     void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
 

@@ -87,6 +87,28 @@ Vector3 cosine_direction(const Vector3& normal, double u, double azimuth) {
 
 }  // namespace
 
+std::optional<Vector3> scatter_plainly(const ScatteringTables& tables, const WaterPoint& point,
+                                       const Vector3& direction, PathRandom& random,
+                                       std::span<double> throughput) {
+    thread_local std::vector<double> cumulative;
+    double u = random.next();
+    const double v = random.next(), azimuth = random.next();
+    double total = 0;
+    cumulative.clear();
+    for (const Spectrum& b : point.scattering) {
+        for (std::size_t band = 0; band < throughput.size(); ++band)
+            total += throughput[band] * b[band];
+        cumulative.push_back(total);
+    }
+    if (!(total > 0)) return std::nullopt;
+    const Choice chosen = choose(cumulative, u);
+    const Spectrum& b = point.scattering[chosen.index];
+    for (std::size_t band = 0; band < throughput.size(); ++band)
+        throughput[band] *= b[band] / chosen.probability;
+    const HalfTangentDensity& phase = tables.directions[chosen.index];
+    return direction_around(direction, phase.invert(v * phase.mass()), azimuth);
+}
+
 void PathVertex::scatter(const VertexTables& tables, const Point3& x, const Vector3& direction,
                          const WaterPoint& point, const Spectrum& throughput) {
     tables_ = tables;

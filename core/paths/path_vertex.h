@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/random.h"
@@ -57,6 +58,13 @@ struct VertexTables {
     const ScatteringTables* scattering = nullptr;
     const LampGlow* glow = nullptr;
 };
+
+/// The direction in which a path goes on that is scattered by the phase functions alone, where it
+/// travels along `direction`. Multiplies `throughput`, by band, by the scattering coefficients over
+/// the probability of what was drawn. Uses three random numbers; empty if nothing scatters.
+std::optional<Vector3> scatter_plainly(const ScatteringTables& tables, const WaterPoint& point,
+                                       const Vector3& direction, PathRandom& random,
+                                       std::span<double> throughput);
 
 /// Where a path from the camera turns: scattered by the water or reflected by a surface. Directions
 /// are drawn in two ways. Its own, in proportion to the phase function or BRDF, go on with the

@@ -1,7 +1,6 @@
 #include "core/paths/surface_glow.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +15,8 @@ namespace {
 constexpr double k_scales_of_octave = 4;
 // Weights that are left out, relative to the surface's own light.
 constexpr float k_least_weight = 1e-5F;
+// As many cells as these tell what is seen, even if they are parts of pixels.
+constexpr int k_fine_cells = 130'000;
 // Cells show the same surface as a pixel if their distances differ by less, relatively.
 constexpr double k_agreeing_distance = 0.1;
 
@@ -93,9 +94,12 @@ SurfaceGlow::SurfaceGlow(const RaySource& rays, const LitScene& scene,
                          std::span<const Position> nodes)
     : channels_(channels) {
     const double area = static_cast<double>(rays.width()) * rays.height();
-    spacing_ = std::max(1, static_cast<int>(std::ceil(std::sqrt(area / cells))));
-    cells_.assign((rays.width() + spacing_ - 1) / spacing_,
-                  (rays.height() + spacing_ - 1) / spacing_);
+    spacing_ = std::max(1.0, std::ceil(std::sqrt(area / cells)));
+    cells_of_pixel_ =
+        std::max(1, static_cast<int>(std::sqrt(std::min(cells, k_fine_cells) / area)));
+    spacing_ /= cells_of_pixel_;
+    cells_.assign(static_cast<int>(std::ceil(rays.width() / spacing_)),
+                  static_cast<int>(std::ceil(rays.height() / spacing_)));
     source_.assign(channels_ * cells_.size(), 0.0F);
     light_.assign(channels_ * cells_.size(), 0.0F);
     trace(rays, scene, lighting, radiance);
@@ -125,7 +129,7 @@ SurfaceGlow::SurfaceGlow(const RaySource& rays, const LitScene& scene,
         const auto source = std::span(source_).subspan(channel * cells_.size(), cells_.size());
         if (std::ranges::all_of(source, [](float value) { return value == 0; })) return;
         Spreading spreading(*this, spread, fits);
-        std::array<Corner, 4> corners;
+        std::vector<Corner> corners;
         for (std::size_t interval = 0; interval < intervals_; ++interval) {
             const double begin = intervals.begin(interval);
             const Grid2D<float>& part = spreading.part(interval, channel % bands, begin, source);
@@ -212,7 +216,7 @@ void SurfaceGlow::trace(const RaySource& rays, const LitScene& scene,
         cells_[i].scale = static_cast<std::uint8_t>(std::min(scale_of(angles[i]), last));
 }
 
-void SurfaceGlow::find_corners(double x, double y, std::array<Corner, 4>& corners) const {
+void SurfaceGlow::find_corners(double x, double y, std::vector<Corner>& corners) const {
     const double u = std::clamp(x / spacing_ - 0.5, 0.0, cells_.width() - 1.0);
     const double v = std::clamp(y / spacing_ - 0.5, 0.0, cells_.height() - 1.0);
     const int i = static_cast<int>(u), j = static_cast<int>(v);
@@ -224,25 +228,38 @@ void SurfaceGlow::find_corners(double x, double y, std::array<Corner, 4>& corner
                Corner{cells_.index(right, below), (u - i) * (v - j)}};
 }
 
+void SurfaceGlow::find_cells_of_pixel(double x, double y, std::vector<Corner>& cells) const {
+    if (cells_of_pixel_ == 1) return find_corners(x, y, cells);
+    const auto first = [&](double at, int count) {
+        return std::clamp(static_cast<int>(std::lround((at - 0.5) / spacing_)), 0,
+                          count - cells_of_pixel_);
+    };
+    const int i = first(x, cells_.width()), j = first(y, cells_.height());
+    const double share = 1.0 / (cells_of_pixel_ * cells_of_pixel_);
+    cells.clear();
+    for (int below = 0; below < cells_of_pixel_; ++below)
+        for (int right = 0; right < cells_of_pixel_; ++right)
+            cells.push_back({cells_.index(i + right, j + below), share});
+}
+
 void SurfaceGlow::add(double x, double y, double distance, double weight,
                       std::span<double> radiance) const {
     if (intervals_ == 0) return;
-    std::array<Corner, 4> corners;
-    find_corners(x, y, corners);
+    thread_local std::vector<Corner> cells;
+    find_cells_of_pixel(x, y, cells);
     // Only the cells that see the same surface count, if there are any.
-    double total = 0;
-    std::array<double, 4> same{};
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-        const double other = cells_[corners[k].cell].distance;
-        const bool agrees = distance < k_far
-                                ? std::abs(other - distance) <= k_agreeing_distance * distance
+    const auto agrees = [&](const Corner& corner) {
+        const double other = cells_[corner.cell].distance;
+        return distance < k_far ? std::abs(other - distance) <= k_agreeing_distance * distance
                                 : !std::isfinite(other);
-        if (agrees) total += same[k] = corners[k].weight;
-    }
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-        const double share = weight * (total > 0 ? same[k] / total : corners[k].weight);
-        if (share == 0) continue;
-        const float* light = &light_[corners[k].cell * channels_];
+    };
+    double same = 0;
+    for (const Corner& cell : cells)
+        if (agrees(cell)) same += cell.weight;
+    for (const Corner& cell : cells) {
+        if (same > 0 && !agrees(cell)) continue;
+        const double share = weight * cell.weight / (same > 0 ? same : 1);
+        const float* light = &light_[cell.cell * channels_];
         for (std::size_t c = 0; c < channels_; ++c) radiance[c] += share * light[c];
     }
 }

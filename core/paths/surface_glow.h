@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -19,7 +18,8 @@ namespace uw {
 /// (PointSpread), all over an image: the surfaces as the camera sees them, blurred. Light is taken
 /// to reach a pixel if it is scattered last before the pixel's own surface.
 ///
-/// Computed for cells of one or some pixels of the whole image, whatever part of it is rendered.
+/// Computed for cells of one or some pixels of the whole image, whatever part of it is rendered;
+/// those of small images, whose pixels show more than one cell tells, are parts of pixels.
 class SurfaceGlow {
   public:
     /// Sets the radiance at the camera of a sample, which is number `index` of `light`, by channel.
@@ -43,8 +43,8 @@ class SurfaceGlow {
         return std::span(node_light_)
             .subspan(node * intervals_ * channels_, intervals_ * channels_);
     }
-    /// Adds the light at an image position [pixels] along a ray up to `distance`, times `weight`,
-    /// to `radiance`, by channel.
+    /// Adds the mean light of the pixel around an image position [pixels], along its rays up to
+    /// `distance`, times `weight`, to `radiance`, by channel.
     void add(double x, double y, double distance, double weight, std::span<double> radiance) const;
 
   private:
@@ -61,10 +61,12 @@ class SurfaceGlow {
 
     void trace(const RaySource& rays, const LitScene& scene, const SurfaceLighting& lighting,
                const Radiance& radiance);
-    void find_corners(double x, double y, std::array<Corner, 4>& corners) const;
+    void find_corners(double x, double y, std::vector<Corner>& corners) const;
+    void find_cells_of_pixel(double x, double y, std::vector<Corner>& cells) const;
 
     std::size_t channels_ = 0, intervals_ = 0;
-    int spacing_ = 1;  // of the cells [pixels]
+    int cells_of_pixel_ = 1;  // in each direction
+    double spacing_ = 1;      // of the cells [pixels]
     Grid2D<Cell> cells_;
     std::vector<double> angles_;  // of a cell [rad], by scale
     std::vector<float> source_;   // by channel and cell

@@ -57,7 +57,10 @@ class OutlierSharing : public testing::Test {
             all += static_cast<double>(node.halves[half].water[k_interval]);
         return all;
     }
-    void share() { share_outliers(nodes_, *intervals_, 1); }
+    void share() {
+        share_surface_outliers(nodes_, 1);
+        share_water_outliers(nodes_, *intervals_, 1, 1);
+    }
 
     static constexpr std::size_t k_interval = 2;
     Renderer renderer_;

@@ -1,0 +1,172 @@
+#include "core/paths/indirect_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nanoflann.hpp>
+#include <utility>
+
+namespace uw {
+
+namespace {
+
+// Points that take part, and those that are looked through for some that face the same way.
+constexpr std::size_t k_near = 8, k_most_near = 64;
+// Points tell of a place if the normals agree, and if it lies no farther from their tangent planes
+// than this, relative to its distance.
+constexpr double k_least_cosine = 0.5, k_most_slope = 0.35;
+
+}  // namespace
+
+/// The nearest points, by ascending distance.
+struct IndirectLight::Near {
+    std::array<std::size_t, k_most_near> index;
+    std::array<double, k_most_near> square;  // of the distance [m^2]
+    std::size_t count = 0;
+};
+
+class IndirectLight::Tree {
+  public:
+    explicit Tree(std::vector<SurfacePoint> points)
+        : points_(std::move(points)),
+          index_(3, *this, nanoflann::KDTreeSingleIndexAdaptorParams(8)) {
+        if (!points_.empty()) index_.buildIndex();
+    }
+    Tree(const Tree&) = delete;
+    Tree& operator=(const Tree&) = delete;
+
+    const SurfacePoint& point(std::size_t index) const { return points_[index]; }
+
+    void find(const Point3& x, std::size_t count, Near& near) const {
+        near.count = 0;
+        if (points_.empty()) return;
+        const std::array<double, 3> at{x.x, x.y, x.z};
+        nanoflann::KNNResultSet<double, std::size_t> result(count);
+        result.init(near.index.data(), near.square.data());
+        index_.findNeighbors(result, at.data(), {});
+        near.count = result.size();
+    }
+
+    // What nanoflann asks for.
+    std::size_t kdtree_get_point_count() const { return points_.size(); }
+    double kdtree_get_pt(std::size_t index, std::size_t axis) const {
+        return points_[index].position[static_cast<int>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+        return false;
+    }
+
+  private:
+    std::vector<SurfacePoint> points_;
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Tree>, Tree, 3,
+                                        std::size_t>
+        index_;
+};
+
+namespace {
+
+// How well a point at this squared distance tells of the hit but for its distance: 0..1.
+double agreement(const SurfacePoint& point, const SurfaceHit& hit, double square) {
+    const double cosine = glm::dot(point.normal, hit.normal);
+    if (!(cosine > k_least_cosine)) return 0;
+    const double off = glm::dot(hit.position - point.position, point.normal);
+    if (off * off > k_most_slope * k_most_slope * square + 1e-12) return 0;
+    const double agreeing = (cosine - k_least_cosine) / (1 - k_least_cosine);
+    return agreeing * agreeing;
+}
+
+}  // namespace
+
+IndirectLight::IndirectLight(std::vector<SurfacePoint> points, std::vector<float> radiance,
+                             std::size_t values)
+    : tree_(std::make_unique<Tree>(std::move(points))),
+      radiance_(std::move(radiance)),
+      values_(values) {}
+
+IndirectLight::~IndirectLight() = default;
+IndirectLight::IndirectLight(IndirectLight&&) noexcept = default;
+IndirectLight& IndirectLight::operator=(IndirectLight&&) noexcept = default;
+
+// By a plane through the nearest points (local linear regression, Cleveland 1979): a mean of them
+// would tell of the inside of a lit side at its edges, and of less light where it is brightest.
+void IndirectLight::find(const SurfaceHit& hit, std::span<double> radiance) const {
+    std::ranges::fill(radiance, 0.0);
+    Near near;
+    tree_->find(hit.position, k_near, near);
+    if (near.count == 0) return;
+    std::array<double, k_most_near> shares;
+    if (!find_shares(hit, near, shares)) {
+        tree_->find(hit.position, k_most_near, near);
+        if (!find_shares(hit, near, shares)) {
+            // The nearest that faces the same half of space.
+            const auto faces = [&](std::size_t index) {
+                return glm::dot(tree_->point(index).normal, hit.normal) > 0;
+            };
+            const auto end = near.index.begin() + static_cast<std::ptrdiff_t>(near.count);
+            const auto found = std::find_if(near.index.begin(), end, faces);
+            if (found == end) return;
+            std::fill(shares.begin(), shares.end(), 0.0);
+            shares[static_cast<std::size_t>(found - near.index.begin())] = 1;
+        }
+    }
+    for (std::size_t i = 0; i < near.count; ++i) {
+        if (shares[i] == 0) continue;
+        const float* of_point = &radiance_[near.index[i] * values_];
+        for (std::size_t k = 0; k < values_; ++k)
+            radiance[k] += shares[i] * static_cast<double>(of_point[k]);
+    }
+    for (double& value : radiance) value = std::max(value, 0.0);
+}
+
+bool IndirectLight::find_shares(const SurfaceHit& hit, const Near& near,
+                                std::span<double> shares) const {
+    // Keeps the plane level where the points say little of its slope.
+    constexpr double k_ridge = 0.005;
+    const double farthest = std::sqrt(std::max(near.square[near.count - 1], 1e-24));
+    std::array<double, k_most_near> weights{}, x{}, y{};
+    // By the basis of Duff et al. 2017.
+    const Vector3& n = hit.normal;
+    const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+    const Vector3 u{1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+    const Vector3 v{b, sign + n.y * n.y * a, -n.y};
+    double s0 = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
+    for (std::size_t i = 0; i < near.count; ++i) {
+        const SurfacePoint& point = tree_->point(near.index[i]);
+        const double agreeing = agreement(point, hit, near.square[i]);
+        if (!(agreeing > 0)) continue;
+        // The farthest counts for nearly nothing, so that the light is continuous.
+        const double nearness = 1 - std::sqrt(near.square[i]) / farthest;
+        const double w = agreeing * (nearness * nearness + 1e-4);
+        const Vector3 offset = (point.position - hit.position) / farthest;
+        weights[i] = w;
+        x[i] = glm::dot(offset, u);
+        y[i] = glm::dot(offset, v);
+        s0 += w;
+        sx += w * x[i];
+        sy += w * y[i];
+        sxx += w * x[i] * x[i];
+        sxy += w * x[i] * y[i];
+        syy += w * y[i] * y[i];
+    }
+    if (!(s0 > 0)) return false;
+    sxx += k_ridge * s0;
+    syy += k_ridge * s0;
+    const double determinant = sxx * syy - sxy * sxy;
+    const double gx = (sx * syy - sy * sxy) / determinant;
+    const double gy = (sy * sxx - sx * sxy) / determinant;
+    const double all = s0 - gx * sx - gy * sy;
+    for (std::size_t i = 0; i < near.count; ++i)
+        shares[i] = weights[i] * (1 - gx * x[i] - gy * y[i]) / all;
+    return true;
+}
+
+bool IndirectLight::covers(const SurfaceHit& hit, double radius) const {
+    Near near;
+    tree_->find(hit.position, k_most_near, near);
+    for (std::size_t i = 0; i < near.count && near.square[i] <= radius * radius; ++i)
+        if (agreement(tree_->point(near.index[i]), hit, near.square[i]) > 0) return true;
+    return false;
+}
+
+}  // namespace uw

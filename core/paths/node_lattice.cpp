@@ -1,0 +1,241 @@
+#include "core/paths/node_lattice.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/base/parallel.h"
+
+namespace uw {
+
+NodeLattice::Positions NodeLattice::Positions::over(const RaySource& rays, int spacing) {
+    const auto steps = [&](int pixels) { return (pixels + spacing - 1) / spacing + 1; };
+    const auto step = static_cast<double>(spacing);
+    return {steps(rays.width()), steps(rays.height()), step, step, 0, 0};
+}
+
+NodeLattice::Positions NodeLattice::Positions::amid(const RaySource& rays, int parts) {
+    return {parts,
+            parts,
+            static_cast<double>(rays.width()) / parts,
+            static_cast<double>(rays.height()) / parts,
+            0.5,
+            1};
+}
+
+NodeLattice::NodeLattice(const MultipleNodes& estimator, const Positions& positions)
+    : estimator_(estimator), positions_(positions) {
+    raw_.assign(positions.columns, positions.rows);
+}
+
+MultipleNodes::Place NodeLattice::place(int i, int j) const {
+    return {(i + positions_.offset) * positions_.step_x,
+            (j + positions_.offset) * positions_.step_y,
+            PathRandom::seed_of(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j),
+                                positions_.seed)};
+}
+
+template <class Visit>
+void NodeLattice::for_each(const NodeWindow& window, const ShareCallback& progress,
+                           const Visit& visit) const {
+    const int columns = window.i1 - window.i0;
+    const std::size_t count = window.size();
+    std::atomic<std::size_t> done = 0;
+    parallel_for(count, [&](std::size_t at) {
+        visit(window.i0 + static_cast<int>(at) % columns,
+              window.j0 + static_cast<int>(at) / columns);
+        progress(static_cast<double>(++done) / static_cast<double>(count));
+    });
+}
+
+namespace {
+
+// Paths of a point that no node sees, relative to those of a node: no others even its noise out.
+constexpr int k_paths_of_unseen = 4;
+constexpr double k_share_of_seen = 0.7;  // of the time
+
+void append(const NodeLight& light, std::vector<float>& radiance) {
+    radiance.insert(radiance.end(), light.diffuse.begin(), light.diffuse.end());
+}
+
+}  // namespace
+
+IndirectLight NodeLattice::light_surfaces(const NodePaths& paths, const ShareCallback& progress) {
+    for_each(
+        all(), [&](double share) { progress(k_share_of_seen * share); },
+        [&](int i, int j) { estimator_.estimate_surface(place(i, j), paths, raw_(i, j)); });
+    smooth_ = smoothed_surfaces(raw_, estimator_.groups(), estimator_.bands());
+    const std::size_t values = estimator_.groups() * estimator_.bands();
+    std::vector<SurfacePoint> points;
+    std::vector<float> radiance;
+    for (const SmoothNode& node : smooth_) {
+        if (!node.surface) continue;
+        points.push_back({node.surface->position, node.surface->normal});
+        append(node.light, radiance);
+    }
+    const std::vector<SurfaceSample> unseen =
+        find_unseen_surfaces(IndirectLight(points, radiance, values));
+    std::vector<NodeLight> lights(unseen.size());
+    std::atomic<std::size_t> done = 0;
+    parallel_for(unseen.size(), [&](std::size_t at) {
+        estimator_.estimate_surface(unseen[at], k_paths_of_unseen * paths.surface, lights[at]);
+        progress(k_share_of_seen + (1 - k_share_of_seen) * static_cast<double>(++done) /
+                                       static_cast<double>(unseen.size()));
+    });
+    for (std::size_t at = 0; at < unseen.size(); ++at) {
+        points.push_back({unseen[at].hit.position, unseen[at].hit.normal});
+        append(lights[at], radiance);
+    }
+    return {std::move(points), std::move(radiance), values};
+}
+
+// A few paths from some of the nodes tell where. Where they meet a surface, and no point is near
+// that tells of it, there will be one.
+std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IndirectLight& seen) const {
+    constexpr int k_step = 3, k_paths = 4;
+    constexpr double k_near = 0.1;   // relative to the distance from the camera
+    constexpr double k_alike = 0.7;  // cosine between the normals
+    constexpr std::size_t k_most = 3000;
+    const int columns = (raw_.width() + k_step - 1) / k_step;
+    const int rows = (raw_.height() + k_step - 1) / k_step;
+    struct Found {
+        SurfaceSample sample;
+        double reach;  // of what it tells about [m]
+    };
+    Grid2D<std::vector<Found>> found(columns, rows);
+    parallel_for(found.size(), [&](std::size_t at) {
+        thread_local std::vector<SurfaceSample> samples;
+        const MultipleNodes::Place from =
+            place(static_cast<int>(at) % columns * k_step, static_cast<int>(at) / columns * k_step);
+        const Point3 camera = estimator_.find_lit_surfaces(from, k_paths, samples);
+        for (const SurfaceSample& sample : samples) {
+            const double reach = k_near * glm::length(sample.hit.position - camera);
+            if (!seen.covers(sample.hit, reach)) found[at].push_back({sample, reach});
+        }
+    });
+    std::vector<SurfaceSample> unseen;
+    for (const std::vector<Found>& of_node : found) {
+        for (const Found& candidate : of_node) {
+            const SurfaceHit& hit = candidate.sample.hit;
+            const bool is_known = std::ranges::any_of(unseen, [&](const SurfaceSample& other) {
+                return glm::length(other.hit.position - hit.position) < candidate.reach &&
+                       glm::dot(other.hit.normal, hit.normal) > k_alike;
+            });
+            if (is_known || unseen.size() == k_most) continue;
+            unseen.push_back(candidate.sample);
+            // Of its random numbers.
+            unseen.back().x = static_cast<double>(unseen.size());
+            unseen.back().y = -1;
+        }
+    }
+    return unseen;
+}
+
+void NodeLattice::light_water(const NodeWindow& window, const NodePaths& paths,
+                              const IndirectLight& indirect, const ShareCallback& progress) {
+    double light = 0;
+    for (const MultipleNode& node : raw_) light += node.mean_light;
+    light /= static_cast<double>(raw_.size());
+    for_each(window, progress, [&](int i, int j) {
+        estimator_.estimate_water(place(i, j), paths, indirect, light, raw_(i, j));
+    });
+}
+
+Grid2D<SmoothNode> NodeLattice::smoothed(const NodeWindow& window,
+                                         const DistanceIntervals& intervals) const {
+    Grid2D<SmoothNode> nodes = smooth_;
+    smooth_water(raw_, window, intervals, estimator_.groups(), estimator_.bands(), nodes);
+    return nodes;
+}
+
+double NodeLattice::error(const Grid2D<SmoothNode>& nodes, const NodeWindow& window) const {
+    // Light that the water scatters comes from so large a part of all surfaces.
+    constexpr double k_part_of_surfaces = 0.1;
+    double variance = 0, light = 0, lit = 0;
+    for (int j = window.j0; j < window.j1; ++j) {
+        for (int i = window.i0; i < window.i1; ++i) {
+            light += raw_(i, j).mean_light;
+            lit += raw_(i, j).lit.mean;
+            variance += nodes(i, j).variance;
+        }
+    }
+    double diffuse = 0, of_diffuse = 0;
+    for (const MultipleNode& node : raw_) {
+        if (!node.surface) continue;
+        diffuse += 0.5 * (node.halves[0].diffuse_mean + node.halves[1].diffuse_mean);
+        of_diffuse += 0.5 * node.diffuse_variance;
+    }
+    if (!(light > 0)) return 0;
+    const double of_nodes = 2 * variance * static_cast<double>(window.size());
+    const double of_lit = diffuse > 0 ? of_diffuse / (k_part_of_surfaces * diffuse * diffuse) : 0;
+    return std::sqrt(of_nodes + of_lit * lit * lit) / light;
+}
+
+namespace {
+
+// The paths of each kind at a node: more would leave less noise than there is light between the
+// nodes of a small image.
+constexpr double k_fewest_node_paths = 8, k_most_node_paths = 4096;
+// What smoothing leaves of the variance of nodes, in the example scenes: 0.03 to 0.07, in plumes
+// more.
+constexpr double k_smoothed_variance = 0.04;
+// What is left of the noise of surfaces in the light that comes from all over them.
+constexpr double k_noise_of_lit = 0.3;
+// Times that paths of each kind take, relatively.
+constexpr struct { double surface, lit, water; } k_cost{3, 1, 2};
+
+}  // namespace
+
+// Numbers in proportion to the deviation of a path over the root of its cost leave the least error.
+NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
+    constexpr int k_paths = 64, k_fewest_across = 5, k_most_across = 16;
+    constexpr double k_share = 0.05;  // of the paths
+    const int across = std::clamp(static_cast<int>(std::sqrt(k_share * effort.paths / k_paths)),
+                                  k_fewest_across, k_most_across);
+    NodeLattice pilot(estimator, NodeLattice::Positions::amid(estimator.rays(), across));
+    const NodePaths few{k_paths, k_paths, k_paths};
+    const ShareCallback untold = [](double) {};
+    const IndirectLight indirect = pilot.light_surfaces(few, untold);
+    pilot.light_water(pilot.all(), few, indirect, untold);
+    double light = 0, lit = 0, diffuse = 0, of_diffuse = 0, surfaces = 0;
+    double of_surface = 0, of_lit = 0, of_water = 0;  // variances of a path
+    for (const MultipleNode& node : pilot.raw()) {
+        light += node.mean_light;
+        lit += node.lit.mean;
+        of_lit += node.lit.variance;
+        of_water += node.water.variance;
+        if (!node.surface) continue;
+        const double variance = node.diffuse_variance * k_paths / 2;  // of either half's mean
+        ++surfaces;
+        diffuse += 0.5 * (node.halves[0].diffuse_mean + node.halves[1].diffuse_mean);
+        of_diffuse += variance;
+        of_surface += variance * node.surface_seen * node.surface_seen;
+    }
+    const auto count = static_cast<double>(pilot.all().size());
+    if (diffuse > 0)
+        of_surface +=
+            k_noise_of_lit * lit * lit / count * of_diffuse * surfaces / (diffuse * diffuse);
+    const double surface = std::sqrt(of_surface / k_cost.surface);
+    const double seen = std::sqrt(of_lit / k_cost.lit), water = std::sqrt(of_water / k_cost.water);
+    const double work = surface * k_cost.surface + seen * k_cost.lit + water * k_cost.water;
+    double scale = 0;
+    if (work > 0)
+        scale = effort.paths / effort.nodes * (k_cost.surface + k_cost.lit + k_cost.water) / work;
+    if (work > 0 && effort.error > 0) {
+        const double error = effort.error * light / count;
+        scale = std::min(scale, k_smoothed_variance * work / count / (error * error));
+    }
+    const auto number = [&](double of_kind) {
+        return static_cast<int>(
+            std::clamp(scale * of_kind, k_fewest_node_paths, k_most_node_paths));
+    };
+    // The few that find water close to a lamp are bright, and rare: some show as spots.
+    constexpr double k_fewest_in_water = 64;
+    const int fewest_water =
+        static_cast<int>(std::min(k_fewest_in_water, effort.paths / effort.nodes));
+    return {number(surface), number(seen), std::max(number(water), fewest_water)};
+}
+
+}  // namespace uw

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "core/base/grid2d.h"
+#include "core/base/progress.h"
+#include "core/paths/indirect_light.h"
+#include "core/paths/multiple_nodes.h"
+#include "core/paths/node_smoothing.h"
+
+namespace uw {
+
+/// Nodes at even steps all over an image (MultipleNodes), and the indirect light on the surfaces
+/// that they see. They depend on the whole image, whatever part of it is rendered.
+class NodeLattice {
+  public:
+    struct Positions {
+        int columns = 0, rows = 0;
+        double step_x = 1, step_y = 1, offset = 0;  // [pixels], [steps]
+        std::uint64_t seed = 0;                     // of the random numbers
+
+        /// At the multiples of `spacing` pixels, up to the image's last edges or beyond.
+        static Positions over(const RaySource& rays, int spacing);
+        /// At the middles of so many parts of the image in each direction.
+        static Positions amid(const RaySource& rays, int parts);
+    };
+
+    /// `estimator` must outlive this object.
+    NodeLattice(const MultipleNodes& estimator, const Positions& positions);
+
+    NodeWindow all() const { return {0, 0, raw_.width(), raw_.height()}; }
+    MultipleNodes::Place place(int i, int j) const;
+
+    /// Begins all nodes, and returns the light on all surfaces: on those that nodes see, smoothed,
+    /// and on those that only paths from them meet.
+    IndirectLight light_surfaces(const NodePaths& paths, const ShareCallback& progress);
+    /// Adds the water's light to the nodes of a window.
+    void light_water(const NodeWindow& window, const NodePaths& paths,
+                     const IndirectLight& indirect, const ShareCallback& progress);
+    /// The nodes as they were estimated.
+    Grid2D<MultipleNode>& raw() { return raw_; }
+    /// The nodes with the surfaces' light smoothed, and in `window` the water's.
+    Grid2D<SmoothNode> smoothed(const NodeWindow& window, const DistanceIntervals& intervals) const;
+    /// The error of these smoothed nodes in a window: the RMS over the mean of all light. It counts
+    /// the noise of the nodes, as much again for what smoothing takes from features, which it is as
+    /// wide as the noise hides them, and the noise of the light on surfaces.
+    double error(const Grid2D<SmoothNode>& nodes, const NodeWindow& window) const;
+
+  private:
+    template <class Visit>
+    void for_each(const NodeWindow& window, const ShareCallback& progress,
+                  const Visit& visit) const;
+    std::vector<SurfaceSample> find_unseen_surfaces(const IndirectLight& seen) const;
+
+    const MultipleNodes& estimator_;
+    Positions positions_;
+    Grid2D<MultipleNode> raw_;
+    Grid2D<SmoothNode> smooth_;  // from light_surfaces on, without the water
+};
+
+/// What the paths of all nodes may take.
+struct NodeEffort {
+    double paths = 0;  // of each kind, at all nodes together, at most
+    int nodes = 0;
+    double error = 0;  // standard error for which fewer will do, relative to all light; 0: none
+};
+
+/// The numbers of paths that leave the least error for the effort, from a few nodes all over the
+/// image.
+NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort);
+
+}  // namespace uw
