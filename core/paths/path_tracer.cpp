@@ -31,7 +31,7 @@ struct PathTables {
     LampGathering lamps;
     LampGlow glow;
     VertexTables vertices;
-    Spectrum light;   // of all lamps on their axes, or 1 without lamps
+    Spectrum light;   // of all lamps on their axes, or 1 where there is none
     Spectrum albedo;  // the greatest of all the water may hold, at least 0.1: guides paths
 
     /// `scene`: with one emitter per lamp. `deep_shadows`: as LampGathering takes them. What is
@@ -54,8 +54,10 @@ struct PathTables {
                 include(constituent.per_unit);
             albedo[b] = std::max(albedo[b], 0.1);
         }
-        if (scene.emitters->empty())
-            for (std::size_t b = 0; b < optics.bands(); ++b) light[b] = 1;
+        // Without any, surfaces may shine.
+        const std::span<double> of_bands = light.first(optics.bands());
+        if (std::ranges::all_of(of_bands, [](double value) { return value == 0; }))
+            std::ranges::fill(of_bands, 1.0);
     }
 };
 
@@ -104,6 +106,9 @@ constexpr double k_least_survival = 0.25, k_least_lobe_survival = 0.2, k_most_su
 constexpr double k_splitting = 0.3, k_most_branches = 16;
 // The least reflectance that a surface counts with when paths head for it.
 constexpr double k_least_reflectance = 0.1;
+// The light that a path may meet anywhere, relative to that of the surface its pixel sees, and at
+// least relative to the pixel's.
+constexpr double k_ambient_share = 0.5, k_least_ambient = 0.05;
 // How far rays begin above the surface they leave, relative to the coordinates and to the last
 // segment: above the rounding of single precision, in which surfaces are found.
 constexpr double k_offset = 4e-7;
@@ -150,6 +155,7 @@ class PathWalk {
     void continuation(const Vector3& direction, Continuation& along) const;
     double survival(const Continuation& along, double least) const;
     double branches(double value, double by_own, double by_lobe) const;
+    void find_emission(const Spectrum& throughput);
     PathState continued(const Continuation& along, double survival) const;
     void trace(const Ray& ray);
     void find_transmittance();  // of the segment
@@ -168,7 +174,7 @@ class PathWalk {
     bool meets_surface_before(double distance);
 
     const PathTables& tables_;
-    const CameraSegment::Light& light_;
+    CameraSegment::Light light_;
     PathRandom& random_;
     PathTerms& terms_;
     PathState state_;
@@ -270,6 +276,7 @@ bool PathWalk::leave(const Point3& origin, bool is_last) {
         seen =
             tables_.lamps.gather_from_surface(w.segment, w.transmittance, state, random_, terms_);
     if (by_own > 0) by_own = branches(w.along_own.value + seen, by_own, by_lobe);
+    if (seen > 0 && w.segment.hit.has_material) find_emission(state.throughput);
     if (of_own >= by_own) return false;
     state_ = continued(w.along_own, by_own);
     state_.branches *= std::max(1.0, by_own);
@@ -322,6 +329,22 @@ double PathWalk::branches(double value, double by_own, double by_lobe) const {
     const double split = std::min(k_splitting * relative, k_most_branches / state_.branches);
     if (split > 1) return split;
     return std::max(by_own, std::min(k_thoroughness * relative, k_most_survival - by_lobe));
+}
+
+// What surfaces emit is not in the light that paths are measured by until one has seen it. Where
+// lamps are faint beside it, paths would split for ever, and go on by chance alone.
+void PathWalk::find_emission(const Spectrum& throughput) {
+    const std::size_t bands = tables_.optics.bands();
+    const SurfaceMaterial material =
+        tables_.optics.scene().surfaces->material(workspace_of_thread().segment.hit);
+    double light = 0, emission = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        light += throughput[b] * material.emission[b];
+        emission += material.emission[b];
+    }
+    light_.own = std::max(light_.own, light / static_cast<double>(bands));
+    light_.ambient =
+        std::max(light_.ambient, k_ambient_share * emission / static_cast<double>(bands));
 }
 
 PathState PathWalk::continued(const Continuation& along, double survival) const {
@@ -536,9 +559,6 @@ constexpr std::size_t k_most_knots = 64;
 constexpr std::size_t k_most_guiding_bands = 4;
 // Share of the first scatterings that follow the transmittance alone, so that none is starved.
 constexpr double k_defensive_share = 0.1;
-// The light that a path may meet anywhere, relative to that of the surface its pixel sees, and at
-// least relative to the pixel's.
-constexpr double k_ambient_share = 0.5, k_least_ambient = 0.05;
 
 /// Per thread: preparing a ray does not allocate.
 struct Workspace {

@@ -40,9 +40,19 @@ TEST(ClosedRooms, AnIntegratingSphereIsEvenlyLitByEachReflection) {
     deviations.expect_errors_below(0.01);
 }
 
-// Where everything emits what it does not reflect, everything is as bright as that.
-TEST(ClosedRooms, AWhiteFurnaceIsWhiteInEveryDirection) {
+/// Where everything emits what it does not reflect, everything is as bright as that, whatever the
+/// lamps are that shine there so faintly that they add nothing.
+struct FaintLamp {
+    double intensity;  // below 0: there is none
+    std::uint32_t paths;
+    double error;  // that they leave at most
+};
+class WhiteFurnaces : public testing::TestWithParam<FaintLamp> {};
+
+TEST_P(WhiteFurnaces, AreWhiteInEveryDirection) {
     PathScene scene({{0, 0.3}, {0, 1.0}, {0, 2.0}}, 0.8);
+    const FaintLamp& lamp = GetParam();
+    if (lamp.intensity >= 0) scene.add_lamp({0.1, -0.2, 0.3}, lamp.intensity);
     const auto glowing = [](double a, double b, double c) {
         ClosedFormSurfaces::Material material{{a, b, c}, {}};
         material.more.emission = Spectrum{1 - a, 1 - b, 1 - c};
@@ -63,7 +73,8 @@ TEST(ClosedRooms, AWhiteFurnaceIsWhiteInEveryDirection) {
         SurfaceHit hit;
         ASSERT_TRUE(scene.surfaces->closest_hit(ray, k_far, hit));
         ++number;
-        const auto batches = ray_batches(scene, ray, static_cast<std::uint64_t>(number));
+        const auto batches =
+            ray_batches(scene, ray, static_cast<std::uint64_t>(number), 32, lamp.paths);
         for (std::size_t b = 0; b < 3; ++b) {
             const double seen = scene.surfaces->material(hit).emission[b] *
                                 std::exp(-scene.medium.uniform.attenuation(b) * hit.distance);
@@ -73,8 +84,13 @@ TEST(ClosedRooms, AWhiteFurnaceIsWhiteInEveryDirection) {
         }
     }
     deviations.expect_within_errors();
-    deviations.expect_errors_below(0.01);
+    deviations.expect_errors_below(lamp.error);
 }
+
+// No lamp, one that is switched off, and a faint one, which leads paths astray.
+INSTANTIATE_TEST_SUITE_P(Lamps, WhiteFurnaces,
+                         testing::Values(FaintLamp{-1, 1 << 10, 0.01}, FaintLamp{0, 1 << 8, 0.02},
+                                         FaintLamp{1e-12, 1 << 8, 0.04}));
 
 // Reflectance of a rough surface in an evenly lit room: the glTF 2.0 BRDF (appendix B) written
 // again, over all directions of light. GGX without multiple reflections between facets loses some.
