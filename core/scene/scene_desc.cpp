@@ -262,7 +262,9 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     const bool brings_lamps = std::ranges::any_of(
         desc.geometry, [](const GeometryDesc& object) { return object.import.any_lamps(); });
     if (desc.lamps.empty() && !brings_lamps) {
-        context.warn(scene, "there are no lamps, so the image will be black; add 'lamps'");
+        context.warn(
+            scene,
+            "there are no lamps, so all that does not emit light will be black; add 'lamps'");
     }
     desc.hash = config_hash(without_variations(root));
     return desc;

@@ -133,7 +133,7 @@ def test_what_is_no_scene(renderer):
 
 def test_warnings_are_python_warnings(capfd, renderer):
     scene = uwvdb.Scene(camera={"resolution": [4, 4], "intrinsics": {"fov_x": 50}})
-    with pytest.warns(uwvdb.SceneWarning, match="there are no lamps, so the image will be black"):
+    with pytest.warns(uwvdb.SceneWarning, match="there are no lamps, so all that"):
         image = renderer.render(scene)
     assert image.warnings == scene.warnings
     assert capfd.readouterr() == ("", "")

@@ -230,7 +230,8 @@ TEST_F(SceneReader, fillsInDefaults) {
     EXPECT_FALSE(scene.render.samples);
     EXPECT_FALSE(scene.render.scattering);
     ASSERT_EQ(scene.warnings.size(), 1U);
-    EXPECT_NE(scene.warnings[0].find("no lamps, so the image will be black"), std::string::npos);
+    EXPECT_NE(scene.warnings[0].find("no lamps, so all that does not emit light will be black"),
+              std::string::npos);
 }
 
 TEST_F(SceneReader, takesLightPaths) {
