@@ -6,6 +6,8 @@
 #include <nanoflann.hpp>
 #include <utility>
 
+#include "core/paths/path_segment.h"
+
 namespace uw {
 
 namespace {
@@ -125,11 +127,7 @@ bool IndirectLight::find_shares(const SurfaceHit& hit, const Near& near,
     constexpr double k_ridge = 0.005;
     const double farthest = std::sqrt(std::max(near.square[near.count - 1], 1e-24));
     std::array<double, k_most_near> weights{}, x{}, y{};
-    // By the basis of Duff et al. 2017.
-    const Vector3& n = hit.normal;
-    const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-    const Vector3 u{1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
-    const Vector3 v{b, sign + n.y * n.y * a, -n.y};
+    const auto [u, v] = Tangents(hit.normal);
     double s0 = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
     for (std::size_t i = 0; i < near.count; ++i) {
         const SurfacePoint& point = tree_->point(near.index[i]);

@@ -51,7 +51,7 @@ struct MultipleNode {
     // The variances of either half's means:
     std::vector<float> water_variance;
     double diffuse_variance = 0;
-    /// Of the paths of one kind, means over the bands.
+    /// What the paths of one kind bring, as means over the bands.
     struct Moments {
         double mean = 0, variance = 0;  // of one path
     };

@@ -52,7 +52,7 @@ void NodeLattice::for_each(const NodeWindow& window, const ShareCallback& progre
 
 namespace {
 
-// Paths of a point that no node sees, relative to those of a node: no others even its noise out.
+// A point that no node sees has so many times the paths of a node: no others even its noise out.
 constexpr int k_paths_of_unseen = 4;
 constexpr double k_share_of_seen = 0.7;  // of the time
 
@@ -125,7 +125,7 @@ std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IndirectLight
             });
             if (is_known || unseen.size() == k_most) continue;
             unseen.push_back(candidate.sample);
-            // Of its random numbers.
+            // Its random numbers depend on its place in the list.
             unseen.back().x = static_cast<double>(unseen.size());
             unseen.back().y = -1;
         }

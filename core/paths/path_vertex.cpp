@@ -54,12 +54,9 @@ namespace {
 
 constexpr double k_glossy_share = 0.5;  // of the directions drawn on glossy surfaces
 
-// The direction at tan(angle / 2) = h from `axis`; the basis is that of Duff et al. 2017.
+// The direction at tan(angle / 2) = h from `axis`.
 Vector3 direction_around(const Vector3& axis, double h, double azimuth) {
-    const double sign = std::copysign(1.0, axis.z);
-    const double a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
-    const Vector3 u{1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x};
-    const Vector3 v{b, sign + axis.y * axis.y * a, -axis.y};
+    const auto [u, v] = Tangents(axis);
     const double norm = 1 / (1 + h * h);
     const double sine = 2 * h * norm, cosine = (1 - h * h) * norm;
     const double phi = 2 * std::numbers::pi * azimuth;
