@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace uw {
+
+/// One of several alternatives, drawn at random.
+struct Choice {
+    std::size_t index = 0;
+    double probability = 1;
+};
+
+/// Chooses between alternatives with the weights whose running sums are `cumulative` (not empty,
+/// the last > 0). `u` in [0, 1) is replaced by a number that is again uniform in [0, 1).
+inline Choice choose(std::span<const double> cumulative, double& u) {
+    const double target = u * cumulative.back();
+    std::size_t index = 0;
+    while (index + 1 < cumulative.size() && cumulative[index] <= target) ++index;
+    const double before = index == 0 ? 0.0 : cumulative[index - 1];
+    const double weight = cumulative[index] - before;
+    u = weight > 0 ? std::clamp((target - before) / weight, 0.0, 1.0) : 0.0;
+    return {index, weight / cumulative.back()};
+}
+
+/// A density over scattering angles psi that can be sampled, in h = tan(psi / 2): linear in h
+/// between nodes, 16 to an octave, from h = 2^-24 (psi = 1.2e-7) to 2^24, and down to h = 0. What
+/// is drawn from it has exactly the density that `density` returns, so that estimates are unbiased
+/// whatever it was made to follow. Not normalised: `mass` is its integral.
+class HalfTangentDensity {
+  public:
+    /// The nodes, ascending from 0.
+    static std::span<const double> nodes();
+
+    HalfTangentDensity() = default;
+    /// `at_nodes`: the density per unit of h at each node, >= 0.
+    explicit HalfTangentDensity(std::span<const double> at_nodes);
+
+    /// The integral over all h.
+    double mass() const { return mass_; }
+    /// The integral from 0 to `h` >= 0; infinity is allowed.
+    double mass_to(double h) const;
+    /// The density per unit of h at `h` >= 0; 0 beyond the last node.
+    double density(double h) const;
+    /// The h up to which the integral is `mass`, 0 <= mass <= mass().
+    double invert(double mass) const;
+
+  private:
+    /// Between two nodes: all that a look-up needs, in half a cache line.
+    struct Cell {
+        double begin = 0, before = 0;  // its first node, and the integral up to there
+        double value = 0, slope = 0;   // the density at `begin`, and its derivative
+    };
+
+    std::vector<Cell> cells_;            // and one of width 0 that ends them
+    std::vector<std::uint16_t> guides_;  // the cell of each of as many equal parts of the mass
+    double mass_ = 0;
+    double guides_per_mass_ = 0;
+};
+
+}  // namespace uw
