@@ -44,6 +44,8 @@ constexpr std::array<int, 5> k_reaches{0, 1, 2, 4, LatticeFit::k_reach};
 // In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
 // light less well.
 constexpr double k_agreement = 2.2;
+// Noise that need not be smoothed any further, relative to differences that do not matter.
+constexpr double k_quiet = 0.5;
 // The least pivot of normal equations, relative to the largest.
 constexpr double k_least_pivot = 1e-6;
 
@@ -57,38 +59,44 @@ void visit_near(std::span<const FitNode> nodes, int reach, const Visit& visit) {
     for (const FitNode& node : nodes) {
         const double x = node.dx * scale, y = node.dy * scale;
         const double near = 1 - x * x - y * y;
-        if (near > 0) visit(node, near * node.weight, Terms{1, x, y, x * x, x * y, y * y});
+        if (near <= 0) return;
+        visit(node, near * node.weight, Terms{1, x, y, x * x, x * y, y * y});
     }
 }
 
 }  // namespace
 
-bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach, int terms) {
-    const auto size = static_cast<std::size_t>(terms);
-    normal_.assign(size * size, 0.0);
-    tried_.clear();
-    int used = 0;
+template <std::size_t k_terms>
+bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach) {
+    // Local and of a fixed size, so that it stays in registers.
+    std::array<double, k_terms * k_terms> normal{};
+    std::size_t used = 0;
     visit_near(nodes, reach, [&](const FitNode&, double rest, const Terms& t) {
         ++used;
-        for (std::size_t i = 0; i < size; ++i)
-            for (std::size_t j = 0; j <= i; ++j) normal_[i * size + j] += rest * t[i] * t[j];
+        for (std::size_t i = 0; i < k_terms; ++i) {
+            const double weighted = rest * t[i];
+            for (std::size_t j = 0; j <= i; ++j) normal[i * k_terms + j] += weighted * t[j];
+        }
     });
-    if (used < 2 * terms - 1 || !cholesky_.factor(normal_, size, k_least_pivot)) return false;
+    if (used + 1 < 2 * k_terms || !cholesky_.factor(normal, k_terms, k_least_pivot)) return false;
     Terms solution{1};  // of which the first term is the value at (0, 0)
-    cholesky_.solve(std::span(solution).first(size));
-    tried_value_ = tried_variance_ = 0;
-    double amplification = 0;
+    cholesky_.solve(std::span(solution).first(k_terms));
+    tried_.resize(used);
+    double value = 0, variance = 0, amplification = 0;
+    std::size_t n = 0;
     visit_near(nodes, reach, [&](const FitNode& node, double rest, const Terms& t) {
         double weight = 0;
-        for (std::size_t i = 0; i < size; ++i) weight += solution[i] * t[i];
+        for (std::size_t i = 0; i < k_terms; ++i) weight += solution[i] * t[i];
         weight *= rest;
-        tried_.push_back({node.index, weight});
-        tried_value_ += weight * node.value;
-        tried_variance_ += weight * weight * node.variance;
+        tried_[n++] = {node.index, weight};
+        value += weight * node.value;
+        variance += weight * weight * node.variance;
         amplification += weight * weight;
     });
+    tried_value_ = value;
+    tried_variance_ = variance;
     // An extrapolation that makes noise greater is left to a lower degree.
-    return terms == 1 || amplification <= 1;
+    return k_terms == 1 || amplification <= 1;
 }
 
 std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, double tolerance) {
@@ -101,13 +109,9 @@ std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, doubl
     std::size_t count = 0;
     for (const int reach : k_reaches) {
         // The polynomial has the highest degree that the nodes determine.
-        bool found = false;
-        for (const int terms : {6, 3, 1}) {
-            if (reach < 2 && terms == 6) continue;
-            found = fit_within(nodes, reach, terms);
-            if (found) break;
-        }
-        if (!found) continue;
+        if (!(reach >= 2 && fit_within<6>(nodes, reach)) && !fit_within<3>(nodes, reach) &&
+            !fit_within<1>(nodes, reach))
+            continue;
         const bool agrees =
             std::all_of(accepted.begin(), accepted.begin() + static_cast<std::ptrdiff_t>(count),
                         [&](const Accepted& narrower) {
@@ -118,6 +122,7 @@ std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, doubl
         accepted[count++] = {tried_value_, std::sqrt(tried_variance_)};
         weights_.swap(tried_);
         variance_ = tried_variance_;
+        if (std::sqrt(variance_) < k_quiet * tolerance) break;
     }
     return weights_;
 }

@@ -48,18 +48,19 @@ class LatticeFit {
     static constexpr int k_reach = 8;
 
     /// The weights with which the nodes make up the fitted value at (0, 0), the sum of which is 1.
-    /// `nodes` need not include that place. `tolerance`: differences that do not matter, in units
-    /// of `value`. Empty without nodes.
+    /// `nodes`, the nearest first, need not include that place. `tolerance`: differences that do
+    /// not matter, in units of `value`; where the noise is well below, narrower neighbourhoods will
+    /// do. Empty without nodes.
     std::span<const FitWeight> fit(std::span<const FitNode> nodes, double tolerance);
 
     /// The variance of the last fitted value.
     double variance() const { return variance_; }
 
   private:
-    bool fit_within(std::span<const FitNode> nodes, int reach, int terms);
+    template <std::size_t k_terms>
+    bool fit_within(std::span<const FitNode> nodes, int reach);
 
     std::vector<FitWeight> weights_, tried_;
-    std::vector<double> normal_;  // equations
     CholeskyFactor cholesky_;
     double variance_ = 0;
     double tried_variance_ = 0, tried_value_ = 0;

@@ -185,24 +185,23 @@ constexpr double k_tolerance = 1e-3;
 /// The nodes around one that take part in a fit.
 class Neighbourhood {
   public:
-    /// `of(node)` is the node's FitNode without its place, or empty if it takes no part.
+    /// `of(index)` is a node's FitNode without its place, or empty if it takes no part.
     template <class Of>
     void find(const Grid2D<MultipleNode>& raw, int i, int j, const Of& of) {
-        constexpr int k_reach = LatticeFit::k_reach;
         nodes_.clear();
         light_ = weight_ = 0;
-        for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v) {
-            for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach);
-                 ++u) {
-                std::optional<FitNode> node = of(raw(u, v));
-                if (!node) continue;
-                node->dx = u - i;
-                node->dy = v - j;
-                node->index = raw.index(u, v);
-                nodes_.push_back(*node);
-                light_ += raw(u, v).mean_light;
-                weight_ += node->weight;
-            }
+        for (const auto& [dx, dy] : steps_by_distance()) {
+            const int u = i + dx, v = j + dy;
+            if (u < 0 || v < 0 || u >= raw.width() || v >= raw.height()) continue;
+            const std::size_t index = raw.index(u, v);
+            std::optional<FitNode> node = of(index);
+            if (!node) continue;
+            node->dx = dx;
+            node->dy = dy;
+            node->index = index;
+            nodes_.push_back(*node);
+            light_ += raw[index].mean_light;
+            weight_ += node->weight;
         }
         const double count = std::max(1.0, static_cast<double>(nodes_.size()));
         light_ /= count;
@@ -216,6 +215,26 @@ class Neighbourhood {
     double weight() const { return weight_; }
 
   private:
+    struct Step {
+        int dx, dy;
+    };
+    // Those that LatticeFit takes nodes from, the nearest first.
+    static const std::vector<Step>& steps_by_distance() {
+        static const std::vector<Step> steps = [] {
+            constexpr int k_reach = LatticeFit::k_reach, k_beyond = (k_reach + 1) * (k_reach + 1);
+            const auto square = [](const Step& step) {
+                return step.dx * step.dx + step.dy * step.dy;
+            };
+            std::vector<Step> all;
+            for (int dy = -k_reach; dy <= k_reach; ++dy)
+                for (int dx = -k_reach; dx <= k_reach; ++dx)
+                    if (square({dx, dy}) < k_beyond) all.push_back({dx, dy});
+            std::ranges::stable_sort(all, std::less(), square);
+            return all;
+        }();
+        return steps;
+    }
+
     std::vector<FitNode> nodes_;
     double light_ = 0, weight_ = 0;
 };
@@ -266,12 +285,34 @@ void average_water_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleNod
     });
 }
 
+/// What the nodes tell of the water's light in one interval.
+struct IntervalOfNodes {
+    std::vector<float> weights;                 // 0: nothing
+    std::array<std::vector<float>, 2> of_half;  // the light divided by that, by half
+    std::vector<float> variances;               // of either
+
+    IntervalOfNodes(const Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
+                    std::size_t interval)
+        : weights(nodes.size()), of_half{weights, weights}, variances(nodes.size()) {
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            const MultipleNode& node = nodes[n];
+            if (!shows_interval(node, intervals, interval)) continue;
+            weights[n] = node.mean_weights[interval];
+            for (const std::size_t half : {0U, 1U})
+                of_half[half][n] = node.halves[half].water_mean[interval] / weights[n];
+            variances[n] = node.water_variance[interval] / (weights[n] * weights[n]);
+        }
+    }
+};
+
 class NodeSmoothing {
   public:
     NodeSmoothing(const Grid2D<MultipleNode>& raw, std::size_t groups, std::size_t bands)
         : raw_(raw), bands_(bands), values_(groups * bands) {}
 
-    void smooth_water(const DistanceIntervals& intervals, int i, int j, SmoothNode& node) const;
+    /// Adds an interval to a node; false if none of the nodes around it tells anything.
+    bool smooth_water(const IntervalOfNodes& of_nodes, std::size_t interval, int i, int j,
+                      SmoothNode& node) const;
     void smooth_surface(int i, int j, SmoothNode& node) const;
 
   private:
@@ -279,44 +320,37 @@ class NodeSmoothing {
     std::size_t bands_, values_;
 };
 
-void NodeSmoothing::smooth_water(const DistanceIntervals& intervals, int i, int j,
-                                 SmoothNode& node) const {
+bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t interval, int i,
+                                 int j, SmoothNode& node) const {
     thread_local LatticeFit fit;
     thread_local Neighbourhood near;
     const MultipleNode& own = raw_(i, j);
-    node.light.water.assign(intervals.count() * values_, 0.0F);
-    for (std::size_t interval = 0; interval < intervals.count(); ++interval) {
-        for (std::size_t half = 0; half < 2; ++half) {
-            near.find(raw_, i, j, [&](const MultipleNode& other) -> std::optional<FitNode> {
-                if (!shows_interval(other, intervals, interval)) return std::nullopt;
-                FitNode of;
-                of.weight = static_cast<double>(other.mean_weights[interval]);
-                of.value =
-                    static_cast<double>(other.halves[1 - half].water_mean[interval]) / of.weight;
-                of.variance =
-                    static_cast<double>(other.water_variance[interval]) / (of.weight * of.weight);
-                return of;
-            });
-            if (near.nodes().empty()) return;
-            // As much as the node's ray shows of it: nothing behind its surface.
-            const double shown =
-                own.has_ray ? static_cast<double>(own.mean_weights[interval]) : 0.0;
-            const double tolerance =
-                k_tolerance * near.light() / std::max(shown, 1e-3 * near.weight());
-            for (const FitWeight& weight : fit.fit(near.nodes(), tolerance)) {
-                const MultipleNode& other = raw_[weight.index];
-                const float* water = &other.halves[half].water[interval * values_];
-                for (std::size_t k = 0; k < values_; ++k) {
-                    const float of_band = other.weights[interval * bands_ + k % bands_];
-                    if (!(of_band > 0)) continue;
-                    node.light.water[interval * values_ + k] +=
-                        static_cast<float>(0.5 * weight.weight) * water[k] / of_band;
-                }
+    for (std::size_t half = 0; half < 2; ++half) {
+        near.find(raw_, i, j, [&](std::size_t other) -> std::optional<FitNode> {
+            if (!(of_nodes.weights[other] > 0)) return std::nullopt;
+            FitNode of;
+            of.weight = static_cast<double>(of_nodes.weights[other]);
+            of.value = static_cast<double>(of_nodes.of_half[1 - half][other]);
+            of.variance = static_cast<double>(of_nodes.variances[other]);
+            return of;
+        });
+        if (near.nodes().empty()) return false;
+        // As much as the node's ray shows of it: nothing behind its surface.
+        const double shown = own.has_ray ? static_cast<double>(own.mean_weights[interval]) : 0.0;
+        const double tolerance = k_tolerance * near.light() / std::max(shown, 1e-3 * near.weight());
+        for (const FitWeight& weight : fit.fit(near.nodes(), tolerance)) {
+            const MultipleNode& other = raw_[weight.index];
+            const float* water = &other.halves[half].water[interval * values_];
+            for (std::size_t k = 0; k < values_; ++k) {
+                const float of_band = other.weights[interval * bands_ + k % bands_];
+                if (!(of_band > 0)) continue;
+                node.light.water[interval * values_ + k] +=
+                    static_cast<float>(0.5 * weight.weight) * water[k] / of_band;
             }
-            node.variance += 0.25 * fit.variance() * shown * shown;
         }
-        node.known_to = intervals.end(interval);
+        node.variance += 0.25 * fit.variance() * shown * shown;
     }
+    return true;
 }
 
 void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
@@ -327,7 +361,8 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
     node.light.diffuse.assign(values_, 0.0F);
     node.light.glossy.assign(own.surface->is_glossy ? values_ : 0, 0.0F);
     for (std::size_t half = 0; half < 2; ++half) {
-        near.find(raw_, i, j, [&](const MultipleNode& other) -> std::optional<FitNode> {
+        near.find(raw_, i, j, [&](std::size_t index) -> std::optional<FitNode> {
+            const MultipleNode& other = raw_[index];
             if (!see_same_surface(own, other)) return std::nullopt;
             FitNode of;
             of.value = other.halves[1 - half].diffuse_mean;
@@ -386,12 +421,26 @@ void smooth_water(const Grid2D<MultipleNode>& raw, const NodeWindow& window,
     share_water_outliers(averaged, intervals, groups, bands);
     const NodeSmoothing smoothing(averaged, groups, bands);
     const int columns = window.i1 - window.i0;
-    parallel_for(window.size(), [&](std::size_t at) {
-        const int i = window.i0 + static_cast<int>(at) % columns;
-        const int j = window.j0 + static_cast<int>(at) / columns;
-        smoothing.smooth_water(intervals, i, j, nodes(i, j));
+    const auto for_each = [&](const auto& visit) {
+        parallel_for(window.size(), [&](std::size_t at) {
+            visit(window.i0 + static_cast<int>(at) % columns,
+                  window.j0 + static_cast<int>(at) / columns);
+        });
+    };
+    for_each([&](int i, int j) {
+        nodes(i, j).light.water.assign(intervals.count() * groups * bands, 0.0F);
         nodes(i, j).mean_light = raw(i, j).mean_light;
     });
+    for (std::size_t interval = 0; interval < intervals.count(); ++interval) {
+        const IntervalOfNodes of_nodes(averaged, intervals, interval);
+        // Nothing is known of what lies behind an interval that no node tells of.
+        const double before = interval == 0 ? 0 : intervals.end(interval - 1);
+        for_each([&](int i, int j) {
+            SmoothNode& node = nodes(i, j);
+            if (node.known_to == before && smoothing.smooth_water(of_nodes, interval, i, j, node))
+                node.known_to = intervals.end(interval);
+        });
+    }
 }
 
 }  // namespace uw
