@@ -175,8 +175,7 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
     if (with_paths && integrator_kind(scene.desc().render.integrator).traces_paths)
         transport.paths = std::make_shared<PathTracer>(scene.lit());
     else if (with_paths)
-        transport.paths = std::make_shared<PathTracer>(
-            scene.lit(), PathOptions{{deep_shadows.begin(), deep_shadows.end()}});
+        transport.paths = std::make_shared<PathTracer>(scene.lit(), deep_shadows);
     weigh_as_output(scene.desc(), transport);
     return transport;
 }

@@ -72,9 +72,8 @@ struct ScatterPlace {
 /// storage.
 class WaterShares {
   public:
-    /// `weights`: a factor for each lamp, or none.
     void find(const WaterOptics& optics, const ScatteringTables& tables,
-              const WaterSegment& segment, std::span<const double> weights, const PathState& state);
+              const WaterSegment& segment, const PathState& state);
 
     /// By three random numbers, 0..1, on the segment of this `length`; none where nothing is lit.
     /// Once after each `find`, with the same tables.
@@ -122,8 +121,7 @@ class WaterShares {
 constexpr double k_field_share = 0.25;
 
 void WaterShares::find(const WaterOptics& optics, const ScatteringTables& tables,
-                       const WaterSegment& segment, std::span<const double> weights,
-                       const PathState& state) {
+                       const WaterSegment& segment, const PathState& state) {
     const std::vector<Lamp>& lamps = *optics.scene().emitters;
     const std::size_t phases = tables.phase_count();
     // By the scattering of the whole segment: what is chosen need only resemble what it stands for.
@@ -161,14 +159,12 @@ void WaterShares::find(const WaterOptics& optics, const ScatteringTables& tables
     };
     double total = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
-        const double own_weight = weights.empty() ? 1 : weights[j];
-        if (!(own_weight > 0)) continue;
         const Interval lit = lamps[j].beam(segment.ray, {0, segment.length});
         if (!(lit.length() > 0)) continue;
         LampPassage passage(segment.ray, lamps[j]);
         if (passage.parallel) {
             Share share = parallel_share(optics, tables, segment, j, passage, lit);
-            const double weight = own_weight * share.mass * share.stretch.effective_length() *
+            const double weight = share.mass * share.stretch.effective_length() *
                                   arriving(j, lit.begin + passage.radius(lit.begin));
             if (!(weight > 0)) continue;
             total += weight;
@@ -211,10 +207,10 @@ void WaterShares::find(const WaterOptics& optics, const ScatteringTables& tables
         }
         if (share.part_count == 0) continue;
         // The light path R + s of a lamp never shortens along the segment.
-        const double weight = lamps.size() == 1
-                                  ? 1
-                                  : own_weight * share.mass / share.distance *
-                                        arriving(j, lit.begin + passage.radius(lit.begin));
+        const double weight =
+            lamps.size() == 1
+                ? 1
+                : share.mass / share.distance * arriving(j, lit.begin + passage.radius(lit.begin));
         if (!(weight > 0)) continue;
         total += weight;
         shares_.push_back(share);
@@ -326,14 +322,13 @@ void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
         deep_shadows_[lamp]->columns(std::span(&x, 1), column);
 }
 
-void LampGathering::gather_from_water(const WaterSegment& segment, std::span<const double> weights,
-                                      const PathState& state, PathRandom& random,
-                                      PathTerms& terms) const {
+void LampGathering::gather_from_water(const WaterSegment& segment, const PathState& state,
+                                      PathRandom& random, PathTerms& terms) const {
     thread_local GatheringWorkspace w;
     const double of_lamp = random.next(), of_phase = random.next(), of_angle = random.next();
     const std::size_t phases = tables_.phase_count();
     if (phases == 0) return;
-    w.of_water.find(optics_, tables_, segment, weights, state);
+    w.of_water.find(optics_, tables_, segment, state);
     const std::optional<ScatterPlace> place =
         w.of_water.choose(tables_, segment.length, of_lamp, of_phase, of_angle);
     if (!place) return;
@@ -354,7 +349,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
     const std::size_t bands = optics_.bands();
     const std::span<double> radiance = w.radiance.first(bands);
     optics_.transmittances(s + place->radius, w.column, w.radiance);
-    const double factor = (weights.empty() ? 1 : weights[place->lamp]) * relative / place->density;
+    const double factor = relative / place->density;
     for (std::size_t b = 0; b < bands; ++b) {
         double beta = 0;
         for (std::size_t m = 0; m < phases; ++m) beta += w.point.scattering[m][b] * w.p[m];
@@ -366,9 +361,9 @@ void LampGathering::gather_from_water(const WaterSegment& segment, std::span<con
     terms.add(term);
 }
 
-double LampGathering::gather_from_surface(const WaterSegment& segment,
-                                          const Spectrum& transmittance, const PathState& state,
-                                          PathRandom& random, PathTerms& terms) const {
+void LampGathering::gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
+                                        const PathState& state, PathRandom& random,
+                                        PathTerms& terms) const {
     thread_local GatheringWorkspace w;
     double u = random.next();
     const std::size_t bands = optics_.bands();
@@ -377,17 +372,10 @@ double LampGathering::gather_from_surface(const WaterSegment& segment,
     const SurfaceSample sample{segment.ray, hit, 0, 0};
     const SurfaceReflection reflection(*optics_.scene().surfaces, sample, static_cast<int>(bands));
     const std::span<double> radiance = w.radiance.first(bands);
-    double seen = 0, transmitted = 0;
-    for (const double value : transmittance.first(bands)) transmitted += value;
-    if (!(transmitted > 0)) return 0;
-    const auto add_term = [&](const PathTerm& term) {
-        for (const double value : radiance) seen += value / transmitted;
-        terms.add(term);
-    };
     if (reflection.emits()) {
         for (std::size_t b = 0; b < bands; ++b)
             radiance[b] = state.throughput[b] * transmittance[b] * reflection.emission()[b];
-        add_term(state.term(k_no_lamp, radiance));
+        terms.add(state.term(k_no_lamp, radiance));
     }
     w.of_surface.clear();
     w.cumulative.clear();
@@ -409,12 +397,12 @@ double LampGathering::gather_from_surface(const WaterSegment& segment,
         w.of_surface.push_back({j, radius, geometry});
         w.cumulative.push_back(total);
     }
-    if (w.of_surface.empty()) return seen;
+    if (w.of_surface.empty()) return;
     const auto [chosen, probability] = choose(w.cumulative, u);
     const GatheringWorkspace::SurfaceShare& share = w.of_surface[chosen];
     const Lamp& lamp = lamps[share.lamp];
     const Point3 origin = lamp.origin(hit.position);
-    if (optics_.scene().surfaces->occluded(origin, hit.position)) return seen;
+    if (optics_.scene().surfaces->occluded(origin, hit.position)) return;
     w.column.resize(optics_.constituents());
     column_to_lamp(share.lamp, hit.position, w.column);
     reflection.brdf(origin, w.brdf);
@@ -424,8 +412,7 @@ double LampGathering::gather_from_surface(const WaterSegment& segment,
                        transmittance[b] * state.throughput[b];
     PathTerm term = state.term(share.lamp, radiance);
     ++term.reflections;
-    add_term(term);
-    return seen;
+    terms.add(term);
 }
 
 }  // namespace uw

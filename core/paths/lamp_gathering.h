@@ -25,19 +25,18 @@ class LampGathering {
     /// The water's: int I b p e^-tau / R^2 ds for a lamp chosen by its share, at a point chosen by
     /// its scattering angle psi, in which 1/R^2 and the forward peak are flat: ds / R^2 = dpsi / D
     /// with D the lamp's distance from the line; a sun's at one chosen by its attenuation.
-    /// Uses three random numbers. `weights`: a factor for
-    /// each lamp, or none; lamps whose factor is 0 are not chosen.
-    void gather_from_water(const WaterSegment& segment, std::span<const double> weights,
-                           const PathState& state, PathRandom& random, PathTerms& terms) const;
-    /// The surface's, for a lamp chosen by its share; `transmittance` is that of the segment. Uses
-    /// one random number. Returns what would arrive of it, and of what the surface emits, through
-    /// clear water, roughly: the mean of the bands [W m^-2 sr^-1]. Precondition: segment.has_hit.
-    double gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
-                               const PathState& state, PathRandom& random, PathTerms& terms) const;
+    /// Uses three random numbers.
+    void gather_from_water(const WaterSegment& segment, const PathState& state, PathRandom& random,
+                           PathTerms& terms) const;
+    /// The surface's, for a lamp chosen by its share, and what it emits; `transmittance` is that of
+    /// the segment. Uses one random number. Precondition: segment.has_hit.
+    void gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
+                             const PathState& state, PathRandom& random, PathTerms& terms) const;
 
-  private:
+    /// The columns of the constituents between a lamp and a point [unit m].
     void column_to_lamp(std::size_t lamp, const Point3& x, std::span<double> column) const;
 
+  private:
     const WaterOptics& optics_;
     const ScatteringTables& tables_;
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;

@@ -199,6 +199,7 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
     // No surface guides the paths that stay in the water.
     transport_.paths->begin(*ray, has_hit ? &hit : nullptr, {}, w.segment);
     w.segment.light.own = std::max(w.segment.light.own, node.mean_light);
+    w.segment.water_paths = 1;
     if (weights_.vary()) {
         // Particles may be lit up anywhere, of which the lamps' guides know nothing. What is
         // typical is guessed without most of the scattered light: it is a few times as much.
@@ -225,6 +226,7 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
             const double of_path = sum.of_path() * per_band;
             moments.mean += of_path / in_all;
             moments.variance += of_path * of_path / in_all;
+            moments.numbers += static_cast<double>(random.dimension()) / in_all;
         }
     };
     for (int batch = 0; batch < k_node_batches; ++batch) {
@@ -286,6 +288,8 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
                     PathRandom::seed_of(seed, stream, static_cast<std::uint64_t>(batch)),
                     static_cast<std::uint32_t>(i));
                 transport_.paths->trace_surface(w.segment, random, sum);
+                node.surface_numbers +=
+                    static_cast<double>(random.dimension()) / (in_batch * k_node_batches);
             }
             const auto half = static_cast<std::size_t>(batch / k_batches_of_half);
             store(w.surface, 1.0 / (in_batch * k_batches_of_half * share),
@@ -295,6 +299,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
         }
         return means;
     };
+    w.segment.surface_paths = 1;
     SurfaceHit& hit = w.segment.water.hit;
     for (std::size_t b = 0; b < bands; ++b)
         node.surface_seen += hit.reflectance[b] * w.segment.transmittance[b];

@@ -51,11 +51,13 @@ struct MultipleNode {
     // The variances of either half's means:
     std::vector<float> water_variance;
     double diffuse_variance = 0;
-    /// What the paths of one kind bring, as means over the bands.
+    /// What a path of one kind brings, as means over the bands, and how many random numbers it
+    /// takes: that tells how long it is.
     struct Moments {
-        double mean = 0, variance = 0;  // of one path
+        double mean = 0, variance = 0, numbers = 0;
     };
-    Moments lit, water;  // NodePaths
+    Moments lit, water;          // NodePaths
+    double surface_numbers = 0;  // of the third kind
 };
 
 /// How many light paths of each kind a node gets.

@@ -183,8 +183,12 @@ constexpr double k_fewest_node_paths = 8, k_most_node_paths = 4096;
 constexpr double k_smoothed_variance = 0.04;
 // What is left of the noise of surfaces in the light that comes from all over them.
 constexpr double k_noise_of_lit = 0.3;
-// Times that paths of each kind take, relatively.
-constexpr struct { double surface, lit, water; } k_cost{3, 1, 2};
+// The time that paths take for each random number, relatively: for those to lit surfaces, which
+// look for no lamps, and for others.
+constexpr double k_cost_of_plain = 1, k_cost_of_guided = 2;
+// So much for each node and each path that the effort names.
+constexpr double k_cost_of_effort = 120;
+constexpr double k_least_cost = 1;
 
 }  // namespace
 
@@ -201,11 +205,17 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
     pilot.light_water(pilot.all(), few, indirect, untold);
     double light = 0, lit = 0, diffuse = 0, of_diffuse = 0, surfaces = 0;
     double of_surface = 0, of_lit = 0, of_water = 0;  // variances of a path
+    struct {
+        double surface, lit, water;
+    } cost{0, 0, 0};  // of all paths of a kind
     for (const MultipleNode& node : pilot.raw()) {
         light += node.mean_light;
         lit += node.lit.mean;
         of_lit += node.lit.variance;
         of_water += node.water.variance;
+        cost.lit += k_cost_of_plain * node.lit.numbers;
+        cost.water += k_cost_of_guided * node.water.numbers;
+        cost.surface += k_cost_of_guided * node.surface_numbers;
         if (!node.surface) continue;
         const double variance = node.diffuse_variance * k_paths / 2;  // of either half's mean
         ++surfaces;
@@ -217,12 +227,12 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
     if (diffuse > 0)
         of_surface +=
             k_noise_of_lit * lit * lit / count * of_diffuse * surfaces / (diffuse * diffuse);
-    const double surface = std::sqrt(of_surface / k_cost.surface);
-    const double seen = std::sqrt(of_lit / k_cost.lit), water = std::sqrt(of_water / k_cost.water);
-    const double work = surface * k_cost.surface + seen * k_cost.lit + water * k_cost.water;
-    double scale = 0;
-    if (work > 0)
-        scale = effort.paths / effort.nodes * (k_cost.surface + k_cost.lit + k_cost.water) / work;
+    for (double* of_kind : {&cost.surface, &cost.lit, &cost.water})
+        *of_kind = std::max(*of_kind / count, k_least_cost);
+    const double surface = std::sqrt(of_surface / cost.surface);
+    const double seen = std::sqrt(of_lit / cost.lit), water = std::sqrt(of_water / cost.water);
+    const double work = surface * cost.surface + seen * cost.lit + water * cost.water;
+    double scale = work > 0 ? k_cost_of_effort * effort.paths / effort.nodes / work : 0;
     if (work > 0 && effort.error > 0) {
         const double error = effort.error * light / count;
         scale = std::min(scale, k_smoothed_variance * work / count / (error * error));
@@ -232,7 +242,7 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
             std::clamp(scale * of_kind, k_fewest_node_paths, k_most_node_paths));
     };
     // The few that find water close to a lamp are bright, and rare: some show as spots.
-    constexpr double k_fewest_in_water = 64;
+    constexpr double k_fewest_in_water = 8;
     const int fewest_water =
         static_cast<int>(std::min(k_fewest_in_water, effort.paths / effort.nodes));
     return {number(surface), number(seen), std::max(number(water), fewest_water)};

@@ -139,6 +139,9 @@ struct CameraSegment {
         double own = 0;      // the ray's radiance, without single scattering
         double ambient = 0;  // what a path may meet anywhere
     } light;
+    /// The share of paths that look for light which no surface has met, and of those that begin
+    /// at the segment's own surface: where they bring less of its light than others, they are few.
+    double water_paths = 1, surface_paths = 1;
 };
 
 }  // namespace uw

@@ -11,8 +11,7 @@ PathTables::PathTables(const LitScene& scene, const ScatteringTables& tables,
     : optics(scene),
       scattering(tables),
       lamps(optics, scattering, std::move(deep_shadows)),
-      glow(optics, scattering),
-      vertices{&optics, &scattering, &glow} {
+      guides(optics, scattering, lamps) {
     for (const Lamp& lamp : *scene.emitters) light += lamp.axis_intensity();
     for (std::size_t b = 0; b < optics.bands(); ++b) {
         const auto include = [&](const OpticalCoefficients& coefficients) {

@@ -8,8 +8,8 @@
 #include "core/light/integrator.h"
 #include "core/light/lamp.h"
 #include "core/paths/lamp_gathering.h"
+#include "core/paths/lamp_guides.h"
 #include "core/paths/path_segment.h"
-#include "core/paths/path_vertex.h"
 #include "core/paths/scattering_tables.h"
 
 namespace uw {
@@ -31,8 +31,7 @@ struct PathTables {
     WaterOptics optics;
     const ScatteringTables& scattering;
     LampGathering lamps;
-    LampGlow glow;
-    VertexTables vertices;
+    GuideTables guides;
     Spectrum light;   // of all lamps on their axes, or 1 where there is none
     Spectrum albedo;  // the greatest of all the water may hold, at least 0.1: guides paths
 

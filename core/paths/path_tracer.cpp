@@ -6,12 +6,10 @@
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
-#include "core/light/lamp.h"
 #include "core/light/ray_panels.h"
 #include "core/paths/indirect_light.h"
 #include "core/paths/lamp_gathering.h"
 #include "core/paths/path_tables.h"
-#include "core/paths/path_vertex.h"
 #include "core/paths/path_walk.h"
 #include "core/paths/scattering_tables.h"
 
@@ -19,24 +17,28 @@ namespace uw {
 
 namespace {
 
-// The ambient light is at least this relative to the pixel's.
-constexpr double k_least_ambient = 0.05;
+// The light that a path may meet anywhere, relative to that of the surface its pixel sees, and at
+// least relative to the pixel's.
+constexpr double k_ambient_share = 0.5, k_least_ambient = 0.05;
 // Paths are not followed beyond this optical depth of the camera ray: e^-20 = 2e-9.
 constexpr double k_reach = 20;
 // Intervals of uniform water in which the first scattering is uniform; most of them in a plume.
 constexpr int k_views_of_ray = 8;
 constexpr double k_far_begin = 1.5, k_far_step = 0.5;
 constexpr std::size_t k_most_knots = 64;
-constexpr std::size_t k_most_guiding_bands = 4;
+// Places along the ray at which the lamps' light is looked up: between them it is followed.
+constexpr std::size_t k_most_guides = 6;
 // Share of the first scatterings that follow the transmittance alone, so that none is starved.
 constexpr double k_defensive_share = 0.1;
+// The share of paths of a kind, relative to its share of the light, and at least.
+constexpr double k_paths_of_share = 4, k_least_paths = 0.1;
 
 /// Per thread: preparing a ray does not allocate.
 struct Workspace {
     WaterPoint point;
     std::vector<LampPassage> passages;  // of the lamps
-    std::vector<LampGlow::Spread> spreads;
     std::vector<double> guided, plain;
+    LampGuides guides;
 };
 
 Workspace& workspace_of_thread() {
@@ -46,18 +48,18 @@ Workspace& workspace_of_thread() {
 
 }  // namespace
 
-PathTracer::PathTracer(const LitScene& scene, const PathOptions& options)
+PathTracer::PathTracer(const LitScene& scene,
+                       const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows)
     : scattering_(std::make_unique<ScatteringTables>(*scene.medium)),
       views_(lamp_views(*scene.emitters)) {
     for (const LampView& view : views_) {
         LitScene seen = scene;
         seen.emitters = &view.lamps;
-        std::vector<std::shared_ptr<const DeepShadow>> deep_shadows;
-        if (!options.deep_shadows.empty())
+        std::vector<std::shared_ptr<const DeepShadow>> of_view;
+        if (!deep_shadows.empty())
             for (const std::size_t emitter : view.emitters)
-                deep_shadows.push_back(options.deep_shadows[emitter]);
-        tables_.push_back(
-            std::make_unique<PathTables>(seen, *scattering_, std::move(deep_shadows)));
+                of_view.push_back(deep_shadows[emitter]);
+        tables_.push_back(std::make_unique<PathTables>(seen, *scattering_, std::move(of_view)));
     }
 }
 
@@ -133,61 +135,96 @@ void PathTracer::place_intervals(CameraSegment& segment) const {
     s.erase(std::unique(s.begin(), s.end()), s.end());
 }
 
+// The radiance of the segment's surface, by band: what is known of it, and what the lamps' field
+// lets expect. Returns the mean of that as it arrives at the camera.
+double PathTracer::guess_surface_light(const CameraSegment& segment,
+                                       std::span<const double> surface_light,
+                                       Spectrum& light) const {
+    const PathTables& tables = *tables_.front();
+    const std::size_t bands = tables.optics.bands();
+    light = {};
+    std::ranges::copy(surface_light, light.begin());
+    if (!segment.water.has_hit) return 0;
+    double all = 0;
+    for (const double value : segment.transmittance.first(bands)) all += value;
+    const double guess = guessed_reflection(tables.guides, segment.water.hit,
+                                            all > 0 ? segment.transmittance : tables.light);
+    double arriving = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        light[b] = std::max(light[b], guess);
+        arriving += guess * segment.transmittance[b];
+    }
+    return arriving / static_cast<double>(bands);
+}
+
 void PathTracer::weigh_intervals(std::span<const double> surface_light,
                                  CameraSegment& segment) const {
     Workspace& w = workspace_of_thread();
-    const WaterOptics& optics = tables_.front()->optics;
+    const PathTables& tables = *tables_.front();
+    const WaterOptics& optics = tables.optics;
     const std::size_t bands = optics.bands();
     const WaterSegment& water = segment.water;
     const std::vector<double>& s = segment.distances;
-    const std::vector<Lamp>& lamps = *optics.scene().emitters;
-    const AttenuationTable& attenuation = optics.attenuation();
-    // A few of the bands, evenly spread, stand for all.
-    const std::size_t stride = (bands + k_most_guiding_bands - 1) / k_most_guiding_bands;
+    Spectrum light_of_surface, weights;
+    const bool has_surface = water.has_hit && !surface_light.empty();
+    const double reflected =
+        has_surface ? guess_surface_light(segment, surface_light, light_of_surface) : 0;
     w.guided.clear();
     w.plain.clear();
-    double sum_guided = 0, sum_plain = 0;
-    for (std::size_t i = 0; i + 1 < s.size(); ++i) {
-        const double length = s[i + 1] - s[i], middle = 0.5 * (s[i] + s[i + 1]);
-        optics.look_up(water, middle, w.point);
+    double sum_guided = 0, sum_plain = 0, of_water = 0;
+    const std::size_t count = s.size() - 1, stride = 1 + (count - 1) / k_most_guides;
+    const auto look_at = [&](double at) {
+        optics.look_up(water, at, w.point);
         optics.find_scattering(w.point);
-        w.spreads.clear();
-        for (std::size_t j = 0; j < lamps.size(); ++j)
-            w.spreads.push_back(
-                tables_.front()->glow.spread(j, w.passages[j], middle, water.ray.at(middle)));
-        double guided = 0, plain = 0;
-        for (std::size_t b = stride / 2; b < bands; b += stride) {
+        optics.transmittances(at, w.point.column, weights);
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i % stride == 0) {
+            const double from = s[i], to = s[std::min(i + stride, count)];
+            const double at = 0.5 * (from + to);
+            look_at(at);
+            w.guides.find(tables.guides, water.ray.at(at), weights);
+        }
+        const double length = s[i + 1] - s[i], middle = 0.5 * (s[i] + s[i + 1]);
+        look_at(middle);
+        double scattered = 0, from_surface = 0, plain = 0, clearest = 0;
+        for (std::size_t b = 0; b < bands; ++b) {
             double scattering = 0;
             for (const Spectrum& m : w.point.scattering) scattering += m[b];
-            const double depth = attenuation.optical_depth(b, middle, w.point.column);
-            double light = 0;
-            for (std::size_t j = 0; j < lamps.size(); ++j)
-                light += w.spreads[j].relative * lamps[j].axis_intensity()[b] *
-                         exp_of_minus(depth + attenuation.uniform[b] * w.spreads[j].radius);
-            light *= scattering;
-            // The lit surface, seen through the water by a small detour.
-            if (!surface_light.empty()) light += surface_light[b] * segment.transmittance[b];
-            guided += scattering * light;
+            scattered += weights[b] * scattering;
+            plain += scattering;
+            clearest = std::max(clearest, weights[b]);
+            // The surface, seen through the water by a small detour.
+            if (has_surface)
+                from_surface += scattering * light_of_surface[b] *
+                                std::sqrt(weights[b] * segment.transmittance[b]);
         }
-        for (const Spectrum& m : w.point.scattering)
-            for (const double b : m.first(bands)) plain += b;
-        plain *=
-            exp_of_minus(attenuation.optical_depth(optics.clearest_band(), middle, w.point.column));
-        w.guided.push_back(guided * length);
-        w.plain.push_back(plain * length);
+        const double from_water =
+            scattered > 0 ? scattered * w.guides.source(water.ray.at(middle), water.ray.direction)
+                          : 0;
+        of_water += from_water * length;
+        w.guided.push_back((from_water + from_surface) * length);
+        w.plain.push_back(plain * clearest * length);
         sum_guided += w.guided.back();
         sum_plain += w.plain.back();
     }
-    segment.light = {sum_guided * static_cast<double>(stride), 0};
-    for (std::size_t b = 0; b < surface_light.size(); ++b) {
-        segment.light.own += surface_light[b] * segment.transmittance[b];
-        segment.light.ambient += surface_light[b];
+    const double per_band = 1 / static_cast<double>(bands);
+    segment.light = {sum_guided * per_band, 0};
+    for (std::size_t b = 0; b < bands; ++b) {
+        segment.light.own += light_of_surface[b] * segment.transmittance[b] * per_band;
+        segment.light.ambient += k_ambient_share * light_of_surface[b] * per_band;
     }
-    segment.light.own /= static_cast<double>(bands);
-    segment.light.ambient *= k_ambient_share / static_cast<double>(bands);
     segment.light.ambient = std::max(segment.light.ambient, k_least_ambient * segment.light.own);
-    // Nothing known of it, as where only emission lights the scene: by throughput alone.
-    if (!(segment.light.own > 0)) segment.light = {1, 1};
+    segment.water_paths = segment.surface_paths = 1;
+    if (segment.light.own > 0) {
+        segment.water_paths = std::clamp(k_paths_of_share * of_water * per_band / segment.light.own,
+                                         k_least_paths, 1.0);
+        segment.surface_paths =
+            std::clamp(k_paths_of_share * reflected / segment.light.own, k_least_paths, 1.0);
+    } else {
+        // Nothing is known of it, as where only emission lights the scene: by throughput alone.
+        segment.light = {1, 1 / k_ambient_beyond};
+    }
     segment.cumulative.clear();
     if (!(sum_plain > 0)) return;
     const double guided_share = sum_guided > 0 ? 1 - k_defensive_share : 0;
@@ -205,15 +242,15 @@ void PathTracer::trace_single(const CameraSegment& segment, PathRandom& random,
     PathState state;
     for (double& value : state.throughput.first(tables.optics.bands())) value = 1;
     state.from_water = true;
-    tables.lamps.gather_from_water(segment.water, {}, state, random, terms);
+    tables.lamps.gather_from_water(segment.water, state, random, terms);
 }
 
 // A first scattering where the segment's light guides it.
-void PathTracer::scatter_first(const CameraSegment& segment, PathRandom& random, PathTerms& terms,
-                               bool stays_in_water) const {
+void PathTracer::trace_water_alone(const CameraSegment& segment, PathRandom& random,
+                                   PathTerms& terms) const {
     const PathTables& tables = choose_tables(random);
     double u = random.next();
-    if (segment.cumulative.empty()) return;
+    if (segment.cumulative.empty() || random.next() >= segment.water_paths) return;
     Workspace& w = workspace_of_thread();
     const Choice interval = choose(segment.cumulative, u);
     const double begin = segment.distances[interval.index];
@@ -223,25 +260,16 @@ void PathTracer::scatter_first(const CameraSegment& segment, PathRandom& random,
     const WaterOptics& optics = tables.optics;
     optics.look_up(segment.water, s, w.point);
     optics.find_scattering(w.point);
-    PathWalk walk(tables, segment.light, random, terms);
-    if (stays_in_water) walk.stay_in_water();
+    PathWalk walk(tables, {segment.light.own / segment.water_paths, segment.light.ambient}, random,
+                  terms);
+    walk.stay_in_water();
     PathState& state = walk.state();
     optics.transmittances(s, w.point.column, state.throughput);
     for (double& value : state.throughput.first(optics.bands()))
-        value *= length / interval.probability;
+        value *= length / (interval.probability * segment.water_paths);
     state.from_water = true;
     state.distance = s;
     walk.from_water(segment.water, w.point);
-}
-
-void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
-                             PathTerms& terms) const {
-    scatter_first(segment, random, terms, false);
-}
-
-void PathTracer::trace_water_alone(const CameraSegment& segment, PathRandom& random,
-                                   PathTerms& terms) const {
-    scatter_first(segment, random, terms, true);
 }
 
 namespace {
@@ -260,6 +288,13 @@ PathWalk walk_into_water(const PathTables& tables, const CameraSegment& segment,
 }
 
 }  // namespace
+
+void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
+                             PathTerms& terms) const {
+    trace_water_alone(segment, random, terms);
+    PathWalk walk = walk_into_water(choose_tables(random), segment, random, terms);
+    if (walk.wander(segment.water)) walk.gather_lit_surface();
+}
 
 void PathTracer::trace_lit_surfaces(const CameraSegment& segment, const IndirectLight& indirect,
                                     PathRandom& random, PathTerms& terms) const {
@@ -282,9 +317,12 @@ bool PathTracer::find_lit_surface(const CameraSegment& segment, PathRandom& rand
 void PathTracer::trace_surface(const CameraSegment& segment, PathRandom& random,
                                PathTerms& terms) const {
     if (!segment.water.has_hit) return;
-    PathWalk walk(choose_tables(random), segment.light, random, terms);
+    const PathTables& tables = choose_tables(random);
+    if (random.next() >= segment.surface_paths) return;
+    PathWalk walk(tables, segment.light, random, terms);
     PathState& state = walk.state();
-    std::ranges::copy(segment.transmittance, state.throughput.begin());
+    for (std::size_t b = 0; b < tables.optics.bands(); ++b)
+        state.throughput[b] = segment.transmittance[b] / segment.surface_paths;
     state.distance = segment.water.length;
     walk.from_surface(segment.water);
 }

@@ -17,16 +17,13 @@ struct LampView;
 struct PathTables;
 struct ScatteringTables;
 
-/// Where light paths take optical depths between lamps and points from.
-struct PathOptions {
-    /// One per emitter: their columns and no others. Empty: columns are exact.
-    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows{};
-};
-
 /// Unbiased estimates of all light by random paths from the camera (docs/multiple.md). Thread safe.
 class PathTracer {
   public:
-    explicit PathTracer(const LitScene& scene, const PathOptions& options = {});
+    /// `deep_shadows`: where paths take optical depths between lamps and points from, one per
+    /// emitter: its columns and no others. Empty: columns are exact.
+    explicit PathTracer(const LitScene& scene,
+                        const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows = {});
     ~PathTracer();
     PathTracer(const PathTracer&) = delete;
     PathTracer& operator=(const PathTracer&) = delete;
@@ -67,9 +64,9 @@ class PathTracer {
 
   private:
     const PathTables& choose_tables(PathRandom& random) const;
-    void scatter_first(const CameraSegment& segment, PathRandom& random, PathTerms& terms,
-                       bool stays_in_water) const;
     void place_intervals(CameraSegment& segment) const;
+    double guess_surface_light(const CameraSegment& segment, std::span<const double> surface_light,
+                               Spectrum& light) const;
     void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
 
     std::unique_ptr<const ScatteringTables> scattering_;

@@ -11,47 +11,6 @@ namespace uw {
 
 namespace {
 
-// A lamp that shines elsewhere still fills the water around it with scattered light.
-constexpr double k_least_relative = 0.1;
-constexpr double k_least_radius = 0.01;       // m: keeps it finite at a lamp
-constexpr double k_least_attenuation = 1e-3;  // 1/m: keeps it finite in water without any
-
-// The lamp's distance and its relative intensity over that.
-struct Nearness {
-    double radius = 0, relative = 0;
-
-    Nearness(const Lamp& lamp, const Point3& x, double attenuation) {
-        const Vector3 from_lamp = x - lamp.origin(x);
-        radius = std::max(glm::length(from_lamp), k_least_radius);
-        // A sun's light comes back from as far as one sees, a lamp's from around it.
-        const double depth =
-            lamp.sunlight() ? 1 / std::max(attenuation, k_least_attenuation) : radius;
-        relative = std::max(lamp.relative_intensity(from_lamp), k_least_relative) * depth /
-                   lamp.spread(radius);
-    }
-};
-
-}  // namespace
-
-double LampGlow::clearest() const {
-    return optics_.attenuation().uniform[optics_.clearest_band()];
-}
-
-LampGlow::Spread LampGlow::spread(std::size_t lamp, const LampPassage& passage, double s,
-                                  const Point3& x) const {
-    const Nearness near((*optics_.scene().emitters)[lamp], x, clearest());
-    const double h = passage.half_tangent(s, near.radius);
-    return {near.relative * tables_.spread_glow(h), near.radius};
-}
-
-double LampGlow::of_lamp(std::size_t lamp, const Point3& x, const Spectrum& weights) const {
-    const Lamp& source = (*optics_.scene().emitters)[lamp];
-    const Nearness near(source, x, clearest());
-    return near.relative * optics_.attenuated_sum(weights, source.axis_intensity(), near.radius);
-}
-
-namespace {
-
 constexpr double k_glossy_share = 0.5;  // of the directions drawn on glossy surfaces
 
 // The direction at tan(angle / 2) = h from `axis`.
@@ -61,14 +20,6 @@ Vector3 direction_around(const Vector3& axis, double h, double azimuth) {
     const double sine = 2 * h * norm, cosine = (1 - h * h) * norm;
     const double phi = 2 * std::numbers::pi * azimuth;
     return glm::normalize(cosine * axis + sine * (std::cos(phi) * u + std::sin(phi) * v));
-}
-
-// tan(angle / 2) between unit vectors, accurate for small angles.
-double half_tangent_between(const Vector3& a, const Vector3& b) {
-    const Vector3 difference = a - b, sum = a + b;
-    const double square = glm::dot(sum, sum);
-    if (!(square > 1e-14)) return 1e7;  // opposite
-    return std::max(1e-16, std::sqrt(glm::dot(difference, difference) / square));
 }
 
 // From a density per h, at any azimuth, to one per solid angle:
@@ -106,9 +57,9 @@ std::optional<Vector3> scatter_plainly(const ScatteringTables& tables, const Wat
     return direction_around(direction, phase.invert(v * phase.mass()), azimuth);
 }
 
-void PathVertex::scatter(const VertexTables& tables, const Point3& x, const Vector3& direction,
+void PathVertex::scatter(const GuideTables& tables, const Point3& x, const Vector3& direction,
                          const WaterPoint& point, const Spectrum& throughput) {
-    tables_ = tables;
+    tables_ = &tables;
     x_ = x;
     incoming_ = direction;
     point_ = &point;
@@ -116,108 +67,135 @@ void PathVertex::scatter(const VertexTables& tables, const Point3& x, const Vect
     phase_cumulative_.clear();
     double total = 0;
     for (const Spectrum& b : point.scattering) {
-        for (std::size_t band = 0; band < tables_.optics->bands(); ++band)
+        for (std::size_t band = 0; band < tables_->optics.bands(); ++band)
             total += throughput[band] * b[band];
         phase_cumulative_.push_back(total);
     }
-    find_lobes(throughput);
+    find_guides(throughput);
 }
 
-void PathVertex::reflect(const VertexTables& tables, const WaterSegment& segment,
+void PathVertex::reflect(const GuideTables& tables, const WaterSegment& segment,
                          const Spectrum& throughput) {
-    tables_ = tables;
+    tables_ = &tables;
     x_ = segment.hit.position;
     incoming_ = segment.ray.direction;
     point_ = nullptr;
     segment_ = &segment;
     sample_.emplace(SurfaceSample{segment.ray, segment.hit, 0, 0});
-    reflection_.emplace(*tables_.optics->scene().surfaces, *sample_,
-                        static_cast<int>(tables_.optics->bands()));
-    find_lobes(throughput);
+    reflection_.emplace(*tables_->optics.scene().surfaces, *sample_,
+                        static_cast<int>(tables_->optics.bands()));
+    find_guides(throughput);
 }
 
-void PathVertex::find_lobes(const Spectrum& throughput) {
-    lobes_.clear();
-    lobe_cumulative_.clear();
-    if (!(tables_.scattering->lobe.mass() > 0)) return;
-    const std::vector<Lamp>& lamps = *tables_.optics->scene().emitters;
-    const double scattering = scattering_around();
-    const double attenuation =
-        tables_.optics->attenuation().uniform[tables_.optics->clearest_band()];
+void PathVertex::find_guides(const Spectrum& throughput) {
+    throughput_ = throughput;
+    guides_.find(*tables_, x_, throughput);
+    guide_cumulative_.clear();
     double total = 0;
-    for (std::size_t j = 0; j < lamps.size(); ++j) {
-        const Vector3 to_lamp = lamps[j].origin(x_) - x_;
-        const double radius = glm::length(to_lamp);
-        if (!(radius > 0) || (segment_ && glm::dot(segment_->hit.normal, to_lamp) <= 0)) continue;
-        const double weight = tables_.glow->of_lamp(j, x_, throughput);
-        if (!(weight > 0)) continue;
-        total += weight;
-        const double again = scattering * std::min(radius, 1 / std::max(attenuation, 1e-9));
-        lobes_.push_back({j, to_lamp / radius, scattering * weight, again});
-        lobe_cumulative_.push_back(total);
+    for (const LampGuides::Guide& guide : guides_.all()) {
+        total += guide.irradiance;
+        guide_cumulative_.push_back(total);
     }
 }
 
-std::optional<DrawnLobe> PathVertex::draw_lobe(PathRandom& random) const {
-    double u = random.next();
-    const double v = random.next(), azimuth = random.next();
-    if (lobes_.empty()) return std::nullopt;
-    const Choice chosen = choose(lobe_cumulative_, u);
-    const Lobe& lobe = lobes_[chosen.index];
-    const Vector3 direction = direction_around(
-        lobe.direction, tables_.scattering->lobe.invert(v * tables_.scattering->lobe.mass()),
-        azimuth);
-    if (segment_ && glm::dot(segment_->hit.geometric_normal, direction) <= 0) return std::nullopt;
-    const double h = half_tangent_between(lobe.direction, direction);
-    return DrawnLobe{lobe.lamp, direction,
-                     chosen.probability * tables_.scattering->lobe.density(h) /
-                         tables_.scattering->lobe.mass() * per_solid_angle(h)};
-}
-
-void PathVertex::lobe_densities(const Vector3& direction, std::vector<double>& densities) const {
-    densities.assign(tables_.optics->scene().emitters->size(), 0.0);
-    double before = 0;
-    for (std::size_t i = 0; i < lobes_.size(); ++i) {
-        const double h = half_tangent_between(lobes_[i].direction, direction);
-        const double probability = (lobe_cumulative_[i] - before) / lobe_cumulative_.back();
-        before = lobe_cumulative_[i];
-        densities[lobes_[i].lamp] = probability * tables_.scattering->lobe.density(h) /
-                                    tables_.scattering->lobe.mass() * per_solid_angle(h);
-    }
-}
-
-std::optional<DrawnDirection> PathVertex::draw(PathRandom& random) const {
-    double u = random.next();
-    const double v = random.next(), azimuth = random.next();
-    DrawnDirection drawn;
-    if (point_) {
-        // Water may hold nothing that scatters.
-        if (phase_cumulative_.empty() || !(phase_cumulative_.back() > 0)) return std::nullopt;
-        const HalfTangentDensity& phase =
-            tables_.scattering->directions[choose(phase_cumulative_, u).index];
-        drawn.direction = direction_around(incoming_, phase.invert(v * phase.mass()), azimuth);
-    } else {
-        const SurfaceHit& hit = segment_->hit;
-        if (reflection_->is_glossy() && u < k_glossy_share) {
-            const double h = sample_half_vector(v, reflection_->roughness());
-            const Vector3 half = direction_around(hit.normal, h, azimuth);
-            drawn.direction = glm::normalize(incoming_ - 2 * glm::dot(incoming_, half) * half);
+// Resampled importance sampling (Talbot et al. 2005): stratified, as many of each kind, weighted
+// against each other by the balance heuristic.
+double PathVertex::draw_candidates(PathRandom& random, double ambient,
+                                   std::vector<CandidateDirection>& candidates) const {
+    constexpr int k_of_each = 3;
+    constexpr double k_golden = 0.6180339887498949;  // spreads azimuths evenly
+    constexpr double k_least_light = 0.3;            // relative to the candidates' mean
+    candidates.clear();
+    const double u_lobe = random.next(), a_lobe = random.next();
+    const double u_own = random.next(), v_own = random.next();
+    if (point_ && (phase_cumulative_.empty() || !(phase_cumulative_.back() > 0))) return 0;
+    const auto wrapped = [](double x) { return x - std::floor(x); };
+    const std::span<const LampGuides::Guide> guides = guides_.all();
+    const int of_lobes = guides.empty() ? 0 : k_of_each, of_own = 2 * k_of_each - of_lobes;
+    const LampField& field = tables_->scattering.field();
+    double sum = 0, responding = 0;
+    for (int k = 0; k < of_lobes + of_own; ++k) {
+        CandidateDirection candidate;
+        if (k < of_lobes) {
+            double u = (k + u_lobe) / of_lobes;
+            const LampGuides::Guide& guide = guides[choose(guide_cumulative_, u).index];
+            const HalfTangentDensity& lobe = field.lobe(guide.place);
+            candidate.direction = direction_around(guide.direction, lobe.invert(u * lobe.mass()),
+                                                   wrapped(a_lobe + k * k_golden));
         } else {
-            drawn.direction = cosine_direction(hit.normal, v, azimuth);
+            const int i = k - of_lobes;
+            candidate.direction =
+                own_direction(wrapped(u_own + i * k_golden), (i + v_own) / of_own,
+                              wrapped(u_own + a_lobe + i * k_golden * k_golden + 0.5));
         }
-        if (glm::dot(hit.geometric_normal, drawn.direction) <= 0) return std::nullopt;
+        const Vector3& direction = candidate.direction;
+        if (segment_ && glm::dot(segment_->hit.geometric_normal, direction) <= 0) continue;
+        candidate.density = of_own * own_density(direction) +
+                            (of_lobes > 0 ? of_lobes * guide_density(direction) : 0);
+        candidate.responds = response_sum(direction);
+        candidate.light = guides_.radiance(direction) + ambient;
+        if (!(candidate.density > 0) || !(candidate.weight() > 0)) continue;
+        sum += candidate.weight();
+        responding += candidate.responds / candidate.density;
+        candidates.push_back(candidate);
     }
-    drawn.density = density(drawn.direction);
-    if (!(drawn.density > 0)) return std::nullopt;
-    return drawn;
+    if (candidates.empty()) return 0;
+    // None is guessed far darker than the mean: what shines there after all would be too bright.
+    const double least = k_least_light * sum / responding;
+    sum = 0;
+    for (CandidateDirection& candidate : candidates) {
+        candidate.light = std::max(candidate.light, least);
+        sum += candidate.weight();
+    }
+    return sum;
 }
 
-double PathVertex::density(const Vector3& direction) const {
+// Of the lobes that candidates are drawn from [1/sr].
+double PathVertex::guide_density(const Vector3& direction) const {
+    const LampField& field = tables_->scattering.field();
+    double sum = 0, before = 0;
+    for (std::size_t j = 0; j < guide_cumulative_.size(); ++j) {
+        const LampGuides::Guide& guide = guides_.all()[j];
+        const HalfTangentDensity& lobe = field.lobe(guide.place);
+        const double h = half_tangent_between(guide.direction, direction);
+        sum += (guide_cumulative_[j] - before) / lobe.mass() * lobe.density(h) * per_solid_angle(h);
+        before = guide_cumulative_[j];
+    }
+    return sum / before;
+}
+
+// `respond`, summed over the bands with the throughput; of a scattering, by what directions are
+// drawn from.
+double PathVertex::response_sum(const Vector3& direction) const {
+    if (point_) return phase_cumulative_.back() * own_density(direction);
+    Spectrum values;
+    respond(direction, values);
+    double sum = 0;
+    for (std::size_t b = 0; b < tables_->optics.bands(); ++b) sum += throughput_[b] * values[b];
+    return sum;
+}
+
+// In proportion to the phase function or BRDF.
+Vector3 PathVertex::own_direction(double u, double v, double azimuth) const {
+    if (point_) {
+        const HalfTangentDensity& phase =
+            tables_->scattering.directions[choose(phase_cumulative_, u).index];
+        return direction_around(incoming_, phase.invert(v * phase.mass()), azimuth);
+    }
+    const Vector3& normal = segment_->hit.normal;
+    if (!reflection_->is_glossy() || u >= k_glossy_share)
+        return cosine_direction(normal, v, azimuth);
+    const double h = sample_half_vector(v, reflection_->roughness());
+    const Vector3 half = direction_around(normal, h, azimuth);
+    return glm::normalize(incoming_ - 2 * glm::dot(incoming_, half) * half);
+}
+
+double PathVertex::own_density(const Vector3& direction) const {
     if (point_) {
         const double h = half_tangent_between(incoming_, direction);
         double sum = 0, before = 0;
         for (std::size_t m = 0; m < phase_cumulative_.size(); ++m) {
-            const HalfTangentDensity& phase = tables_.scattering->directions[m];
+            const HalfTangentDensity& phase = tables_->scattering.directions[m];
             sum += (phase_cumulative_[m] - before) / phase.mass() * phase.density(h);
             before = phase_cumulative_[m];
         }
@@ -231,31 +209,12 @@ double PathVertex::density(const Vector3& direction) const {
                half_vector_density(normal, -incoming_, direction, reflection_->roughness());
 }
 
-// b [1/m], mean over the bands.
-double PathVertex::scattering_around() const {
-    double sum = 0;
-    const auto include = [&](std::span<const Spectrum> coefficients) {
-        for (const Spectrum& b : coefficients)
-            for (std::size_t band = 0; band < tables_.optics->bands(); ++band) sum += b[band];
-    };
-    include(point_ ? point_->scattering : tables_.optics->scene().medium->uniform.scattering);
-    return sum / static_cast<double>(tables_.optics->bands());
-}
-
-double PathVertex::expected_light(const Vector3& direction) const {
-    double sum = 0;
-    for (const Lobe& lobe : lobes_)
-        sum += lobe.glow * lobe.again *
-               tables_.scattering->spread_glow(half_tangent_between(lobe.direction, direction));
-    return sum;
-}
-
 void PathVertex::respond(const Vector3& direction, Spectrum& values) const {
-    const std::size_t bands = tables_.optics->bands();
+    const std::size_t bands = tables_->optics.bands();
     if (point_) {
         thread_local std::vector<double> p;
-        p.resize(tables_.scattering->phase_count());
-        tables_.scattering->phase(half_tangent_between(incoming_, direction), p);
+        p.resize(tables_->scattering.phase_count());
+        tables_->scattering.phase(half_tangent_between(incoming_, direction), p);
         for (std::size_t b = 0; b < bands; ++b) {
             values[b] = 0;
             for (std::size_t m = 0; m < p.size(); ++m) values[b] += point_->scattering[m][b] * p[m];

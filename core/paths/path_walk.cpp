@@ -10,19 +10,35 @@ namespace uw {
 
 namespace {
 
-// The probability to go on for what may still arrive, relative to the light of the path's pixel,
-// and its limits: below, spared paths would outweigh the rest.
-constexpr double k_thoroughness = 3;
-constexpr double k_least_survival = 0.25, k_least_lobe_survival = 0.2, k_most_survival = 0.97;
-// Where much more may arrive than the light of the path's pixel, as in front of a surface close to
-// a lamp, a path splits: into these many branches relative to it, each with its share of the light.
-// In all it has no more than the limit, or the paths of a black pixel might never end.
-constexpr double k_splitting = 0.3, k_most_branches = 16;
-// The least reflectance that a surface counts with when paths head for it.
-constexpr double k_least_reflectance = 0.1;
+// The light that a path from a surface may meet anywhere, relative to what is reflected there.
+constexpr double k_ambient_of_reflection = 0.2;
+// Shares of the ambient light (and k_ambient_beyond): what is expected from any direction, at any
+// place, and of a surface.
+constexpr double k_ambient_of_direction = 0.05;
+constexpr double k_ambient_of_place = 0.02, k_ambient_of_surface = 0.03;
+// What is expected of a path after all, relative to what its direction was chosen for.
+constexpr double k_least_expected = 0.2;
+// The branches of one vertex, and of a path in all.
+constexpr double k_most_branches_of_vertex = 8, k_most_branches_of_path = 64;
+// Where nothing is known of the light, and after many vertices, fewer paths go on than arrive.
+constexpr double k_survival_of_unknown = 0.97, k_survival_of_long = 0.9;
+constexpr int k_long = 100;
+constexpr int k_places = 3;
+// None is guessed far darker than the mean: what shines there after all would be too bright.
+constexpr double k_least_light_of_place = 0.3;
+constexpr double k_golden = 0.6180339887498949;
+
 // How far rays begin above the surface they leave, relative to the coordinates and to the last
 // segment: above the rounding of single precision, in which surfaces are found.
 constexpr double k_offset = 4e-7;
+
+// The index of the weight that the running sum of `weights` reaches `target` with.
+template <class Range, class Weight>
+std::size_t find_weight(const Range& range, double target, const Weight& weight) {
+    std::size_t i = 0;
+    while (i + 1 < range.size() && target >= weight(range[i])) target -= weight(range[i++]);
+    return i;
+}
 
 Point3 above(const SurfaceHit& hit) {
     const double scale = std::max({std::abs(hit.position.x), std::abs(hit.position.y),
@@ -40,118 +56,119 @@ PathWalk::Workspace& PathWalk::workspace_of_thread() {
 void PathWalk::from_water(const WaterSegment& segment, const WaterPoint& point) {
     PathVertex& vertex = workspace_of_thread().vertex;
     const Point3 x = segment.ray.at(point.distance);
-    vertex.scatter(tables_.vertices, x, segment.ray.direction, point, state_.throughput);
+    vertex.scatter(tables_.guides, x, segment.ray.direction, point, state_.throughput);
     ++state_.scatterings;
     follow(leave(x));
 }
 
+// As thorough as its light is worth by itself.
 void PathWalk::from_surface(const WaterSegment& segment) {
-    PathVertex& vertex = workspace_of_thread().vertex;
-    vertex.reflect(tables_.vertices, segment, state_.throughput);
+    const double radiance = guessed_reflection(tables_.guides, segment.hit, state_.throughput);
+    if (radiance > 0) light_ = {arriving(radiance), k_ambient_of_reflection * radiance};
+    workspace_of_thread().vertex.reflect(tables_.guides, segment, state_.throughput);
     ++state_.reflections;
     follow(leave(above(segment.hit)));
 }
 
+// What is reflected along the path, as it arrives at the camera: the mean over the bands.
+double PathWalk::arriving(double radiance) const {
+    const std::size_t bands = tables_.optics.bands();
+    double throughput = 0;
+    for (const double value : state_.throughput.first(bands)) throughput += value;
+    return throughput / static_cast<double>(bands) * radiance;
+}
+
+void PathWalk::from_surface_by_worth(const WaterSegment& segment) {
+    constexpr double k_least_worth = 0.02, k_most_worth = 4;
+    Workspace& w = workspace_of_thread();
+    const double light =
+        arriving(guessed_reflection(tables_.guides, segment.hit, state_.throughput) +
+                 k_ambient_beyond * light_.ambient);
+    const double n = std::clamp(light / light_.own, k_least_worth, k_most_worth);
+    const int count = static_cast<int>(n + random_.next());
+    if (count == 0) return;
+    for (double& value : state_.throughput.first(tables_.optics.bands())) value /= n;
+    w.first_segment = segment;
+    const PathState state = state_;
+    const CameraSegment::Light pixel = light_;
+    for (int i = 0; i < count; ++i) {
+        state_ = state;
+        light_ = pixel;
+        from_surface(w.first_segment);
+    }
+}
+
 void PathWalk::mirror(const WaterSegment& segment) {
-    PathVertex& vertex = workspace_of_thread().vertex;
-    vertex.reflect(tables_.vertices, segment, state_.throughput);
+    workspace_of_thread().vertex.reflect(tables_.guides, segment, state_.throughput);
     ++state_.reflections;
     leave(above(segment.hit), true);
 }
 
-// Gathers along a direction of the vertex's own and along one around a lamp, weighted against each
-// other by the balance heuristic (Veach and Guibas 1995). The path may go on along both, each with
-// a probability in proportion to what may still arrive from there: drawing one of them each time
-// would let throughputs grow from vertex to vertex, and taking none of the second kind would miss
-// the paths that head for the bright water at a lamp.
 bool PathWalk::leave(const Point3& origin, bool is_last) {
     Workspace& w = workspace_of_thread();
     const PathVertex& vertex = w.vertex;
     const std::size_t bands = tables_.optics.bands();
-    const std::optional<DrawnLobe> lobe = vertex.draw_lobe(random_);
-    const std::optional<DrawnDirection> own = vertex.draw(random_);
-    const double of_lobe = random_.next(), of_own = random_.next();
-    if (lobe) continuation(lobe->direction, w.along_lobe);
-    if (own) continuation(own->direction, w.along_own);
-    // The probabilities to go on. Less than one branch does on average, or paths might never end.
-    double by_lobe = lobe && !is_last ? survival(w.along_lobe, k_least_lobe_survival) : 0;
-    double by_own = own && !is_last ? survival(w.along_own, k_least_survival) : 0;
-    const double excess = (by_lobe + by_own) / k_most_survival;
-    if (excess > 1) {
-        by_lobe /= excess;
-        by_own /= excess;
+    const double sum =
+        vertex.draw_candidates(random_, k_ambient_of_direction * light_.ambient, w.candidates);
+    const double of_candidate = random_.next(), of_number = random_.next();
+    if (!(sum > 0)) return false;
+    const CandidateDirection chosen = w.candidates[find_weight(
+        w.candidates, of_candidate * sum, [](const auto& each) { return each.weight(); })];
+    Spectrum response;
+    vertex.respond(chosen.direction, response);
+    const double factor = sum / (chosen.responds * chosen.light);
+    for (std::size_t b = 0; b < bands; ++b) state_.throughput[b] *= response[b] * factor;
+    const Ray ray{origin, chosen.direction};
+    trace(ray);
+    tables_.lamps.gather_from_water(w.segment, state_, random_, terms_);
+    if (w.segment.has_hit && !stays_in_water_) {
+        tables_.lamps.gather_from_surface(w.segment, w.transmittance, state_, random_, terms_);
+        if (w.segment.hit.has_material) find_emission(state_.throughput);
     }
-    if (lobe) {
-        gather_along(*lobe, w.along_lobe, origin);
-        if (of_lobe < by_lobe)
-            w.pending.push_back({continued(w.along_lobe, by_lobe), {origin, lobe->direction}});
-    }
-    if (!own) return false;
-    PathState state = state_;
-    for (std::size_t b = 0; b < bands; ++b)
-        state.throughput[b] *= w.along_own.response[b] / own->density;
-    for (double& weight : w.along_own.lobe_densities)
-        weight = own->density / (own->density + weight);
-    trace({origin, own->direction});
-    tables_.lamps.gather_from_water(w.segment, w.along_own.lobe_densities, state, random_, terms_);
-    double seen = 0;
-    if (w.segment.has_hit && !stays_in_water_)
-        seen =
-            tables_.lamps.gather_from_surface(w.segment, w.transmittance, state, random_, terms_);
-    if (by_own > 0) by_own = branches(w.along_own.value + seen, by_own, by_lobe);
-    if (seen > 0 && w.segment.hit.has_material) find_emission(state.throughput);
-    if (of_own >= by_own) return false;
-    state_ = continued(w.along_own, by_own);
-    state_.branches *= std::max(1.0, by_own);
-    for (double n = of_own + 1; n < by_own; ++n)
-        w.pending.push_back({state_, {origin, own->direction}});
+    if (is_last) return false;
+    w.guides = &vertex.guides();
+    find_surface_ahead();
+    const double n = branches(chosen);
+    if (!(of_number < n)) return false;
+    for (double& value : state_.throughput.first(bands)) value /= n;
+    state_.branches *= n;
+    for (double i = of_number + 1; i < n; ++i) w.pending.push_back({state_, ray});
     return true;
 }
 
-// The single-scattered light of a lamp around which a direction was drawn.
-void PathWalk::gather_along(const DrawnLobe& lobe, const Continuation& along,
-                            const Point3& origin) {
+// As many as what is expected from the chosen direction is worth, relative to the pixel's light.
+double PathWalk::branches(const CandidateDirection& chosen) const {
+    const Workspace& w = workspace_of_thread();
+    const std::size_t bands = tables_.optics.bands();
+    double throughput = 0;
+    for (const double value : state_.throughput.first(bands)) throughput += value;
+    const double expected = std::max(
+        throughput * (w.guides->multiple(chosen.direction) + k_ambient_beyond * light_.ambient) +
+            w.surface_ahead,
+        throughput * k_least_expected * chosen.light);
+    double n =
+        std::min(expected / (light_.own * static_cast<double>(bands)), k_most_branches_of_vertex);
+    n = std::min(n, k_most_branches_of_path / state_.branches);
+    if (w.guides->all().empty()) n = std::min(n, k_survival_of_unknown);
+    if (state_.scatterings + state_.reflections > k_long) n = std::min(n, k_survival_of_long);
+    return n;
+}
+
+// The light of the surface at the end of the segment, as it arrives at the camera, roughly.
+void PathWalk::find_surface_ahead() {
     Workspace& w = workspace_of_thread();
-    PathState state = state_;
-    const double density = lobe.density + along.own_density;
-    for (std::size_t b = 0; b < tables_.optics.bands(); ++b)
-        state.throughput[b] *= along.response[b] / density;
-    w.chosen_lamp.assign(along.lobe_densities.size(), 0.0);
-    w.chosen_lamp[lobe.lamp] = 1;
-    tables_.optics.trace_briefly({origin, lobe.direction}, w.lobe_segment);
-    tables_.lamps.gather_from_water(w.lobe_segment, w.chosen_lamp, state, random_, terms_);
-}
-
-void PathWalk::continuation(const Vector3& direction, Continuation& along) const {
-    const PathVertex& vertex = workspace_of_thread().vertex;
-    vertex.lobe_densities(direction, along.lobe_densities);
-    vertex.respond(direction, along.response);
-    along.own_density = along.density = vertex.density(direction);
-    for (const double of_lamp : along.lobe_densities) along.density += of_lamp;
-    along.value = 0;
-    double responds = 0, all = 0;
+    w.surface_ahead = w.surface_radiance = 0;
+    if (!w.segment.has_hit || stays_in_water_) return;
+    Spectrum arriving;
+    double arrived = 0;
     for (std::size_t b = 0; b < tables_.optics.bands(); ++b) {
-        responds += state_.throughput[b] * along.response[b];
-        all += state_.throughput[b];
+        arriving[b] = state_.throughput[b] * w.transmittance[b];
+        arrived += arriving[b];
     }
-    if (!(along.density > 0) || !(responds > 0)) return;
-    const double light = vertex.expected_light(direction) / all + light_.ambient;
-    along.value = responds / along.density * light / static_cast<double>(tables_.optics.bands());
-}
-
-// Russian roulette by what may still arrive, relative to the light of the path's pixel.
-double PathWalk::survival(const Continuation& along, double least) const {
-    if (!(along.value > 0)) return 0;
-    return std::clamp(k_thoroughness * along.value / light_.own, least, k_most_survival);
-}
-
-// How many branches go on, on average, along its own direction, now that the surface at its end has
-// been seen: a bright one means more light beside it. `by_own` did before.
-double PathWalk::branches(double value, double by_own, double by_lobe) const {
-    const double relative = value / light_.own;
-    const double split = std::min(k_splitting * relative, k_most_branches / state_.branches);
-    if (split > 1) return split;
-    return std::max(by_own, std::min(k_thoroughness * relative, k_most_survival - by_lobe));
+    if (!(arrived > 0)) return;
+    w.surface_radiance = std::max(k_ambient_of_surface * light_.ambient,
+                                  guessed_reflection(tables_.guides, w.segment.hit, arriving));
+    w.surface_ahead = arrived * w.surface_radiance;
 }
 
 // What surfaces emit is not in the light that paths are measured by until one has seen it. Where
@@ -167,14 +184,7 @@ void PathWalk::find_emission(const Spectrum& throughput) {
     }
     light_.own = std::max(light_.own, light / static_cast<double>(bands));
     light_.ambient =
-        std::max(light_.ambient, k_ambient_share * emission / static_cast<double>(bands));
-}
-
-PathState PathWalk::continued(const Continuation& along, double survival) const {
-    PathState state = state_;
-    for (std::size_t b = 0; b < tables_.optics.bands(); ++b)
-        state.throughput[b] *= along.response[b] / (along.density * survival);
-    return state;
+        std::max(light_.ambient, emission / (k_ambient_beyond * static_cast<double>(bands)));
 }
 
 void PathWalk::trace(const Ray& ray) {
@@ -201,6 +211,9 @@ void PathWalk::follow(bool goes_on) {
         w.pending.pop_back();
         state_ = pending.state;
         trace(pending.ray);
+        w.guides_of_pending.find(tables_.guides, pending.ray.origin, state_.throughput);
+        w.guides = &w.guides_of_pending;
+        find_surface_ahead();
         do {
             goes_on = advance();
         } while (goes_on);
@@ -209,46 +222,95 @@ void PathWalk::follow(bool goes_on) {
 
 bool PathWalk::advance() {
     Workspace& w = workspace_of_thread();
-    const std::size_t bands = tables_.optics.bands();
-    const double u = random_.next();
-    // Each band has a share in a density that serves all of them.
-    w.shares.resize(bands);
-    double in_water = 0, at_surface = 0;
-    for (std::size_t b = 0; b < bands; ++b) {
-        const double share = state_.throughput[b] * tables_.light[b];
-        w.shares[b] = share * tables_.albedo[b];
-        in_water += w.shares[b] * (1 - w.transmittance[b]);
-        if (w.segment.has_hit && !stays_in_water_)
-            at_surface += share * w.transmittance[b] *
-                          std::max(k_least_reflectance, w.segment.hit.reflectance[b]);
-    }
-    const double all = in_water + at_surface;
+    const WaterOptics& optics = tables_.optics;
+    const std::size_t bands = optics.bands();
+    const Spectrum to_end = w.transmittance;
+    const double in_water = draw_places(to_end);
+    const double all = in_water + w.surface_ahead;
+    const double target = random_.next() * all;
     if (!(all > 0)) return false;
-    for (double& share : w.shares) share /= all;
-    const double to_surface = at_surface / all;
-    if (u < to_surface) return reflect_at_end(to_surface);
-    return scatter_on_the_way((u - to_surface) / (1 - to_surface));
-}
-
-bool PathWalk::reflect_at_end(double probability) {
-    Workspace& w = workspace_of_thread();
-    const SurfaceHit& hit = w.segment.hit;
-    Spectrum& throughput = state_.throughput;
-    const std::size_t bands = tables_.optics.bands();
-    for (std::size_t b = 0; b < bands; ++b) throughput[b] *= w.transmittance[b] / probability;
-    w.vertex.reflect(tables_.vertices, w.segment, throughput);
-    ++state_.reflections;
-    return leave(above(hit));
-}
-
-bool PathWalk::scatter_on_the_way(double u) {
-    Workspace& w = workspace_of_thread();
-    const double s = draw_distance(u);
-    if (!(s < w.segment.length) || !go_to(s)) return false;  // beyond k_far, or by rounding
-    const Point3 x = w.segment.ray.at(s);
-    w.vertex.scatter(tables_.vertices, x, w.segment.ray.direction, w.point, state_.throughput);
+    if (target < w.surface_ahead) {
+        for (std::size_t b = 0; b < bands; ++b)
+            state_.throughput[b] *= to_end[b] * all / w.surface_ahead;
+        w.vertex.reflect(tables_.guides, w.segment, state_.throughput);
+        ++state_.reflections;
+        return leave(above(w.segment.hit));
+    }
+    if (w.places.empty()) return false;  // by rounding
+    const Workspace::Place place = w.places[find_weight(
+        w.places, target - w.surface_ahead, [](const auto& each) { return each.weight(); })];
+    optics.look_up(w.segment, place.distance, w.point);
+    optics.find_scattering(w.point);
+    optics.transmittances(place.distance, w.point.column, w.transmittance);
+    for (std::size_t b = 0; b < bands; ++b)
+        state_.throughput[b] *= w.transmittance[b] * all / (place.scatters * place.light);
+    const Point3 x = w.segment.ray.at(place.distance);
+    w.vertex.scatter(tables_.guides, x, w.segment.ray.direction, w.point, state_.throughput);
     ++state_.scatterings;
     return leave(x);
+}
+
+// Draws places of the next scattering, by what the bands lose up to the end of the segment, of
+// which `to_end` is left there. Returns the sum of their weights. Uses two random numbers.
+double PathWalk::draw_places(const Spectrum& to_end) {
+    Workspace& w = workspace_of_thread();
+    const WaterOptics& optics = tables_.optics;
+    const std::size_t bands = optics.bands();
+    const double u_place = random_.next(), u_band = random_.next();
+    w.shares.resize(bands);
+    w.cumulative.resize(bands);
+    w.c.resize(bands);
+    w.places.clear();
+    double lost = 0, to_surface = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        w.shares[b] = state_.throughput[b] * tables_.light[b] * tables_.albedo[b];
+        lost += w.shares[b] * (1 - to_end[b]);
+        w.cumulative[b] = lost;
+        to_surface = std::max(to_surface, to_end[b]);
+    }
+    if (!(lost > 0)) return 0;
+    for (int k = 0; k < k_places; ++k) {
+        double of_band = u_band + k * k_golden;
+        of_band -= std::floor(of_band);
+        const std::size_t band = choose(w.cumulative, of_band).index;
+        const double share = (k + u_place) / k_places;
+        Workspace::Place place;
+        place.distance =
+            optics.distance_at_depth(w.segment, band, -std::log1p(-share * (1 - to_end[band])));
+        if (!(place.distance < w.segment.length)) continue;
+        optics.look_up(w.segment, place.distance, w.point);
+        optics.find_scattering(w.point);
+        optics.attenuations(w.point, w.c);
+        optics.transmittances(place.distance, w.point.column, w.transmittance);
+        double clearest = 0;
+        for (std::size_t b = 0; b < bands; ++b) {
+            place.density += k_places * w.shares[b] * w.c[b] * w.transmittance[b] / lost;
+            double scattering = 0;
+            for (const Spectrum& m : w.point.scattering) scattering += m[b];
+            place.scatters += state_.throughput[b] * w.transmittance[b] * scattering;
+            clearest = std::max(clearest, w.transmittance[b]);
+        }
+        if (!(place.density > 0) || !(place.scatters > 0)) continue;
+        place.light = w.guides->source(w.segment.ray.at(place.distance), w.segment.ray.direction) +
+                      k_ambient_of_place * light_.ambient;
+        // The surface ahead, seen through the water by a small detour.
+        if (w.surface_radiance > 0)
+            place.light += w.surface_radiance * std::sqrt(std::min(1.0, to_surface / clearest));
+        if (place.light > 0) w.places.push_back(place);
+    }
+    double sum = 0, plain = 0;
+    for (const Workspace::Place& place : w.places) {
+        sum += place.weight();
+        plain += place.scatters / place.density;
+    }
+    if (!(sum > 0)) return 0;
+    const double least = k_least_light_of_place * sum / plain;
+    sum = 0;
+    for (Workspace::Place& place : w.places) {
+        place.light = std::max(place.light, least);
+        sum += place.weight();
+    }
+    return sum;
 }
 
 double PathWalk::draw_distance(double u) const {
@@ -351,11 +413,23 @@ bool PathWalk::meets_surface_before(double distance) {
     return true;
 }
 
+// The throughput has the transmittance already.
+void PathWalk::gather_surface_at_end() {
+    Workspace& w = workspace_of_thread();
+    for (double& value : w.transmittance.first(tables_.optics.bands())) value = 1;
+    tables_.lamps.gather_from_surface(w.segment, w.transmittance, state_, random_, terms_);
+    if (w.segment.hit.has_material) find_emission(state_.throughput);
+}
+
+void PathWalk::gather_lit_surface() {
+    gather_surface_at_end();
+    from_surface_by_worth(workspace_of_thread().segment);
+}
+
 void PathWalk::gather_lit_surface(const IndirectLight& indirect) {
     Workspace& w = workspace_of_thread();
     const std::size_t bands = tables_.optics.bands();
-    for (double& value : w.transmittance.first(bands)) value = 1;  // the throughput has it already
-    tables_.lamps.gather_from_surface(w.segment, w.transmittance, state_, random_, terms_);
+    gather_surface_at_end();
     const SurfaceHit& hit = w.segment.hit;
     if (hit.has_material && tables_.optics.scene().surfaces->material(hit).is_glossy) {
         from_surface(w.segment);

@@ -14,8 +14,8 @@ namespace uw {
 
 class IndirectLight;
 
-/// The light that a path may meet anywhere, relative to that of the surface its pixel sees.
-inline constexpr double k_ambient_share = 0.5;
+/// The share of the ambient light that a path is expected to find beyond what is known of it.
+inline constexpr double k_ambient_beyond = 0.02;
 
 /// One path, from its first vertex to its end.
 class PathWalk {
@@ -31,37 +31,38 @@ class PathWalk {
     /// Begins with a scattering at `point` of `segment`, or with a reflection at its end.
     void from_water(const WaterSegment& segment, const WaterPoint& point);
     void from_surface(const WaterSegment& segment);
+    /// Begins with reflections at its end, as many as their light is worth relative to the pixel's.
+    void from_surface_by_worth(const WaterSegment& segment);
     /// What the surface at the end of `segment` reflects of light that was scattered or reflected
     /// once before, and no more.
     void mirror(const WaterSegment& segment);
     /// Is scattered on `segment`, and on by the phase function alone until it meets a surface,
     /// which is the end of this; null if it meets none.
     const WaterSegment* wander(const WaterSegment& segment);
-    /// The light of the surface at which it has ended.
+    /// The light of the surface at which it has ended: by looking up what is not direct, or by
+    /// going on from there.
     void gather_lit_surface(const IndirectLight& indirect);
+    void gather_lit_surface();
 
   private:
-    struct Continuation;
     struct Workspace;
 
     static Workspace& workspace_of_thread();
 
-    // Gathers the light that arrives at the workspace's vertex, and finds the path's next segment;
-    // false if it ends there, as it does anyhow if this `is_last`.
+    // Gathers the light that arrives at the workspace's vertex from a direction that it draws,
+    // along which the path may go on; false if it ends there, as it does anyhow if this `is_last`.
     bool leave(const Point3& origin, bool is_last = false);
-    void gather_along(const DrawnLobe& lobe, const Continuation& along, const Point3& origin);
-    void continuation(const Vector3& direction, Continuation& along) const;
-    double survival(const Continuation& along, double least) const;
-    double branches(double value, double by_own, double by_lobe) const;
+    double branches(const CandidateDirection& chosen) const;
+    void find_surface_ahead();
     void find_emission(const Spectrum& throughput);
-    PathState continued(const Continuation& along, double survival) const;
+    double arriving(double radiance) const;
+    void gather_surface_at_end();
     void trace(const Ray& ray);
     void find_transmittance();  // of the segment
     void follow(bool goes_on);
-    // Each moves to the next vertex and on from there; false if the path ends.
+    // Moves to the next vertex and on from there; false if the path ends.
     bool advance();
-    bool reflect_at_end(double probability);
-    bool scatter_on_the_way(double u);
+    double draw_places(const Spectrum& to_end);
     // The distance of the next scattering on the segment, by w.shares of what the bands lose on the
     // way to its end; its length if there is none.
     double draw_distance(double u) const;
@@ -79,15 +80,6 @@ class PathWalk {
     bool stays_in_water_ = false;
 };
 
-/// A direction in which a path may go on from a vertex.
-struct PathWalk::Continuation {
-    Spectrum response;                   // PathVertex::respond
-    double own_density = 0;              // of PathVertex::draw
-    std::vector<double> lobe_densities;  // by lamp, of PathVertex::draw_lobe
-    double density = 0;                  // the sum of them
-    double value = 0;  // what may still arrive at the camera from there [W m^-2 sr^-1]
-};
-
 /// Per thread: paths do not allocate.
 struct PathWalk::Workspace {
     /// A branch of a path that has yet to be followed.
@@ -95,16 +87,29 @@ struct PathWalk::Workspace {
         PathState state;
         Ray ray;
     };
+    /// Where a path may be scattered next on its segment.
+    struct Place {
+        double distance = 0;
+        double light = 0;  // guessed to be scattered along the path there, per unit of throughput
+        double scatters = 0;  // b, summed over the bands with the throughput up to there [1/m]
+        double density = 0;   // with which any of the places is drawn there, times their number
+        double weight() const { return scatters * light / density; }
+    };
 
-    WaterSegment segment, lobe_segment;
+    WaterSegment segment, first_segment;
     WaterPoint point;
     Spectrum transmittance;
     std::vector<double> c, shares, cumulative;
     PathVertex vertex;
-    Continuation along_own, along_lobe;
-    std::vector<double> chosen_lamp;  // a weight for each
-    std::vector<double> indirect;     // by lamp and band
+    std::vector<double> indirect;  // by lamp and band
     std::vector<Pending> pending;
+    std::vector<CandidateDirection> candidates;
+    std::vector<Place> places;
+    const LampGuides* guides = nullptr;  // at the beginning of the segment
+    LampGuides guides_of_pending;
+    // Of the surface at its end, roughly: what it reflects, and as it arrives at the camera, summed
+    // over the bands.
+    double surface_radiance = 0, surface_ahead = 0;
 };
 
 }  // namespace uw

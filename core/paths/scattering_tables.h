@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <mutex>
 #include <span>
 #include <vector>
 
 #include "core/light/medium.h"
 #include "core/paths/half_tangent_density.h"
+#include "core/paths/lamp_field.h"
 
 namespace uw {
 
@@ -22,18 +24,16 @@ struct ScatteringTables {
     /// p_m(psi) over angles: where on a line the light of a lamp is scattered along it, since
     /// ds / R^2 = dpsi / D with D the lamp's distance from the line.
     std::vector<HalfTangentDensity> lines;
-    /// int_psi^pi p_m over angles: the radiance of single-scattered light around a point lamp, as a
-    /// function of the angle to it, times the sine of that angle.
-    HalfTangentDensity lobe;
-    /// int_psi^pi p_m over angles [1/sr], of the phase function that `lobe` is made of.
-    double beyond(double half_tangent) const {
-        return lobe.density(half_tangent) * 0.5 * (1 + half_tangent * half_tangent);
-    }
-    /// The radiance around a point lamp, beyond / sin(psi), spread by one more scattering:
-    /// a convolution with the phase function, roughly [1/sr^2].
-    double spread_glow(double half_tangent) const;
+    /// All light that the water scatters around a point lamp, for the mean phase function and the
+    /// albedos of all that it may hold. Found when it is first asked for, in about 0.1 s.
+    const LampField& field() const;
 
     explicit ScatteringTables(const Medium& medium);
+    ScatteringTables(const ScatteringTables&) = delete;
+    ScatteringTables& operator=(const ScatteringTables&) = delete;
+    ScatteringTables(ScatteringTables&&) = delete;
+    ScatteringTables& operator=(ScatteringTables&&) = delete;
+    ~ScatteringTables() = default;
 
     std::size_t phase_count() const { return lines.size(); }
     /// All p_m at `half_tangent` [1/sr].
@@ -42,9 +42,11 @@ struct ScatteringTables {
     }
 
   private:
-    void spread();
+    LampField make_field() const;
 
-    std::vector<double> spread_glow_;  // at quarters of the octaves of h from 2^-12 on
+    double least_albedo_ = 1, greatest_albedo_ = 0;
+    mutable std::once_flag field_is_made_;
+    mutable LampField field_;
 };
 
 }  // namespace uw

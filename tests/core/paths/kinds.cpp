@@ -50,7 +50,7 @@ TEST(PathLaws, TermsAreOfTheKindThatTheyClaim) {
     KindCheck single(KindCheck::Source::single, hit.distance),
         water(KindCheck::Source::water, hit.distance),
         surface(KindCheck::Source::surface, hit.distance);
-    for (std::uint32_t i = 0; i < 1000; ++i) {
+    for (std::uint32_t i = 0; i < 2000; ++i) {
         PathRandom random(PathRandom::seed_of(1), i);
         tracer.trace_single(segment, random, single);
         tracer.trace_water(segment, random, water);

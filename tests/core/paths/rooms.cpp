@@ -89,7 +89,7 @@ TEST_P(WhiteFurnaces, AreWhiteInEveryDirection) {
 
 // No lamp, one that is switched off, and a faint one, which leads paths astray.
 INSTANTIATE_TEST_SUITE_P(Lamps, WhiteFurnaces,
-                         testing::Values(FaintLamp{-1, 1 << 10, 0.01}, FaintLamp{0, 1 << 8, 0.02},
+                         testing::Values(FaintLamp{-1, 1 << 12, 0.01}, FaintLamp{0, 1 << 10, 0.02},
                                          FaintLamp{1e-12, 1 << 8, 0.04}));
 
 // Reflectance of a rough surface in an evenly lit room: the glTF 2.0 BRDF (appendix B) written

@@ -1,0 +1,343 @@
+#include "core/paths/lamp_field.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+
+namespace uw {
+
+namespace {
+
+/// Nodes at the same number of places in each octave.
+class OctaveNodes {
+  public:
+    constexpr OctaveNodes(double least, double most, int bits_of_octave)
+        : bits_(52 - bits_of_octave),
+          first_(cell_of(least)),
+          count_(cell_of(most) - first_ + 1),
+          per_cell_(1.0 / static_cast<double>(std::uint64_t{1} << bits_)) {}
+
+    constexpr std::size_t count() const { return count_; }
+    constexpr double operator[](std::size_t index) const {
+        return std::bit_cast<double>((first_ + index) << bits_);
+    }
+    constexpr double front() const { return (*this)[0]; }
+    constexpr double back() const { return (*this)[count_ - 1]; }
+
+    struct At {
+        std::size_t index;  // of the node before, which has one after it
+        double t;           // 0..1 on the way to that
+    };
+    At at(double x) const {
+        if (!(x > front())) return {0, 0};
+        if (!(x < back())) return {count_ - 2, 1};
+        const std::uint64_t mask = (std::uint64_t{1} << bits_) - 1;
+        return {cell_of(x) - first_,
+                static_cast<double>(std::bit_cast<std::uint64_t>(x) & mask) * per_cell_};
+    }
+
+  private:
+    constexpr std::uint64_t cell_of(double x) const {
+        return std::bit_cast<std::uint64_t>(x) >> bits_;
+    }
+
+    int bits_;
+    std::uint64_t first_, count_;
+    double per_cell_;
+};
+
+constexpr OctaveNodes k_radii(0x1p-8, 48, 3), k_angles(0x1p-10, 0x1p10, 2);
+// Of the radii that have a lobe of their own.
+constexpr std::size_t k_lobe_stride = 2;
+
+constexpr std::size_t k_albedos = 3;
+constexpr double k_least_albedo = 0.1, k_most_albedo = 0.99;
+constexpr double k_least_value = 1e-30;
+
+double sine_of(double h) {
+    return 2 * h / (1 + h * h);
+}
+
+double half_tangent_of(double psi) {
+    return std::tan(0.5 * psi);
+}
+
+}  // namespace
+
+/// Finds order after order. Fields are kept times radius and sine, which takes their singularities
+/// away: [radius * angles + angle].
+class LampField::Solver {
+  public:
+    Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line);
+
+    const std::vector<double>& order() const { return order_; }
+    /// The mean of the last order but one over the phase function.
+    const std::vector<double>& source() const { return source_; }
+    void find_next_order();
+
+  private:
+    /// What one step along a ray adds: an even source between its ends, from four nodes.
+    struct Step {
+        std::size_t node;
+        std::array<float, 4> weight;
+    };
+
+    void make_matrix(const HalfTangentDensity& direction);
+    void find_first_order(const HalfTangentDensity& line);
+    void march(double radius, double h);
+
+    std::size_t nr_ = k_radii.count(), nh_ = k_angles.count();
+    std::vector<std::vector<std::pair<std::size_t, double>>> matrix_;  // of a scattering
+    std::vector<Step> steps_;
+    std::vector<std::size_t> begin_;  // of the steps of each node, and past the last
+    std::vector<double> order_, source_;
+};
+
+LampField::Solver::Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line)
+    : source_(nr_ * nh_) {
+    make_matrix(direction);
+    find_first_order(line);
+    for (std::size_t i = 0; i < nr_; ++i) {
+        for (std::size_t j = 0; j < nh_; ++j) {
+            begin_.push_back(steps_.size());
+            march(k_radii[i], k_angles[j]);
+        }
+    }
+    begin_.push_back(steps_.size());
+}
+
+// Between the nodes of the angle a parabola goes through three: a straight line would spread the
+// light once more.
+void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
+    // Polar angles are the closer together the less is scattered beyond them: what comes from
+    // behind has been scattered far from the bright light around the lamp.
+    constexpr int k_polar = 96, k_azimuths = 16;
+    constexpr double k_least_sine = 0.3 / k_azimuths;  // relative: half a step beside the lamp
+    for (std::size_t i = 0; i < nh_; ++i) {
+        std::vector<double> row(nh_, 0.0);
+        const double psi = 2 * std::atan(k_angles[i]);
+        for (int a = 0; a < k_polar; ++a) {
+            const double beyond = 1 - (a + 0.5) / k_polar, share = 2 * beyond / k_polar;
+            const double theta =
+                2 * std::atan(direction.invert((1 - beyond * beyond) * direction.mass()));
+            for (int b = 0; b < k_azimuths; ++b) {
+                const double phi = std::numbers::pi * (b + 0.5) / k_azimuths;
+                const double along = std::cos(psi) * std::cos(theta) +
+                                     std::sin(psi) * std::sin(theta) * std::cos(phi);
+                const double across =
+                    std::hypot(std::sin(psi) * std::cos(theta) -
+                                   std::cos(psi) * std::sin(theta) * std::cos(phi),
+                               std::sin(theta) * std::sin(phi));
+                const double h = std::clamp(along > -1 ? across / (1 + along) : k_angles.back(),
+                                            k_angles.front(), k_angles.back());
+                const double sine =
+                    std::max({across, k_least_sine * std::sin(theta), sine_of(k_angles.front())});
+                const OctaveNodes::At at = k_angles.at(h);
+                const std::size_t m =
+                    std::clamp(at.index + (at.t > 0.5 ? 1 : 0), std::size_t{1}, nh_ - 2);
+                const double h0 = k_angles[m - 1], h1 = k_angles[m], h2 = k_angles[m + 1];
+                const double weight = share / (sine * k_azimuths);
+                row[m - 1] += weight * (h - h1) * (h - h2) / ((h0 - h1) * (h0 - h2));
+                row[m] += weight * (h - h0) * (h - h2) / ((h1 - h0) * (h1 - h2));
+                row[m + 1] += weight * (h - h0) * (h - h1) / ((h2 - h0) * (h2 - h1));
+            }
+        }
+        auto& entries = matrix_.emplace_back();
+        for (std::size_t j = 0; j < nh_; ++j)
+            if (row[j] != 0) entries.emplace_back(j, row[j]);
+    }
+}
+
+// What is scattered once: (1 / D) int p e^-(s + R) dpsi, with D the lamp's distance from the ray.
+void LampField::Solver::find_first_order(const HalfTangentDensity& line) {
+    constexpr int k_points = 32;  // of equal mass
+    for (std::size_t i = 0; i < nr_; ++i) {
+        for (std::size_t j = 0; j < nh_; ++j) {
+            const double psi = 2 * std::atan(k_angles[j]);
+            const double distance = k_radii[i] * sine_of(k_angles[j]);
+            const double foot = k_radii[i] * std::cos(psi);
+            const double from = line.mass_to(k_angles[j]), mass = line.mass() - from;
+            double sum = 0;
+            for (int k = 0; k < k_points; ++k) {
+                const double h = line.invert(from + (k + 0.5) / k_points * mass);
+                const double to_lamp = distance / sine_of(std::max(h, 1e-12));
+                const double s = std::max(0.0, foot - to_lamp * (1 - h * h) / (1 + h * h));
+                sum += std::exp(-(s + to_lamp)) / k_points;
+            }
+            order_.push_back(mass * sum);
+        }
+    }
+}
+
+// Between the nodes of the radius the source is linear once it is freed of most of its decay.
+void LampField::Solver::march(double radius, double h) {
+    constexpr double k_reach = 20, k_least_step = 0.002, k_most_step = 0.4, k_growth = 0.3;
+    constexpr double k_decay = 0.15;
+    const double distance = radius * sine_of(h), foot = radius * std::cos(2 * std::atan(h));
+    double s = 0;
+    while (s < k_reach) {
+        double step =
+            std::clamp(k_growth * std::hypot(distance, s - foot), k_least_step, k_most_step);
+        if (s < foot && s + step > foot) step = std::max(foot - s, k_least_step);
+        const double middle = s + 0.5 * step;
+        const double to_lamp = std::hypot(distance, middle - foot);
+        if (to_lamp < k_radii.back()) {
+            const OctaveNodes::At r = k_radii.at(to_lamp);
+            const OctaveNodes::At a =
+                k_angles.at(half_tangent_of(std::atan2(distance, foot - middle)));
+            const double source = std::exp(-s - k_decay * to_lamp) * -std::expm1(-step) /
+                                  std::max(to_lamp, k_radii.front());
+            const double near = source * (1 - r.t) * std::exp(k_decay * k_radii[r.index]);
+            const double far = source * r.t * std::exp(k_decay * k_radii[r.index + 1]);
+            steps_.push_back(
+                {r.index * nh_ + a.index,
+                 {static_cast<float>(near * (1 - a.t)), static_cast<float>(near * a.t),
+                  static_cast<float>(far * (1 - a.t)), static_cast<float>(far * a.t)}});
+        }
+        s += step;
+    }
+}
+
+void LampField::Solver::find_next_order() {
+    for (std::size_t i = 0; i < nr_; ++i) {
+        for (std::size_t j = 0; j < nh_; ++j) {
+            double sum = 0;
+            for (const auto& [at, weight] : matrix_[j]) sum += weight * order_[i * nh_ + at];
+            source_[i * nh_ + j] = std::max(sum, 0.0);
+        }
+    }
+    for (std::size_t n = 0; n < order_.size(); ++n) {
+        double sum = 0;
+        for (std::size_t k = begin_[n]; k < begin_[n + 1]; ++k) {
+            const Step& step = steps_[k];
+            const double* near = &source_[step.node];
+            const double* far = near + nh_;
+            sum += static_cast<double>(step.weight[0]) * near[0] +
+                   static_cast<double>(step.weight[1]) * near[1] +
+                   static_cast<double>(step.weight[2]) * far[0] +
+                   static_cast<double>(step.weight[3]) * far[1];
+        }
+        order_[n] = sum * k_radii[n / nh_] * sine_of(k_angles[n % nh_]);
+    }
+}
+
+LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
+                     double least_albedo, double greatest_albedo) {
+    // An order that adds less than this is the last; what lies near the end of the table counts for
+    // nothing in that.
+    constexpr double k_enough = 1e-3, k_counting = 0.7;
+    constexpr int k_most_orders = 400;
+    const std::size_t nr = k_radii.count(), nh = k_angles.count(), n = nr * nh;
+    least_albedo_ = std::clamp(least_albedo, k_least_albedo, k_most_albedo - 1e-3);
+    albedo_step_ =
+        (std::clamp(greatest_albedo, least_albedo_ + 1e-3, k_most_albedo) - least_albedo_) /
+        (k_albedos - 1);
+    std::array<double, k_albedos> albedo{}, power{};
+    for (std::size_t k = 0; k < k_albedos; ++k)
+        power[k] = albedo[k] = least_albedo_ + albedo_step_ * static_cast<double>(k);
+    Solver solver(direction, line);
+    const std::vector<double> once = solver.order();
+    std::vector<std::vector<double>> all(k_albedos), sources(k_albedos);
+    for (std::size_t k = 0; k < k_albedos; ++k) {
+        sources[k].assign(n, 0.0);
+        for (const double value : once) all[k].push_back(albedo[k] * value);
+    }
+    for (int count = 1; count < k_most_orders; ++count) {
+        solver.find_next_order();
+        double most = 0;
+        for (std::size_t k = 0; k < k_albedos; ++k) {
+            for (std::size_t q = 0; q < n; ++q) sources[k][q] += power[k] * solver.source()[q];
+            power[k] *= albedo[k];
+            for (std::size_t q = 0; q < n; ++q) {
+                const double value = power[k] * solver.order()[q];
+                all[k][q] += value;
+                if (k_radii[q / nh] < k_counting * k_radii.back())
+                    most = std::max(most, value / std::max(all[k][q], k_least_value));
+            }
+        }
+        if (most < k_enough) break;
+    }
+    const auto log_of = [](double value) {
+        return static_cast<float>(std::log(std::max(value, k_least_value)));
+    };
+    for (std::size_t k = 0; k < k_albedos; ++k) {
+        for (std::size_t q = 0; q < n; ++q) {
+            constexpr double k_least_multiple = 1e-3;  // share of all
+            const double value = all[k][q];
+            all_.push_back(log_of(value));
+            more_.push_back(
+                log_of(std::max(value - albedo[k] * once[q], k_least_multiple * value)));
+            source_.push_back(log_of(sources[k][q]));
+        }
+        for (std::size_t i = 0; i < nr; ++i) {
+            double scattered = 0;
+            const auto along = [&](std::size_t j) {
+                const double square = k_angles[j] * k_angles[j], norm = 1 / (1 + square);
+                return all[k][i * nh + j] * (1 - square) * norm * 2 * norm;
+            };
+            for (std::size_t j = 0; j + 1 < nh; ++j)
+                scattered += 0.5 * (along(j) + along(j + 1)) * (k_angles[j + 1] - k_angles[j]);
+            const double flux = std::exp(-k_radii[i]) +
+                                std::max(0.0, 2 * std::numbers::pi * k_radii[i] * scattered);
+            // It can only fall, whatever the tables' errors.
+            const float before = i == 0 ? 0.0F : flux_.back();
+            flux_.push_back(std::min(before, log_of(flux)));
+        }
+        const auto at = [&](std::size_t from_end) { return flux_[(k + 1) * nr - from_end]; };
+        decay_.push_back((at(6) - at(3)) / static_cast<float>(k_radii[nr - 3] - k_radii[nr - 6]));
+    }
+    for (std::size_t i = 0; i < nr; i += k_lobe_stride) {
+        std::vector<double> values;
+        for (const double h : HalfTangentDensity::nodes()) {
+            const OctaveNodes::At a = k_angles.at(h);
+            const float* of_angle = &all_[(k_albedos / 2 * nr + i) * nh + a.index];
+            values.push_back(std::exp((1 - a.t) * static_cast<double>(of_angle[0]) +
+                                      a.t * static_cast<double>(of_angle[1])) *
+                             2 / (1 + h * h));
+        }
+        lobes_.emplace_back(values);
+    }
+}
+
+LampField::Place LampField::at(double radius, double albedo) const {
+    const std::size_t nr = k_radii.count(), nh = k_angles.count();
+    const OctaveNodes::At r = k_radii.at(radius);
+    const double x = std::clamp((albedo - least_albedo_) / albedo_step_, 0.0, k_albedos - 1.0);
+    const std::size_t k = std::min(static_cast<std::size_t>(x), k_albedos - 2);
+    const double u = x - static_cast<double>(k);
+    Place place;
+    place.radius = std::max(radius, k_radii.front());
+    place.row = {(k * nr + r.index) * nh, (k * nr + r.index + 1) * nh,
+                 ((k + 1) * nr + r.index) * nh, ((k + 1) * nr + r.index + 1) * nh};
+    place.weight = {static_cast<float>((1 - u) * (1 - r.t)), static_cast<float>((1 - u) * r.t),
+                    static_cast<float>(u * (1 - r.t)), static_cast<float>(u * r.t)};
+    place.lobe = (r.index + (r.t > 0.5 ? 1 : 0)) / k_lobe_stride;
+    if (radius > k_radii.back())
+        place.beyond =
+            static_cast<float>(radius - k_radii.back()) *
+            (static_cast<float>(1 - u) * decay_[k] + static_cast<float>(u) * decay_[k + 1]);
+    return place;
+}
+
+double LampField::look_up(const std::vector<float>& table, const Place& place, double h) const {
+    const OctaveNodes::At a = k_angles.at(h);
+    const auto t = static_cast<float>(a.t);
+    float sum = -place.beyond;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const float* of_angle = &table[place.row[i] + a.index];
+        sum += place.weight[i] * (of_angle[0] + t * (of_angle[1] - of_angle[0]));
+    }
+    return static_cast<double>(std::exp(sum));
+}
+
+double LampField::flux(const Place& place) const {
+    float sum = -place.beyond;
+    for (std::size_t i = 0; i < 4; ++i)
+        sum += place.weight[i] * flux_[place.row[i] / k_angles.count()];
+    return static_cast<double>(std::exp(sum));
+}
+
+}  // namespace uw

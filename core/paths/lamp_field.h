@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/paths/half_tangent_density.h"
+
+namespace uw {
+
+/// The light around a point lamp in infinite water that the water has scattered, all orders of it:
+/// for attenuation 1 and intensity 1, by distance, angle to the lamp and albedo. It guides paths,
+/// so that it may be rough: nothing but their variance depends on it. Angles psi are given as h =
+/// tan(psi / 2), distances in optical depths.
+///
+/// Tables of the order n + 1 are those of order n, scattered once more and marched along rays; they
+/// are made for albedo 1 and added up for three albedos at once.
+class LampField {
+  public:
+    /// Not to be looked up.
+    LampField() = default;
+    /// `direction`, `line`: ScatteringTables::directions and lines of the phase function.
+    LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
+              double least_albedo, double greatest_albedo);
+
+    /// Where to look up, for one distance and albedo.
+    struct Place {
+        std::array<std::size_t, 4> row{};
+        std::array<float, 4> weight{};
+        std::size_t lobe = 0;
+        float beyond = 0;  // what is to be subtracted from logarithms beyond the table
+        double radius = 1;
+    };
+    Place at(double radius, double albedo) const;
+
+    /// The radiance that arrives from the angle `h` to the lamp, of all orders and without the
+    /// first; and the mean over the phase function around that direction, of all orders.
+    double radiance(const Place& place, double h) const {
+        return look_up(all_, place, h) * over_sine(place, h);
+    }
+    double multiple(const Place& place, double h) const {
+        return look_up(more_, place, h) * over_sine(place, h);
+    }
+    double source(const Place& place, double h) const {
+        return look_up(source_, place, h) / place.radius;
+    }
+    /// The squared distance times the net flux away from the lamp, unscattered light included: 1 at
+    /// the lamp, and less with the distance.
+    double flux(const Place& place) const;
+    /// A density over h in the shape of the radiance.
+    const HalfTangentDensity& lobe(const Place& place) const { return lobes_[place.lobe]; }
+
+  private:
+    class Solver;
+
+    static double over_sine(const Place& place, double h) {
+        const double bounded = h < 1000 ? h : 1000;
+        return (1 + bounded * bounded) / (2 * bounded * place.radius);
+    }
+    double look_up(const std::vector<float>& table, const Place& place, double h) const;
+
+    double least_albedo_ = 0, albedo_step_ = 1;
+    std::vector<float> decay_;                // of the logarithms beyond the table, by albedo
+    std::vector<float> all_, more_, source_;  // logarithms, [(albedo, radius, h)]
+    std::vector<float> flux_;                 // logarithms, [(albedo, radius)]
+    std::vector<HalfTangentDensity> lobes_;   // by radius, roughly
+};
+
+}  // namespace uw

@@ -1,0 +1,185 @@
+#include "core/paths/lamp_guides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/light/lamp.h"
+
+namespace uw {
+
+namespace {
+
+// A lamp that shines elsewhere still fills the water around it with scattered light. Guides that
+// fall to nothing where there is some make paths whose light is far too bright.
+constexpr double k_guide_least_relative = 0.3, k_guide_least_cosine = 0.1;
+constexpr double k_guide_least_reflectance = 0.1;
+constexpr double k_guide_least_radius = 0.002;  // m: keeps the field finite at a lamp
+constexpr double k_guide_least_depth = 1e-6;
+// A few of the bands, evenly spread, stand for all.
+constexpr std::size_t k_most_bands = 4;
+
+std::size_t band_stride(std::size_t bands) {
+    return (bands + k_most_bands - 1) / k_most_bands;
+}
+
+double sum_of_guiding_bands(const Spectrum& weights, std::size_t bands) {
+    double sum = 0;
+    const std::size_t stride = band_stride(bands);
+    for (std::size_t b = stride / 2; b < bands; b += stride) sum += weights[b];
+    return sum;
+}
+
+/// A way through the water, in one band.
+struct Depth {
+    double tau = 0, albedo = 0;
+
+    Depth(const GuideTables& tables, std::size_t band, double length,
+          std::span<const double> column)
+        : tau(tables.optics.attenuation().optical_depth(band, length, column)) {
+        if (!(tau > 0)) return;
+        double scattered = tables.uniform_scattering[band] * length;
+        for (std::size_t k = 0; k < column.size(); ++k)
+            scattered += tables.constituents_scattering[k][band] * column[k];
+        albedo = scattered / tau;
+    }
+};
+
+double guided_intensity(const Lamp& lamp, const Vector3& from_lamp) {
+    return std::max(k_guide_least_relative, lamp.relative_intensity(from_lamp));
+}
+
+double guided_spread(const Lamp& lamp, double distance) {
+    return lamp.spread(std::max(distance, k_guide_least_radius));
+}
+
+}  // namespace
+
+GuideTables::GuideTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
+                         const LampGathering& of_lamps)
+    : optics(of_optics), scattering(of_scattering), lamps(of_lamps) {
+    const auto sum = [](const OpticalCoefficients& coefficients) {
+        Spectrum all;
+        for (const Spectrum& b : coefficients.scattering) all += b;
+        return all;
+    };
+    uniform_scattering = sum(optics.scene().medium->uniform);
+    for (const Constituent& constituent : optics.scene().medium->constituents)
+        constituents_scattering.push_back(sum(constituent.per_unit));
+}
+
+double half_tangent_between(const Vector3& a, const Vector3& b) {
+    const Vector3 difference = a - b, sum = a + b;
+    const double square = glm::dot(sum, sum);
+    if (!(square > 1e-14)) return 1e7;  // opposite
+    return std::max(1e-16, std::sqrt(glm::dot(difference, difference) / square));
+}
+
+void LampGuides::find(const GuideTables& tables, const Point3& x, const Spectrum& weights) {
+    tables_ = &tables;
+    guides_.clear();
+    const WaterOptics& optics = tables.optics;
+    const LampField& field = tables.scattering.field();
+    const std::vector<Lamp>& lamps = *optics.scene().emitters;
+    const std::size_t bands = optics.bands(), stride = band_stride(bands);
+    const double all = sum_of_guiding_bands(weights, bands);
+    if (!(all > 0)) return;
+    column_.resize(optics.constituents());
+    for (std::size_t j = 0; j < lamps.size(); ++j) {
+        const Vector3 to_lamp = lamps[j].origin(x) - x;
+        const double length = glm::length(to_lamp);
+        if (!(length > 0)) continue;
+        tables.lamps.column_to_lamp(j, x, column_);
+        double sum = 0, tau = 0, albedo = 0;
+        for (std::size_t b = stride / 2; b < bands; b += stride) {
+            const Depth depth(tables, b, length, column_);
+            const double share = weights[b] / all * lamps[j].axis_intensity()[b] *
+                                 field.flux(field.at(depth.tau, depth.albedo));
+            sum += share;
+            tau += share * depth.tau;
+            albedo += share * depth.albedo;
+        }
+        if (!(sum > 0)) continue;
+        Guide& guide = guides_.emplace_back();
+        guide.lamp = j;
+        guide.direction = to_lamp / length;
+        guide.radius = length;
+        guide.albedo = albedo / sum;
+        const double depth = std::max(tau / sum, k_guide_least_depth);
+        guide.attenuation = depth / length;
+        guide.place = field.at(depth, guide.albedo);
+        guide.intensity = sum / field.flux(guide.place);
+        const double geometry =
+            guided_intensity(lamps[j], -to_lamp) / guided_spread(lamps[j], length);
+        guide.irradiance = sum * geometry;
+        guide.scale = guide.intensity * guide.place.radius * guide.place.radius * geometry;
+    }
+}
+
+template <class LookUp>
+double LampGuides::sum(const Vector3& direction, const LookUp& look_up) const {
+    double light = 0;
+    for (const Guide& guide : guides_)
+        light +=
+            guide.scale * look_up(guide.place, half_tangent_between(guide.direction, direction));
+    return light;
+}
+
+double LampGuides::radiance(const Vector3& direction) const {
+    const LampField& field = tables_->scattering.field();
+    return sum(direction,
+               [&](const LampField::Place& place, double h) { return field.radiance(place, h); });
+}
+
+double LampGuides::multiple(const Vector3& direction) const {
+    const LampField& field = tables_->scattering.field();
+    return sum(direction,
+               [&](const LampField::Place& place, double h) { return field.multiple(place, h); });
+}
+
+double LampGuides::source(const Point3& y, const Vector3& direction) const {
+    const LampField& field = tables_->scattering.field();
+    double light = 0;
+    for (const Guide& guide : guides_) {
+        const Lamp& lamp = (*tables_->optics.scene().emitters)[guide.lamp];
+        const Vector3 to_lamp = lamp.origin(y) - y;
+        const double length = std::max(glm::length(to_lamp), 1e-9);
+        const LampField::Place place =
+            field.at(std::max(length * guide.attenuation, k_guide_least_depth), guide.albedo);
+        light += guide.intensity * guided_intensity(lamp, -to_lamp) * place.radius * place.radius /
+                 guided_spread(lamp, length) *
+                 field.source(place, half_tangent_between(to_lamp / length, direction));
+    }
+    return light;
+}
+
+double guessed_reflection(const GuideTables& tables, const SurfaceHit& hit,
+                          const Spectrum& weights) {
+    const WaterOptics& optics = tables.optics;
+    const LampField& field = tables.scattering.field();
+    thread_local std::vector<double> column;
+    column.resize(optics.constituents());
+    const std::size_t bands = optics.bands(), stride = band_stride(bands);
+    const double all = sum_of_guiding_bands(weights, bands);
+    if (!(all > 0)) return 0;
+    double light = 0;
+    const std::vector<Lamp>& lamps = *optics.scene().emitters;
+    for (std::size_t j = 0; j < lamps.size(); ++j) {
+        const Vector3 to_lamp = lamps[j].origin(hit.position) - hit.position;
+        const double length = std::max(glm::length(to_lamp), k_guide_least_radius);
+        tables.lamps.column_to_lamp(j, hit.position, column);
+        const double geometry =
+            guided_intensity(lamps[j], -to_lamp) *
+            std::max(k_guide_least_cosine, glm::dot(hit.normal, to_lamp) / length) /
+            lamps[j].spread(length) * std::numbers::inv_pi;
+        for (std::size_t b = stride / 2; b < bands; b += stride) {
+            const Depth depth(tables, b, length, column);
+            light += weights[b] / all * geometry * lamps[j].axis_intensity()[b] *
+                     std::max(k_guide_least_reflectance, hit.reflectance[b]) *
+                     field.flux(field.at(depth.tau, depth.albedo));
+        }
+    }
+    return light;
+}
+
+}  // namespace uw
