@@ -10,6 +10,7 @@
 #include "core/geometry/surfaces.h"
 #include "core/light/integrator.h"
 #include "core/light/slabs.h"
+#include "core/paths/scattering_tables.h"
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
 #include "render/image_scene.h"
@@ -26,8 +27,9 @@ struct AssembledScene {
 
     ImageScene image;  // what it was made from
     std::unique_ptr<Camera> camera;
-    WaterModel water;                       // its coefficients hold the snow's mean
-    std::shared_ptr<const SnowModel> snow;  // null: there is none
+    WaterModel water;                                    // its coefficients hold the snow's mean
+    std::shared_ptr<const ScatteringTables> scattering;  // of the water; null: not made
+    std::shared_ptr<const SnowModel> snow;               // null: there is none
     std::shared_ptr<const ConcentrationField> field;
     std::shared_ptr<const Surfaces> surfaces;
     std::vector<Lamp> lamps;     // as the description has them, each at its centre

@@ -82,6 +82,7 @@ LightTransport Renderer::make_transport() {
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
     assemble();
     light_.clear();
+    scene_->scattering = nullptr;  // of the water as it was
     change(*scene_);
     image_ = scene_->image;
 }

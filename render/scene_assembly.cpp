@@ -118,6 +118,7 @@ AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
     scene.water = cache.water(desc);
+    scene.scattering = cache.scattering();
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;
     check_forward_scatter_of(desc, medium);
@@ -151,6 +152,7 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
     const SceneDesc& desc = moved.desc();
     moved.camera = std::move(camera);
     moved.water = scene.water;
+    moved.scattering = scene.scattering;
     moved.snow = scene.snow;
     moved.field = scene.field;
     moved.surfaces = scene.surfaces;
@@ -173,9 +175,10 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
             std::make_unique<BeyondSnow>(make(scene.snow->water).integrator,
                                          make(scene.snow->alone).integrator, scene.snow->parts());
     if (with_paths && integrator_kind(scene.desc().render.integrator).traces_paths)
-        transport.paths = std::make_shared<PathTracer>(scene.lit());
+        transport.paths = std::make_shared<PathTracer>(
+            scene.lit(), std::vector<std::shared_ptr<const DeepShadow>>(), scene.scattering);
     else if (with_paths)
-        transport.paths = std::make_shared<PathTracer>(scene.lit(), deep_shadows);
+        transport.paths = std::make_shared<PathTracer>(scene.lit(), deep_shadows, scene.scattering);
     weigh_as_output(scene.desc(), transport);
     return transport;
 }

@@ -63,7 +63,10 @@ bool SceneCache::KeptSurfaces::is_of(const SceneDesc& scene) const {
 const WaterModel& SceneCache::water(const SceneDesc& scene) {
     if (!water_ || !water_->is_of(scene)) {
         FileStamps files(files_of_water(scene));
-        water_ = KeptWater{scene.water, grids_of(scene), std::move(files), build_water(scene)};
+        WaterModel model = build_water(scene);
+        auto scattering = std::make_shared<const ScatteringTables>(model.medium);
+        water_ = KeptWater{scene.water, grids_of(scene), std::move(files), std::move(model),
+                           std::move(scattering)};
     }
     return water_->model;
 }

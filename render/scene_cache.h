@@ -7,6 +7,7 @@
 
 #include "core/base/input_files.h"
 #include "core/geometry/geometry_scene.h"
+#include "core/paths/scattering_tables.h"
 #include "core/scene/scene_desc.h"
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
@@ -34,6 +35,8 @@ class SceneCache {
   public:
     /// The water of a scene. Throws as build_water_model.
     const WaterModel& water(const SceneDesc& scene);
+    /// What light paths look up of the water asked for last.
+    const std::shared_ptr<const ScatteringTables>& scattering() const { return water_->scattering; }
 
     /// Frees the volumes and surfaces that a scene in this water has no use for, so that there is
     /// memory for those that it has.
@@ -68,6 +71,7 @@ class SceneCache {
         std::vector<std::vector<GridMappingDesc>> grids;
         FileStamps files;
         WaterModel model;
+        std::shared_ptr<const ScatteringTables> scattering;
 
         bool is_of(const SceneDesc& scene) const;
     };

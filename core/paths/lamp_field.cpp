@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <utility>
 
 namespace uw {
 
@@ -90,7 +89,7 @@ class LampField::Solver {
     void march(double radius, double h);
 
     std::size_t nr_ = k_radii.count(), nh_ = k_angles.count();
-    std::vector<std::vector<std::pair<std::size_t, double>>> matrix_;  // of a scattering
+    std::vector<double> matrix_;  // of a scattering: [from * angles + to]
     std::vector<Step> steps_;
     std::vector<std::size_t> begin_;  // of the steps of each node, and past the last
     std::vector<double> order_, source_;
@@ -116,6 +115,7 @@ void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
     // behind has been scattered far from the bright light around the lamp.
     constexpr int k_polar = 96, k_azimuths = 16;
     constexpr double k_least_sine = 0.3 / k_azimuths;  // relative: half a step beside the lamp
+    matrix_.resize(nh_ * nh_);
     for (std::size_t i = 0; i < nh_; ++i) {
         std::vector<double> row(nh_, 0.0);
         const double psi = 2 * std::atan(k_angles[i]);
@@ -145,9 +145,7 @@ void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
                 row[m + 1] += weight * (h - h0) * (h - h1) / ((h2 - h0) * (h2 - h1));
             }
         }
-        auto& entries = matrix_.emplace_back();
-        for (std::size_t j = 0; j < nh_; ++j)
-            if (row[j] != 0) entries.emplace_back(j, row[j]);
+        for (std::size_t j = 0; j < nh_; ++j) matrix_[j * nh_ + i] = row[j];
     }
 }
 
@@ -202,13 +200,16 @@ void LampField::Solver::march(double radius, double h) {
 }
 
 void LampField::Solver::find_next_order() {
+    std::ranges::fill(source_, 0.0);
     for (std::size_t i = 0; i < nr_; ++i) {
-        for (std::size_t j = 0; j < nh_; ++j) {
-            double sum = 0;
-            for (const auto& [at, weight] : matrix_[j]) sum += weight * order_[i * nh_ + at];
-            source_[i * nh_ + j] = std::max(sum, 0.0);
+        double* source = &source_[i * nh_];
+        for (std::size_t k = 0; k < nh_; ++k) {
+            const double value = order_[i * nh_ + k];
+            const double* column = &matrix_[k * nh_];
+            for (std::size_t j = 0; j < nh_; ++j) source[j] += value * column[j];
         }
     }
+    for (double& value : source_) value = std::max(value, 0.0);
     for (std::size_t n = 0; n < order_.size(); ++n) {
         double sum = 0;
         for (std::size_t k = begin_[n]; k < begin_[n + 1]; ++k) {
@@ -228,7 +229,7 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
                      double least_albedo, double greatest_albedo) {
     // An order that adds less than this is the last; what lies near the end of the table counts for
     // nothing in that.
-    constexpr double k_enough = 1e-3, k_counting = 0.7;
+    constexpr double k_enough = 1e-2, k_counting = 0.5;
     constexpr int k_most_orders = 400;
     const std::size_t nr = k_radii.count(), nh = k_angles.count(), n = nr * nh;
     least_albedo_ = std::clamp(least_albedo, k_least_albedo, k_most_albedo - 1e-3);

@@ -57,7 +57,10 @@ double guided_spread(const Lamp& lamp, double distance) {
 
 GuideTables::GuideTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
                          const LampGathering& of_lamps)
-    : optics(of_optics), scattering(of_scattering), lamps(of_lamps) {
+    : optics(of_optics),
+      scattering(of_scattering),
+      lamps(of_lamps),
+      particles(of_optics, of_scattering.field(), of_lamps) {
     const auto sum = [](const OpticalCoefficients& coefficients) {
         Spectrum all;
         for (const Spectrum& b : coefficients.scattering) all += b;

@@ -8,6 +8,7 @@
 #include "core/base/spectrum.h"
 #include "core/paths/lamp_field.h"
 #include "core/paths/lamp_gathering.h"
+#include "core/paths/particle_light.h"
 #include "core/paths/path_segment.h"
 #include "core/paths/scattering_tables.h"
 
@@ -21,6 +22,8 @@ struct GuideTables {
     // b by band, all phase functions together: of the uniform water, and of constituents per unit.
     Spectrum uniform_scattering;
     std::vector<Spectrum> constituents_scattering;
+
+    ParticleLight particles;
 
     GuideTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
                 const LampGathering& of_lamps);

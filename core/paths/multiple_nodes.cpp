@@ -33,12 +33,35 @@ double variance_of_half(double sum, double squares) {
     return of_batch / k_batches_of_half;
 }
 
+int scaled(int paths, double share) {
+    return static_cast<int>(std::lround(paths * share));
+}
+
 void store(std::span<const double> sums, double scale, std::vector<float>& values) {
     values.resize(sums.size());
     for (std::size_t i = 0; i < sums.size(); ++i) values[i] = static_cast<float>(sums[i] * scale);
 }
 
 }  // namespace
+
+namespace {
+
+// None is left without, or nothing would tell where the guess is wrong.
+double share_of(double guess, double typical) {
+    constexpr double k_even = 0.3, k_most_of_typical = 8;
+    if (!(typical > 0)) return 1;
+    return std::min(k_even + (1 - k_even) * guess / typical, k_most_of_typical);
+}
+
+}  // namespace
+
+double NodePaths::water_share(const MultipleNode& node) const {
+    return share_of(node.guessed_water, typical_water);
+}
+
+double NodePaths::surface_share(const MultipleNode& node) const {
+    return share_of(node.guessed_surface, typical_surface);
+}
 
 struct MultipleNodes::Workspace {
     CameraSegment segment;
@@ -120,7 +143,9 @@ void MultipleNodes::estimate_surface(const Place& place, const NodePaths& paths,
     SurfaceSample sample{*ray, {}, place.x, place.y};
     const bool has_hit = scene_.surfaces->closest_hit(*ray, k_far, sample.hit);
     begin(sample, has_hit, w, node);
-    if (has_hit) trace_surface(place.seed, paths.surface, w, node);
+    if (!has_hit) return;
+    node.surface_share = paths.surface_share(node);
+    trace_surface(place.seed, scaled(paths.surface, node.surface_share), w, node);
 }
 
 Point3 MultipleNodes::find_lit_surfaces(const Place& place, int paths,
@@ -177,7 +202,15 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
                                    reflection.is_glossy()};
     }
     transport_.paths->begin(sample.ray, has_hit ? &sample.hit : nullptr, w.seen, w.segment);
-    node.mean_light = w.segment.light.own;
+    const CameraSegment::Light& light = w.segment.light;
+    node.mean_light = light.own;
+    node.guessed_water = light.own - light.of_surface;
+    if (!has_hit) return;
+    constexpr double k_least_reflectance = 0.1;
+    double reflectance = 0;
+    for (std::size_t b = 0; b < bands(); ++b)
+        reflectance += sample.hit.reflectance[b] / static_cast<double>(bands());
+    node.guessed_surface = light.of_surface / std::max(reflectance, k_least_reflectance);
 }
 
 void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
@@ -213,6 +246,7 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
     w.interval_squares.assign(count, 0.0);
     w.batch_mean.assign(count, 0.0);
     WaterSum sum(intervals_, groups_, bands(), w);
+    node.water_share = paths.water_share(node);
     const auto trace = [&](NodeStream stream, int batch, int all, MultipleNode::Moments& moments,
                            const auto& trace_one) {
         const int in_batch = std::max(1, all / k_node_batches);
@@ -235,12 +269,14 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
             w.water.assign(count * groups_ * bands(), 0.0);
             half.water_mean.assign(count, 0.0F);
         }
-        trace(k_node_lit, batch, paths.lit, node.lit, [&](PathRandom& random) {
-            transport_.paths->trace_lit_surfaces(w.segment, indirect, random, sum);
-        });
-        trace(k_node_water, batch, paths.water, node.water, [&](PathRandom& random) {
-            transport_.paths->trace_water_alone(w.segment, random, sum);
-        });
+        trace(k_node_lit, batch, scaled(paths.lit, node.water_share), node.lit,
+              [&](PathRandom& random) {
+                  transport_.paths->trace_lit_surfaces(w.segment, indirect, random, sum);
+              });
+        trace(k_node_water, batch, scaled(paths.water, node.water_share), node.water,
+              [&](PathRandom& random) {
+                  transport_.paths->trace_water_alone(w.segment, random, sum);
+              });
         for (std::size_t i = 0; i < count; ++i) {
             const double mean = std::exchange(w.batch_mean[i], 0.0) * per_band;
             w.interval_mean[i] += mean;

@@ -44,13 +44,16 @@ struct MultipleNode {
     double reach = 0;  // of the water along its ray [m]
     /// IntervalWeights of its ray, by interval and band, and their means over the bands.
     std::vector<float> weights, mean_weights;
-    double mean_light = 0;    // roughly that of the ray, mean over the bands
+    double mean_light = 0;  // roughly that of the ray, mean over the bands
+    /// The light of its water and what a white surface would show, as guessed before any path.
+    double guessed_water = 0, guessed_surface = 0;
     double surface_seen = 0;  // the camera's radiance per diffuse_mean
     /// Two independent estimates: what is decided by one is applied to the other.
     std::array<NodeLight, 2> halves;
-    // The variances of either half's means:
+    // The variances of either half's means, and NodePaths' shares, to which they are inverse:
     std::vector<float> water_variance;
     double diffuse_variance = 0;
+    double water_share = 1, surface_share = 1;
     /// What a path of one kind brings, as means over the bands, and how many random numbers it
     /// takes: that tells how long it is.
     struct Moments {
@@ -60,11 +63,19 @@ struct MultipleNode {
     double surface_numbers = 0;  // of the third kind
 };
 
-/// How many light paths of each kind a node gets.
+/// How many light paths of each kind a node gets: these where its light is guessed to be typical,
+/// and the more the brighter it is, as noise is in proportion to the light.
 struct NodePaths {
     int surface = 512;  // from its surface: indirect light on it
     int lit = 512;      // to surfaces that are seen through scattering
     int water = 512;    // in the water alone
+    // Of what nodes guess; 0: all of them get as many.
+    double typical_water = 0, typical_surface = 0;
+
+    /// The numbers for a node, relative to these: of paths in the water, and of those from its
+    /// surface.
+    double water_share(const MultipleNode& node) const;
+    double surface_share(const MultipleNode& node) const;
 };
 
 /// Estimates nodes by light paths. Thread safe.

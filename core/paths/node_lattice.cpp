@@ -150,27 +150,53 @@ Grid2D<SmoothNode> NodeLattice::smoothed(const NodeWindow& window,
     return nodes;
 }
 
+namespace {
+
+// What smoothing takes from features, too, which it is as wide as the noise hides them.
+constexpr double k_of_features = 2;
+
+double diffuse_of(const MultipleNode& node) {
+    return 0.5 * (node.halves[0].diffuse_mean + node.halves[1].diffuse_mean);
+}
+
+double typical_diffuse(const Grid2D<MultipleNode>& nodes) {
+    double sum = 0, surfaces = 0;
+    for (const MultipleNode& node : nodes) {
+        if (!node.surface) continue;
+        sum += diffuse_of(node);
+        ++surfaces;
+    }
+    return surfaces > 0 ? sum / surfaces : 0;
+}
+
+// The camera's radiance per indirect light on a node's surface: of the surface itself, and of what
+// water shows of the surfaces around it, on which light is as noisy. Much of what it shows in front
+// of a dark one comes from elsewhere.
+double light_of_diffuse(const MultipleNode& node, double typical) {
+    constexpr double k_left = 0.5;  // of the noise by blurring
+    const double diffuse = std::max(diffuse_of(node), typical);
+    return node.surface_seen + (diffuse > 0 ? k_left * node.lit.mean / diffuse : 0);
+}
+
+}  // namespace
+
 double NodeLattice::error(const Grid2D<SmoothNode>& nodes, const NodeWindow& window) const {
-    // Light that the water scatters comes from so large a part of all surfaces.
-    constexpr double k_part_of_surfaces = 0.1;
-    double variance = 0, light = 0, lit = 0;
+    const double diffuse = typical_diffuse(raw_);
+    double variance = 0, light = 0;
     for (int j = window.j0; j < window.j1; ++j) {
         for (int i = window.i0; i < window.i1; ++i) {
+            const double seen = light_of_diffuse(raw_(i, j), diffuse);
             light += raw_(i, j).mean_light;
-            lit += raw_(i, j).lit.mean;
-            variance += nodes(i, j).variance;
+            for (const float deviation : nodes(i, j).water_deviation)
+                variance += static_cast<double>(deviation * deviation);
+            for (const float deviation : nodes(i, j).diffuse_deviation)
+                variance += seen * seen * static_cast<double>(deviation * deviation);
         }
     }
-    double diffuse = 0, of_diffuse = 0;
-    for (const MultipleNode& node : raw_) {
-        if (!node.surface) continue;
-        diffuse += 0.5 * (node.halves[0].diffuse_mean + node.halves[1].diffuse_mean);
-        of_diffuse += 0.5 * node.diffuse_variance;
-    }
     if (!(light > 0)) return 0;
-    const double of_nodes = 2 * variance * static_cast<double>(window.size());
-    const double of_lit = diffuse > 0 ? of_diffuse / (k_part_of_surfaces * diffuse * diffuse) : 0;
-    return std::sqrt(of_nodes + of_lit * lit * lit) / light;
+    const double nodes_of_bands =
+        static_cast<double>(window.size()) / static_cast<double>(estimator_.bands());
+    return std::sqrt(k_of_features * variance * nodes_of_bands) / light;
 }
 
 namespace {
@@ -181,8 +207,6 @@ constexpr double k_fewest_node_paths = 8, k_most_node_paths = 4096;
 // What smoothing leaves of the variance of nodes, in the example scenes: 0.03 to 0.07, in plumes
 // more.
 constexpr double k_smoothed_variance = 0.04;
-// What is left of the noise of surfaces in the light that comes from all over them.
-constexpr double k_noise_of_lit = 0.3;
 // The time that paths take for each random number, relatively: for those to lit surfaces, which
 // look for no lamps, and for others.
 constexpr double k_cost_of_plain = 1, k_cost_of_guided = 2;
@@ -203,30 +227,32 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
     const ShareCallback untold = [](double) {};
     const IndirectLight indirect = pilot.light_surfaces(few, untold);
     pilot.light_water(pilot.all(), few, indirect, untold);
-    double light = 0, lit = 0, diffuse = 0, of_diffuse = 0, surfaces = 0;
+    NodePaths paths;
+    const auto count = static_cast<double>(pilot.all().size());
+    for (const MultipleNode& node : pilot.raw()) {
+        paths.typical_water += node.guessed_water / count;
+        paths.typical_surface += node.guessed_surface / count;
+    }
+    const double typical = typical_diffuse(pilot.raw());
+    double light = 0;
     double of_surface = 0, of_lit = 0, of_water = 0;  // variances of a path
     struct {
         double surface, lit, water;
     } cost{0, 0, 0};  // of all paths of a kind
     for (const MultipleNode& node : pilot.raw()) {
+        const double share = paths.water_share(node), of_its_surface = paths.surface_share(node);
         light += node.mean_light;
-        lit += node.lit.mean;
-        of_lit += node.lit.variance;
-        of_water += node.water.variance;
-        cost.lit += k_cost_of_plain * node.lit.numbers;
-        cost.water += k_cost_of_guided * node.water.numbers;
-        cost.surface += k_cost_of_guided * node.surface_numbers;
+        of_lit += node.lit.variance / share;
+        of_water += node.water.variance / share;
+        cost.lit += share * k_cost_of_plain * node.lit.numbers;
+        cost.water += share * k_cost_of_guided * node.water.numbers;
+        cost.surface += of_its_surface * k_cost_of_guided * node.surface_numbers;
         if (!node.surface) continue;
-        const double variance = node.diffuse_variance * k_paths / 2;  // of either half's mean
-        ++surfaces;
-        diffuse += 0.5 * (node.halves[0].diffuse_mean + node.halves[1].diffuse_mean);
-        of_diffuse += variance;
-        of_surface += variance * node.surface_seen * node.surface_seen;
+        // That of either half's mean was of half the paths.
+        const double variance = node.diffuse_variance * k_paths / 2 / of_its_surface;
+        const double seen = light_of_diffuse(node, typical);
+        of_surface += variance * seen * seen;
     }
-    const auto count = static_cast<double>(pilot.all().size());
-    if (diffuse > 0)
-        of_surface +=
-            k_noise_of_lit * lit * lit / count * of_diffuse * surfaces / (diffuse * diffuse);
     for (double* of_kind : {&cost.surface, &cost.lit, &cost.water})
         *of_kind = std::max(*of_kind / count, k_least_cost);
     const double surface = std::sqrt(of_surface / cost.surface);
@@ -245,7 +271,10 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
     constexpr double k_fewest_in_water = 8;
     const int fewest_water =
         static_cast<int>(std::min(k_fewest_in_water, effort.paths / effort.nodes));
-    return {number(surface), number(seen), std::max(number(water), fewest_water)};
+    paths.surface = number(surface);
+    paths.lit = number(seen);
+    paths.water = std::max(number(water), fewest_water);
+    return paths;
 }
 
 }  // namespace uw

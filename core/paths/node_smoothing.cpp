@@ -181,6 +181,7 @@ constexpr int k_variance_reach = 2;  // of nodes whose variances are averaged
 static_assert(k_smoothing_reach == LatticeFit::k_reach + k_variance_reach + k_sharing_reach);
 // Differences between fits that do not matter, relative to the light of the nodes around.
 constexpr double k_tolerance = 1e-3;
+constexpr std::array<float, 2> k_sign_of_half{1, -1};
 
 /// The nodes around one that take part in a fit.
 class Neighbourhood {
@@ -256,14 +257,14 @@ void average_surface_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleN
         average_around(raw, at, [&](const MultipleNode& other) {
             if (!other.surface) return;
             ++surfaces;
-            sum += other.diffuse_variance;
+            sum += other.surface_share * other.diffuse_variance;
         });
-        nodes[at].diffuse_variance = sum / std::max(surfaces, 1.0);
+        nodes[at].diffuse_variance = sum / (std::max(surfaces, 1.0) * raw[at].surface_share);
     });
 }
 
 // The water's is in proportion to the weights of its intervals, as that of counts to their
-// expectation.
+// expectation, and inverse to the shares of paths.
 void average_water_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleNode>& nodes) {
     parallel_for(raw.size(), [&](std::size_t at) {
         std::vector<float>& of_node = nodes[at].water_variance;
@@ -273,15 +274,16 @@ void average_water_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleNod
         average_around(raw, at, [&](const MultipleNode& other) {
             if (other.water_variance.empty()) return;
             for (std::size_t k = 0; k < variances.size(); ++k) {
-                variances[k] += static_cast<double>(other.water_variance[k]);
+                variances[k] += other.water_share * static_cast<double>(other.water_variance[k]);
                 weights[k] += static_cast<double>(other.mean_weights[k]);
             }
         });
         for (std::size_t k = 0; k < of_node.size(); ++k)
-            of_node[k] = weights[k] > 0
-                             ? static_cast<float>(variances[k] / weights[k] *
-                                                  static_cast<double>(nodes[at].mean_weights[k]))
-                             : 0.0F;
+            of_node[k] =
+                weights[k] > 0
+                    ? static_cast<float>(variances[k] / (weights[k] * raw[at].water_share) *
+                                         static_cast<double>(nodes[at].mean_weights[k]))
+                    : 0.0F;
     });
 }
 
@@ -344,11 +346,13 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
             for (std::size_t k = 0; k < values_; ++k) {
                 const float of_band = other.weights[interval * bands_ + k % bands_];
                 if (!(of_band > 0)) continue;
-                node.light.water[interval * values_ + k] +=
-                    static_cast<float>(0.5 * weight.weight) * water[k] / of_band;
+                const float light = static_cast<float>(0.5 * weight.weight) * water[k] / of_band;
+                node.light.water[interval * values_ + k] += light;
+                if (own.has_ray)
+                    node.water_deviation[k % bands_] +=
+                        k_sign_of_half[half] * light * own.weights[interval * bands_ + k % bands_];
             }
         }
-        node.variance += 0.25 * fit.variance() * shown * shown;
     }
     return true;
 }
@@ -373,12 +377,14 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
         for (const FitWeight& weight : fit.fit(near.nodes(), tolerance)) {
             const NodeLight& other = raw_[weight.index].halves[half];
             const auto share = static_cast<float>(0.5 * weight.weight);
-            for (std::size_t k = 0; k < values_; ++k)
+            for (std::size_t k = 0; k < values_; ++k) {
                 node.light.diffuse[k] += share * other.diffuse[k];
+                node.diffuse_deviation[k % bands_] +=
+                    k_sign_of_half[half] * share * other.diffuse[k];
+            }
             for (std::size_t k = 0; k < node.light.glossy.size(); ++k)
                 node.light.glossy[k] += share * other.glossy[k];
         }
-        node.variance += 0.25 * fit.variance() * own.surface_seen * own.surface_seen;
     }
 }
 
@@ -407,6 +413,7 @@ Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<MultipleNode>& raw, std::size_
     const NodeSmoothing smoothing(averaged, groups, bands);
     parallel_for(raw.size(), [&](std::size_t at) {
         if (!raw[at].surface) return;
+        nodes[at].diffuse_deviation.assign(bands, 0.0F);
         smoothing.smooth_surface(static_cast<int>(at) % raw.width(),
                                  static_cast<int>(at) / raw.width(), nodes[at]);
     });
@@ -429,6 +436,7 @@ void smooth_water(const Grid2D<MultipleNode>& raw, const NodeWindow& window,
     };
     for_each([&](int i, int j) {
         nodes(i, j).light.water.assign(intervals.count() * groups * bands, 0.0F);
+        nodes(i, j).water_deviation.assign(bands, 0.0F);
         nodes(i, j).mean_light = raw(i, j).mean_light;
     });
     for (std::size_t interval = 0; interval < intervals.count(); ++interval) {

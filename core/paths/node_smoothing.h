@@ -30,8 +30,12 @@ struct SmoothNode {
     /// The distance up to which the water's light is known [m], which may be beyond the node's own
     /// surface; 0: nothing is known.
     double known_to = 0;
-    NodeLight light;                      // that of the water divided by IntervalWeights
-    double mean_light = 0, variance = 0;  // of the node's ray, and of its smoothed light
+    NodeLight light;        // that of the water divided by IntervalWeights
+    double mean_light = 0;  // of the node's ray
+    /// Half the difference between what either half of the estimates makes of its water's light,
+    /// and of the light on its surface, by band: their squares are the variances of the halves'
+    /// mean, whatever smoothing has made of them.
+    std::vector<float> water_deviation, diffuse_deviation;
 };
 
 /// Throws InputError if so many nodes, with the copies that smoothing makes, do not fit into free

@@ -136,8 +136,9 @@ struct CameraSegment {
     std::vector<double> distances, cumulative;
     /// Rough means over the bands, which guide the paths.
     struct Light {
-        double own = 0;      // the ray's radiance, without single scattering
-        double ambient = 0;  // what a path may meet anywhere
+        double own = 0;         // the ray's radiance, without single scattering
+        double ambient = 0;     // what a path may meet anywhere
+        double of_surface = 0;  // the part of `own` that comes straight from the surface
     } light;
     /// The share of paths that look for light which no surface has met, and of those that begin
     /// at the segment's own surface: where they bring less of its light than others, they are few.

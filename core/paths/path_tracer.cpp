@@ -49,8 +49,10 @@ Workspace& workspace_of_thread() {
 }  // namespace
 
 PathTracer::PathTracer(const LitScene& scene,
-                       const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows)
-    : scattering_(std::make_unique<ScatteringTables>(*scene.medium)),
+                       const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
+                       std::shared_ptr<const ScatteringTables> scattering)
+    : scattering_(scattering ? std::move(scattering)
+                             : std::make_shared<const ScatteringTables>(*scene.medium)),
       views_(lamp_views(*scene.emitters)) {
     for (const LampView& view : views_) {
         LitScene seen = scene;
@@ -200,8 +202,10 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
                                 std::sqrt(weights[b] * segment.transmittance[b]);
         }
         const double from_water =
-            scattered > 0 ? scattered * w.guides.source(water.ray.at(middle), water.ray.direction)
-                          : 0;
+            scattered > 0
+                ? scattered * (w.guides.source(water.ray.at(middle), water.ray.direction) +
+                               tables.guides.particles.at(water.ray.at(middle)))
+                : 0;
         of_water += from_water * length;
         w.guided.push_back((from_water + from_surface) * length);
         w.plain.push_back(plain * clearest * length);
@@ -209,11 +213,12 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
         sum_plain += w.plain.back();
     }
     const double per_band = 1 / static_cast<double>(bands);
-    segment.light = {sum_guided * per_band, 0};
+    segment.light = {};
     for (std::size_t b = 0; b < bands; ++b) {
-        segment.light.own += light_of_surface[b] * segment.transmittance[b] * per_band;
+        segment.light.of_surface += light_of_surface[b] * segment.transmittance[b] * per_band;
         segment.light.ambient += k_ambient_share * light_of_surface[b] * per_band;
     }
+    segment.light.own = sum_guided * per_band + segment.light.of_surface;
     segment.light.ambient = std::max(segment.light.ambient, k_least_ambient * segment.light.own);
     segment.water_paths = segment.surface_paths = 1;
     if (segment.light.own > 0) {
@@ -223,7 +228,7 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
             std::clamp(k_paths_of_share * reflected / segment.light.own, k_least_paths, 1.0);
     } else {
         // Nothing is known of it, as where only emission lights the scene: by throughput alone.
-        segment.light = {1, 1 / k_ambient_beyond};
+        segment.light = {.own = 1, .ambient = 1 / k_ambient_beyond};
     }
     segment.cumulative.clear();
     if (!(sum_plain > 0)) return;
@@ -260,8 +265,9 @@ void PathTracer::trace_water_alone(const CameraSegment& segment, PathRandom& ran
     const WaterOptics& optics = tables.optics;
     optics.look_up(segment.water, s, w.point);
     optics.find_scattering(w.point);
-    PathWalk walk(tables, {segment.light.own / segment.water_paths, segment.light.ambient}, random,
-                  terms);
+    CameraSegment::Light light = segment.light;
+    light.own /= segment.water_paths;
+    PathWalk walk(tables, light, random, terms);
     walk.stay_in_water();
     PathState& state = walk.state();
     optics.transmittances(s, w.point.column, state.throughput);

@@ -21,9 +21,11 @@ struct ScatteringTables;
 class PathTracer {
   public:
     /// `deep_shadows`: where paths take optical depths between lamps and points from, one per
-    /// emitter: its columns and no others. Empty: columns are exact.
+    /// emitter: its columns and no others. Empty: columns are exact. `scattering`: of the scene's
+    /// medium; null: made anew.
     explicit PathTracer(const LitScene& scene,
-                        const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows = {});
+                        const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows = {},
+                        std::shared_ptr<const ScatteringTables> scattering = nullptr);
     ~PathTracer();
     PathTracer(const PathTracer&) = delete;
     PathTracer& operator=(const PathTracer&) = delete;
@@ -69,7 +71,7 @@ class PathTracer {
                                Spectrum& light) const;
     void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
 
-    std::unique_ptr<const ScatteringTables> scattering_;
+    std::shared_ptr<const ScatteringTables> scattering_;
     std::vector<LampView> views_;
     std::vector<std::unique_ptr<const PathTables>> tables_;  // one per view
 };

@@ -133,7 +133,8 @@ double PathVertex::draw_candidates(PathRandom& random, double ambient,
         candidate.density = of_own * own_density(direction) +
                             (of_lobes > 0 ? of_lobes * guide_density(direction) : 0);
         candidate.responds = response_sum(direction);
-        candidate.light = guides_.radiance(direction) + ambient;
+        candidate.of_particles = tables_->particles.along({x_, direction}, k_far);
+        candidate.light = guides_.radiance(direction) + candidate.of_particles + ambient;
         if (!(candidate.density > 0) || !(candidate.weight() > 0)) continue;
         sum += candidate.weight();
         responding += candidate.responds / candidate.density;

@@ -15,9 +15,10 @@ namespace uw {
 /// One of several directions that are drawn at a vertex, of which a path takes one.
 struct CandidateDirection {
     Vector3 direction{0, 0, 1};
-    double light = 0;     // guessed to arrive from there, mean over the bands with the throughput
-    double responds = 0;  // the vertex to it, roughly, summed over the bands
-    double density = 0;   // with which any of the candidates is drawn there, times their number
+    double light = 0;  // guessed to arrive from there, mean over the bands with the throughput
+    double of_particles = 0;  // ParticleLight's part of it
+    double responds = 0;      // the vertex to it, roughly, summed over the bands
+    double density = 0;       // with which any of the candidates is drawn there, times their number
     double weight() const { return responds * light / density; }
 };
 

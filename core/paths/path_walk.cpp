@@ -64,7 +64,8 @@ void PathWalk::from_water(const WaterSegment& segment, const WaterPoint& point) 
 // As thorough as its light is worth by itself.
 void PathWalk::from_surface(const WaterSegment& segment) {
     const double radiance = guessed_reflection(tables_.guides, segment.hit, state_.throughput);
-    if (radiance > 0) light_ = {arriving(radiance), k_ambient_of_reflection * radiance};
+    if (radiance > 0)
+        light_ = {.own = arriving(radiance), .ambient = k_ambient_of_reflection * radiance};
     workspace_of_thread().vertex.reflect(tables_.guides, segment, state_.throughput);
     ++state_.reflections;
     follow(leave(above(segment.hit)));
@@ -79,7 +80,7 @@ double PathWalk::arriving(double radiance) const {
 }
 
 void PathWalk::from_surface_by_worth(const WaterSegment& segment) {
-    constexpr double k_least_worth = 0.02, k_most_worth = 4;
+    constexpr double k_least_worth = 0.3, k_most_worth = 4;
     Workspace& w = workspace_of_thread();
     const double light =
         arriving(guessed_reflection(tables_.guides, segment.hit, state_.throughput) +
@@ -142,10 +143,11 @@ double PathWalk::branches(const CandidateDirection& chosen) const {
     const std::size_t bands = tables_.optics.bands();
     double throughput = 0;
     for (const double value : state_.throughput.first(bands)) throughput += value;
-    const double expected = std::max(
-        throughput * (w.guides->multiple(chosen.direction) + k_ambient_beyond * light_.ambient) +
-            w.surface_ahead,
-        throughput * k_least_expected * chosen.light);
+    const double expected =
+        std::max(throughput * (w.guides->multiple(chosen.direction) + chosen.of_particles +
+                               k_ambient_beyond * light_.ambient) +
+                     w.surface_ahead,
+                 throughput * k_least_expected * chosen.light);
     double n =
         std::min(expected / (light_.own * static_cast<double>(bands)), k_most_branches_of_vertex);
     n = std::min(n, k_most_branches_of_path / state_.branches);
@@ -292,6 +294,7 @@ double PathWalk::draw_places(const Spectrum& to_end) {
         }
         if (!(place.density > 0) || !(place.scatters > 0)) continue;
         place.light = w.guides->source(w.segment.ray.at(place.distance), w.segment.ray.direction) +
+                      tables_.guides.particles.at(w.segment.ray.at(place.distance)) +
                       k_ambient_of_place * light_.ambient;
         // The surface ahead, seen through the water by a small detour.
         if (w.surface_radiance > 0)

@@ -1,0 +1,149 @@
+#include "core/paths/particle_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/base/parallel.h"
+#include "core/light/lamp.h"
+#include "core/light/ray_panels.h"
+
+namespace uw {
+
+namespace {
+
+constexpr double k_cells_of_particles = 8000;
+// Light outside a lamp's beam, which has been scattered before.
+constexpr double k_relative_beyond_beam = 0.05;
+// Light that is dimmed by so much counts no more.
+constexpr double k_negligible_transmittance = 0.02;
+
+}  // namespace
+
+ParticleLight::ParticleLight(const WaterOptics& optics, const LampField& field,
+                             const LampGathering& lamps)
+    : bounds_(optics.scene().field->bounds()) {
+    const Vector3 extent = bounds_.empty() ? Vector3(0) : bounds_.max - bounds_.min;
+    if (optics.constituents() == 0 || !(extent.x > 0 && extent.y > 0 && extent.z > 0)) return;
+    edge_ = std::cbrt(extent.x * extent.y * extent.z / k_cells_of_particles);
+    edge_ = std::max(edge_, std::max({extent.x, extent.y, extent.z}) / k_cells_of_particles);
+    for (int axis = 0; axis < 3; ++axis)
+        count_[static_cast<std::size_t>(axis)] =
+            std::max(1, static_cast<int>(std::ceil(extent[axis] / edge_)));
+    const LitScene& scene = optics.scene();
+    const Medium& medium = *scene.medium;
+    const std::vector<Lamp>& all = *scene.emitters;
+    const std::size_t bands = optics.bands(), constituents = optics.constituents();
+    cells_.resize(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
+                  static_cast<std::size_t>(count_[2]));
+    parallel_for(cells_.size(), [&](std::size_t n) {
+        thread_local std::vector<double> column, concentration;
+        column.resize(constituents);
+        concentration.assign(constituents, 0.0);
+        const auto across = static_cast<std::size_t>(count_[0]);
+        const auto down = static_cast<std::size_t>(count_[1]);
+        const Point3 x =
+            bounds_.min + edge_ * Vector3(static_cast<double>(n % across) + 0.5,
+                                          static_cast<double>(n / across % down) + 0.5,
+                                          static_cast<double>(n / across / down) + 0.5);
+        // Means over three lines through the cell.
+        for (int axis = 0; axis < 3; ++axis) {
+            Vector3 half(0);
+            half[axis] = 0.5 * edge_;
+            scene.field->column(x - half, x + half, column);
+            for (std::size_t k = 0; k < constituents; ++k)
+                concentration[k] += column[k] / (3 * edge_);
+        }
+        Cell& cell = cells_[n];
+        double scattering = 0, attenuation = 0;
+        for (std::size_t b = 0; b < bands; ++b) {
+            attenuation += medium.uniform.attenuation(b);
+            for (std::size_t k = 0; k < constituents; ++k) {
+                const OpticalCoefficients& unit = medium.constituents[k].per_unit;
+                scattering += concentration[k] * unit.total_scattering()[b];
+                attenuation += concentration[k] * unit.attenuation(b);
+            }
+        }
+        cell.scattering = static_cast<float>(scattering / static_cast<double>(bands));
+        cell.attenuation = static_cast<float>(attenuation / static_cast<double>(bands));
+        if (!(scattering > 0)) return;
+        double light = 0;
+        for (std::size_t j = 0; j < all.size(); ++j) {
+            const Point3 origin = all[j].origin(x);
+            const double radius = std::max(glm::length(x - origin), 0.5 * edge_);
+            const double relative =
+                std::max(all[j].relative_intensity(x - origin), k_relative_beyond_beam);
+            if (scene.surfaces->occluded(origin, x)) continue;
+            lamps.column_to_lamp(j, x, column);
+            for (std::size_t b = 0; b < bands; ++b) {
+                const double depth = optics.attenuation().optical_depth(b, radius, column);
+                light +=
+                    relative / all[j].spread(radius) * all[j].axis_intensity()[b] *
+                    field.flux(field.at(depth, medium.uniform.total_scattering()[b] /
+                                                   std::max(medium.uniform.attenuation(b), 1e-9)));
+            }
+        }
+        cell.light =
+            static_cast<float>(light / (4 * std::numbers::pi * static_cast<double>(bands)));
+    });
+}
+
+double ParticleLight::at(const Point3& x) const {
+    if (cells_.empty()) return 0;
+    std::array<int, 3> i{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double place = (x[axis] - bounds_.min[axis]) / edge_;
+        const auto a = static_cast<std::size_t>(axis);
+        if (!(place >= 0 && place < count_[a])) return 0;
+        i[a] = static_cast<int>(place);
+    }
+    const Cell& cell =
+        cells_[static_cast<std::size_t>((i[2] * count_[1] + i[1]) * count_[0] + i[0])];
+    return cell.scattering > 0 ? static_cast<double>(cell.light) : 0;
+}
+
+// From cell to cell (Amanatides and Woo 1987).
+double ParticleLight::along(const Ray& ray, double reach) const {
+    if (cells_.empty()) return 0;
+    Bounds all = bounds_;
+    for (int axis = 0; axis < 3; ++axis)
+        all.max[axis] = all.min[axis] + edge_ * count_[static_cast<std::size_t>(axis)];
+    const Interval part = inside(ray, all);
+    const double begin = std::max(part.begin, 0.0), end = std::min(part.end, reach);
+    if (!(end > begin)) return 0;
+    const Point3 entry = ray.at(begin);
+    std::array<int, 3> i{}, step{};
+    std::array<double, 3> next{}, width{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const double place = (entry[axis] - all.min[axis]) / edge_;
+        i[a] = std::clamp(static_cast<int>(place), 0, count_[a] - 1);
+        const double d = ray.direction[axis];
+        step[a] = d < 0 ? -1 : 1;
+        width[a] = d != 0 ? edge_ / std::abs(d) : std::numeric_limits<double>::infinity();
+        next[a] = d != 0 ? begin + ((d < 0 ? i[a] : i[a] + 1) - place) * edge_ / d
+                         : std::numeric_limits<double>::infinity();
+    }
+    double light = 0, transmittance = 1, s = begin;
+    while (transmittance > k_negligible_transmittance) {
+        const std::size_t a =
+            next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+        const Cell& cell =
+            cells_[static_cast<std::size_t>((i[2] * count_[1] + i[1]) * count_[0] + i[0])];
+        const double length = std::max(0.0, std::min(next[a], end) - s);
+        // A rough exponential.
+        const double passed = 1 / (1 + static_cast<double>(cell.attenuation) * length);
+        light +=
+            transmittance * static_cast<double>(cell.scattering * cell.light) * length * passed;
+        transmittance *= passed;
+        s = next[a];
+        if (!(s < end)) break;
+        i[a] += step[a];
+        if (i[a] < 0 || i[a] >= count_[a]) break;
+        next[a] += width[a];
+    }
+    return light;
+}
+
+}  // namespace uw
