@@ -43,7 +43,7 @@ constexpr int k_most_terms = 6;  // 1, x, y, x^2, xy, y^2
 constexpr std::array<int, 5> k_reaches{0, 1, 2, 4, LatticeFit::k_reach};
 // In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
 // light less well.
-constexpr double k_agreement = 3.2;
+constexpr double k_agreement = 4;
 // Noise that need not be smoothed any further, relative to differences that do not matter.
 constexpr double k_quiet = 0.5;
 // The least pivot of normal equations, relative to the largest.

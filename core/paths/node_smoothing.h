@@ -9,20 +9,8 @@
 
 namespace uw {
 
-/// How far away the nodes are, in steps of the lattice, on which a node depends by the
-/// sharing of outliers.
-inline constexpr int k_sharing_reach = 6;
-
-/// Takes from nodes what rare bright paths have left there, and shares it among the nodes around:
-/// the sum stays what it was, and no node is far brighter than all others. The light of a feature
-/// shows in both halves of a node; a half is limited only as far as it exceeds the other half, too.
-/// `groups`: of MultipleNodes. One for the light on surfaces, one for the water's.
-void share_surface_outliers(Grid2D<MultipleNode>& nodes, std::size_t bands);
-void share_water_outliers(Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
-                          std::size_t groups, std::size_t bands);
-
 /// How far away the nodes are, in steps of the lattice, on which a smoothed node depends.
-inline constexpr int k_smoothing_reach = LatticeFit::k_reach + 2 + k_sharing_reach;
+inline constexpr int k_smoothing_reach = LatticeFit::k_reach + 2;
 
 /// A node whose light is smoothed over those around it.
 struct SmoothNode {
@@ -52,7 +40,7 @@ struct NodeWindow {
     }
 };
 
-/// Smooths the nodes of a lattice (share_surface_outliers, share_water_outliers, then LatticeFit):
+/// Smooths the nodes of a lattice (LatticeFit):
 /// first the surfaces' light over the nodes that see the same surface, and then, in a window, the
 /// water's interval by interval over the nodes whose rays reach it. The neighbourhood for
 /// either half of the estimates is chosen by the other one: if a half chose its own, a rare bright

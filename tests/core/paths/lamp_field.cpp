@@ -42,7 +42,8 @@ TEST(LampField, LosesEnergyWithDistance) {
             for (double r = 0x1p-9; r < 100; r *= 1.07) {
                 const double flux = tables.field().flux(tables.field().at(r, albedo));
                 EXPECT_LE(flux, before) << g << " " << albedo << " " << r;
-                EXPECT_GE(flux, std::exp(-std::max(r, 0x1p-8)) * (1 - 1e-3)) << g << " " << albedo << " " << r;
+                EXPECT_GE(flux, std::exp(-std::max(r, 0x1p-8)) * (1 - 1e-3))
+                    << g << " " << albedo << " " << r;
                 before = flux;
             }
         }
