@@ -49,7 +49,7 @@ class OctaveNodes {
 };
 
 constexpr OctaveNodes k_radii(0x1p-8, 48, 3), k_angles(0x1p-10, 0x1p10, 2);
-// Of the radii that have a lobe of their own.
+// Every so many radii have a lobe of their own.
 constexpr std::size_t k_lobe_stride = 2;
 
 constexpr std::size_t k_albedos = 3;

@@ -69,7 +69,7 @@ struct NodePaths {
     int surface = 512;  // from its surface: indirect light on it
     int lit = 512;      // to surfaces that are seen through scattering
     int water = 512;    // in the water alone
-    // Of what nodes guess; 0: all of them get as many.
+    // The means of what nodes guess; 0: all of them get as many.
     double typical_water = 0, typical_surface = 0;
 
     /// The numbers for a node, relative to these: of paths in the water, and of those from its

@@ -341,7 +341,8 @@ void PathTracer::trace_mirrored(const SurfaceSample& sample, PathRandom& random,
     segment.has_hit = true;
     segment.hit = sample.hit;
     const PathTables& tables = choose_tables(random);
-    PathWalk walk(tables, {}, random, terms);
+    // Something may shine from everywhere, even where there is no lamp.
+    PathWalk walk(tables, {.own = 1, .ambient = 1}, random, terms);
     PathState& state = walk.state();
     for (double& value : state.throughput.first(tables.optics.bands())) value = 1;
     state.distance = sample.hit.distance;

@@ -151,7 +151,7 @@ double PathVertex::draw_candidates(PathRandom& random, double ambient,
     return sum;
 }
 
-// Of the lobes that candidates are drawn from [1/sr].
+// The density of the lobes that candidates are drawn from [1/sr].
 double PathVertex::guide_density(const Vector3& direction) const {
     const LampField& field = tables_->scattering.field();
     double sum = 0, before = 0;

@@ -107,7 +107,7 @@ struct PathWalk::Workspace {
     std::vector<Place> places;
     const LampGuides* guides = nullptr;  // at the beginning of the segment
     LampGuides guides_of_pending;
-    // Of the surface at its end, roughly: what it reflects, and as it arrives at the camera, summed
+    // What the surface at its end reflects, roughly, and what of that arrives at the camera, summed
     // over the bands.
     double surface_radiance = 0, surface_ahead = 0;
 };

@@ -156,10 +156,26 @@ TEST(ClosedRooms, AShiningSurfaceReflectsTheIntegralOfItsBrdf) {
         const Vector3 to_camera(std::sqrt(1 - c.cosine * c.cosine), 0, c.cosine);
         const auto batches =
             ray_batches(scene, {Point3{0.1, 0.2, 0} + 2.0 * to_camera, -to_camera}, 1);
-        deviations.add(
-            "cosine " + std::to_string(c.cosine) + " roughness " + std::to_string(c.roughness),
-            means_of(batches, [](const TermSums& sums) { return sums.total(0); }),
-            RoughSurface(c.cosine, c.roughness, c.f0, c.rho).reflectance());
+        const std::string what =
+            "cosine " + std::to_string(c.cosine) + " roughness " + std::to_string(c.roughness);
+        const double reflectance = RoughSurface(c.cosine, c.roughness, c.f0, c.rho).reflectance();
+        deviations.add(what, means_of(batches, [](const TermSums& sums) { return sums.total(0); }),
+                       reflectance);
+        // The same by the paths of what surfaces mirror: no lamp leads them.
+        const PathTracer tracer(scene.lit());
+        SurfaceSample sample{{Point3{0.1, 0.2, 0} + 2.0 * to_camera, -to_camera}, {}, 0, 0};
+        ASSERT_TRUE(scene.surfaces->closest_hit(sample.ray, k_far, sample.hit));
+        const auto mirrored = run_batches(32, 1, 2, [&](std::uint64_t seed, TermSums& sums) {
+            constexpr std::uint32_t k_paths = 1 << 11;
+            sums.set_weight(1.0 / k_paths);
+            for (std::uint32_t i = 0; i < k_paths; ++i) {
+                PathRandom random(seed, i);
+                tracer.trace_mirrored(sample, random, sums);
+            }
+        });
+        deviations.add(what + " mirrored",
+                       means_of(mirrored, [](const TermSums& sums) { return sums.total(0); }),
+                       reflectance);
     }
     deviations.expect_within_errors();
     deviations.expect_errors_below(0.01);
