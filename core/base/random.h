@@ -21,8 +21,6 @@ class PathRandom {
     double next();
     /// Continues with dimension `dimension`, so that what precedes may use any number of them.
     void skip_to(int dimension) { dimension_ = dimension; }
-    /// That of the next number.
-    int dimension() const { return dimension_; }
 
     /// A seed for each combination of the arguments.
     static std::uint64_t seed_of(std::uint64_t a, std::uint64_t b = 0, std::uint64_t c = 0);

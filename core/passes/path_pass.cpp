@@ -24,7 +24,7 @@ namespace {
 constexpr int k_together = 64;
 
 // Each of the estimates of a path has random numbers of its own, after those of its image position.
-enum Stream : std::uint64_t { k_position, k_single, k_water, k_surface };
+enum Stream : std::uint64_t { k_position, k_single, k_water, k_surface, k_lit };
 constexpr int k_position_dimensions = 2;
 // Beyond the lattice, whose dimensions after those of the position the estimates use.
 constexpr int k_aperture_dimension = 64;
@@ -40,6 +40,29 @@ std::optional<Ray> camera_ray(const RaySource& rays, double x, double y, PathRan
     return rays.aperture_ray(x, y, rays.has_aperture() ? aperture_point(a, b) : AperturePoint{},
                              random.next());
 }
+
+}  // namespace
+
+namespace {
+
+/// A kind of light path, where its light belongs, and how it is traced.
+struct Kind {
+    double PathCounts::*count;
+    Stream stream;
+    Spectrum PixelResult::*part;
+    double (*trace)(const PathTracer&, const CameraSegment&, PathRandom&, PathTerms&);
+};
+
+constexpr std::array k_kinds{
+    Kind{&PathCounts::water, k_water, &PixelResult::multiple_volume,
+         [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
+            PathTerms& terms) { return paths.trace_water(segment, random, terms); }},
+    Kind{&PathCounts::lit, k_lit, &PixelResult::multiple_volume,
+         [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
+            PathTerms& terms) { return paths.trace_lit_surfaces(segment, random, terms); }},
+    Kind{&PathCounts::surface, k_surface, &PixelResult::multiple_surface,
+         [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
+            PathTerms& terms) { return paths.trace_surface(segment, random, terms); }}};
 
 }  // namespace
 
@@ -215,27 +238,109 @@ void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& s
     }
 }
 
-void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
-                            std::size_t in_light, const Batch& batch, int index, Sum& sum) const {
-    thread_local CameraSegment segment;
-    const PathTracer& paths = *pixels_.transport().paths;
+/// Prepares the segment, and adds the surface's light but for that of paths.
+void PathPixels::begin(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+                       std::size_t in_light, CameraSegment& segment, Sum& sum) const {
     Spectrum leaving;
     if (surface != nullptr) {
         sum.set_part(&PixelResult::direct);
         add_direct(*surface, light, in_light, sum, leaving);
     }
-    paths.begin(ray, surface != nullptr ? &surface->hit : nullptr, leaving.first(sum.bands()),
-                segment);
-    const auto estimate = [&](Spectrum PixelResult::*part, Stream stream, const auto& trace_part) {
-        PathRandom random = batch.random(stream, index);
-        sum.set_part(part);
-        (paths.*trace_part)(segment, random, sum);
-    };
+    pixels_.transport().paths->begin(ray, surface != nullptr ? &surface->hit : nullptr,
+                                     leaving.first(sum.bands()), segment);
+}
+
+void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+                            std::size_t in_light, const Batch& batch, int index, Sum& sum) const {
+    thread_local CameraSegment segment;
+    begin(surface, ray, light, in_light, segment, sum);
+    segment.multiply_paths(times_);
     if (pixels_.in_scatter().parts().first_slab)
         sum.set_first_slab(pixels_.in_scatter().first_slab_along(ray));
-    estimate(&PixelResult::backscatter, k_single, &PathTracer::trace_single);
-    estimate(&PixelResult::multiple_volume, k_water, &PathTracer::trace_water);
-    estimate(&PixelResult::multiple_surface, k_surface, &PathTracer::trace_surface);
+    sum.set_part(&PixelResult::backscatter);
+    PathRandom random = batch.random(k_single, index);
+    pixels_.transport().paths->trace_single(segment, random, sum);
+    for (const Kind& kind : k_kinds) {
+        sum.set_part(kind.part);
+        random = batch.random(kind.stream, index);
+        kind.trace(*pixels_.transport().paths, segment, random, sum);
+    }
+}
+
+/// What single paths of each kind bring at one place in the image, and what they take.
+struct PathPixels::Trial {
+    struct OfKind {
+        double variance = 0;  // of the radiance, mean over the bands
+        double work = 0;      // of a path
+    };
+    std::array<OfKind, k_kinds.size()> kinds;
+};
+
+PathPixels::Trial PathPixels::try_paths(double x, double y, std::uint64_t place, int paths) const {
+    thread_local SurfaceLight light;
+    thread_local CameraSegment segment;
+    Trial trial;
+    const Batch batch{place, ~std::uint64_t{0}, paths};
+    PathRandom random = batch.random(k_position, 0);
+    const std::optional<Ray> ray = camera_ray(pixels_.rays(), x, y, random);
+    if (!ray) return trial;
+    SurfaceSample sample{*ray, {}, x, y};
+    const bool has_hit = pixels_.scene().surfaces->closest_hit(*ray, k_far, sample.hit);
+    if (has_hit) pixels_.transport().surfaces->evaluate_one(sample, light);
+    PixelResult ignored;
+    Sum sum(ignored, static_cast<std::size_t>(pixels_.band_count()));
+    begin(has_hit ? &sample : nullptr, *ray, light, 0, segment, sum);
+    for (std::size_t k = 0; k < k_kinds.size(); ++k) {
+        double mean = 0, squares = 0;
+        Trial::OfKind& of = trial.kinds[k];
+        for (int i = 0; i < paths; ++i) {
+            random = batch.random(k_kinds[k].stream, i);
+            sum.begin_batch();
+            of.work += k_kinds[k].trace(*pixels_.transport().paths, segment, random, sum) / paths;
+            double radiance = 0;
+            for (const double value : sum.batch().first(sum.bands()))
+                radiance += value / static_cast<double>(sum.bands());
+            mean += radiance / paths;
+            squares += radiance * radiance / paths;
+        }
+        of.variance = std::max(0.0, squares - mean * mean);
+    }
+    return trial;
+}
+
+// For costs t and variances v of single paths, numbers in proportion to sqrt(v / t) leave the least
+// variance for the time.
+void PathPixels::share_out(int samples) {
+    constexpr int k_across = 12, k_fewest = 8, k_most = 64;  // places in each direction, paths
+    constexpr double k_share = 0.03;                         // of all paths
+    const RaySource& rays = pixels_.rays();
+    const double all = static_cast<double>(rays.width()) * rays.height() * samples;
+    const int paths =
+        std::clamp(static_cast<int>(k_share * all / (k_across * k_across)), k_fewest, k_most);
+    std::array<Trial, k_across * k_across> trials;
+    parallel_for(trials.size(), [&](std::size_t n) {
+        const double across = static_cast<double>(n % k_across) + 0.5;
+        const double down = static_cast<double>(n / k_across) + 0.5;
+        trials[n] =
+            try_paths(across * rays.width() / k_across, down * rays.height() / k_across, n, paths);
+    });
+    times_ = {};
+    std::array<double, k_kinds.size()> worth{};
+    double before = 0, after = 0;
+    for (std::size_t k = 0; k < k_kinds.size(); ++k) {
+        double variance = 0, cost = 0;
+        for (const Trial& trial : trials) {
+            variance += trial.kinds[k].variance;
+            cost += trial.kinds[k].work;
+        }
+        if (!(cost > 0)) continue;
+        worth[k] = std::sqrt(variance / cost);
+        before += cost;
+        after += cost * worth[k];
+    }
+    if (!(after > 0)) return;
+    for (std::size_t k = 0; k < k_kinds.size(); ++k)
+        times_.*k_kinds[k].count = worth[k] * before / after;
 }
 
 /// `leaving`: the radiance at the surface itself [W m^-2 sr^-1].
@@ -419,7 +524,8 @@ void PathPass::run(Rendering& rendering) {
     const LayerPlan& plan = rendering.plan;
     const PathGoal goal{samples_of(rendering.desc.render), request_.error};
     const ShareCallback progress = rendering.progress_of(stage());
-    const PathPixels pixels(rendering.pixels, plan.order_count());
+    PathPixels pixels(rendering.pixels, plan.order_count());
+    pixels.share_out(goal.error ? k_guess : goal.samples);
     Film& film = rendering.film;
     const PixelWindow& window = film.window();
     Spread spread(window, plan.band_count());

@@ -6,6 +6,7 @@
 
 #include "core/passes/pass.h"
 #include "core/passes/pixel_renderer.h"
+#include "core/paths/path_segment.h"
 
 namespace uw {
 
@@ -33,6 +34,10 @@ class PathPixels {
     PathPixels(const PixelRenderer& pixels, std::size_t order_count)
         : pixels_(pixels), order_count_(order_count) {}
 
+    /// Tries some paths of each kind all over the image, and shares out the time of those that
+    /// follow among the kinds as leaves the least error. `samples`: paths per pixel, about.
+    void share_out(int samples);
+
     /// Renders pixel (x, y). The same for any number of threads, and for any part of the image. In
     /// rounds after the first, only what is a mean over paths. Thread safe. Throws Interrupted.
     void render(int x, int y, const PathRound& round, const TracedCallback& traced,
@@ -42,6 +47,11 @@ class PathPixels {
     class Sum;
     struct Batch;
 
+    struct Trial;
+
+    void begin(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+               std::size_t in_light, CameraSegment& segment, Sum& sum) const;
+    Trial try_paths(double x, double y, std::uint64_t place, int paths) const;
     void render_the_rest(int x, int y, const PathRound& round, PixelView& view,
                          PixelResult& result) const;
     void trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,
@@ -53,6 +63,7 @@ class PathPixels {
 
     const PixelRenderer& pixels_;
     std::size_t order_count_;
+    PathCounts times_;
 };
 
 /// What is requested of an image that is rendered by light paths (IntegratorKind::traces_paths).

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "core/base/parallel.h"
+
 namespace uw {
 
 namespace {
@@ -85,27 +87,22 @@ class LampField::Solver {
     };
 
     void make_matrix(const HalfTangentDensity& direction);
-    void find_first_order(const HalfTangentDensity& line);
-    void march(double radius, double h);
+    double first_order(const HalfTangentDensity& line, double radius, double angle) const;
+    static void march(double radius, double h, std::vector<Step>& steps);
 
     std::size_t nr_ = k_radii.count(), nh_ = k_angles.count();
     std::vector<double> matrix_;  // of a scattering: [from * angles + to]
-    std::vector<Step> steps_;
-    std::vector<std::size_t> begin_;  // of the steps of each node, and past the last
+    std::vector<std::vector<Step>> steps_;  // of each node
     std::vector<double> order_, source_;
 };
 
 LampField::Solver::Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line)
-    : source_(nr_ * nh_) {
+    : steps_(nr_ * nh_), order_(nr_ * nh_), source_(nr_ * nh_) {
     make_matrix(direction);
-    find_first_order(line);
-    for (std::size_t i = 0; i < nr_; ++i) {
-        for (std::size_t j = 0; j < nh_; ++j) {
-            begin_.push_back(steps_.size());
-            march(k_radii[i], k_angles[j]);
-        }
-    }
-    begin_.push_back(steps_.size());
+    parallel_for(steps_.size(), [&](std::size_t n) {
+        order_[n] = first_order(line, k_radii[n / nh_], k_angles[n % nh_]);
+        march(k_radii[n / nh_], k_angles[n % nh_], steps_[n]);
+    });
 }
 
 // Between the nodes of the angle a parabola goes through three: a straight line would spread the
@@ -116,7 +113,7 @@ void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
     constexpr int k_polar = 96, k_azimuths = 16;
     constexpr double k_least_sine = 0.3 / k_azimuths;  // relative: half a step beside the lamp
     matrix_.resize(nh_ * nh_);
-    for (std::size_t i = 0; i < nh_; ++i) {
+    parallel_for(nh_, [&](std::size_t i) {
         std::vector<double> row(nh_, 0.0);
         const double psi = 2 * std::atan(k_angles[i]);
         for (int a = 0; a < k_polar; ++a) {
@@ -146,32 +143,28 @@ void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
             }
         }
         for (std::size_t j = 0; j < nh_; ++j) matrix_[j * nh_ + i] = row[j];
-    }
+    });
 }
 
 // What is scattered once: (1 / D) int p e^-(s + R) dpsi, with D the lamp's distance from the ray.
-void LampField::Solver::find_first_order(const HalfTangentDensity& line) {
+double LampField::Solver::first_order(const HalfTangentDensity& line, double radius,
+                                      double angle) const {
     constexpr int k_points = 32;  // of equal mass
-    for (std::size_t i = 0; i < nr_; ++i) {
-        for (std::size_t j = 0; j < nh_; ++j) {
-            const double psi = 2 * std::atan(k_angles[j]);
-            const double distance = k_radii[i] * sine_of(k_angles[j]);
-            const double foot = k_radii[i] * std::cos(psi);
-            const double from = line.mass_to(k_angles[j]), mass = line.mass() - from;
-            double sum = 0;
-            for (int k = 0; k < k_points; ++k) {
-                const double h = line.invert(from + (k + 0.5) / k_points * mass);
-                const double to_lamp = distance / sine_of(std::max(h, 1e-12));
-                const double s = std::max(0.0, foot - to_lamp * (1 - h * h) / (1 + h * h));
-                sum += std::exp(-(s + to_lamp)) / k_points;
-            }
-            order_.push_back(mass * sum);
-        }
+    const double distance = radius * sine_of(angle);
+    const double foot = radius * std::cos(2 * std::atan(angle));
+    const double from = line.mass_to(angle), mass = line.mass() - from;
+    double sum = 0;
+    for (int k = 0; k < k_points; ++k) {
+        const double h = line.invert(from + (k + 0.5) / k_points * mass);
+        const double to_lamp = distance / sine_of(std::max(h, 1e-12));
+        const double s = std::max(0.0, foot - to_lamp * (1 - h * h) / (1 + h * h));
+        sum += std::exp(-(s + to_lamp)) / k_points;
     }
+    return mass * sum;
 }
 
 // Between the nodes of the radius the source is linear once it is freed of most of its decay.
-void LampField::Solver::march(double radius, double h) {
+void LampField::Solver::march(double radius, double h, std::vector<Step>& steps) {
     constexpr double k_reach = 20, k_least_step = 0.002, k_most_step = 0.4, k_growth = 0.3;
     constexpr double k_decay = 0.15;
     const double distance = radius * sine_of(h), foot = radius * std::cos(2 * std::atan(h));
@@ -190,8 +183,8 @@ void LampField::Solver::march(double radius, double h) {
                                   std::max(to_lamp, k_radii.front());
             const double near = source * (1 - r.t) * std::exp(k_decay * k_radii[r.index]);
             const double far = source * r.t * std::exp(k_decay * k_radii[r.index + 1]);
-            steps_.push_back(
-                {r.index * nh_ + a.index,
+            steps.push_back(
+                {r.index * k_angles.count() + a.index,
                  {static_cast<float>(near * (1 - a.t)), static_cast<float>(near * a.t),
                   static_cast<float>(far * (1 - a.t)), static_cast<float>(far * a.t)}});
         }
@@ -200,20 +193,19 @@ void LampField::Solver::march(double radius, double h) {
 }
 
 void LampField::Solver::find_next_order() {
-    std::ranges::fill(source_, 0.0);
-    for (std::size_t i = 0; i < nr_; ++i) {
+    parallel_for(nr_, [&](std::size_t i) {
         double* source = &source_[i * nh_];
+        std::fill(source, source + nh_, 0.0);
         for (std::size_t k = 0; k < nh_; ++k) {
             const double value = order_[i * nh_ + k];
             const double* column = &matrix_[k * nh_];
             for (std::size_t j = 0; j < nh_; ++j) source[j] += value * column[j];
         }
-    }
-    for (double& value : source_) value = std::max(value, 0.0);
-    for (std::size_t n = 0; n < order_.size(); ++n) {
+        for (std::size_t j = 0; j < nh_; ++j) source[j] = std::max(source[j], 0.0);
+    });
+    parallel_for(order_.size(), [&](std::size_t n) {
         double sum = 0;
-        for (std::size_t k = begin_[n]; k < begin_[n + 1]; ++k) {
-            const Step& step = steps_[k];
+        for (const Step& step : steps_[n]) {
             const double* near = &source_[step.node];
             const double* far = near + nh_;
             sum += static_cast<double>(step.weight[0]) * near[0] +
@@ -222,7 +214,7 @@ void LampField::Solver::find_next_order() {
                    static_cast<double>(step.weight[3]) * far[1];
         }
         order_[n] = sum * k_radii[n / nh_] * sine_of(k_angles[n % nh_]);
-    }
+    });
 }
 
 LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,

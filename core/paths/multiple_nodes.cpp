@@ -232,7 +232,7 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
     // No surface guides the paths that stay in the water.
     transport_.paths->begin(*ray, has_hit ? &hit : nullptr, {}, w.segment);
     w.segment.light.own = std::max(w.segment.light.own, node.mean_light);
-    w.segment.water_paths = 1;
+    w.segment.paths = {};
     if (weights_.vary()) {
         // Particles may be lit up anywhere, of which the lamps' guides know nothing. What is
         // typical is guessed without most of the scattered light: it is a few times as much.
@@ -256,11 +256,10 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
                 PathRandom::seed_of(place.seed, stream, static_cast<std::uint64_t>(batch)),
                 static_cast<std::uint32_t>(i));
             sum.begin_path(in_batch);
-            trace_one(random);
+            moments.work += trace_one(random) / in_all;
             const double of_path = sum.of_path() * per_band;
             moments.mean += of_path / in_all;
             moments.variance += of_path * of_path / in_all;
-            moments.numbers += static_cast<double>(random.dimension()) / in_all;
         }
     };
     for (int batch = 0; batch < k_node_batches; ++batch) {
@@ -271,11 +270,11 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
         }
         trace(k_node_lit, batch, scaled(paths.lit, node.water_share), node.lit,
               [&](PathRandom& random) {
-                  transport_.paths->trace_lit_surfaces(w.segment, indirect, random, sum);
+                  return transport_.paths->trace_lit_surfaces(w.segment, indirect, random, sum);
               });
         trace(k_node_water, batch, scaled(paths.water, node.water_share), node.water,
               [&](PathRandom& random) {
-                  transport_.paths->trace_water_alone(w.segment, random, sum);
+                  return transport_.paths->trace_water(w.segment, random, sum);
               });
         for (std::size_t i = 0; i < count; ++i) {
             const double mean = std::exchange(w.batch_mean[i], 0.0) * per_band;
@@ -323,9 +322,8 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
                 PathRandom random(
                     PathRandom::seed_of(seed, stream, static_cast<std::uint64_t>(batch)),
                     static_cast<std::uint32_t>(i));
-                transport_.paths->trace_surface(w.segment, random, sum);
-                node.surface_numbers +=
-                    static_cast<double>(random.dimension()) / (in_batch * k_node_batches);
+                node.surface_work += transport_.paths->trace_surface(w.segment, random, sum) /
+                                     (in_batch * k_node_batches);
             }
             const auto half = static_cast<std::size_t>(batch / k_batches_of_half);
             store(w.surface, 1.0 / (in_batch * k_batches_of_half * share),
@@ -335,7 +333,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
         }
         return means;
     };
-    w.segment.surface_paths = 1;
+    w.segment.paths = {};
     SurfaceHit& hit = w.segment.water.hit;
     for (std::size_t b = 0; b < bands; ++b)
         node.surface_seen += hit.reflectance[b] * w.segment.transmittance[b];

@@ -54,13 +54,12 @@ struct MultipleNode {
     std::vector<float> water_variance;
     double diffuse_variance = 0;
     double water_share = 1, surface_share = 1;
-    /// What a path of one kind brings, as means over the bands, and how many random numbers it
-    /// takes: that tells how long it is.
+    /// What a path of one kind brings, as means over the bands, and its work.
     struct Moments {
-        double mean = 0, variance = 0, numbers = 0;
+        double mean = 0, variance = 0, work = 0;
     };
     Moments lit, water;          // NodePaths
-    double surface_numbers = 0;  // of the third kind
+    double surface_work = 0;  // of a path of the third kind
 };
 
 /// How many light paths of each kind a node gets: these where its light is guessed to be typical,

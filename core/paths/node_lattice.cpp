@@ -207,12 +207,9 @@ constexpr double k_fewest_node_paths = 8, k_most_node_paths = 4096;
 // What smoothing leaves of the variance of nodes, in the example scenes: 0.03 to 0.07, in plumes
 // more.
 constexpr double k_smoothed_variance = 0.04;
-// The time that paths take for each random number, relatively: for those to lit surfaces, which
-// look for no lamps, and for others.
-constexpr double k_cost_of_plain = 1, k_cost_of_guided = 2;
-// So much for each node and each path that the effort names.
-constexpr double k_cost_of_effort = 120;
-constexpr double k_least_cost = 1;
+// The work of each node and each path that the effort names.
+constexpr double k_work_of_effort = 6;
+constexpr double k_least_cost = 0.05;
 
 }  // namespace
 
@@ -244,9 +241,9 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
         light += node.mean_light;
         of_lit += node.lit.variance / share;
         of_water += node.water.variance / share;
-        cost.lit += share * k_cost_of_plain * node.lit.numbers;
-        cost.water += share * k_cost_of_guided * node.water.numbers;
-        cost.surface += of_its_surface * k_cost_of_guided * node.surface_numbers;
+        cost.lit += share * node.lit.work;
+        cost.water += share * node.water.work;
+        cost.surface += of_its_surface * node.surface_work;
         if (!node.surface) continue;
         // That of either half's mean was of half the paths.
         const double variance = node.diffuse_variance * k_paths / 2 / of_its_surface;
@@ -258,7 +255,7 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
     const double surface = std::sqrt(of_surface / cost.surface);
     const double seen = std::sqrt(of_lit / cost.lit), water = std::sqrt(of_water / cost.water);
     const double work = surface * cost.surface + seen * cost.lit + water * cost.water;
-    double scale = work > 0 ? k_cost_of_effort * effort.paths / effort.nodes / work : 0;
+    double scale = work > 0 ? k_work_of_effort * effort.paths / effort.nodes / work : 0;
     if (work > 0 && effort.error > 0) {
         const double error = effort.error * light / count;
         scale = std::min(scale, k_smoothed_variance * work / count / (error * error));

@@ -54,6 +54,12 @@ struct PathState {
     bool from_water = false;  // where it first turned, seen from the camera
     double distance = 0;      // and how far along the camera ray [m]
     double branches = 1;      // into how many it has split
+    /// The surface that it was reflected by last, and what that reflects, roughly.
+    struct LeftSurface {
+        Point3 position;
+        Vector3 normal{0, 0, 1};
+        double radiance = 0;  // mean over the bands [W m^-2 sr^-1]
+    } left;
 
     /// A term of light that arrives along the segment.
     PathTerm term(std::size_t lamp, std::span<const double> radiance) const {
@@ -126,6 +132,13 @@ class WaterOptics {
     Bounds bounds_;  // of the field
 };
 
+/// Numbers of light paths by what they look for: light that no surface has met, light of surfaces
+/// that the water scatters on its way to the camera, and indirect light on the camera ray's own
+/// surface.
+struct PathCounts {
+    double water = 1, lit = 1, surface = 1;
+};
+
 /// A camera ray in the water up to the first surface, prepared for many paths (PathTracer::begin).
 /// Reused storage.
 struct CameraSegment {
@@ -140,9 +153,12 @@ struct CameraSegment {
         double ambient = 0;     // what a path may meet anywhere
         double of_surface = 0;  // the part of `own` that comes straight from the surface
     } light;
-    /// The share of paths that look for light which no surface has met, and of those that begin
-    /// at the segment's own surface: where they bring less of its light than others, they are few.
-    double water_paths = 1, surface_paths = 1;
+    /// The mean numbers of paths of each kind that are traced in place of one: fewer where they
+    /// bring less of the ray's light than others.
+    PathCounts paths;
+
+    /// As many times the paths of each kind as `times` says, within limits.
+    void multiply_paths(const PathCounts& times);
 };
 
 }  // namespace uw

@@ -31,7 +31,7 @@ constexpr std::size_t k_most_guides = 6;
 // Share of the first scatterings that follow the transmittance alone, so that none is starved.
 constexpr double k_defensive_share = 0.1;
 // The share of paths of a kind, relative to its share of the light, and at least.
-constexpr double k_paths_of_share = 4, k_least_paths = 0.1;
+constexpr double k_paths_of_share = 4, k_least_paths = 0.1, k_most_paths = 8;
 
 /// Per thread: preparing a ray does not allocate.
 struct Workspace {
@@ -220,12 +220,13 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
     }
     segment.light.own = sum_guided * per_band + segment.light.of_surface;
     segment.light.ambient = std::max(segment.light.ambient, k_least_ambient * segment.light.own);
-    segment.water_paths = segment.surface_paths = 1;
+    segment.paths = {};
     if (segment.light.own > 0) {
-        segment.water_paths = std::clamp(k_paths_of_share * of_water * per_band / segment.light.own,
+        segment.paths.water = std::clamp(k_paths_of_share * of_water * per_band / segment.light.own,
                                          k_least_paths, 1.0);
-        segment.surface_paths =
-            std::clamp(k_paths_of_share * reflected / segment.light.own, k_least_paths, 1.0);
+        if (has_surface)
+            segment.paths.surface =
+                std::clamp(k_paths_of_share * reflected / segment.light.own, k_least_paths, 1.0);
     } else {
         // Nothing is known of it, as where only emission lights the scene: by throughput alone.
         segment.light = {.own = 1, .ambient = 1 / k_ambient_beyond};
@@ -250,32 +251,64 @@ void PathTracer::trace_single(const CameraSegment& segment, PathRandom& random,
     tables.lamps.gather_from_water(segment.water, state, random, terms);
 }
 
+namespace {
+
+// `mean` paths, and what work they were. Whole numbers take no random number: the first covers its
+// range the most evenly.
+template <class Trace>
+double trace_paths(double mean, PathRandom& random, const Trace& trace) {
+    double work = 0;
+    int count = static_cast<int>(mean);
+    const double rest = mean - count;
+    if (rest > 0 && random.next() < rest) ++count;
+    for (int i = 0; i < count; ++i) work += trace();
+    return work;
+}
+
+}  // namespace
+
 // A first scattering where the segment's light guides it.
-void PathTracer::trace_water_alone(const CameraSegment& segment, PathRandom& random,
-                                   PathTerms& terms) const {
+double PathTracer::trace_water_path(const CameraSegment& segment, PathRandom& random,
+                                    PathTerms& terms) const {
     const PathTables& tables = choose_tables(random);
     double u = random.next();
-    if (segment.cumulative.empty() || random.next() >= segment.water_paths) return;
     Workspace& w = workspace_of_thread();
     const Choice interval = choose(segment.cumulative, u);
     const double begin = segment.distances[interval.index];
     const double length = segment.distances[interval.index + 1] - begin;
-    if (!(interval.probability > 0)) return;
+    if (!(interval.probability > 0)) return 0;
     const double s = begin + u * length;
     const WaterOptics& optics = tables.optics;
     optics.look_up(segment.water, s, w.point);
     optics.find_scattering(w.point);
     CameraSegment::Light light = segment.light;
-    light.own /= segment.water_paths;
+    light.own /= std::max(1.0, segment.paths.water);
     PathWalk walk(tables, light, random, terms);
     walk.stay_in_water();
     PathState& state = walk.state();
     optics.transmittances(s, w.point.column, state.throughput);
     for (double& value : state.throughput.first(optics.bands()))
-        value *= length / (interval.probability * segment.water_paths);
+        value *= length / (interval.probability * segment.paths.water);
     state.from_water = true;
     state.distance = s;
     walk.from_water(segment.water, w.point);
+    return walk.work();
+}
+
+double PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
+                               PathTerms& terms) const {
+    if (segment.cumulative.empty()) return 0;
+    return trace_paths(segment.paths.water, random,
+                       [&] { return trace_water_path(segment, random, terms); });
+}
+
+void CameraSegment::multiply_paths(const PathCounts& times) {
+    const auto multiply = [](double& count, double by) {
+        count = std::clamp(count * by, k_least_paths, k_most_paths);
+    };
+    multiply(paths.water, times.water);
+    multiply(paths.lit, times.lit);
+    multiply(paths.surface, times.surface);
 }
 
 namespace {
@@ -287,25 +320,33 @@ class NoTerms final : public PathTerms {
 
 PathWalk walk_into_water(const PathTables& tables, const CameraSegment& segment, PathRandom& random,
                          PathTerms& terms) {
-    PathWalk walk(tables, segment.light, random, terms);
-    for (double& value : walk.state().throughput.first(tables.optics.bands())) value = 1;
+    CameraSegment::Light light = segment.light;
+    light.own /= std::max(1.0, segment.paths.lit);
+    PathWalk walk(tables, light, random, terms);
+    for (double& value : walk.state().throughput.first(tables.optics.bands()))
+        value = 1 / segment.paths.lit;
     walk.state().from_water = true;
     return walk;
 }
 
 }  // namespace
 
-void PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
-                             PathTerms& terms) const {
-    trace_water_alone(segment, random, terms);
-    PathWalk walk = walk_into_water(choose_tables(random), segment, random, terms);
-    if (walk.wander(segment.water)) walk.gather_lit_surface();
+double PathTracer::trace_lit_surfaces(const CameraSegment& segment, PathRandom& random,
+                                      PathTerms& terms) const {
+    return trace_paths(segment.paths.lit, random, [&] {
+        PathWalk walk = walk_into_water(choose_tables(random), segment, random, terms);
+        if (walk.wander(segment.water)) walk.gather_lit_surface();
+        return walk.work();
+    });
 }
 
-void PathTracer::trace_lit_surfaces(const CameraSegment& segment, const IndirectLight& indirect,
-                                    PathRandom& random, PathTerms& terms) const {
-    PathWalk walk = walk_into_water(choose_tables(random), segment, random, terms);
-    if (walk.wander(segment.water)) walk.gather_lit_surface(indirect);
+double PathTracer::trace_lit_surfaces(const CameraSegment& segment, const IndirectLight& indirect,
+                                      PathRandom& random, PathTerms& terms) const {
+    return trace_paths(segment.paths.lit, random, [&] {
+        PathWalk walk = walk_into_water(choose_tables(random), segment, random, terms);
+        if (walk.wander(segment.water)) walk.gather_lit_surface(indirect);
+        return walk.work();
+    });
 }
 
 bool PathTracer::find_lit_surface(const CameraSegment& segment, PathRandom& random,
@@ -320,17 +361,19 @@ bool PathTracer::find_lit_surface(const CameraSegment& segment, PathRandom& rand
     return end != nullptr;
 }
 
-void PathTracer::trace_surface(const CameraSegment& segment, PathRandom& random,
-                               PathTerms& terms) const {
-    if (!segment.water.has_hit) return;
-    const PathTables& tables = choose_tables(random);
-    if (random.next() >= segment.surface_paths) return;
-    PathWalk walk(tables, segment.light, random, terms);
-    PathState& state = walk.state();
-    for (std::size_t b = 0; b < tables.optics.bands(); ++b)
-        state.throughput[b] = segment.transmittance[b] / segment.surface_paths;
-    state.distance = segment.water.length;
-    walk.from_surface(segment.water);
+double PathTracer::trace_surface(const CameraSegment& segment, PathRandom& random,
+                                 PathTerms& terms) const {
+    if (!segment.water.has_hit) return 0;
+    return trace_paths(segment.paths.surface, random, [&] {
+        const PathTables& tables = choose_tables(random);
+        PathWalk walk(tables, segment.light, random, terms);
+        PathState& state = walk.state();
+        for (std::size_t b = 0; b < tables.optics.bands(); ++b)
+            state.throughput[b] = segment.transmittance[b] / segment.paths.surface;
+        state.distance = segment.water.length;
+        walk.from_surface(segment.water);
+        return walk.work();
+    });
 }
 
 void PathTracer::trace_mirrored(const SurfaceSample& sample, PathRandom& random,

@@ -32,29 +32,33 @@ class PathTracer {
     PathTracer(PathTracer&&) = delete;
     PathTracer& operator=(PathTracer&&) = delete;
 
-    /// Prepares a camera ray: `hit` is the first surface along it, null for none; `surface_light`
+    /// Prepares a camera ray, with as many paths of each kind as seem worth it: `hit` is the first surface along it, null for none; `surface_light`
     /// an estimate of that surface's radiance, per band, that guides the paths; may be empty.
     void begin(const Ray& ray, const SurfaceHit* hit, std::span<const double> surface_light,
                CameraSegment& segment) const;
 
     /// The light of lamps that the water scatters once, towards the camera.
     void trace_single(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
-    /// The rest of the light that the water scatters towards the camera: `multiple.volume`.
-    void trace_water(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
-    /// The two parts of trace_water's light. That which no surface has reflected or emitted:
-    void trace_water_alone(const CameraSegment& segment, PathRandom& random,
-                           PathTerms& terms) const;
-    /// And that of surfaces, which the water scatters on its way to the camera. `indirect`: the
-    /// light on the first of them that is not direct, by lamp or all in one; from glossy ones paths
-    /// go on.
-    void trace_lit_surfaces(const CameraSegment& segment, const IndirectLight& indirect,
-                            PathRandom& random, PathTerms& terms) const;
+
+    // Three kinds of paths, as many as CameraSegment::paths says. They return what work it was:
+    // roughly the number of vertices at which a direction was chosen by all that is known.
+
+    /// The light that the water scatters towards the camera, of `multiple.volume`, which no surface
+    /// has reflected or emitted.
+    double trace_water(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+    /// And that of surfaces, which the water scatters on its way to the camera.
+    double trace_lit_surfaces(const CameraSegment& segment, PathRandom& random,
+                              PathTerms& terms) const;
+    /// The same. `indirect`: the light on the first of the surfaces that is not direct, by lamp or
+    /// all in one; from glossy ones paths go on.
+    double trace_lit_surfaces(const CameraSegment& segment, const IndirectLight& indirect,
+                              PathRandom& random, PathTerms& terms) const;
     /// The first surface that such a path meets, and the path's last ray; false if it meets none.
     bool find_lit_surface(const CameraSegment& segment, PathRandom& random,
                           SurfaceSample& sample) const;
     /// The light that the segment's surface reflects, other than direct light of lamps, and not
     /// what it emits: `multiple.surface`. Nothing without a surface.
-    void trace_surface(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+    double trace_surface(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
     /// Traces the part of trace_surface's light that was scattered or reflected once, or emitted,
     /// before the sample reflects it. It is the light at the surface itself, not dimmed by the
     /// water in front of it.
@@ -66,6 +70,8 @@ class PathTracer {
 
   private:
     const PathTables& choose_tables(PathRandom& random) const;
+    double trace_water_path(const CameraSegment& segment, PathRandom& random,
+                            PathTerms& terms) const;
     void place_intervals(CameraSegment& segment) const;
     double guess_surface_light(const CameraSegment& segment, std::span<const double> surface_light,
                                Spectrum& light) const;

@@ -100,7 +100,7 @@ void PathVertex::find_guides(const Spectrum& throughput) {
 
 // Resampled importance sampling (Talbot et al. 2005): stratified, as many of each kind, weighted
 // against each other by the balance heuristic.
-double PathVertex::draw_candidates(PathRandom& random, double ambient,
+double PathVertex::draw_candidates(PathRandom& random, const ExpectedLight& expected,
                                    std::vector<CandidateDirection>& candidates) const {
     constexpr int k_of_each = 3;
     constexpr double k_golden = 0.6180339887498949;  // spreads azimuths evenly
@@ -134,7 +134,10 @@ double PathVertex::draw_candidates(PathRandom& random, double ambient,
                             (of_lobes > 0 ? of_lobes * guide_density(direction) : 0);
         candidate.responds = response_sum(direction);
         candidate.of_particles = tables_->particles.along({x_, direction}, k_far);
-        candidate.light = guides_.radiance(direction) + candidate.of_particles + ambient;
+        candidate.light =
+            guides_.radiance(direction) + candidate.of_particles + expected.ambient;
+        if (expected.of_surface > 0 && glm::dot(expected.normal, direction) < 0)
+            candidate.light += expected.of_surface;
         if (!(candidate.density > 0) || !(candidate.weight() > 0)) continue;
         sum += candidate.weight();
         responding += candidate.responds / candidate.density;

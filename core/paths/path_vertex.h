@@ -22,6 +22,13 @@ struct CandidateDirection {
     double weight() const { return responds * light / density; }
 };
 
+/// Light that paths may meet beside that of the lamps: from everywhere, and that of a surface which
+/// lies across `normal`, as it arrives [W m^-2 sr^-1].
+struct ExpectedLight {
+    double ambient = 0, of_surface = 0;
+    Vector3 normal{0, 0, 1};
+};
+
 /// The direction in which a path goes on that is scattered by the phase functions alone, where it
 /// travels along `direction`. Multiplies `throughput`, by band, by the scattering coefficients over
 /// the probability of what was drawn. Uses three random numbers; empty if nothing scatters.
@@ -44,10 +51,10 @@ class PathVertex {
     void reflect(const GuideTables& tables, const WaterSegment& segment,
                  const Spectrum& throughput);
 
-    /// Draws candidates; `ambient` is light that is expected from everywhere [W m^-2 sr^-1]. Their
-    /// weights, in proportion to which one of them is to be chosen, sum to the number that is
-    /// returned. Uses four random numbers.
-    double draw_candidates(PathRandom& random, double ambient,
+    /// Draws candidates, of which `expected` is known beside the lamps. Their weights, in proportion
+    /// to which one of them is to be chosen, sum to the number that is returned. Uses four random
+    /// numbers.
+    double draw_candidates(PathRandom& random, const ExpectedLight& expected,
                            std::vector<CandidateDirection>& candidates) const;
     const LampGuides& guides() const { return guides_; }
 

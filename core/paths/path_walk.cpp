@@ -26,6 +26,7 @@ constexpr int k_long = 100;
 constexpr int k_places = 3;
 // None is guessed far darker than the mean: what shines there after all would be too bright.
 constexpr double k_least_light_of_place = 0.3;
+constexpr double k_work_of_plain_vertex = 0.1;
 constexpr double k_golden = 0.6180339887498949;
 
 // How far rays begin above the surface they leave, relative to the coordinates and to the last
@@ -67,6 +68,7 @@ void PathWalk::from_surface(const WaterSegment& segment) {
     if (radiance > 0)
         light_ = {.own = arriving(radiance), .ambient = k_ambient_of_reflection * radiance};
     workspace_of_thread().vertex.reflect(tables_.guides, segment, state_.throughput);
+    state_.left = {segment.hit.position, segment.hit.geometric_normal, radiance};
     ++state_.reflections;
     follow(leave(above(segment.hit)));
 }
@@ -109,8 +111,8 @@ bool PathWalk::leave(const Point3& origin, bool is_last) {
     Workspace& w = workspace_of_thread();
     const PathVertex& vertex = w.vertex;
     const std::size_t bands = tables_.optics.bands();
-    const double sum =
-        vertex.draw_candidates(random_, k_ambient_of_direction * light_.ambient, w.candidates);
+    ++work_;
+    const double sum = vertex.draw_candidates(random_, expected_from(origin), w.candidates);
     const double of_candidate = random_.next(), of_number = random_.next();
     if (!(sum > 0)) return false;
     const CandidateDirection chosen = w.candidates[find_weight(
@@ -135,6 +137,19 @@ bool PathWalk::leave(const Point3& origin, bool is_last) {
     state_.branches *= n;
     for (double i = of_number + 1; i < n; ++i) w.pending.push_back({state_, ray});
     return true;
+}
+
+// The surface that the path has left may be met again: all that is below its plane.
+ExpectedLight PathWalk::expected_from(const Point3& x) const {
+    ExpectedLight expected{.ambient = k_ambient_of_direction * light_.ambient};
+    const PathState::LeftSurface& left = state_.left;
+    const double height = glm::dot(x - left.position, left.normal);
+    if (!(left.radiance > 0) || !(height > 0) || stays_in_water_) return expected;
+    const WaterOptics& optics = tables_.optics;
+    const double c = optics.attenuation().uniform[optics.clearest_band()];
+    expected.of_surface = left.radiance * std::exp(-c * height);
+    expected.normal = left.normal;
+    return expected;
 }
 
 // As many as what is expected from the chosen direction is worth, relative to the pixel's light.
@@ -235,6 +250,7 @@ bool PathWalk::advance() {
         for (std::size_t b = 0; b < bands; ++b)
             state_.throughput[b] *= to_end[b] * all / w.surface_ahead;
         w.vertex.reflect(tables_.guides, w.segment, state_.throughput);
+        state_.left = {w.segment.hit.position, w.segment.hit.geometric_normal, w.surface_radiance};
         ++state_.reflections;
         return leave(above(w.segment.hit));
     }
@@ -380,6 +396,7 @@ const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
             tables_.scattering, w.point, w.segment.ray.direction, random_, throughput.first(bands));
         if (!direction) return nullptr;
         ++state_.scatterings;
+        work_ += k_work_of_plain_vertex;
         double weight = 0;
         for (std::size_t b = 0; b < bands; ++b) weight += throughput[b] * tables_.light[b];
         // What little is left of a path goes on in few, and none goes on for ever.

@@ -25,6 +25,9 @@ class PathWalk {
         : tables_(tables), light_(light), random_(random), terms_(terms) {}
 
     PathState& state() { return state_; }
+    /// What it has taken: vertices at which a direction was chosen by all that is known, and a
+    /// small part of each other.
+    double work() const { return work_; }
     /// Ends the path at surfaces and leaves out what they emit and reflect.
     void stay_in_water() { stays_in_water_ = true; }
 
@@ -52,6 +55,7 @@ class PathWalk {
     // Gathers the light that arrives at the workspace's vertex from a direction that it draws,
     // along which the path may go on; false if it ends there, as it does anyhow if this `is_last`.
     bool leave(const Point3& origin, bool is_last = false);
+    ExpectedLight expected_from(const Point3& x) const;
     double branches(const CandidateDirection& chosen) const;
     void find_surface_ahead();
     void find_emission(const Spectrum& throughput);
@@ -77,6 +81,7 @@ class PathWalk {
     PathRandom& random_;
     PathTerms& terms_;
     PathState state_;
+    double work_ = 0;
     bool stays_in_water_ = false;
 };
 

@@ -6,6 +6,7 @@
 
 #include "tests/support/paths/lit_box.h"
 #include "tests/support/paths/ray_batches.h"
+#include "tests/support/paths/term_sums.h"
 
 namespace uw::test {
 namespace {
@@ -53,7 +54,7 @@ TEST(PathLaws, TermsAreOfTheKindThatTheyClaim) {
     for (std::uint32_t i = 0; i < 2000; ++i) {
         PathRandom random(PathRandom::seed_of(1), i);
         tracer.trace_single(segment, random, single);
-        tracer.trace_water(segment, random, water);
+        trace_scattered(tracer, segment, random, water);
         tracer.trace_surface(segment, random, surface);
     }
     for (const KindCheck* check : {&single, &water, &surface}) EXPECT_GT(check->count, 100);

@@ -5,6 +5,7 @@
 #include "tests/support/geometry_descs.h"
 #include "tests/support/paths/lit_box.h"
 #include "tests/support/paths/ray_batches.h"
+#include "tests/support/paths/term_sums.h"
 
 namespace uw::test {
 namespace {
@@ -144,7 +145,7 @@ TEST(PathLaws, EachLampHasItsOwnLight) {
             PathRandom single(PathRandom::seed_of(n, 1), i), water(PathRandom::seed_of(n, 2), i),
                 surface(PathRandom::seed_of(n, 3), i);
             tracer.trace_single(segment, single, terms);
-            tracer.trace_water(segment, water, terms);
+            trace_scattered(tracer, segment, water, terms);
             tracer.trace_surface(segment, surface, terms);
         }
         for (const std::size_t lamp : {0U, 1U}) shares[lamp].add(terms.sums[lamp] / k_paths);

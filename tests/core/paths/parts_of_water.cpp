@@ -6,6 +6,7 @@
 #include "tests/support/paths/closed_form_surfaces.h"
 #include "tests/support/paths/lit_box.h"
 #include "tests/support/paths/ray_batches.h"
+#include "tests/support/paths/term_sums.h"
 
 namespace uw::test {
 namespace {
@@ -95,11 +96,11 @@ TEST(WaterAlone, IsWhatNoSurfaceReflects) {
     };
     const auto alone =
         batches_of(1, [&](const CameraSegment& segment, PathRandom& random, TermSums& sums) {
-            tracer.trace_water_alone(segment, random, sums);
+            tracer.trace_water(segment, random, sums);
         });
     const auto all =
         batches_of(2, [&](const CameraSegment& segment, PathRandom& random, TermSums& sums) {
-            tracer.trace_water(segment, random, sums);
+            trace_scattered(tracer, segment, random, sums);
         });
     Deviations deviations;
     for (std::size_t b = 0; b < scene.band_count(); ++b) {

@@ -201,7 +201,7 @@ std::vector<Parts> trace(bool with_box) {
         for (std::uint32_t i = 0; i < k_paths; ++i) {
             PathRandom single(PathRandom::seed_of(n, 1), i), water(PathRandom::seed_of(n, 2), i);
             tracer.trace_single(segment, single, batches[n]);
-            tracer.trace_water(segment, water, batches[n]);
+            trace_scattered(tracer, segment, water, batches[n]);
         }
         for (Parts* parts : {&batches[n]})
             for (std::array<double, k_parts>* sums : {&parts->once, &parts->twice})

@@ -37,8 +37,8 @@ void compare_fluence_tables(const std::string& file, double g) {
     EXPECT_EQ(deviations.count(), 8 * 6);
     deviations.expect_within_errors();
     deviations.expect_errors_below(0.001, "order 1");
-    deviations.expect_errors_below(0.002, "order 2");
-    // The attained ones, doubled.
+    // The attained ones, doubled. Far from the lamp hardly any light is of order 2.
+    deviations.expect_errors_below(0.015, "order 2");
     deviations.expect_errors_below(0.05, "total");
 }
 

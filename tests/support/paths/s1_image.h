@@ -7,6 +7,7 @@
 #include "tests/support/paths/mean_fluence.h"
 #include "tests/support/paths/plain_paths.h"
 #include "tests/support/paths/s1_scene.h"
+#include "tests/support/paths/term_sums.h"
 
 /// The mean of S1's image over random rays, by core/paths and by PlainPaths.
 namespace uw::test {
@@ -78,7 +79,7 @@ inline S1Batch trace_s1(const PathScene& scene, const PathTracer& tracer, std::u
             surface(PathRandom::seed_of(ray_seed, 3), 0);
         tracer.trace_single(segment, single, batch.sums);
         Largest more(batch.sums);
-        tracer.trace_water(segment, water, more);
+        trace_scattered(tracer, segment, water, more);
         tracer.trace_surface(segment, surface, more);
         for (std::size_t b = 0; b < 3; ++b)
             batch.largest[b] = std::max(batch.largest[b], more.path[b]);

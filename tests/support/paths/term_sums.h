@@ -63,6 +63,13 @@ class TermSums final : public PathTerms {
     std::vector<double> sums_;
 };
 
+/// One path of either kind that begins with a scattering; `tracer` gives the segment one of each.
+inline void trace_scattered(const PathTracer& tracer, const CameraSegment& segment,
+                            PathRandom& random, PathTerms& terms) {
+    tracer.trace_water(segment, random, terms);
+    tracer.trace_lit_surfaces(segment, random, terms);
+}
+
 /// All terms of `paths` paths of one camera ray, each counted `weight / paths` times.
 inline void trace_ray(const PathTracer& tracer, const Surfaces& surfaces, const Ray& ray,
                       std::uint64_t seed, std::uint32_t paths, TermSums& sums, double weight = 1) {
@@ -76,7 +83,7 @@ inline void trace_ray(const PathTracer& tracer, const Surfaces& surfaces, const 
         PathRandom single(PathRandom::seed_of(seed, 1), i), water(PathRandom::seed_of(seed, 2), i),
             surface(PathRandom::seed_of(seed, 3), i);
         tracer.trace_single(segment, single, sums);
-        tracer.trace_water(segment, water, sums);
+        trace_scattered(tracer, segment, water, sums);
         tracer.trace_surface(segment, surface, sums);
     }
 }
