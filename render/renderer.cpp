@@ -79,6 +79,16 @@ LightTransport Renderer::make_transport() {
     return make_light_transport(*scene_, light_, needs.paths);
 }
 
+std::optional<LightLeftOut> Renderer::light_left_out() {
+    build();
+    return estimate_light_left_out(*scene_);
+}
+
+void Renderer::warn_of_light_left_out() {
+    if (const auto warning = left_out_warning(*scene_, light_left_out()))
+        report_.warnings.push_back(*warning);
+}
+
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
     assemble();
     light_.clear();

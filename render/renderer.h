@@ -10,6 +10,7 @@
 
 #include "render/correspondences.h"
 #include "render/image_scene.h"
+#include "render/light_left_out.h"
 #include "render/scene_assembly.h"
 #include "render/scene_cache.h"
 #include "render/scene_rendering.h"
@@ -99,6 +100,11 @@ class Renderer {
     /// What assemble() and splat() returned last. Precondition: they have been called.
     const AssembledScene& assembled() const { return *scene_; }
     const DeepShadows& light() const { return light_; }
+
+    /// What an image of this scene leaves out (estimate_light_left_out); assembles it. The second
+    /// warns of it in the report of the image that was prepared.
+    std::optional<LightLeftOut> light_left_out();
+    void warn_of_light_left_out();
 
     /// Changes the assembled scene by hand: for water, volumes and slabs that no description can
     /// express. The next scene that is set has nothing of it.

@@ -88,18 +88,22 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
     }
 }
 
-LightTransport transport_in(const Medium& medium, const PathWeight& path_weight,
-                            const AssembledScene& scene, const DeepShadows& deep_shadows) {
-    const RenderDesc& render = scene.desc().render;
-    LitScene lit = scene.lit();
-    lit.medium = &medium;
-    lit.path_weight = path_weight;
-    return integrator_kind(render.integrator)
+LightTransport make_by(RenderDesc::Integrator integrator, const LitScene& lit,
+                       const AssembledScene& scene, const DeepShadows& deep_shadows) {
+    return integrator_kind(integrator)
         .make({lit,
                scene.desc().camera.world_from_camera,
                scene.slabs.value_or(Slabs{}),
-               render.quality,
+               scene.desc().render.quality,
                {deep_shadows.begin(), deep_shadows.end()}});
+}
+
+LightTransport transport_in(const Medium& medium, const PathWeight& path_weight,
+                            const AssembledScene& scene, const DeepShadows& deep_shadows) {
+    LitScene lit = scene.lit();
+    lit.medium = &medium;
+    lit.path_weight = path_weight;
+    return make_by(scene.desc().render.integrator, lit, scene, deep_shadows);
 }
 
 void weigh_as_output(const SceneDesc& desc, LightTransport& transport) {
@@ -180,6 +184,15 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
     else if (with_paths)
         transport.paths = std::make_shared<PathTracer>(scene.lit(), deep_shadows, scene.scattering);
     weigh_as_output(scene.desc(), transport);
+    return transport;
+}
+
+LightTransport make_path_transport(const AssembledScene& scene,
+                                   std::shared_ptr<const ScatteringTables> scattering) {
+    LightTransport transport =
+        make_by(RenderDesc::Integrator::path, scene.lit(), scene, DeepShadows());
+    transport.paths = std::make_shared<PathTracer>(
+        scene.lit(), std::vector<std::shared_ptr<const DeepShadow>>(), std::move(scattering));
     return transport;
 }
 

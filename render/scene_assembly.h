@@ -39,6 +39,11 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
 LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows,
                                     bool with_paths);
 
+/// The light transport of the integrator path, whatever the scene requests, with exact columns.
+/// `scattering`: of its water.
+LightTransport make_path_transport(const AssembledScene& scene,
+                                   std::shared_ptr<const ScatteringTables> scattering);
+
 /// The light transport of single scattering alone, with the scene's output, by the integrator
 /// volume, in another medium than the scene's, of the same constituents and phase functions, which
 /// outlives the result; and with light weighted by its path.

@@ -152,6 +152,7 @@ class RunEngine {
     std::optional<SequenceClock> clock_;
     std::size_t place_ = 0;
     std::size_t warned_of_image_ = 0;  // so many of the renderer's warnings
+    bool looked_for_light_ = false;    // of its first image: others leave out about as much
     std::set<std::string> warned_;
     std::size_t written_ = 0;
     std::mutex mutex_;  // of tell

@@ -22,6 +22,7 @@
 #include "core/base/output_files.h"
 #include "core/base/text.h"
 #include "core/image/image_file.h"
+#include "core/light/integrator_table.h"
 #include "render/image_scene.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
@@ -163,6 +164,8 @@ VdbSurvey survey_vdb(const InfoArguments& a) {
 void write_picture(const VdbSurvey& survey, const fs::path& file) {
     SceneDesc desc = load_scene_text(survey.advice.scene, "scene.yaml");
     resize_image(desc.camera, k_proposed_width / 2, k_proposed_height / 2);
+    if (scattering_of(desc.render) == RenderDesc::Scattering::multiple)
+        desc.render.quality = RenderDesc::Quality::draft;  // seconds, not minutes
     ImageChoice choice;
     if (!survey.sequence.pattern.empty()) choice.frame = survey.sequence.frame;
     Renderer renderer;

@@ -241,14 +241,23 @@ class Drafts {
     }
 
     DraftContrast at(double factor) {
-        std::vector<GridVolume> grids;
-        for (const GridVolume& grid : grids_) grids.push_back(grid.scaled(factor));
-        set_grids(std::move(grids));
+        scale_grids(factor);
         const Film& with = renderer_.render();
         return compare_drafts(renderer_.assembled(), with, *without_);
     }
 
+    std::optional<LightLeftOut> light_left_out(double factor) {
+        scale_grids(factor);
+        return renderer_.light_left_out();
+    }
+
   private:
+    void scale_grids(double factor) {
+        std::vector<GridVolume> grids;
+        for (const GridVolume& grid : grids_) grids.push_back(grid.scaled(factor));
+        set_grids(std::move(grids));
+    }
+
     void set_grids(std::vector<GridVolume> grids) {
         renderer_.edit([&](AssembledScene& scene) {
             scene.field = std::make_shared<GridField>(std::move(grids),
@@ -316,6 +325,7 @@ PlumeView view_plume(const VolumeDesc& volume, const Bounds& bounds) {
             view.draft = drafts->at(1);
         }
         std::tie(view.factor, view.draft) = best_factor(*drafts, view.draft);
+        view.left_out = drafts->light_left_out(view.factor);
         if (best.proposal.lamps.empty() || is_better(view.draft, best.draft)) best = view;
         if (is_good(best.draft)) break;
     }

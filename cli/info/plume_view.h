@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "core/image/film.h"
 #include "core/scene/volume_desc.h"
 #include "render/image_scene.h"
+#include "render/light_left_out.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -80,6 +82,7 @@ struct PlumeView {
     SceneProposal proposal;
     double factor = 1;  // by which the volume's concentrations are to be multiplied
     DraftContrast draft;
+    std::optional<LightLeftOut> left_out;  // by single scattering, with these concentrations
 };
 
 /// Proposes a scene around `bounds`, which hold what `volume` holds, and searches by drafts for

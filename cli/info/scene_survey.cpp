@@ -283,6 +283,9 @@ SceneSurvey survey_scene(const AssembledScene& scene,
     survey.warnings = scene.warnings;
     append_survey_warnings(survey);
     if (const auto warning = far_lamp_warning(scene)) survey.warnings.push_back(*warning);
+    survey.left_out = estimate_light_left_out(scene);
+    if (const auto warning = left_out_warning(scene, survey.left_out))
+        survey.warnings.push_back(*warning);
     return survey;
 }
 

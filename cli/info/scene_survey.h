@@ -9,6 +9,7 @@
 #include "cli/info/plume_view.h"
 #include "cli/info/vdb_report.h"
 #include "core/scene/variations.h"
+#include "render/light_left_out.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -61,6 +62,7 @@ struct SceneSurvey {
     ViewSurvey view;
     std::optional<DraftContrast> contrast;  // of the volumes; none without volumes or lamps
     std::array<double, 2> field_of_view{};  // in the water, through the centre [degrees]
+    std::optional<LightLeftOut> left_out;   // by single scattering; none: it renders all light
     std::optional<PathSurvey> path;         // of the camera; none: nothing moves
     std::optional<VariationsSurvey> variations;
     std::vector<std::string> files_outside;  // read by the scene, but not in its folder

@@ -104,7 +104,8 @@ Report report_on_geometry(const AssembledScene& scene) {
 }
 
 /// What `uwvdb render` will make of the scene.
-Report report_on_render(const RenderDesc& render) {
+Report report_on_render(const SceneSurvey& survey) {
+    const RenderDesc& render = survey.scene.desc().render;
     const std::string integrator = word_of(render.integrator, k_integrator_names);
     const std::string quality = word_of(render.quality, k_quality_names);
     Report report("render");
@@ -113,11 +114,15 @@ Report report_on_render(const RenderDesc& render) {
         light = fmt::format("all light, by {} random paths per pixel", samples_of(render));
     else if (scattering_of(render) == RenderDesc::Scattering::multiple)
         light = "all light; what is scattered or reflected more than once, with a standard error";
+    if (survey.left_out)
+        light += fmt::format(", which leaves out about {} of all light",
+                             percent(survey.left_out->share));
     report.say(fmt::format("integrator {}, quality {}: {}", integrator, quality, light));
     report.set({{"integrator", integrator},
                 {"scattering", word_of(scattering_of(render), k_scattering_names)},
                 {"quality", quality},
-                {"samples", samples_of(render)}});
+                {"samples", samples_of(render)},
+                {"light_left_out", survey.left_out ? Json(survey.left_out->share) : Json()}});
     return report;
 }
 
@@ -237,7 +242,7 @@ Report report_on_scene(const SceneSurvey& survey) {
     report.add("camera", report_on_camera(survey));
     report.add("lamps", lamps, lamps.empty() ? "no lamps" : "lamps");
     report.add("geometry", report_on_geometry(scene));
-    report.add("render", report_on_render(scene.desc().render));
+    report.add("render", report_on_render(survey));
     report.add("grids", grids, grids.empty() ? "no volumes" : "");
     report.add("central_ray", report_on_central_ray(survey.central_ray));
     report.add("view", report_on_view(survey.view));

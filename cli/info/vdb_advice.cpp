@@ -473,6 +473,11 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
         contrast >= k_plain_to_see ? "neither invisible nor black"
                                    : "it will hardly be seen; a smaller transform.scale brings "
                                      "camera and lamps nearer"));
+    if (const auto& left_out = advice.view.left_out; left_out && left_out->matters())
+        advice.lines.push_back(fmt::format(
+            "Single scattering leaves out about {:.0f} % of that scene's light: it asks for all of "
+            "it, with render.scattering: multiple.",
+            100 * left_out->share));
 }
 
 namespace {
@@ -543,6 +548,10 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
         "#   uwvdb render scene.yaml{1}\n",
         name, is_sequence ? " --frames FIRST-LAST" : "");
     advice.scene += proposal_yaml(advice.view.proposal) + advice.volumes;
+    if (const auto& left_out = advice.view.left_out; left_out && left_out->matters())
+        advice.scene += fmt::format(
+            "render: {{scattering: multiple}}    # single leaves out about {:.0f} % of the light\n",
+            100 * left_out->share);
 }
 
 VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,

@@ -267,19 +267,16 @@ void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const 
     }
 }
 
-/// What single paths of each kind bring at one place in the image, and what they take.
-struct PathPixels::Trial {
-    struct OfKind {
-        double variance = 0;  // of the radiance, mean over the bands
-        double work = 0;      // of a path
-    };
-    std::array<OfKind, k_kinds.size()> kinds;
-};
+namespace {
 
-PathPixels::Trial PathPixels::try_paths(double x, double y, std::uint64_t place, int paths) const {
+constexpr int k_places_across = 12;  // of a trial, in each direction
+
+}  // namespace
+
+PathTrial PathPixels::try_out(double x, double y, std::uint64_t place, int paths) const {
     thread_local SurfaceLight light;
     thread_local CameraSegment segment;
-    Trial trial;
+    PathTrial trial;
     const Batch batch{place, ~std::uint64_t{0}, paths};
     PathRandom random = batch.random(k_position, 0);
     const std::optional<Ray> ray = camera_ray(pixels_.rays(), x, y, random);
@@ -289,54 +286,74 @@ PathPixels::Trial PathPixels::try_paths(double x, double y, std::uint64_t place,
     if (has_hit) pixels_.transport().surfaces->evaluate_one(sample, light);
     PixelResult ignored;
     Sum sum(ignored, static_cast<std::size_t>(pixels_.band_count()));
+    const auto end_batch = [&] {
+        double radiance = 0;
+        for (const double value : sum.batch().first(sum.bands()))
+            radiance += value / static_cast<double>(sum.bands());
+        sum.begin_batch();
+        return radiance;
+    };
+    sum.begin_batch();
     begin(has_hit ? &sample : nullptr, *ray, light, 0, segment, sum);
+    const PathTracer& tracer = *pixels_.transport().paths;
+    random = batch.random(k_single, 0);
+    tracer.trace_single(segment, random, sum);
+    trial.once = end_batch();
     for (std::size_t k = 0; k < k_kinds.size(); ++k) {
-        double mean = 0, squares = 0;
-        Trial::OfKind& of = trial.kinds[k];
+        double squares = 0;
+        PathTrial::OfKind& of = trial.kinds[k];
         for (int i = 0; i < paths; ++i) {
             random = batch.random(k_kinds[k].stream, i);
-            sum.begin_batch();
-            of.work += k_kinds[k].trace(*pixels_.transport().paths, segment, random, sum) / paths;
-            double radiance = 0;
-            for (const double value : sum.batch().first(sum.bands()))
-                radiance += value / static_cast<double>(sum.bands());
-            mean += radiance / paths;
+            of.work += k_kinds[k].trace(tracer, segment, random, sum) / paths;
+            const double radiance = end_batch();
+            of.mean += radiance / paths;
             squares += radiance * radiance / paths;
         }
-        of.variance = std::max(0.0, squares - mean * mean);
+        of.variance = std::max(0.0, squares - of.mean * of.mean);
     }
     return trial;
 }
 
-// For costs t and variances v of single paths, numbers in proportion to sqrt(v / t) leave the least
+PathTrial PathPixels::try_out(int paths) const {
+    const RaySource& rays = pixels_.rays();
+    std::array<PathTrial, k_places_across * k_places_across> trials;
+    parallel_for(trials.size(), [&](std::size_t n) {
+        const double across = static_cast<double>(n % k_places_across) + 0.5;
+        const double down = static_cast<double>(n / k_places_across) + 0.5;
+        trials[n] = try_out(across * rays.width() / k_places_across,
+                            down * rays.height() / k_places_across, n, paths);
+    });
+    PathTrial all;
+    for (const PathTrial& trial : trials) {
+        all.once += trial.once;
+        for (std::size_t k = 0; k < all.kinds.size(); ++k) {
+            all.kinds[k].mean += trial.kinds[k].mean;
+            all.kinds[k].variance += trial.kinds[k].variance;
+            all.kinds[k].work += trial.kinds[k].work;
+        }
+    }
+    return all;
+}
+
+// For variances v and costs t of single paths, numbers in proportion to sqrt(v / t) leave the least
 // variance for the time.
 void PathPixels::share_out(int samples) {
-    constexpr int k_across = 12, k_fewest = 8, k_most = 64;  // places in each direction, paths
-    constexpr double k_share = 0.03;                         // of all paths
+    constexpr int k_fewest = 8, k_most = 64;  // at each place
+    constexpr double k_share = 0.03;          // of all paths
     const RaySource& rays = pixels_.rays();
     const double all = static_cast<double>(rays.width()) * rays.height() * samples;
-    const int paths =
-        std::clamp(static_cast<int>(k_share * all / (k_across * k_across)), k_fewest, k_most);
-    std::array<Trial, k_across * k_across> trials;
-    parallel_for(trials.size(), [&](std::size_t n) {
-        const double across = static_cast<double>(n % k_across) + 0.5;
-        const double down = static_cast<double>(n / k_across) + 0.5;
-        trials[n] =
-            try_paths(across * rays.width() / k_across, down * rays.height() / k_across, n, paths);
-    });
+    const PathTrial trial =
+        try_out(std::clamp(static_cast<int>(k_share * all / (k_places_across * k_places_across)),
+                           k_fewest, k_most));
     times_ = {};
     std::array<double, k_kinds.size()> worth{};
     double before = 0, after = 0;
     for (std::size_t k = 0; k < k_kinds.size(); ++k) {
-        double variance = 0, cost = 0;
-        for (const Trial& trial : trials) {
-            variance += trial.kinds[k].variance;
-            cost += trial.kinds[k].work;
-        }
-        if (!(cost > 0)) continue;
-        worth[k] = std::sqrt(variance / cost);
-        before += cost;
-        after += cost * worth[k];
+        const PathTrial::OfKind& kind = trial.kinds[k];
+        if (!(kind.work > 0)) continue;
+        worth[k] = std::sqrt(kind.variance / kind.work);
+        before += kind.work;
+        after += kind.work * worth[k];
     }
     if (!(after > 0)) return;
     for (std::size_t k = 0; k < k_kinds.size(); ++k)

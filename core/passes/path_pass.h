@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -22,6 +23,16 @@ struct PathRound {
     int batches() const { return samples < k_batches ? samples : k_batches; }
 };
 
+/// What a few light paths bring all over an image: sums over places, of means over the bands.
+struct PathTrial {
+    struct OfKind {
+        double mean = 0, variance = 0;  // of the radiance that a path brings [W m^-2 sr^-1]
+        double work = 0;                // of a path (PathTracer)
+    };
+    double once = 0;                // emitted, or reflected or scattered no more than once
+    std::array<OfKind, 3> kinds{};  // of all other light, as PathCounts has them
+};
+
 /// Pixels whose light is the mean over random paths from the camera (PathTracer): no bias, and a
 /// standard error.
 class PathPixels {
@@ -34,8 +45,10 @@ class PathPixels {
     PathPixels(const PixelRenderer& pixels, std::size_t order_count)
         : pixels_(pixels), order_count_(order_count) {}
 
-    /// Tries some paths of each kind all over the image, and shares out the time of those that
-    /// follow among the kinds as leaves the least error. `samples`: paths per pixel, about.
+    /// Tries `paths` of each kind at a few places all over the image.
+    PathTrial try_out(int paths) const;
+    /// By such a trial, shares out the time of the paths that follow among the kinds as leaves the
+    /// least error. `samples`: paths per pixel, about.
     void share_out(int samples);
 
     /// Renders pixel (x, y). The same for any number of threads, and for any part of the image. In
@@ -47,11 +60,9 @@ class PathPixels {
     class Sum;
     struct Batch;
 
-    struct Trial;
-
     void begin(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
                std::size_t in_light, CameraSegment& segment, Sum& sum) const;
-    Trial try_paths(double x, double y, std::uint64_t place, int paths) const;
+    PathTrial try_out(double x, double y, std::uint64_t place, int paths) const;
     void render_the_rest(int x, int y, const PathRound& round, PixelView& view,
                          PixelResult& result) const;
     void trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,

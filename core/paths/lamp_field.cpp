@@ -218,11 +218,10 @@ void LampField::Solver::find_next_order() {
 }
 
 LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-                     double least_albedo, double greatest_albedo) {
+                     double least_albedo, double greatest_albedo, int orders) {
     // An order that adds less than this is the last; what lies near the end of the table counts for
     // nothing in that.
     constexpr double k_enough = 1e-2, k_counting = 0.5;
-    constexpr int k_most_orders = 400;
     const std::size_t nr = k_radii.count(), nh = k_angles.count(), n = nr * nh;
     least_albedo_ = std::clamp(least_albedo, k_least_albedo, k_most_albedo - 1e-3);
     albedo_step_ =
@@ -238,7 +237,7 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
         sources[k].assign(n, 0.0);
         for (const double value : once) all[k].push_back(albedo[k] * value);
     }
-    for (int count = 1; count < k_most_orders; ++count) {
+    for (int count = 1; count < orders; ++count) {
         solver.find_next_order();
         double most = 0;
         for (std::size_t k = 0; k < k_albedos; ++k) {

@@ -17,11 +17,15 @@ namespace uw {
 /// are made for albedo 1 and added up for three albedos at once.
 class LampField {
   public:
+    /// Enough for all light; fewer are found where more would add nothing.
+    static constexpr int k_all_orders = 400;
+
     /// Not to be looked up.
     LampField() = default;
     /// `direction`, `line`: ScatteringTables::directions and lines of the phase function.
+    /// `orders`: the most scatterings.
     LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-              double least_albedo, double greatest_albedo);
+              double least_albedo, double greatest_albedo, int orders);
 
     /// Where to look up, for one distance and albedo.
     struct Place {

@@ -28,7 +28,8 @@ struct ScatteringTables {
     /// albedos of all that it may hold. Found when it is first asked for, in about 0.1 s.
     const LampField& field() const;
 
-    explicit ScatteringTables(const Medium& medium);
+    /// `orders`: the most scatterings of the light in `field`.
+    explicit ScatteringTables(const Medium& medium, int orders = LampField::k_all_orders);
     ScatteringTables(const ScatteringTables&) = delete;
     ScatteringTables& operator=(const ScatteringTables&) = delete;
     ScatteringTables(ScatteringTables&&) = delete;
@@ -44,6 +45,7 @@ struct ScatteringTables {
   private:
     LampField make_field() const;
 
+    int orders_;
     double least_albedo_ = 1, greatest_albedo_ = 0;
     mutable std::once_flag field_is_made_;
     mutable LampField field_;

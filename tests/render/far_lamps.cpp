@@ -52,13 +52,14 @@ TEST_F(FarLamps, AreNearWhereTheyLightASurfaceInView) {
 
 TEST_F(FarLamps, AreWarnedOfInTheFastFormAlone) {
     const auto warned = [this] { return far_lamp_warning(scene()).has_value(); };
+    desc_.lamps[0].position = {0, 0, -21};
     EXPECT_TRUE(warned());
     desc_.render.integrator = RenderDesc::Integrator::path;
     EXPECT_FALSE(warned());
     desc_.render = {};
     EXPECT_FALSE(warned());
     desc_.render.scattering = RenderDesc::Scattering::multiple;
-    desc_.lamps[0].position = {0, 0, -4};
+    desc_.lamps[0].position = {0, 0, -19};
     EXPECT_FALSE(warned());
 }
 

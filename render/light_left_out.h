@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "render/assembled_scene.h"
+
+namespace uw {
+
+/// The share of all light that an image of single scattering leaves out, as means over the image
+/// and the bands, and the share's standard error.
+struct LightLeftOut {
+    double share = 0, error = 0;
+
+    /// Whether it is more than an image of single scattering may leave out without a word.
+    bool matters() const { return share > 0.05; }
+};
+
+/// Estimates it by a few light paths all over the image, in a few hundredths of a second. None for
+/// a scene that is rendered with all light, or without any.
+std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene);
+
+/// One line that says so, and how to render it, where it matters.
+std::optional<std::string> left_out_warning(const AssembledScene& scene,
+                                            const std::optional<LightLeftOut>& left_out);
+
+}  // namespace uw
