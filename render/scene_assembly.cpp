@@ -243,7 +243,7 @@ std::optional<double> depth_of_nearest_lamp(const AssembledScene& scene) {
             if (lamp.axis_intensity()[band] > 0)
                 clearest = std::min(clearest,
                                     attenuation.optical_depth(band, distance(from, to), columns));
-        nearest = std::min(nearest.value_or(k_far), clearest);
+        if (clearest < k_far) nearest = std::min(nearest.value_or(k_far), clearest);  // or dark
     };
     const std::vector<SurfaceHit> hits = surfaces_in_view(scene);
     const Point3 camera = at_origin_plus(scene.camera->world_from_camera().offset());

@@ -37,6 +37,9 @@ TEST_F(FarLamps, AreMeasuredInTheClearestBandThatTheyShineIn) {
     desc_.lamps.push_back(isotropic_lamp({0, 3, 0}, 1));
     desc_.lamps.back().name = "near";
     EXPECT_NEAR(depth_of_nearest_lamp(scene()).value(), 3, 1e-9);
+    desc_.lamps.resize(1);
+    desc_.lamps[0].intensity = PerBand{0, 0, 0};
+    EXPECT_FALSE(depth_of_nearest_lamp(scene()));
     desc_.lamps.clear();
     EXPECT_FALSE(depth_of_nearest_lamp(scene()));
 }
