@@ -15,6 +15,7 @@
 #include "core/base/input_files.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
+#include "core/scene/camera_desc.h"
 
 namespace uw {
 
@@ -61,8 +62,6 @@ std::array<int, N> integers_in(const std::string& text, char separator, const st
     }
     return values;
 }
-
-constexpr int k_longest_side = 32768;  // of an image [pixels]
 
 }  // namespace
 
@@ -153,9 +152,12 @@ void Options::set(std::vector<std::string>& overrides) {
 void Options::size(std::optional<std::array<int, 2>>& variable, std::string help) {
     const auto take = [&variable](const std::string& text) {
         const auto size = integers_in<2>(text, 'x', "--size", "WxH such as 640x360");
-        if (std::ranges::any_of(size, [](int side) { return side < 1 || side > k_longest_side; }))
+        if (std::ranges::any_of(size,
+                                [](int side) { return side < 1 || side > k_longest_image_side; }))
             throw UsageError(
-                fmt::format("--size: each side must be 1 to {} pixels", k_longest_side));
+                fmt::format("--size: each side must be 1 to {} pixels", k_longest_image_side));
+        if (const std::string fault = too_many_pixels(size[0], size[1]); !fault.empty())
+            throw UsageError("--size: " + fault);
         variable = size;
     };
     parsed("--size", "WxH", take, std::move(help));
@@ -237,9 +239,10 @@ ParsedCommand add_command(CLI::App& program, const Command& command) {
 std::string about_unexpected(const CLI::App& program, const ParsedCommand* chosen,
                              std::span<const Command> commands) {
     const std::vector<std::string> words = program.remaining(true);
+    const bool is_command = chosen == nullptr && !words.empty() && !words[0].starts_with('-');
     const auto option = std::ranges::find_if(
         words, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
-    if (option != words.end()) {
+    if (option != words.end() && !is_command) {
         std::vector<std::string> names;
         for (const CLI::Option* known : (chosen != nullptr ? *chosen->app : program).get_options())
             for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
@@ -294,6 +297,8 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv,
     try {
         program.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
+        if (chosen() == nullptr && !program.remaining(true).empty())
+            throw UsageError(about_unexpected(program, nullptr, commands));
         return printing(chosen() == nullptr ? program.help() : chosen()->app->help("uwvdb"));
     } catch (const CLI::ExtrasError&) {
         throw UsageError(about_unexpected(program, chosen(), commands));

@@ -91,7 +91,7 @@ class Options {
 
     /// `--set KEY.PATH=VALUE`, any number of times.
     void set(std::vector<std::string>& overrides);
-    /// `--size WxH`, each side 1 to 32768.
+    /// `--size WxH`, with the limits of a scene's camera.resolution.
     void size(std::optional<std::array<int, 2>>& variable, std::string help);
     /// `NAMES X0,Y0,X1,Y1`: pixels, x1 and y1 excluded.
     void window(std::string names, std::optional<std::array<int, 4>>& variable, std::string help);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -56,12 +57,20 @@ void check_nerfstudio(const DatasetDefinition&, const SceneDesc& scene) {
     for (const RigCameraDesc& entry : scene.cameras) check(entry.camera);
 }
 
+bool is_fisheye_lens(const CameraDesc& camera) {
+    return camera.distortion.model == DistortionDesc::Model::fisheye;
+}
+
+const char* nerfstudio_model(const CameraDesc& camera) {
+    return is_fisheye_lens(camera) ? "OPENCV_FISHEYE" : "OPENCV";
+}
+
 /// nerfstudio's names; the centre of the first pixel is (0.5, 0.5) there, too.
 Json intrinsics_json(const CameraDesc& camera) {
     const IntrinsicsDesc& i = camera.intrinsics;
     const DistortionDesc& d = camera.distortion;
-    const bool is_fisheye = d.model == DistortionDesc::Model::fisheye;
-    Json json{{"camera_model", is_fisheye ? "OPENCV_FISHEYE" : "OPENCV"},
+    const bool is_fisheye = is_fisheye_lens(camera);
+    Json json{{"camera_model", nerfstudio_model(camera)},
               {"w", camera.width},
               {"h", camera.height},
               {"fl_x", i.fx},
@@ -94,15 +103,23 @@ void write_transforms(const CompleteSequence& sequence, SetFiles& files) {
     const bool has_one_camera = definition.cameras.size() == 1;
     const CameraDesc& first = sequence.records.front().camera;
     Json json = has_one_camera ? intrinsics_json(first) : Json::object();
+    // It is read from here alone, for all frames.
+    if (std::ranges::all_of(sequence.records, [&](const ViewRecord& record) {
+            return is_fisheye_lens(record.camera) == is_fisheye_lens(first);
+        }))
+        json["camera_model"] = nerfstudio_model(first);
     if (definition.has_format("depth"))
         json["depth_unit_scale_factor"] = 1 / definition.depth_scale;
     if (first.port) json["uwvdb_port"] = camera_json(first).at("port");
+    if (definition.has_format("colmap")) json["ply_file_path"] = k_point_cloud_file;
     Json frames = Json::array();
     for (const ViewRecord& record : sequence.records) {
         Json frame{{"file_path", within(sequence, "", *record.file("image"))}};
         if (!has_one_camera) frame.update(intrinsics_json(record.camera));
         if (const SetFile* depth = record.file("depth"))
             frame["depth_file_path"] = within(sequence, "", *depth);
+        if (const SetFile* mask = record.file("mask"))
+            frame["mask_path"] = within(sequence, "", *mask);
         frame["transform_matrix"] = opengl_rows(record.camera.world_from_camera);
         frames.push_back(std::move(frame));
     }
@@ -116,10 +133,16 @@ DatasetFormat nerfstudio_format() {
     return {.name = "nerfstudio",
             .summary = "transforms.json of nerfstudio, OpenGL axes; brings png along",
             .card =
-                "`transforms.json`: nerfstudio's, beside `images/` (and `depth/`, if it is in the "
-                "set): world from camera with x right, y up, z backward, in metres; the first "
-                "pixel's centre is (0.5, 0.5). Behind a port intrinsics are those in air, and "
-                "`uwvdb_port`, which nerfstudio does not read, describes the port.",
+                "`transforms.json`: nerfstudio's, beside `images/`: world from camera with x "
+                "right, y up, z backward, in metres; the first pixel's centre is (0.5, 0.5). It "
+                "names `depth/` and `masks/`, by which nerfstudio leaves out what is only water, "
+                "if they are in the set, and with `sparse/0` the same points in `sparse_pc.ply`. "
+                "nerfstudio takes depths for millimetres: where `depth_unit_scale_factor` is not "
+                "0.001, its parser needs that value as `--depth-unit-scale-factor`. It has one "
+                "`camera_model` for all images: those of a rig that mixes fisheyes with other "
+                "lenses are read as perspective, so that such cameras need sets of their own. "
+                "Behind a port intrinsics are those in air, and `uwvdb_port`, which nerfstudio "
+                "does not read, describes the port.",
             .needs_images = true,
             .check = check_nerfstudio,
             .complete = write_transforms};

@@ -151,6 +151,24 @@ void write_colmap_points(const std::vector<SurfacePoint>& points, const std::vec
     out.commit();
 }
 
+/// A PLY of the points and their colours. Readers take coordinates of single precision.
+std::string point_cloud_text(const std::vector<SurfacePoint>& points,
+                             const std::vector<Track>& tracks) {
+    std::string vertices;
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+        if (!tracks[i].is_kept()) continue;
+        const Point3& p = points[i].position;
+        vertices += fmt::format("{} {} {} {}\n", static_cast<float>(p.x), static_cast<float>(p.y),
+                                static_cast<float>(p.z), fmt::join(tracks[i].rgb, " "));
+    }
+    return fmt::format(
+               "ply\nformat ascii 1.0\nelement vertex {}\n"
+               "property float x\nproperty float y\nproperty float z\n"
+               "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
+               std::ranges::count_if(tracks, &Track::is_kept)) +
+           vertices;
+}
+
 void write_model(const CompleteSequence& sequence, SetFiles& files) {
     const std::vector<SurfacePoint> points =
         read_points(files.folder() / points_file(sequence.definition, sequence.draw));
@@ -163,6 +181,9 @@ void write_model(const CompleteSequence& sequence, SetFiles& files) {
     files.add("colmap", folder + "points3D.txt", [&](const std::filesystem::path& file) {
         write_colmap_points(points, tracks, file);
     });
+    if (sequence.definition.has_format("nerfstudio"))
+        files.add_bytes("nerfstudio", sequence.folder + k_point_cloud_file,
+                        point_cloud_text(points, tracks));
     if (has_ports(sequence))
         files.add_bytes("colmap", sequence.folder + "sparse/refractive/cameras.txt",
                         cameras_text(sequence, true));

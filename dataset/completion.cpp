@@ -131,7 +131,7 @@ constexpr const char* k_page_head =
 /// A page with the pictures of a set, in HTML that needs nothing but the files beside it.
 std::string dataset_page(const DatasetDefinition& definition, const std::vector<PageView>& views) {
     std::string page = fmt::format(k_page_head, html_text("Data set of " + definition.scene));
-    page += fmt::format("<p>{} views", definition.view_count());
+    page += fmt::format("<p>{}", counted(definition.view_count(), "view"));
     if (views.size() < definition.view_count())
         page += fmt::format(", {} of them here", views.size());
     page +=
@@ -214,12 +214,11 @@ class Completion {
             names += (names.empty() ? "" : ", ") + definition_.folder(view.draw) +
                      definition_.stem(view);
         }
-        throw InputError(
-            fmt::format("{}: {} of {} views are missing or damaged ({}{}); run their shards again, "
-                        "or the whole "
-                        "command, which keeps what is there",
-                        folder_.string(), faulty.size(), definition_.view_count(), names,
-                        faulty.size() > k_named ? ", ..." : ""));
+        throw InputError(fmt::format(
+            "{}: {} of {} {} missing or damaged ({}{}); run their shards again, or the "
+            "whole command, which keeps what is there",
+            folder_.string(), faulty.size(), counted(definition_.view_count(), "view"),
+            faulty.size() == 1 ? "is" : "are", names, faulty.size() > k_named ? ", ..." : ""));
     }
 
     /// Removes what AtomicFile could not because its process was killed. Nothing of other machines

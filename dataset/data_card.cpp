@@ -123,11 +123,15 @@ std::string water_lines(const Json& water) {
     for (const Json& phase : water.at("phase_functions"))
         text += fmt::format("\n- phase function: {}", phase.get<std::string>());
     if (const auto volumes = water.at("volumes").get<std::size_t>(); volumes > 0)
-        text += fmt::format("\n- {} VDB volume(s) of particles besides", volumes);
+        text += fmt::format("\n- {} of particles besides", counted(volumes, "VDB volume"));
     return text + "\n";
 }
 
 }  // namespace
+
+std::string counted(std::size_t number, std::string_view thing) {
+    return fmt::format("{} {}{}", number, thing, number == 1 ? "" : "s");
+}
 
 Json facts_of(const SceneDesc& first) {
     Json geometry = Json::array();
@@ -149,19 +153,21 @@ std::string data_card(const DatasetFile& set, std::uint64_t bytes) {
     const DatasetDefinition& d = set.definition;
     std::string text = fmt::format("# Data set of {}\n\n", d.scene);
     text += fmt::format(
-        "Rendered images of an underwater scene, with exact ground truth: {} views ({} draws × {} "
-        "frames × {} cameras), {:.1f} MB. Nothing in it was photographed.\n\n",
-        d.view_count(), d.draws.size(), d.frames.size(), d.cameras.size(),
+        "Rendered images of an underwater scene, with exact ground truth: {} ({} × {} × {}), "
+        "{:.1f} MB. Nothing in it was photographed.\n\n",
+        counted(d.view_count(), "view"), counted(d.draws.size(), "draw"),
+        counted(d.frames.size(), "frame"), counted(d.cameras.size(), "camera"),
         static_cast<double>(bytes) / 1e6);
     text += fmt::format("- made by: {}\n- command: `{}`\n- scene: `{}`, hash `{}`\n", d.program,
                         d.command, d.scene, d.scene_hash);
     text += fmt::format("- licence: {}\n", d.licence.empty() ? "not stated" : d.licence);
     text += fmt::format(
-        "- rendered with: integrator {}, {} scattering, quality {}, {} samples per pixel, {:g} "
-        "frames per second\n",
+        "- rendered with: integrator {}, {} scattering, quality {}, {} per pixel, {:g} frames per "
+        "second\n",
         set.facts.at("integrator").get<std::string>(),
         set.facts.at("scattering").get<std::string>(), set.facts.at("quality").get<std::string>(),
-        set.facts.at("samples").get<int>(), set.facts.at("frames_per_second").get<double>());
+        counted(set.facts.at("samples").get<std::size_t>(), "sample"),
+        set.facts.at("frames_per_second").get<double>());
     text +=
         fmt::format("- exposure of images without a sensor: R G B × {:.6g}", set.exposures.image);
     if (d.has_format("clean"))

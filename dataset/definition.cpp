@@ -159,7 +159,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int k_dataset_version = 1;
+constexpr int k_dataset_version = 2;
 
 /// Whether there is anything in the folder but what AtomicFile left when it was killed.
 bool has_files(const fs::path& folder) {

@@ -68,7 +68,7 @@ void write_view(const std::filesystem::path& folder, const std::string& sum,
         if (const auto write = dataset_format(name).write_view) write(images, files);
     const ViewRecord record{images.view, sum, images.time, images.camera, files.written()};
     SetFiles(folder).add_bytes("record", record_file(images.definition, images.view),
-                               record_text(record));
+                               record_text(images.definition, record));
 }
 
 bool is_view_complete(const std::filesystem::path& folder, const DatasetDefinition& definition,

@@ -34,6 +34,10 @@ inline std::string within(const CompleteSequence& sequence, const std::string& f
     return file.path.substr(sequence.folder.size() + from.size());
 }
 
+/// The points of COLMAP's model as nerfstudio takes them, beside its transforms.json; of sets in
+/// both formats.
+inline constexpr const char* k_point_cloud_file = "sparse_pc.ply";
+
 /// A camera's pose in the world, its quaternion with w >= 0.
 inline Pose camera_pose(const CameraDesc& camera) {
     Pose pose = pose_of(camera.world_from_camera);

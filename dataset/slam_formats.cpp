@@ -77,9 +77,13 @@ DatasetFormat tum_format() {
 namespace {
 
 constexpr double k_ns = 1e9;  // per second
+// Readers cut the names of images into seconds and nine digits of nanoseconds, and sort them as
+// text. So all have 19 digits, as the benchmark's, whose clock began in 1970, have.
+constexpr std::int64_t k_start_ns = 1'400'000'000'000'000'000;
 
-std::int64_t nanoseconds(double time) {
-    return std::llround(time * k_ns);
+/// The stamp of a time of the scene [ns].
+std::int64_t euroc_stamp(double time) {
+    return k_start_ns + std::llround(time * k_ns);
 }
 
 std::string cam_folder(const DatasetDefinition& definition, std::size_t draw, std::size_t camera) {
@@ -122,7 +126,7 @@ std::string camera_yaml(const CameraDesc& camera, const Affine& body_from_camera
         text += "# Behind a port, which this format has no words for: as it is in air.\n";
     text += "sensor_type: camera\ncomment: rendered\n" + matrix_yaml(body_from_camera);
     text += fmt::format(
-        "rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
+        "rate_hz: {:.9g}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
         "intrinsics: [{}, {}, {}, {}] #fu, fv, cu, cv\ndistortion_model: {}\n"
         "distortion_coefficients: [{}]\n",
         rate, camera.width, camera.height, k.fx, k.fy, k.cx - 0.5, k.cy - 0.5,
@@ -151,7 +155,7 @@ std::string truth_csv(const CompleteSequence& sequence) {
         const auto [p, q] = camera_pose(record.camera);
         const Vector3 v = velocity_at(sequence, frame);
         text +=
-            fmt::format("{},{},{},{},{},{},{},{},{},{},{},0,0,0,0,0,0\n", nanoseconds(record.time),
+            fmt::format("{},{},{},{},{},{},{},{},{},{},{},0,0,0,0,0,0\n", euroc_stamp(record.time),
                         p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z);
     }
     return text;
@@ -161,7 +165,7 @@ void write_euroc_image(const ViewImages& images, SetFiles& files) {
     write_image(images, files, "image.euroc",
                 fmt::format("{}data/{}.png",
                             cam_folder(images.definition, images.view.draw, images.view.camera),
-                            nanoseconds(images.time)));
+                            euroc_stamp(images.time)));
 }
 
 void write_euroc_tables(const CompleteSequence& sequence, SetFiles& files) {
@@ -173,8 +177,8 @@ void write_euroc_tables(const CompleteSequence& sequence, SetFiles& files) {
     for (std::size_t camera = 0; camera < definition.cameras.size(); ++camera) {
         std::string table = "#timestamp [ns],filename\n";
         for (std::size_t frame = 0; frame < frames; ++frame) {
-            const std::int64_t ns = nanoseconds(sequence.at(frame, camera).time);
-            table += fmt::format("{0},{0}.png\n", ns);
+            const std::int64_t stamp = euroc_stamp(sequence.at(frame, camera).time);
+            table += fmt::format("{0},{0}.png\n", stamp);
         }
         const std::string folder = cam_folder(definition, sequence.draw, camera);
         const CameraDesc& desc = sequence.at(0, camera).camera;
@@ -198,10 +202,11 @@ DatasetFormat euroc_format() {
             .summary = "mav0/: EuRoC (ASL): cam0, cam1, ..., state_groundtruth_estimate0",
             .card =
                 "`mav0/`: the layout of EuRoC and other ASL data sets: `cam0/data` and so on, "
-                "named by time in nanoseconds, `sensor.yaml` with intrinsics (first pixel's "
-                "centre at (0, 0)) and `T_BS`, and `state_groundtruth_estimate0`. The body is "
-                "the first camera. Velocities are differences of the positions in the frames "
-                "around; there is no IMU, and biases are 0.",
+                "named by time in nanoseconds, where the scene's time 0 is 1 400 000 000 s, "
+                "`sensor.yaml` with intrinsics (first pixel's centre at (0, 0)) and `T_BS`, and "
+                "`state_groundtruth_estimate0`. The body is the first camera. Velocities are "
+                "differences of the positions in the frames around; there is no IMU, and biases "
+                "are 0.",
             .check = check_euroc,
             .write_view = write_euroc_image,
             .complete = write_euroc_tables};

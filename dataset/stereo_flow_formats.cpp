@@ -168,6 +168,7 @@ DatasetFormat disparity_format() {
 namespace {
 
 constexpr std::string_view k_kitti = "kitti/training/";
+constexpr std::string_view k_kitti_sequence = "kitti/sequences/00/";  // of the odometry benchmark
 
 /// The file of a pair of frames whose first has this number.
 std::string kitti_file(const DatasetDefinition& definition, const View& view,
@@ -216,11 +217,15 @@ std::optional<int> pair_of(const DatasetDefinition& definition, std::size_t fram
     return number;
 }
 
-void write_pair(const ViewImages& images, SetFiles& files) {
+void write_kitti_images(const ViewImages& images, SetFiles& files) {
     const DatasetDefinition& definition = images.definition;
     const View& view = images.view;
     if (view.camera > 1) return;  // of larger rigs
     const char* const folder = view.camera == 0 ? "image_2" : "image_3";
+    // Numbered from 0 without gaps, as the lines of times and poses are.
+    write_image(images, files, "image.kitti_sequence",
+                fmt::format("{}{}{}/{:06}.png", definition.folder(view.draw), k_kitti_sequence,
+                            folder, view.frame));
     const std::optional<int> number = definition.frames[view.frame];
     if (number && *number > 0 && definition.place_of_frame(*number - 1))
         write_image(images, files, "image.kitti_next",
@@ -244,6 +249,13 @@ void write_pair(const ViewImages& images, SetFiles& files) {
     add("disp_noc_0", encoded_disparity(images, true));
 }
 
+/// A projection of points in the axes of the left camera, row by row.
+std::array<double, 12> kitti_projection(const CameraDesc& camera, double left_of_it) {
+    const IntrinsicsDesc& k = camera.intrinsics;
+    return {k.fx, 0.0, k.cx - 0.5, 0 - k.fx * left_of_it, 0.0, k.fy, k.cy - 0.5, 0.0, 0.0,
+            0.0,  1.0, 0.0};
+}
+
 /// The lines of one camera in calib_cam_to_cam, whose world is the first camera; the first pixel's
 /// centre is (0, 0).
 std::string calibration_lines(int number, const CameraDesc& camera, double left_of_it) {
@@ -258,11 +270,13 @@ std::string calibration_lines(int number, const CameraDesc& camera, double left_
     const std::array distortion{d.k[0], d.k[1], d.p[0], d.p[1], d.k[2]};
     const std::array identity{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const std::array translation{0 - left_of_it, 0.0, 0.0};
-    const std::array projection{k.fx, 0.0, cx, 0 - k.fx * left_of_it, 0.0, k.fy, cy, 0.0, 0.0,
-                                0.0,  1.0, 0.0};
     return line("S", size) + line("K", matrix) + line("D", distortion) + line("R", identity) +
            line("T", translation) + line("S_rect", size) + line("R_rect", identity) +
-           line("P_rect", projection);
+           line("P_rect", kitti_projection(camera, left_of_it));
+}
+
+double baseline_of(const CameraDesc& left, const CameraDesc& right) {
+    return (left.world_from_camera.inverse() * right.world_from_camera).offset().x;
 }
 
 void write_calibrations(const CompleteSequence& sequence, SetFiles& files) {
@@ -274,15 +288,53 @@ void write_calibrations(const CompleteSequence& sequence, SetFiles& files) {
         std::string text = calibration_lines(2, left, 0);
         if (definition.cameras.size() > 1) {
             const CameraDesc& right = sequence.at(frame, 1).camera;
-            const Affine left_from_right =
-                left.world_from_camera.inverse() * right.world_from_camera;
-            text += calibration_lines(3, right, left_from_right.offset().x);
+            text += calibration_lines(3, right, baseline_of(left, right));
         }
         files.add_bytes(
             "kitti.calibration",
             kitti_file(definition, {sequence.draw, frame, 0}, "calib_cam_to_cam", *pair, ".txt"),
             text);
     }
+}
+
+/// The benchmark's cameras 0 and 2 are on the left, 1 and 3 on the right; Tr is from a laser
+/// scanner, for which the left camera stands.
+std::string sequence_calibration(const CameraDesc& left, const CameraDesc& right, double baseline) {
+    std::string text;
+    for (const int number : {0, 1, 2, 3}) {
+        const bool is_left = number % 2 == 0;
+        const auto projection = kitti_projection(is_left ? left : right, is_left ? 0 : baseline);
+        text += fmt::format("P{}: {:.12e}\n", number, fmt::join(projection, " "));
+    }
+    constexpr std::array k_identity{1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+    return text + fmt::format("Tr: {:.12e}\n", fmt::join(k_identity, " "));
+}
+
+/// The tables of the odometry benchmark: times since the first frame, and poses of the left camera
+/// in the axes that it has there.
+void write_kitti_sequence(const CompleteSequence& sequence, SetFiles& files) {
+    const DatasetDefinition& definition = sequence.definition;
+    const ViewRecord& first = sequence.at(0, 0);
+    const Affine first_from_world = first.camera.world_from_camera.inverse();
+    std::string times, poses;
+    for (std::size_t frame = 0; frame < definition.frames.size(); ++frame) {
+        const ViewRecord& record = sequence.at(frame, 0);
+        times += fmt::format("{:.9e}\n", record.time - first.time);
+        const Affine pose =
+            frame == 0 ? Affine() : first_from_world * record.camera.world_from_camera;
+        for (int row = 0; row < 3; ++row)
+            poses += fmt::format("{:.12e} {:.12e} {:.12e} {:.12e}{}", pose.linear()[0][row],
+                                 pose.linear()[1][row], pose.linear()[2][row], pose.offset()[row],
+                                 row < 2 ? " " : "\n");
+    }
+    const std::string folder = fmt::format("{}{}", sequence.folder, k_kitti_sequence);
+    const bool is_pair = definition.cameras.size() > 1;
+    const CameraDesc& left = first.camera;
+    const CameraDesc& right = sequence.at(0, is_pair ? 1 : 0).camera;
+    files.add_bytes("kitti.sequence", folder + "calib.txt",
+                    sequence_calibration(left, right, is_pair ? baseline_of(left, right) : 0));
+    files.add_bytes("kitti.sequence", folder + "times.txt", times);
+    files.add_bytes("kitti.sequence", sequence.folder + "kitti/poses/00.txt", poses);
 }
 
 void check_kitti(const DatasetDefinition& definition, const SceneDesc& scene) {
@@ -304,7 +356,7 @@ void check_kitti(const DatasetDefinition& definition, const SceneDesc& scene) {
 DatasetFormat kitti_format() {
     return {
         .name = "kitti",
-        .summary = "kitti/: flow and stereo as in KITTI 2015, 16-bit PNG, with calibrations",
+        .summary = "kitti/: flow and stereo as in KITTI 2015, and a sequence of its odometry",
         .card =
             "`kitti/training/`: as in KITTI's benchmarks of 2015, a pair of files per frame that "
             "has a next one: `image_2` (left or only camera), `image_3` (right), `_10` this "
@@ -312,11 +364,19 @@ DatasetFormat kitti_format() {
             "2¹⁵)/64, third channel 1 where known), `disp_occ_0`, `disp_noc_0` (disparity = "
             "value/256, 0 where unknown), `noc` without what the other image does not see. Flow "
             "of 512 px and more and disparities of 256 px and more have no code and are left "
-            "unknown. `calib_cam_to_cam`: the cameras, of one behind a port as it is in air.",
+            "unknown. `calib_cam_to_cam`: the cameras, of one behind a port as it is in air. "
+            "`kitti/sequences/00/` and `kitti/poses/00.txt`: all frames as sequence 00 of the "
+            "odometry benchmark, numbered from 0: `image_2`, `image_3`, `times.txt` since the "
+            "first frame, poses in the axes of its left camera, and `calib.txt`, in which "
+            "cameras 0 and 1 are where 2 and 3 are (where there is one camera, all four), as "
+            "pinholes without distortion and port.",
         .layers = "flow,flow_occluded,disparity,disparity_occluded",
         .check = check_kitti,
-        .write_view = write_pair,
-        .complete = write_calibrations};
+        .write_view = write_kitti_images,
+        .complete = [](const CompleteSequence& sequence, SetFiles& files) {
+            write_calibrations(sequence, files);
+            write_kitti_sequence(sequence, files);
+        }};
 }
 
 }  // namespace uw

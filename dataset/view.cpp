@@ -120,13 +120,23 @@ std::string record_file(const DatasetDefinition& definition, const View& view) {
     return definition.file(view, "views", ".json");
 }
 
-std::string record_text(const ViewRecord& record) {
+namespace {
+
+/// The number of the view's frame; null if the set has no frames.
+Json frame_json(const DatasetDefinition& definition, const View& view) {
+    const std::optional<int> number = definition.frames[view.frame];
+    return number ? Json(*number) : Json(nullptr);
+}
+
+}  // namespace
+
+std::string record_text(const DatasetDefinition& definition, const ViewRecord& record) {
     Json files = Json::array();
     for (const SetFile& file : record.files) files.push_back(set_file_json(file));
     const View& v = record.view;
     return json_text({{"set", record.set},
                       {"draw", v.draw},
-                      {"frame", v.frame},
+                      {"frame", frame_json(definition, v)},
                       {"camera", v.camera},
                       {"time", record.time},
                       {"view", camera_json(record.camera)},
@@ -142,12 +152,14 @@ std::optional<ViewRecord> read_record(const std::filesystem::path& folder,
         const Json json = Json::parse(in);
         ViewRecord record;
         json.at("set").get_to(record.set);
-        record.view = {json.at("draw").get<std::size_t>(), json.at("frame").get<std::size_t>(),
+        record.view = {json.at("draw").get<std::size_t>(), view.frame,
                        json.at("camera").get<std::size_t>()};
         json.at("time").get_to(record.time);
         record.camera = camera_from_json(json.at("view"));
         for (const Json& file : json.at("files")) record.files.push_back(set_file_from_json(file));
-        if (record.set != sum || record.view != view) return std::nullopt;
+        if (record.set != sum || record.view != view ||
+            json.at("frame") != frame_json(definition, view))
+            return std::nullopt;
         return record;
     } catch (const Json::exception&) {
         return std::nullopt;

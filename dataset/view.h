@@ -98,7 +98,7 @@ std::string sum_of(const DatasetDefinition& definition);
 /// The name of a view's record, relative to the set's folder.
 std::string record_file(const DatasetDefinition& definition, const View& view);
 
-std::string record_text(const ViewRecord& record);
+std::string record_text(const DatasetDefinition& definition, const ViewRecord& record);
 
 /// The record of a view in the set's folder; none if there is none, or it is damaged or of another
 /// set than that with this sum.

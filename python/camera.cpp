@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <variant>
@@ -97,6 +98,65 @@ py::tuple distortion(const CameraObject& self) {
                                                                d.k[2], d.k[3], d.k[4], d.k[5]});
 }
 
+/// A port of one kind: `place` and `length` are what it has beside its glass.
+template <class PortKind>
+py::tuple glass_state(const char* kind, const std::array<double, 3>& place, double length,
+                      const PortKind& port) {
+    return py::make_tuple(
+        kind, place, std::array{length, port.thickness, port.n_air, port.n_glass, port.n_water},
+        port.fresnel, port.radiance_in_air);
+}
+
+py::object port_state(const std::optional<PortDesc>& port) {
+    if (!port) return py::none();
+    if (const auto* flat = std::get_if<FlatPortDesc>(&*port)) {
+        const Vector3& n = flat->normal;
+        return glass_state("flat", {n.x, n.y, n.z}, flat->distance, *flat);
+    }
+    const auto& dome = std::get<DomePortDesc>(*port);
+    return glass_state("dome", {dome.center.x, dome.center.y, dome.center.z}, dome.radius, dome);
+}
+
+std::optional<PortDesc> port_of_state(const py::object& state) {
+    if (state.is_none()) return std::nullopt;
+    const auto saved = state.cast<py::tuple>();
+    const auto [x, y, z] = saved[1].cast<std::array<double, 3>>();
+    const auto [length, thickness, n_air, n_glass, n_water] =
+        saved[2].cast<std::array<double, 5>>();
+    const auto fresnel = saved[3].cast<bool>(), in_air = saved[4].cast<bool>();
+    if (saved[0].cast<std::string>() == "flat")
+        return FlatPortDesc{{x, y, z}, length, thickness, n_air, n_glass, n_water, fresnel, in_air};
+    return DomePortDesc{{x, y, z}, length, thickness, n_air, n_glass, n_water, fresnel, in_air};
+}
+
+/// What rays depend on, to the bit.
+py::tuple camera_state(const CameraObject& self) {
+    if (self.camera.is_rolling())
+        throw py::type_error(
+            "a camera that moves behind a rolling shutter cannot be pickled; pickle its scene, "
+            "and take the camera of that");
+    const CameraDesc& desc = self.desc;
+    const IntrinsicsDesc& k = desc.intrinsics;
+    const bool is_fisheye = desc.distortion.model == DistortionDesc::Model::fisheye;
+    return py::make_tuple(desc.width, desc.height, std::array{k.fx, k.fy, k.cx, k.cy}, is_fisheye,
+                          desc.distortion.k, desc.distortion.p, port_state(desc.port),
+                          matrix_of(desc.world_from_camera));
+}
+
+CameraObject camera_of_state(const py::tuple& state) {
+    CameraDesc desc;
+    desc.width = state[0].cast<int>();
+    desc.height = state[1].cast<int>();
+    const auto k = state[2].cast<std::array<double, 4>>();
+    desc.intrinsics = {k[0], k[1], k[2], k[3]};
+    if (state[3].cast<bool>()) desc.distortion.model = DistortionDesc::Model::fisheye;
+    desc.distortion.k = state[4].cast<std::array<double, 6>>();
+    desc.distortion.p = state[5].cast<std::array<double, 2>>();
+    desc.port = port_of_state(state[6]);
+    desc.world_from_camera = affine_of(state[7].cast<DoubleRows>());
+    return camera_of(desc);
+}
+
 }  // namespace
 
 void bind_camera(py::module_& module) {
@@ -108,9 +168,11 @@ void bind_camera(py::module_& module) {
         .def_property_readonly("height", [](const CameraObject& c) { return c.camera.height(); })
         .def_property_readonly("matrix", matrix)
         .def_property_readonly("distortion", distortion)
-        .def_property_readonly("world_from_camera", [](const CameraObject& c) {
-            return matrix_of(c.camera.world_from_camera());
-        });
+        .def_property_readonly(
+            "world_from_camera",
+            [](const CameraObject& c) { return matrix_of(c.camera.world_from_camera()); })
+        .def(py::pickle([](const CameraObject& camera) { return camera_state(camera); },
+                        [](const py::tuple& saved) { return camera_of_state(saved); }));
 }
 
 }  // namespace uw

@@ -13,7 +13,7 @@ struct CameraObject {
     Camera camera;
 };
 
-/// The camera of calibration alone, at the world's origin.
+/// The camera of a description alone: of a calibration, at the world's origin.
 inline CameraObject camera_of(const CameraDesc& desc) {
     return {desc, Camera(desc)};
 }

@@ -1,5 +1,7 @@
 #include "python/objects.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -11,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/text.h"
 
 namespace py = pybind11;
@@ -133,18 +136,6 @@ ConfigNode number(const py::object& value) {
     return scalar(py::repr(value).cast<std::string>(), false);
 }
 
-ConfigNode map_of(const py::dict& dict) {
-    ConfigNode node;
-    node.kind = Kind::map;
-    for (const auto& [key, value] : dict) {
-        if (!py::isinstance<py::str>(key))
-            throw py::type_error("keys of a scene are str, found " +
-                                 py::repr(key).cast<std::string>());
-        node.entries.push_back({key.cast<std::string>(), {}, node_of(value)});
-    }
-    return node;
-}
-
 bool is_whole(const std::string& text) {
     const std::size_t first = text.find_first_not_of("+-");
     return first != std::string::npos &&
@@ -187,28 +178,96 @@ ConfigNode node_with_origins(const py::tuple& state, Origins& origins) {
     return node;
 }
 
+constexpr std::size_t k_longest_path = 60;  // in messages
+
+/// Makes nodes of objects. Objects may contain themselves, and iterators may never end.
+class NodeMaker {
+  public:
+    NodeMaker(std::string where, std::string path)
+        : where_(std::move(where)), path_(std::move(path)) {}
+
+    ConfigNode make(py::handle object) {
+        expect(1);
+        ++nodes_;
+        if (object.is_none()) return {};
+        if (py::isinstance<py::bool_>(object))
+            return scalar(object.cast<bool>() ? "true" : "false", false);
+        if (py::isinstance<py::str>(object)) return scalar(object.cast<std::string>(), true);
+        // For types that are not Python's own, such as NumPy's float64, repr() names the type, too.
+        if (py::isinstance<py::int_>(object))
+            return number(py::reinterpret_steal<py::object>(PyNumber_Long(object.ptr())));
+        if (py::isinstance<py::float_>(object)) return number(py::float_(object.cast<double>()));
+        const bool is_dict = py::isinstance<py::dict>(object);
+        if (!is_dict && py::hasattr(object, "__fspath__"))
+            return scalar(object.attr("__fspath__")().cast<std::string>(), true);
+        if (depth_ >= limits_.depth)
+            refuse(
+                fmt::format("nested more than {} levels deep; give lists and dicts that do not "
+                            "contain themselves",
+                            limits_.depth));
+        ++depth_;
+        ConfigNode node =
+            is_dict ? map_of(py::reinterpret_borrow<py::dict>(object)) : sequence_of(object);
+        --depth_;
+        return node;
+    }
+
+  private:
+    ConfigNode map_of(const py::dict& dict) {
+        ConfigNode node;
+        node.kind = Kind::map;
+        for (const auto& [key, value] : dict) {
+            if (!py::isinstance<py::str>(key))
+                throw py::type_error("keys of a scene are str, found " +
+                                     py::repr(key).cast<std::string>());
+            auto name = key.cast<std::string>();
+            ConfigNode made = make_at((path_.empty() ? "" : ".") + name, value);
+            node.entries.push_back({std::move(name), {}, std::move(made)});
+        }
+        return node;
+    }
+
+    ConfigNode sequence_of(py::handle object) {
+        if (py::isinstance<py::array>(object))
+            expect(static_cast<std::size_t>(object.cast<py::array>().size()));
+        if (py::hasattr(object, "tolist")) return make(object.attr("tolist")());
+        if (!py::hasattr(object, "__iter__"))
+            throw py::type_error("a scene has numbers, text, lists and dicts, not " +
+                                 py::repr(py::type::handle_of(object)).cast<std::string>());
+        ConfigNode node;
+        node.kind = Kind::sequence;
+        for (const py::handle item : py::iter(object))
+            node.items.push_back(make_at(fmt::format("[{}]", node.items.size()), item));
+        return node;
+    }
+
+    void expect(std::size_t more) const {
+        if (more > limits_.nodes - nodes_)
+            refuse(fmt::format("more than {} values; use fewer, or a file", limits_.nodes));
+    }
+
+    ConfigNode make_at(const std::string& step, py::handle object) {
+        const std::size_t length = path_.size();
+        path_ += step;
+        ConfigNode node = make(object);
+        path_.resize(length);
+        return node;
+    }
+
+    [[noreturn]] void refuse(const std::string& what) const {
+        const std::string path = printable(path_, k_longest_path);
+        throw InputError(fmt::format("{}: {}{}{}", where_, path, path.empty() ? "" : ": ", what));
+    }
+
+    YamlLimits limits_;
+    std::string where_, path_;
+    std::size_t depth_ = 0, nodes_ = 0;
+};
+
 }  // namespace
 
-ConfigNode node_of(py::handle object) {
-    if (object.is_none()) return {};
-    if (py::isinstance<py::bool_>(object))
-        return scalar(object.cast<bool>() ? "true" : "false", false);
-    if (py::isinstance<py::str>(object)) return scalar(object.cast<std::string>(), true);
-    // For types that are not Python's own, such as NumPy's float64, repr() names the type, too.
-    if (py::isinstance<py::int_>(object))
-        return number(py::reinterpret_steal<py::object>(PyNumber_Long(object.ptr())));
-    if (py::isinstance<py::float_>(object)) return number(py::float_(object.cast<double>()));
-    if (py::isinstance<py::dict>(object)) return map_of(py::reinterpret_borrow<py::dict>(object));
-    if (py::hasattr(object, "tolist")) return node_of(object.attr("tolist")());
-    if (py::hasattr(object, "__fspath__"))
-        return scalar(object.attr("__fspath__")().cast<std::string>(), true);
-    if (!py::hasattr(object, "__iter__"))
-        throw py::type_error("a scene has numbers, text, lists and dicts, not " +
-                             py::repr(py::type::handle_of(object)).cast<std::string>());
-    ConfigNode node;
-    node.kind = Kind::sequence;
-    for (const py::handle item : py::iter(object)) node.items.push_back(node_of(item));
-    return node;
+ConfigNode node_of(py::handle object, const std::string& where, const std::string& path) {
+    return NodeMaker(where, path).make(object);
 }
 
 py::object object_of(const ConfigNode& node) {

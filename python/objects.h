@@ -30,8 +30,10 @@ std::shared_ptr<const TriangleMesh> mesh_of_state(const pybind11::tuple& state);
 
 /// Python's objects as the value of a scene's key: dict, list, tuple and range, str and paths,
 /// numbers, bool, None, and what has tolist(), as NumPy's arrays and numbers. Positions are left
-/// empty. Throws TypeError for others.
-ConfigNode node_of(pybind11::handle object);
+/// empty. Throws TypeError for others, and InputError, which begins with `where` and the path of
+/// the value from `path` on, for what is beyond a scene file's YamlLimits, as a list that contains
+/// itself.
+ConfigNode node_of(pybind11::handle object, const std::string& where, const std::string& path = "");
 
 /// A key's value as Python's objects: text that is no number is str, true and false are bool.
 pybind11::object object_of(const ConfigNode& node);

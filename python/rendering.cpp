@@ -8,14 +8,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstring>
-#include <exception>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "core/base/error.h"
@@ -25,6 +23,7 @@
 #include "core/image/pixel_image.h"
 #include "python/bindings.h"
 #include "python/scene.h"
+#include "python/watched_task.h"
 #include "render/image_derivative.h"
 #include "render/image_header.h"
 #include "render/image_scene.h"
@@ -33,79 +32,9 @@
 #include "run/run_engine.h"
 #include "validation/validation.h"
 
-namespace uw {
-
-namespace {
-
-// A person who presses Ctrl-C does not notice it, and neither does the work.
-constexpr std::chrono::milliseconds k_interval{20};
-
-}  // namespace
-
-std::vector<WatchedTask::News> WatchedTask::take_news() {
-    return std::exchange(news_, {});
-}
-
-void WatchedTask::tell(const std::string& stage, double fraction) {
-    const std::lock_guard lock(mutex_);
-    const bool goes_on =
-        !news_.empty() && news_.back().stage == stage && fraction > 0 && news_.back().fraction > 0;
-    if (goes_on)
-        news_.back().fraction = fraction;
-    else
-        news_.push_back({stage, fraction});
-}
-
-void WatchedTask::run(const std::function<void()>& work, const Watch& watch) {
-    is_done_ = false;
-    is_cancelled_ = false;
-    news_.clear();
-    std::exception_ptr fault, stop;
-    std::thread worker([&] {
-        const StopScope scope(is_cancelled_);
-        try {
-            work();
-        } catch (...) {
-            fault = std::current_exception();
-        }
-        const std::lock_guard lock(mutex_);
-        is_done_ = true;
-        changed_.notify_all();
-    });
-    const auto look = [&](const std::vector<News>& news) {
-        if (stop) return;
-        try {
-            watch(news);
-        } catch (...) {
-            stop = std::current_exception();
-            is_cancelled_ = true;
-        }
-    };
-    std::unique_lock lock(mutex_);
-    while (!changed_.wait_for(lock, k_interval, [this] { return is_done_; })) {
-        const std::vector<News> news = take_news();
-        lock.unlock();
-        look(news);
-        lock.lock();
-    }
-    lock.unlock();
-    worker.join();
-    if (!fault) look(take_news());
-    if (stop) std::rethrow_exception(stop);
-    if (fault) std::rethrow_exception(fault);
-}
-
 namespace py = pybind11;
 
-void check_signals() {
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
-
-void run_interruptible(WatchedTask& task, const std::function<void()>& work) {
-    const py::gil_scoped_release release;
-    task.run(work, [](const std::vector<WatchedTask::News>& /*news*/) { check_signals(); });
-}
+namespace uw {
 
 void save(const ImageObject& image, const std::filesystem::path& file,
           std::optional<double> exposure, const ExrOptions& options) {
@@ -122,10 +51,6 @@ void save(const ImageObject& image, const std::filesystem::path& file,
     metadata["exposure"] = factor;
     write_png(file, make_preview(image.film, factor), metadata);
 }
-
-}  // namespace uw
-
-namespace uw {
 
 namespace {
 
@@ -207,6 +132,74 @@ py::tuple window(const ImageObject& image) {
     return py::make_tuple(w.x0, w.y0, w.x1, w.y1);
 }
 
+py::tuple report_state(const RenderReport& r) {
+    return py::make_tuple(r.paths.samples, r.paths.error, r.multiple_error, r.snow_particles,
+                          r.warnings, r.motion_pixels,
+                          std::array{r.pixels, r.camera_rays, r.splat_rays, r.light_bytes,
+                                     r.active_voxels, r.grid_bytes, r.triangles, r.lamps, r.bands,
+                                     r.exposure_parts, r.exposure_samples});
+}
+
+RenderReport report_of_state(const py::tuple& state) {
+    RenderReport r;
+    r.paths = {state[0].cast<int>(), state[1].cast<std::optional<double>>()};
+    r.multiple_error = state[2].cast<std::optional<double>>();
+    r.snow_particles = state[3].cast<std::uint64_t>();
+    r.warnings = state[4].cast<std::vector<std::string>>();
+    r.motion_pixels = state[5].cast<double>();
+    const auto counts = state[6].cast<std::array<std::uint64_t, 11>>();
+    std::size_t next = 0;
+    for (std::uint64_t* count :
+         {&r.pixels, &r.camera_rays, &r.splat_rays, &r.light_bytes, &r.active_voxels, &r.grid_bytes,
+          &r.triangles, &r.lamps, &r.bands, &r.exposure_parts, &r.exposure_samples})
+        *count = counts[next++];
+    return r;
+}
+
+py::tuple image_state(const py::object& self) {
+    const auto& image = self.cast<ImageObject&>();
+    py::dict derivatives;
+    for (const auto& [name, values] : image.derivatives)
+        derivatives[py::str(name)] = derivative(self, name);
+    return py::make_tuple(image.film.width(), image.film.height(), window(image),
+                          image.film.channel_names(), pixels(self), image.metadata,
+                          report_state(image.report), image.bands_nm, image.objects,
+                          image.materials, derivatives);
+}
+
+using SavedPixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+std::shared_ptr<ImageObject> image_of_state(const py::tuple& state) {
+    const auto edges = state[2].cast<std::array<int, 4>>();
+    const PixelWindow window{edges[0], edges[1], edges[2], edges[3]};
+    Film film(state[0].cast<int>(), state[1].cast<int>(), window,
+              state[3].cast<std::vector<std::string>>());
+    const auto values = state[4].cast<SavedPixels>();
+    if (static_cast<std::size_t>(values.size()) != film.values().size())
+        throw py::value_error("an image's pixels are not those of its window");
+    const float* from = values.data();
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) {
+            const std::span<float> pixel = film.pixel(x, y);
+            std::copy_n(from, pixel.size(), pixel.begin());
+            from += pixel.size();
+        }
+    auto image = std::make_shared<ImageObject>(ImageObject{
+        std::move(film), state[5].cast<ImageMetadata>(),
+        report_of_state(state[6].cast<py::tuple>()), state[7].cast<std::vector<double>>(),
+        state[8].cast<std::map<int, std::string>>(), state[9].cast<std::map<int, std::string>>()});
+    const auto pixel_count =
+        static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+    for (const auto& [name, array] : state[10].cast<py::dict>()) {
+        const auto saved = array.cast<SavedPixels>();
+        if (static_cast<std::size_t>(saved.size()) != pixel_count * image->bands_nm.size())
+            throw py::value_error("an image's derivatives are not those of its window");
+        image->derivatives[name.cast<std::string>()].assign(saved.data(),
+                                                            saved.data() + saved.size());
+    }
+    return image;
+}
+
 }  // namespace
 
 void bind_image(py::module_& module) {
@@ -225,7 +218,9 @@ void bind_image(py::module_& module) {
         .def("automatic_exposure",
              [](const ImageObject& image) { return automatic_exposure(image.film); })
         .def("srgb", srgb, py::arg("exposure"))
-        .def("save", save_image, py::arg("file"), py::arg("exposure"), py::arg("precision"));
+        .def("save", save_image, py::arg("file"), py::arg("exposure"), py::arg("precision"))
+        .def(py::pickle([](const py::object& image) { return image_state(image); },
+                        [](const py::tuple& saved) { return image_of_state(saved); }));
 }
 
 }  // namespace uw
@@ -334,6 +329,8 @@ class RendererObject : public RunClient {
                         engine_->renderer().scene().desc().water.bands_nm,
                         {},
                         {}});
+        RenderReport& report = image_->report;
+        if (!report.light_note.empty()) report.warnings.push_back(report.light_note);
         if (requests_ids(wanted_->options.layers)) {
             const SurfaceNames& names = there.surfaces->names();
             add_id_names(names, image_->metadata);

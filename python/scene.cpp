@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/geometry/mesh_reader.h"
@@ -18,6 +19,7 @@
 #include "media/volumes/array_grid.h"
 #include "python/bindings.h"
 #include "python/objects.h"
+#include "python/watched_task.h"
 #include "render/image_scene.h"
 #include "render/scene_loading.h"
 
@@ -28,6 +30,7 @@ namespace uw {
 namespace {
 
 constexpr std::size_t k_longest_origin = 80;  // as of --set
+constexpr std::size_t k_longest_file = 300;
 
 void set_origin(ConfigNode& value, const std::shared_ptr<const std::string>& origin) {
     value.position = {origin, 0, 0};
@@ -152,7 +155,7 @@ ScenePointer parse(const std::string& text, const std::filesystem::path& file) {
 }
 
 ScenePointer of_sections(const py::dict& sections, const std::filesystem::path& file) {
-    ConfigNode tree = node_of(sections);
+    ConfigNode tree = node_of(sections, printable(file.string(), k_longest_file));
     set_origin(tree, file.string());
     return std::make_unique<SceneObject>(std::move(tree), file);
 }
@@ -163,7 +166,9 @@ void set(SceneObject& scene, const py::dict& changes) {
         if (!py::isinstance<py::str>(path))
             throw py::type_error("paths of a scene are str, found " +
                                  py::repr(path).cast<std::string>());
-        nodes.emplace_back(path.cast<std::string>(), node_of(value));
+        auto name = path.cast<std::string>();
+        ConfigNode node = node_of(value, printable(name, k_longest_origin) + " = ...", name);
+        nodes.emplace_back(std::move(name), std::move(node));
     }
     scene.set(nodes);
 }
@@ -183,14 +188,14 @@ void add_volume(SceneObject& scene, const std::string& name, const FloatArray& a
                            static_cast<std::ptrdiff_t>(sizeof(float));
     }
     const Affine map = affine_of(place);
-    ConfigNode node = node_of(entry);
+    ConfigNode node = node_of(entry, where);
     set_origin(node, where);
     SceneArrays arrays;
-    {
-        const py::gil_scoped_release release;
+    WatchedTask task;
+    run_interruptible(task, [&] {
         arrays.grids[name] =
             std::make_shared<const LoadedGrid>(grid_of_array(view, map, name, where));
-    }
+    });
     scene.append("volumes", std::move(node), std::move(arrays));
 }
 
@@ -215,7 +220,7 @@ void add_mesh(SceneObject& scene, const std::string& name, const DoubleRows& ver
                          " faces have a corner that is no vertex; count vertices from 0");
     if (mesh->triangles.empty())
         throw InputError(where + ": no face has an area; give triangles of three vertices each");
-    ConfigNode node = node_of(entry);
+    ConfigNode node = node_of(entry, where);
     set_origin(node, where);
     SceneArrays arrays;
     arrays.meshes[name] = std::move(mesh);
@@ -267,6 +272,8 @@ py::object frames(const SceneObject& scene) {
 }  // namespace
 
 void bind_scene(py::module_& module) {
+    module.def("require_memory", require_memory, py::arg("bytes"), py::arg("what"),
+               py::arg("mend"));
     py::class_<SceneObject>(module, "Scene")
         .def_static("load", load, py::arg("file"))
         .def_static("parse", parse, py::arg("text"), py::arg("file"))

@@ -1,6 +1,8 @@
 #include <pybind11/stl.h>
 
+#include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/scene/scene_desc.h"
@@ -15,21 +17,41 @@ namespace uw {
 
 namespace {
 
-/// The optical properties of a scene's water.
+/// The optical properties of a scene's water, and what it was made of.
 struct WaterObject {
     WaterModel model;
+    ConfigNode tree;                                // with its section `water` alone
+    std::shared_ptr<const SceneObject> scene = {};  // instead of it
 };
 
+WaterObject of_tree(ConfigNode tree) {
+    WaterModel model = build_water_model(water_of_tree(tree), {});
+    return {std::move(model), std::move(tree)};
+}
+
 WaterObject of_section(const py::dict& section) {
+    constexpr const char* k_origin = "Water";
     py::dict root;
     root["water"] = section;
-    ConfigNode tree = node_of(root);
-    set_origin(tree, "Water");
-    return {build_water_model(water_of_tree(tree), {})};
+    ConfigNode tree = node_of(root, k_origin);
+    set_origin(tree, k_origin);
+    return of_tree(std::move(tree));
 }
 
 WaterObject of_scene(const SceneObject& scene) {
-    return {build_water_model(scene.desc()->water, scene.desc()->volumes)};
+    return {build_water_model(scene.desc()->water, scene.desc()->volumes),
+            {},
+            std::make_shared<const SceneObject>(scene)};
+}
+
+py::tuple water_state(const WaterObject& water) {
+    if (!water.scene) return py::make_tuple(state_of(water.tree));
+    return py::make_tuple(py::none(), std::make_unique<SceneObject>(*water.scene));
+}
+
+WaterObject water_of_state(const py::tuple& state) {
+    if (state[0].is_none()) return of_scene(state[1].cast<const SceneObject&>());
+    return of_tree(node_of_state(state[0].cast<py::tuple>()));
 }
 
 py::array_t<double> per_band(const WaterObject& water, const Spectrum& values) {
@@ -98,7 +120,9 @@ void bind_water(py::module_& module) {
                                        names.push_back(phase->description());
                                    return names;
                                })
-        .def_property_readonly("warnings", [](const WaterObject& w) { return w.model.warnings; });
+        .def_property_readonly("warnings", [](const WaterObject& w) { return w.model.warnings; })
+        .def(py::pickle([](const WaterObject& water) { return water_state(water); },
+                        [](const py::tuple& saved) { return water_of_state(saved); }));
 }
 
 }  // namespace uw

@@ -38,8 +38,8 @@ std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene)
     return LightLeftOut{more / all, std::sqrt(variance) * trial.once / (all * all)};
 }
 
-std::optional<std::string> left_out_warning(const AssembledScene& scene,
-                                            const std::optional<LightLeftOut>& left_out) {
+std::optional<std::string> left_out_note(const AssembledScene& scene,
+                                         const std::optional<LightLeftOut>& left_out) {
     if (!left_out || !left_out->matters()) return std::nullopt;
     const SceneDesc& desc = scene.desc();
     // The paper's image has no other.

@@ -21,7 +21,7 @@ struct LightLeftOut {
 std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene);
 
 /// One line that says so, and how to render it, where it matters.
-std::optional<std::string> left_out_warning(const AssembledScene& scene,
-                                            const std::optional<LightLeftOut>& left_out);
+std::optional<std::string> left_out_note(const AssembledScene& scene,
+                                         const std::optional<LightLeftOut>& left_out);
 
 }  // namespace uw

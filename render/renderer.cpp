@@ -84,9 +84,8 @@ std::optional<LightLeftOut> Renderer::light_left_out() {
     return estimate_light_left_out(*scene_);
 }
 
-void Renderer::warn_of_light_left_out() {
-    if (const auto warning = left_out_warning(*scene_, light_left_out()))
-        report_.warnings.push_back(*warning);
+void Renderer::note_light_left_out() {
+    report_.light_note = left_out_note(*scene_, light_left_out()).value_or("");
 }
 
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {

@@ -30,6 +30,8 @@ struct RenderOptions {
 struct RenderReport : ImageProgress {
     /// About the scene, then about the image: one line each, in the order met.
     std::vector<std::string> warnings;
+    /// What its light lacks (Renderer::note_light_left_out), one line; empty: little, or not asked.
+    std::string light_note;
     std::uint64_t pixels = 0;  // rendered: with forward scatter always the whole image
     std::uint64_t camera_rays = 0;
     std::uint64_t splat_rays = 0;     // traced for light not kept from the last image
@@ -102,9 +104,9 @@ class Renderer {
     const DeepShadows& light() const { return light_; }
 
     /// What an image of this scene leaves out (estimate_light_left_out); assembles it. The second
-    /// warns of it in the report of the image that was prepared.
+    /// notes it in the report of the image that was prepared.
     std::optional<LightLeftOut> light_left_out();
-    void warn_of_light_left_out();
+    void note_light_left_out();
 
     /// Changes the assembled scene by hand: for water, volumes and slabs that no description can
     /// express. The next scene that is set has nothing of it.

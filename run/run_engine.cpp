@@ -75,7 +75,7 @@ void RunEngine::render(std::size_t place) {
     const RenderOptions options = rendered_for(wanted, scene.desc().camera);
     renderer_.set_scene(std::move(scene));
     renderer_.prepare(options);
-    if (!std::exchange(looked_for_light_, true)) renderer_.warn_of_light_left_out();
+    if (!std::exchange(looked_for_light_, true)) renderer_.note_light_left_out();
     client_->loaded(place);
     warn_of_image();
     renderer_.render(options);

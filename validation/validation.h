@@ -52,6 +52,9 @@ struct Check {
     double own = 0;            // what `right` may itself be off by; 0 if it has converged
     double tolerance = 0;      // of `largest`, with `own`
     double rms_tolerance = 0;  // of `rms`
+    /// Whether `largest` is of any pixel; else that nothing is beyond its tolerance says little.
+    bool is_compared() const { return pixels > 0; }
+    /// Whether nothing is beyond its tolerance.
     bool passed() const { return largest <= tolerance && rms <= rms_tolerance; }
 };
 

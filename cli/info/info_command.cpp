@@ -99,6 +99,24 @@ void require_file(const fs::path& file) {
         throw IoError(fmt::format("{}: is not a file; name a VDB file or a scene", name));
 }
 
+/// The folder of the scene file that standard output is redirected to, if that can be told.
+fs::path folder_of_printed_scene() {
+    std::error_code error;
+    const fs::path file = fs::read_symlink("/proc/self/fd/1", error);  // Linux
+    const std::string extension = lower_case(file.extension().string());
+    const bool is_scene = extension == ".yaml" || extension == ".yml";
+    return !error && is_scene && fs::is_regular_file(file, error) ? file.parent_path() : "";
+}
+
+/// `file`, named from the current folder, as named from `folder` (absolute, without links).
+fs::path named_from(const fs::path& folder, const fs::path& file) {
+    std::error_code error;
+    if (file.is_absolute() || fs::equivalent(folder, ".", error) || error) return file;
+    const fs::path above = fs::weakly_canonical(fs::absolute(file).parent_path(), error);
+    if (error) return file;
+    return (above / file.filename()).lexically_relative(folder);
+}
+
 /// The existing frames of a sequence, and which of them to inspect.
 SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>& frame) {
     SequenceReport sequence;
@@ -124,14 +142,14 @@ SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>
 }
 
 /// The advice on the sequence that `subject` names, and which of its frames to inspect.
-VdbAdvice advise_on_frames(const InfoArguments& a, SequenceReport& sequence) {
+VdbAdvice advise_on_frames(const InfoArguments& a, const fs::path& name, SequenceReport& sequence) {
     const FrameSurvey frames = survey_frames(a.subject, sequence.found);
     sequence.empty = frames.empty;
     sequence.largest = largest_values(frames);
     for (const SampledFrame& frame : frames.sampled) sequence.sampled.push_back(frame.frame);
     if (frames.sampled.empty()) return {};
     if (!a.frame) sequence.frame = frames.sampled.front().frame;
-    VdbAdvice advice = advise_on_sequence(frames, a.subject);
+    VdbAdvice advice = advise_on_sequence(frames, name);
     for (const std::string& fault : frames.faults)
         advice.lines.push_back("A frame cannot be read: " + fault + ".");
     return advice;
@@ -140,12 +158,15 @@ VdbAdvice advise_on_frames(const InfoArguments& a, SequenceReport& sequence) {
 VdbSurvey survey_vdb(const InfoArguments& a) {
     VdbSurvey survey;
     survey.file = a.subject.string();
+    if (a.scene) survey.scene_folder = folder_of_printed_scene();
+    const fs::path name =
+        survey.scene_folder.empty() ? a.subject : named_from(survey.scene_folder, a.subject);
     fs::path file = a.subject;
     const bool is_sequence = !is_there(a.subject) && has_frame_pattern(a.subject.string());
     if (is_sequence) {
         survey.sequence = look_for_frames(a.subject, a.frame);
         if (a.frame) require_file(file_of_frame(a.subject, *a.frame));
-        survey.advice = advise_on_frames(a, survey.sequence);
+        survey.advice = advise_on_frames(a, name, survey.sequence);
         file = file_of_frame(a.subject, survey.sequence.frame);
     } else if (a.frame) {
         refuse_frame(a.subject);
@@ -153,7 +174,7 @@ VdbSurvey survey_vdb(const InfoArguments& a) {
     require_file(file);
     survey.inspection = inspect_vdb(file, printable(file.filename().string(), 300));
     if (!is_sequence || survey.advice.map.empty()) {
-        survey.advice = advise_on_vdb(survey.inspection, a.subject);
+        survey.advice = advise_on_vdb(survey.inspection, name);
         if (is_sequence)
             survey.advice.lines.emplace_back("No frame of the sequence holds anything to map.");
     }
@@ -162,7 +183,7 @@ VdbSurvey survey_vdb(const InfoArguments& a) {
 
 /// Renders the proposed scene, small, and writes it as a PNG.
 void write_picture(const VdbSurvey& survey, const fs::path& file) {
-    SceneDesc desc = load_scene_text(survey.advice.scene, "scene.yaml");
+    SceneDesc desc = load_scene_text(survey.advice.scene, survey.scene_folder / "scene.yaml");
     resize_image(desc.camera, k_proposed_width / 2, k_proposed_height / 2);
     if (scattering_of(desc.render) == RenderDesc::Scattering::multiple)
         desc.render.quality = RenderDesc::Quality::draft;  // seconds, not minutes

@@ -81,6 +81,7 @@ DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, cons
     result.seen = static_cast<double>(contrasts.size()) / static_cast<double>(depths.size());
     if (contrasts.empty()) return result;
     result.contrast = percentile(contrasts, 0.99);
+    result.median_contrast = percentile(contrasts, 0.5);
     const double bright = percentile(light, 0.99);
     if (bright > 0) result.brightness = percentile(brightness, 0.5) / bright;
     result.depth = percentile(depth, 0.9);

@@ -19,6 +19,8 @@ struct DraftContrast {
     /// The contrast of a pixel is |with - without| / max(without, mean of the picture without);
     /// this is the 99th percentile of the pixels that see the volumes.
     double contrast = 0;
+    /// The median of these pixels: far below it where a few of them carry the contrast.
+    double median_contrast = 0;
     /// Fraction of the image whose rays pass through the volumes before any surface.
     double seen = 0;
     /// Median luminance of these pixels, relative to the 99th percentile of the whole picture,

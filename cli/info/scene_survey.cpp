@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -22,16 +24,29 @@ namespace {
 constexpr double k_invisible_depth = 0.01;
 // Whatever lies behind this optical depth is taken to be black.
 constexpr double k_opaque_depth = 10;
+// A share of a grid in view that is most likely a mistake.
+constexpr double k_little_in_view = 1e-3;
 
 void warn_of_grid(const GridSurvey& grid, bool has_lamps, std::vector<std::string>& warnings) {
     const std::string name = fmt::format("grid '{}' of '{}': ", grid.report.grid,
                                          printable(grid.report.file.filename().string(), 300));
     const auto warn = [&](const std::string& what) { warnings.push_back(name + what); };
     if (grid.report.bounds.empty()) return;  // loading has warned of it
-    if (grid.in_view == 0)
+    if (grid.in_view < k_little_in_view && grid.hidden > grid.in_view)
+        warn(fmt::format(
+            "hidden behind {}: {:.3g} % of it is in the image, but behind that surface; "
+            "if it is the box of a simulation, leave it out of the geometry, else move "
+            "the camera",
+            grid.hidden_behind, 100 * grid.hidden));
+    else if (grid.in_view == 0)
         warn(
             "nothing of it is in view of the camera; compare its world bounds with camera.pose, "
             "and give it a transform");
+    else if (grid.in_view < k_little_in_view)
+        warn(
+            fmt::format("only {:.2g} % of it is in view of the camera; compare its world bounds "
+                        "with camera.pose, and give it a transform",
+                        100 * grid.in_view));
     if (has_lamps && grid.in_reach == 0)
         warn("no lamp reaches any of it: it will be black; move a lamp nearer, or aim it there");
     else if (has_lamps && grid.in_view > 0 && grid.in_both == 0)
@@ -146,13 +161,31 @@ class Reach {
     AttenuationTable attenuation_;
 };
 
-bool is_in_view(const AssembledScene& scene, const Point3& x) {
+/// How the camera sees a point.
+struct PointView {
+    bool is_seen = false;
+    std::uint32_t hidden_by = 0;  // in the image, but behind this object, from 1; 0: none
+};
+
+PointView view_of_point(const AssembledScene& scene, const Point3& x) {
     const auto pixel = scene.camera->project(x);
     if (!pixel || pixel->x < 0 || pixel->y < 0 || pixel->x > scene.camera->width() ||
         pixel->y > scene.camera->height())
-        return false;
+        return {};
     const auto ray = scene.camera->refracted_ray(pixel->x, pixel->y);
-    return ray && !scene.surfaces->occluded(ray->origin, x);
+    if (!ray) return {};
+    if (!scene.surfaces->occluded(ray->origin, x)) return {.is_seen = true};
+    SurfaceHit hit;
+    const Ray to_point{ray->origin, glm::normalize(x - ray->origin)};
+    if (!scene.surfaces->closest_hit(to_point, distance(ray->origin, x), hit)) return {};
+    return {.hidden_by = hit.object_id};
+}
+
+/// An object as messages name it.
+std::string name_of_object(const Surfaces& surfaces, std::uint32_t id) {
+    const SurfaceName& object = surfaces.names().objects.at(id - 1);
+    const std::string entry = fmt::format("geometry[{}]", object.entry);
+    return object.name.empty() ? entry : fmt::format("'{}' ({})", printable(object.name), entry);
 }
 
 /// Fills in the fractions: sums over points distributed evenly in the grid's bounds.
@@ -162,6 +195,7 @@ void measure_shares(const AssembledScene& scene, const Reach& reach, const GridV
     if (box.empty()) return;
     struct Sums {
         double all = 0, in_view = 0, in_reach = 0, in_both = 0;
+        std::map<std::uint32_t, double> hidden{};  // by object
     };
     std::vector<Sums> parts(k_points);
     parallel_for(parts.size(), [&](std::size_t slice) {
@@ -174,11 +208,13 @@ void measure_shares(const AssembledScene& scene, const Reach& reach, const GridV
                 const Point3 x{at(0, static_cast<double>(slice)), at(1, j), at(2, k)};
                 const double value = grid.value(x);
                 if (value == 0) continue;
-                const bool seen = is_in_view(scene, x), reached = reach.any(x, nullptr);
+                const PointView view = view_of_point(scene, x);
+                const bool seen = view.is_seen, reached = reach.any(x, nullptr);
                 sums.all += value;
                 if (seen) sums.in_view += value;
                 if (reached) sums.in_reach += value;
                 if (seen && reached) sums.in_both += value;
+                if (view.hidden_by != 0) sums.hidden[view.hidden_by] += value;
             }
     });
     Sums total;
@@ -187,11 +223,17 @@ void measure_shares(const AssembledScene& scene, const Reach& reach, const GridV
         total.in_view += part.in_view;
         total.in_reach += part.in_reach;
         total.in_both += part.in_both;
+        for (const auto& [object, value] : part.hidden) total.hidden[object] += value;
     }
     if (total.all == 0) return;
     survey.in_view = total.in_view / total.all;
     survey.in_reach = total.in_reach / total.all;
     survey.in_both = total.in_both / total.all;
+    if (total.hidden.empty()) return;
+    const auto [object, most] =
+        *std::ranges::max_element(total.hidden, {}, [](const auto& entry) { return entry.second; });
+    survey.hidden = most / total.all;
+    survey.hidden_behind = name_of_object(*scene.surfaces, object);
 }
 
 std::vector<GridSurvey> survey_grids(const AssembledScene& scene, const Reach& reach) {
@@ -284,7 +326,7 @@ SceneSurvey survey_scene(const AssembledScene& scene,
     append_survey_warnings(survey);
     if (const auto warning = far_lamp_warning(scene)) survey.warnings.push_back(*warning);
     survey.left_out = estimate_light_left_out(scene);
-    if (const auto warning = left_out_warning(scene, survey.left_out))
+    if (const auto warning = left_out_note(scene, survey.left_out))
         survey.warnings.push_back(*warning);
     return survey;
 }

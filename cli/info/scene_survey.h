@@ -26,6 +26,8 @@ struct GridSurvey {
     double in_view = 0;                        // within the image and behind no surface
     double in_reach = 0;                       // of at least one lamp
     double in_both = 0;
+    double hidden = 0;          // within the image, but behind that object which hides most of it
+    std::string hidden_behind;  // that object, "'hull' (geometry[0])"; empty: nothing hides any
 };
 
 /// The ray of the image centre, from where it enters the water.

@@ -139,7 +139,14 @@ Report report_on_grid(const GridSurvey& grid, const Medium& medium) {
     Report report = report_on_grid(grid.report, medium);
     report.say(fmt::format("in view {}, in reach of a lamp {}, both {}", percent(grid.in_view),
                            percent(grid.in_reach), percent(grid.in_both)));
-    report.set({{"in_view", grid.in_view}, {"in_reach", grid.in_reach}, {"in_both", grid.in_both}});
+    if (!grid.hidden_behind.empty())
+        report.say(fmt::format("hidden behind {}: {}", grid.hidden_behind, percent(grid.hidden)));
+    report.set(
+        {{"in_view", grid.in_view},
+         {"in_reach", grid.in_reach},
+         {"in_both", grid.in_both},
+         {"hidden", grid.hidden},
+         {"hidden_behind", grid.hidden_behind.empty() ? Json(nullptr) : Json(grid.hidden_behind)}});
     return report;
 }
 
@@ -180,9 +187,10 @@ Report report_on_contrast(const DraftContrast& draft) {
     Report report;
     report.say(fmt::format(
         "contrast of the volumes {}, where they are seen ({} of the image; a draft with and "
-        "without them, 99th percentile)",
-        percent(draft.contrast), percent(draft.seen)));
+        "without them, 99th percentile), median {}",
+        percent(draft.contrast), percent(draft.seen), percent(draft.median_contrast)));
     report.set({{"contrast", draft.contrast},
+                {"median_contrast", draft.median_contrast},
                 {"seen", draft.seen},
                 {"brightness", draft.brightness},
                 {"optical_depth", draft.depth}});

@@ -30,10 +30,31 @@ bool contains_any(const std::string& text, std::initializer_list<const char*> pa
         parts, [&](const char* part) { return text.find(part) != std::string::npos; });
 }
 
+/// The names that liquid solvers give to the distances to their surface.
+bool is_name_of_distances(const std::string& name) {
+    const std::string text = lower_case(name);
+    return text.starts_with("phi") || contains_any(text, {"surface", "levelset", "level_set"});
+}
+
 /// Distances to a surface, in grids whose class does not say so.
 bool is_level_set_in_disguise(const GridInspection& grid) {
-    return grid.values && grid.summary.grid_class != "fog volume" &&
-           grid.values->background_value > 0 && grid.values->negative > 0;
+    return grid.values && grid.summary.grid_class != "fog volume" && grid.values->negative > 0 &&
+           (grid.values->background_value > 0 || is_name_of_distances(grid.summary.base_name));
+}
+
+/// Its grids that hold the surface or the particles of a simulated liquid.
+std::vector<std::string> grids_of_liquid(const VdbInspection& inspection) {
+    std::vector<std::string> names;
+    for (const GridInspection& grid : inspection.grids) {
+        const std::string& type = grid.summary.value_type;
+        const std::string name = lower_case(grid.summary.base_name);
+        const bool is_surface =
+            (grid.summary.grid_class == "level set" || is_level_set_in_disguise(grid)) &&
+            (is_name_of_distances(name) || contains_any(name, {"liquid", "fluid", "flip"}));
+        const bool are_particles = type.starts_with("ptdataidx") || type.starts_with("ptidx");
+        if (is_surface || are_particles) names.push_back(grid.summary.name);
+    }
+    return names;
 }
 
 std::string list(const std::vector<std::string>& names) {
@@ -64,7 +85,16 @@ const GridInspection* likeliest_grid(const VdbInspection& inspection) {
 void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
     const GridInspection* const chosen = likeliest_grid(inspection);
     if (chosen == nullptr) {
-        advice.lines.push_back("Nothing to map: no grid of this file is a concentration.");
+        const std::vector<std::string> liquid = grids_of_liquid(inspection);
+        advice.lines.push_back(
+            liquid.empty()
+                ? "Nothing to map: no grid of this file is a concentration."
+                : fmt::format(
+                      "Nothing to map: this looks like a liquid simulation, whose surface or "
+                      "particles are in {}. A surface is geometry: export it as a mesh (.glb, .obj "
+                      "or .ply) and name that under geometry; for dye, sediment or bubbles in the "
+                      "liquid export a fog volume.",
+                      list(liquid)));
         return;
     }
     for (const GridInspection& grid : inspection.grids)
@@ -104,8 +134,9 @@ void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
     const auto say = [&](const std::string& text) { advice.lines.push_back(name + text + "."); };
     if (!grid.unusable.empty()) say(grid.unusable);
     if (grid.unusable.empty() && is_level_set_in_disguise(grid))
-        say("is a level set, though its class does not say so (its background is above 0, its "
-            "inside negative), not a concentration; export a fog volume");
+        say("is a level set, though its class does not say so (its inside is negative, and its "
+            "background above 0 or its name that of distances), not a concentration; export a fog "
+            "volume");
     if (grid.unusable.empty() && !grid.unread.empty()) say("cannot be read: " + grid.unread);
     if (grid.active_voxels == 0) say("is empty: it has no active voxels");
     if (!grid.values || grid.values->active == 0 || !grid.unusable.empty()) return;
@@ -245,16 +276,16 @@ void say_size(const VdbInspection& inspection, VdbAdvice& advice) {
     } else if (side > k_too_large) {
         advice.scale = plausible(0.01) ? 0.01 : fitting;
         advice.lines.push_back(
-            fmt::format("Units look wrong: {} is more than lamps can light under water; {} scale "
-                        "{:g} makes it {:.3g} m.",
-                        size_of(advice), plausible(0.01) ? "if these are centimetres," : "",
+            fmt::format("Units look wrong: {} is more than lamps can light under water; {}"
+                        "transform.scale: {:g} makes it {:.3g} m.",
+                        size_of(advice), plausible(0.01) ? "if these are centimetres, " : "",
                         advice.scale, advice.scale * side));
     } else if (side < k_too_small) {
         advice.scale = plausible(100) ? 100 : fitting;
         advice.lines.push_back(fmt::format(
-            "Units look wrong: {} is very small; {} scale {:g} makes it {:.3g} m.", size_of(advice),
-            plausible(100) ? "if it was scaled by 1/100 on export," : "", advice.scale,
-            advice.scale * side));
+            "Units look wrong: {} is very small; {}transform.scale: {:g} makes it {:.3g} m.",
+            size_of(advice), plausible(100) ? "if it was scaled by 1/100 on export, " : "",
+            advice.scale, advice.scale * side));
     } else {
         advice.lines.push_back(
             fmt::format("Units are plausible: {} along its longest side.", size_of(advice)));
@@ -400,6 +431,13 @@ std::vector<double> across_voxel(const LoadedVolume& volume, const Medium& mediu
     return depth;
 }
 
+/// Of all that is not 0.
+Bounds bounds_of(const LoadedVolume& volume) {
+    Bounds bounds;
+    for (const GridVolume& grid : volume.grids) bounds.extend(grid.voxel_bounds());
+    return bounds;
+}
+
 /// The largest optical depth per band of `depth` and of the lines along `axis`, which are spaced
 /// evenly over the bounds.
 std::vector<double> deepest(const GridField& field, const Medium& medium, const Bounds& bounds,
@@ -430,9 +468,8 @@ void start_concentrations(const VdbInspection& inspection, VdbAdvice& advice) {
     const WaterModel model = build_water_model(water, {desc});
     LoadedVolume volume = load_volume(desc, model.loads[0]);
     const std::vector<double> least = across_voxel(volume, model.medium);
+    advice.bounds = bounds_of(volume);
     const GridField field(std::move(volume.grids), model.medium.constituent_count());
-    advice.bounds = Bounds();
-    for (const GridVolume& grid : field.volumes()) advice.bounds.extend(grid.voxel_bounds());
     std::array<std::vector<double>, 3> depths;
     for (int axis = 0; axis < 3; ++axis)
         depths[static_cast<std::size_t>(axis)] =
@@ -466,10 +503,12 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
     const double contrast = advice.view.draft.contrast;
     advice.lines.push_back(fmt::format(
         "small: {:g} and large: {:g} ppm per unit give an optical depth of about {:.2g} at {:g} nm "
-        "through the densest part, and a contrast of {:.0f} % in a draft of the scene that --scene "
-        "prints (in {}): {}. Your own plume's concentration may differ.",
+        "through the densest part, and a contrast of {:.0f} % where it is clearest (median over "
+        "its pixels {:.2g} %) in a draft of the scene that --scene prints (in {}): {}. Your own "
+        "plume's concentration may differ.",
         advice.small_ppm, advice.large_ppm, advice.optical_depth[k_wanted_band],
-        advice.bands_nm[k_wanted_band], 100 * contrast, advice.view.proposal.water,
+        advice.bands_nm[k_wanted_band], 100 * contrast, 100 * advice.view.draft.median_contrast,
+        advice.view.proposal.water,
         contrast >= k_plain_to_see ? "neither invisible nor black"
                                    : "it will hardly be seen; a smaller transform.scale brings "
                                      "camera and lamps nearer"));
@@ -494,9 +533,27 @@ std::string quoted(const std::string& text) {
     return result + "'";
 }
 
+/// Whether some of the active voxels of the mapped grids hold nothing, as those of dense grids do.
+bool has_empty_voxels(const VdbInspection& inspection, const VdbAdvice& advice) {
+    return std::ranges::any_of(inspection.grids, [&](const GridInspection& grid) {
+        return std::ranges::count(advice.map, grid.summary.name) > 0 && grid.values &&
+               grid.values->zero + grid.values->negative + grid.values->nan > 0;
+    });
+}
+
 /// What the mapped grids hold, in the file's size and place but for those that are known to be
 /// wrong.
 Bounds held_by(const VdbInspection& inspection, const VdbAdvice& advice) {
+    if (has_empty_voxels(inspection, advice)) {
+        try {
+            const VolumeDesc desc = describe(inspection, advice);
+            const Bounds bounds =
+                bounds_of(load_volume(desc, build_water_model(WaterDesc(), {desc}).loads[0]));
+            if (!bounds.empty()) return bounds;
+        } catch (const InputError&) {
+            // A frame that lacks one of the grids: its active voxels will do.
+        }
+    }
     const auto domain = find_adaptive_domain(inspection.header);
     const std::optional<double> voxel =
         advice.voxel_size || !domain ? advice.voxel_size : domain->voxel;
@@ -554,6 +611,20 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
             100 * left_out->share);
 }
 
+/// A scene's sea floor is often at y = 0, and hides what is below.
+void say_what_is_below(VdbAdvice& advice) {
+    const double lowest = advice.bounds.min.y, side = longest_side(advice.bounds);
+    constexpr double k_rounding = 1e-3;  // of its size
+    if (!(lowest < -k_rounding * side)) return;
+    const Vector3& t = advice.translate;
+    advice.lines.push_back(fmt::format(
+        "Its lowest point lies at y = {} m, below y = 0: the floor of the scene that --scene "
+        "prints "
+        "is lower still, but one at y = 0 would hide it; transform.translate: [{:.15g}, {}, "
+        "{:.15g}] puts it onto that.",
+        length_text(lowest, side), t.x, length_text(t.y - lowest, side), t.z));
+}
+
 VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
                  const std::filesystem::path& file) {
     VdbAdvice advice;
@@ -571,6 +642,7 @@ VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
     say_place(advice);
     say_motion(inspection, advice);
     choose_concentrations(inspection, others, advice);
+    say_what_is_below(advice);
     write_block(inspection, file, advice);
     write_scene(file, !frames.sampled.empty(), advice);
     return advice;

@@ -164,6 +164,7 @@ Report report_on_advice(const VdbSurvey& survey) {
         advice.scene);
     report.set({{"lamps", std::move(lamps)},
                 {"contrast", advice.view.draft.contrast},
+                {"median_contrast", advice.view.draft.median_contrast},
                 {"scene", advice.scene}});
     return report;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct SequenceReport {
 /// What `uwvdb info` says about a VDB file.
 struct VdbSurvey {
     std::string file;  // as typed
+    /// From which the scene names the file; empty: the current one.
+    std::filesystem::path scene_folder;
     SequenceReport sequence;
     VdbInspection inspection;
     VdbAdvice advice;

@@ -134,6 +134,7 @@ void FrameRenderer::loaded(std::size_t place) {
         for (const VolumeReport& report : scene.volume_reports)
             print_message(describe_grid(report, scene.water.medium));
     engine_.warn_of_image();
+    if (const std::string& note = renderer.report().light_note; !note.empty()) say("note: " + note);
     if (!arguments_.parts.object.empty())
         chosen_object(arguments_.parts.object, renderer.scene().desc().geometry,
                       scene.surfaces->names());

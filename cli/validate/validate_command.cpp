@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <iostream>
 #include <memory>
 #include <ostream>
@@ -96,7 +98,14 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out) {
         files.add(a.report, validation_page(results, lights));
         files.commit(a.quiet);
     }
-    if (!a.quiet || !passed) out << (passed ? "validation passed\n" : "validation FAILED\n");
+    std::ptrdiff_t uncompared = 0;
+    for (const SceneValidation& scene : results)
+        uncompared += std::ranges::count(scene.checks, false, &Check::is_compared);
+    if (!a.quiet || !passed) {
+        out << (passed ? "validation passed" : "validation FAILED");
+        if (uncompared > 0) out << "; rows not compared: " << uncompared;
+        out << '\n';
+    }
     if (!out.flush()) throw IoError("standard output: cannot write; is the disk full?");
     return passed;
 }

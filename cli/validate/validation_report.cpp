@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
-#include <optional>
 
 #include "cli/report.h"
 #include "cli/svg_plot.h"
@@ -51,11 +51,25 @@ std::string verdict_html(bool passed) {
     return passed ? "<span class=passed>passed</span>" : "<span class=failed>FAILED</span>";
 }
 
+constexpr const char* k_not_compared = "not compared";
+
+/// What became of a check.
+enum class Verdict : std::uint8_t { none, passed, failed, not_compared };
+
+Verdict verdict_on(const Check& check) {
+    if (!check.passed()) return Verdict::failed;
+    return check.is_compared() ? Verdict::passed : Verdict::not_compared;
+}
+
+Verdict verdict_on(const LightCheck& check) {
+    return check.passed() ? Verdict::passed : Verdict::failed;
+}
+
 /// A table for people, as lines of text or in HTML.
 struct Table {
     struct Row {
         std::vector<std::string> cells;
-        std::optional<bool> passed{};  // the verdict on it, where there is one
+        Verdict verdict = Verdict::none;
     };
     std::vector<std::string> headings;
     std::size_t names;  // that many columns come first, and hold no numbers
@@ -68,9 +82,12 @@ struct Table {
         const std::vector<std::string> lines = aligned_rows(cells, names);
         std::string text = "  " + lines[0] + "\n";
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            const bool failed = rows[i].passed && !*rows[i].passed;
-            const std::string verdict = !rows[i].passed ? "" : failed ? "  FAILED" : "  passed";
-            const std::string line = "  " + lines[1 + i] + verdict;
+            const bool failed = rows[i].verdict == Verdict::failed;
+            std::string line = "  " + lines[1 + i];
+            if (failed) line += "  FAILED";
+            if (rows[i].verdict == Verdict::passed) line += "  passed";
+            if (rows[i].verdict == Verdict::not_compared)
+                line += fmt::format("  {}", k_not_compared);
             text += colour && failed ? "\033[31m" + line + "\033[0m\n" : line + "\n";
         }
         return text;
@@ -84,7 +101,10 @@ struct Table {
             html += "<tr>";
             for (std::size_t i = 0; i < row.cells.size(); ++i)
                 html += (i < names ? "<td>" : "<td class=n>") + row.cells[i] + "</td>";
-            if (row.passed) html += "<td>" + verdict_html(*row.passed) + "</td>";
+            if (row.verdict == Verdict::not_compared)
+                html += fmt::format("<td>{}</td>", k_not_compared);
+            else if (row.verdict != Verdict::none)
+                html += "<td>" + verdict_html(row.verdict == Verdict::passed) + "</td>";
             html += "</tr>\n";
         }
         return html + "</table>\n";
@@ -97,10 +117,21 @@ Table checks_of(const SceneValidation& scene) {
         table.rows.push_back(
             {{c.left + " - " + c.right, c.component.name,
               fmt::format("{:g} nm", scene.bands_nm[c.band]), fmt::format("{}", c.pixels),
-              fmt::format("{:.4f} %", 100 * c.largest), fmt::format("{:.4f} %", 100 * c.rms),
-              fmt::format("{:.3g} %", 100 * c.tolerance)},
-             c.passed()});
+              c.is_compared() ? fmt::format("{:.4f} %", 100 * c.largest) : "-",
+              fmt::format("{:.4f} %", 100 * c.rms), fmt::format("{:.3g} %", 100 * c.tolerance)},
+             verdict_on(c)});
     return table;
+}
+
+/// What the verdict on a scene does not rest on; empty: nothing.
+std::string left_uncompared(const SceneValidation& scene) {
+    const auto count = std::ranges::count_if(
+        scene.checks, [](const Check& check) { return !check.is_compared(); });
+    if (count == 0) return "";
+    return fmt::format(
+        "{} of {} rows have no pixel to compare, as an edge of shadow or beam crosses every ray: "
+        "their RMS is all that was checked",
+        count, scene.checks.size());
 }
 
 Table checks_of(const LightValidation& light) {
@@ -112,7 +143,7 @@ Table checks_of(const LightValidation& light) {
             {{c.left + " - " + c.right, c.light, fmt::format("{:+.3f} %", 100 * c.deviation),
               fmt::format("{:.3f} %", 100 * c.error),
               fmt::format("{:.1f}", c.deviation_in_errors()), "", "", ""},
-             c.passed()});
+             verdict_on(c)});
         if (!c.spread) continue;
         std::vector<std::string>& cells = table.rows.back().cells;
         cells[5] = fmt::format("{:.2f} %", 100 * c.spread->rms);
@@ -313,8 +344,10 @@ std::string differences_of(const SceneValidation& scene, const Component& compon
     for (const Check& check : scene.checks) {
         if (check.component.image != component.image || check.band != 0) continue;
         const DifferenceMap map = difference_map(scene, check);
-        html += pictures.figure(map.picture, fmt::format("{} − {}: {:.2g} %", check.left,
-                                                         check.right, 100 * map.full_colour));
+        const std::string largest =
+            check.is_compared() ? fmt::format("{:.2g} %", 100 * map.full_colour) : k_not_compared;
+        html += pictures.figure(map.picture,
+                                fmt::format("{} − {}: {}", check.left, check.right, largest));
     }
     return html.empty() ? html : fmt::format("<h4>{}</h4>\n{}", component.name, html);
 }
@@ -330,6 +363,8 @@ std::string section_of(const SceneValidation& scene, ReportPictures& pictures) {
         100 * static_cast<double>(smooth) / static_cast<double>(scene.smooth.size()),
         scene.seconds);
     html += checks_of(scene).html();
+    if (const std::string left = left_uncompared(scene); !left.empty())
+        html += "<p>" + left + ".</p>\n";
     html += pictures_of(scene, k_before, "Pictures", pictures);
     html += pictures_of(scene, k_scattered, "Pictures with forward scatter", pictures);
     html +=
@@ -362,6 +397,7 @@ std::string validation_table(const SceneValidation& scene, bool colour) {
     std::string text = fmt::format("{} ({} x {} pixels, {:.1f} s)\n", scene.name, scene.width,
                                    scene.height, scene.seconds);
     text += checks_of(scene).text(colour);
+    if (const std::string left = left_uncompared(scene); !left.empty()) text += "  " + left + "\n";
     text += "  planes against their limit:";
     for (const PlanesStep& step : scene.planes)
         text += step.order == 0 ? fmt::format(" N={} {:.2g}", step.count, step.error)

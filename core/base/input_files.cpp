@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <charconv>
@@ -221,7 +222,7 @@ void check_confines(const fs::path& file, Registry& all) {
     const fs::path place = fs::weakly_canonical(file, error);
     if (!all.confines) all.confines = place.parent_path();
     const fs::path& folder = *all.confines;
-    if (!error && lies_in(folder, place)) return;
+    if (lies_within(folder, file)) return;
     throw InputError(fmt::format("{}: lies outside '{}', to which --confine keeps what is read",
                                  printable(file.string()), printable(folder.string())));
 }
@@ -231,6 +232,19 @@ bool is_as_old(const FileStamp& a, const FileStamp& b) {
 }
 
 }  // namespace
+
+bool lies_within(const fs::path& folder, const fs::path& file) {
+    std::error_code error, folder_error;
+    const fs::path place = fs::weakly_canonical(file, error);
+    const fs::path root = fs::weakly_canonical(folder, folder_error);
+    if (error || folder_error || !lies_in(root, place)) return false;
+    fs::path way;
+    for (const fs::path& part : file) {
+        way /= part;
+        if (fs::is_symlink(fs::symlink_status(way, error)) && !fs::exists(way, error)) return false;
+    }
+    return true;
+}
 
 std::optional<FileStamp> stamp_of(const fs::path& file) {
     struct stat status {};
@@ -341,6 +355,56 @@ class OpenFile {
 
 }  // namespace
 
+namespace {
+
+/// A format that is taken for a scene by mistake.
+struct OtherFormat {
+    std::string_view name;
+    std::string_view beginning;  // of its files; empty: not known by it
+    std::string_view endings;    // of their names, each followed by a blank
+    std::string_view mend;       // {}: the file's name
+};
+
+constexpr std::string_view k_show_volume =
+    "a scene that shows it is written by: uwvdb info '{}' --scene > scene.yaml";
+constexpr std::string_view k_export_surfaces =
+    "export its surfaces, lamps and camera as glTF (.glb), and name that in a scene: geometry: "
+    "[{{file: x.glb}}]";
+constexpr std::string_view k_name_scene = "name the scene, a YAML file";
+constexpr auto k_other_formats = std::to_array<OtherFormat>({
+    {"a VDB volume", std::string_view(" BDV\0\0\0\0", 8), ".vdb ", k_show_volume},
+    {"a NanoVDB volume", "NanoVDB", ".nvdb ", k_show_volume},
+    {"a Blender file", "BLENDER", ".blend ", k_export_surfaces},
+    {"a glTF file", "glTF", ".glb .gltf ",
+     "name it in a scene: geometry: [{{file: {}}}], with camera: true and lamps: true for its own"},
+    {"an FBX file", "Kaydara FBX", ".fbx ", k_export_surfaces},
+    {"a USD file", "PXR-USDC", ".usd .usdc .usdz ", k_export_surfaces},
+    {"an OpenEXR image", "\x76\x2f\x31\x01", ".exr ", k_name_scene},
+    {"a PNG image", "\x89PNG", ".png ", k_name_scene},
+    {"a JPEG image", "\xff\xd8\xff", ".jpg .jpeg ", k_name_scene},
+});
+
+}  // namespace
+
+std::string other_format(std::string_view bytes, const std::filesystem::path& file,
+                         std::string_view noun) {
+    std::string ending = file.extension().string() + " ";
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    const auto find = [](const auto& is_it) {
+        return std::ranges::find_if(k_other_formats, is_it);
+    };
+    auto format = find(
+        [&](const OtherFormat& f) { return !bytes.empty() && bytes.starts_with(f.beginning); });
+    if (format == k_other_formats.end() && ending.size() > 1)
+        format = find(
+            [&](const OtherFormat& f) { return f.endings.find(ending) != std::string_view::npos; });
+    if (format == k_other_formats.end()) return "";
+    const std::string name = printable(file.string(), 300);
+    return fmt::format("is {}, not a valid {}; {}", format->name, noun,
+                       noun == "scene" ? fmt::format(fmt::runtime(format->mend), name)
+                                       : fmt::format("name the {}", noun));
+}
+
 std::string read_text_file(const std::filesystem::path& file, const std::string& subject,
                            std::size_t most_bytes, std::string_view noun) {
     std::error_code error;
@@ -362,9 +426,12 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
         text.resize(had + static_cast<std::size_t>(std::max<::ssize_t>(count, 0)));
     }
     if (count < 0) throw IoError(fmt::format("{}: cannot be read; check its permissions", subject));
-    if (text.size() > most_bytes)
+    if (text.size() > most_bytes) {
+        if (const std::string other = other_format(text, file, noun); !other.empty())
+            throw InputError(fmt::format("{}: {}", subject, other));
         throw InputError(fmt::format("{}: is larger than {} MiB; this is not a valid {}", subject,
                                      most_bytes >> 20, noun));
+    }
     return text;
 }
 

@@ -76,12 +76,22 @@ void remember_input(const std::filesystem::path& file);
 /// or below it, after symbolic links: what a scene from a stranger names cannot lead elsewhere.
 void confine_inputs();
 
+/// Whether `file` lies in `folder` or below it, after symbolic links. One that leads nowhere lies
+/// outside: what is made there later is not known now.
+bool lies_within(const std::filesystem::path& folder, const std::filesystem::path& file);
+
 /// The files remembered so far that lie, after symbolic links, neither in `folder` nor below it:
 /// absolute, in alphabetical order. Thread safe.
 std::vector<std::filesystem::path> inputs_outside(const std::filesystem::path& folder);
 
 /// Whether `file` is one of those, by whatever name, symbolic or hard link. Thread safe.
 bool is_input(const std::filesystem::path& file);
+
+/// What a file is that is not the text expected, by its first bytes or else by its name, and what
+/// to do with it, to follow "...: ": "is a VDB volume, not a valid scene; ..."; "" if nothing
+/// tells. `noun`: what was expected, as for read_text_file.
+std::string other_format(std::string_view bytes, const std::filesystem::path& file,
+                         std::string_view noun);
 
 /// The unmodified contents of a text file of at most `most_bytes`. Messages begin with `subject`
 /// ("plume.yaml", or the scene entry that names the file, followed by the file) and call what was

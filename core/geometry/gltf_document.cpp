@@ -11,9 +11,11 @@
 #include <map>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/input_files.h"
+#include "core/base/text.h"
 
 namespace uw {
 
@@ -34,9 +36,16 @@ std::filesystem::path gltf_uri_path(const std::filesystem::path& gltf_file,
     return gltf_file.parent_path() / decoded;
 }
 
+const std::string& gltf_uri(const nlohmann::json& entry) {
+    static const std::string none;
+    if (entry.is_object() && !entry.contains("uri")) return none;
+    return entry.at("uri").get_ref<const std::string&>();
+}
+
 namespace {
 
-constexpr int k_max_nesting = 100;          // more than any exporter writes
+constexpr int k_max_nesting = 100;                   // more than any exporter writes
+constexpr std::size_t k_longest_printed_name = 300;  // in messages
 constexpr std::uint64_t k_glb_header = 20;  // magic, version, length, chunk length, chunk type
 
 std::string read_bytes(std::ifstream& in, std::uint64_t count) {
@@ -54,28 +63,81 @@ std::uint32_t little_endian(const std::string& bytes, std::size_t at) {
     return value;
 }
 
-void check_nesting(const std::string& json, const std::string& name) {
+std::string printed_name(const std::filesystem::path& file) {
+    return printable(file.string(), k_longest_printed_name);
+}
+
+/// The end of the string whose first character is at `begin`: its quote, npos if there is none.
+std::size_t end_of_string(std::string_view json, std::size_t begin) {
+    std::size_t quote = json.find('"', begin);
+    std::size_t slash = json.substr(0, quote).find('\\', begin);
+    while (slash != std::string_view::npos) {
+        begin = slash + 2;
+        if (quote < begin) quote = json.find('"', begin);
+        slash = json.substr(0, quote).find('\\', begin);
+    }
+    return quote;
+}
+
+/// Data URIs longer than this are kept from the parser, which takes seconds for 100 MB of text.
+constexpr std::size_t k_longest_parsed = std::size_t{1} << 16;
+constexpr std::string_view k_stand_in = "data:left out by uwvdb ";
+
+/// A document without its long data URIs, and these.
+struct ShortenedJson {
+    std::string text;
+    std::vector<std::string> uris;  // number n is where the text has k_stand_in and n
+};
+
+ShortenedJson shorten(std::string json, const std::string& name) {
+    const std::string_view all = json;
+    const bool shortens = all.find(k_stand_in) == std::string_view::npos;
+    ShortenedJson result;
+    std::size_t copied = 0;
     int depth = 0;
-    bool in_string = false;
-    for (std::size_t k = 0; k < json.size(); ++k) {
-        const char c = json[k];
-        if (in_string) {
-            if (c == '\\') ++k;
-            if (c == '"') in_string = false;
-        } else if (c == '"') {
-            in_string = true;
-        } else if (c == '{' || c == '[') {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (all[k] == '{' || all[k] == '[') {
             if (++depth > k_max_nesting) throw InputError(name + ": the glTF is nested too deeply");
-        } else if (c == '}' || c == ']') {
+        } else if (all[k] == '}' || all[k] == ']') {
             --depth;
         }
+        if (all[k] != '"') continue;
+        const std::size_t begin = k + 1;
+        k = end_of_string(all, begin);
+        if (k == std::string_view::npos) break;  // the parser says so
+        const std::string_view text = all.substr(begin, k - begin);
+        if (!shortens || text.size() <= k_longest_parsed || !text.starts_with("data:") ||
+            text.find('\\') != std::string_view::npos)
+            continue;
+        result.text += all.substr(copied, begin - copied);
+        result.text += fmt::format("{}{}", k_stand_in, result.uris.size());
+        result.uris.emplace_back(text);
+        copied = k;
+    }
+    if (copied == 0)
+        result.text = std::move(json);
+    else
+        result.text += all.substr(copied);
+    return result;
+}
+
+/// Puts the URIs back of whatever `list` holds.
+void put_back(nlohmann::json& list, std::vector<std::string>& uris) {
+    if (!list.is_array()) return;
+    for (nlohmann::json& entry : list) {
+        if (!entry.is_object() || !entry.contains("uri") || !entry["uri"].is_string()) continue;
+        auto& uri = entry["uri"].get_ref<std::string&>();
+        if (!uri.starts_with(k_stand_in)) continue;
+        std::size_t number = uris.size();
+        std::from_chars(uri.data() + k_stand_in.size(), uri.data() + uri.size(), number);
+        if (number < uris.size()) uri = std::move(uris[number]);
     }
 }
 
 }  // namespace
 
 std::string read_gltf_text(const std::filesystem::path& file) {
-    const std::string name = file.string();
+    const std::string name = printed_name(file);
     std::error_code status;
     // A pipe or device under a mesh's name would block the reader.
     const bool is_file = std::filesystem::is_regular_file(file, status);
@@ -102,22 +164,34 @@ std::string read_gltf_text(const std::filesystem::path& file) {
 }
 
 nlohmann::json load_gltf_json(const std::filesystem::path& file) {
-    const std::string text = read_gltf_text(file);
-    check_nesting(text, file.string());
-    nlohmann::json document = nlohmann::json::parse(text);
+    const std::string name = printed_name(file);
+    ShortenedJson json = shorten(read_gltf_text(file), name);
+    nlohmann::json document = nlohmann::json::parse(json.text);
     if (!document.is_object() || !document.contains("asset")) {
-        throw InputError(file.string() + ": not a glTF file (it has no 'asset')");
+        throw InputError(name + ": not a glTF file (it has no 'asset')");
     }
     if (!document["asset"].value("version", "").starts_with("2")) {
-        throw InputError(file.string() + ": not glTF 2; export it as glTF 2.0");
+        throw InputError(name + ": not glTF 2; export it as glTF 2.0");
     }
+    if (!json.uris.empty())
+        for (const char* list : {"buffers", "images"})
+            if (document.contains(list)) put_back(document[list], json.uris);
     return document;
+}
+
+void fail_broken_gltf(const std::filesystem::path& file, const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: the glTF description is broken: {}", printed_name(file),
+                                 printable(error.what(), k_longest_printed_name)));
 }
 
 using Json = nlohmann::json;
 
 GltfDocument::GltfDocument(const std::filesystem::path& file)
     : file_(file), root_(load_gltf_json(file)) {}
+
+std::string GltfDocument::name() const {
+    return printed_name(file_);
+}
 
 void GltfDocument::fail(const std::string& what) const {
     throw InputError(fmt::format("{}: {}", name(), what));
@@ -225,7 +299,7 @@ std::vector<std::byte> read_range(const std::filesystem::path& file, std::uint64
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
     if (!in || static_cast<std::uint64_t>(in.gcount()) != size) {
         throw IoError(fmt::format("{}: cannot read {} bytes at {}; the file is truncated",
-                                  file.string(), size, offset));
+                                  printed_name(file), size, offset));
     }
     return bytes;
 }
@@ -279,19 +353,24 @@ std::vector<std::byte> decode_data_uri(const GltfDocument& document, const std::
     const std::size_t mark = uri.substr(0, 200).find(k_mark);
     if (mark == std::string::npos) document.fail("a glTF data URI is not base64");
     static const std::array<int, 256> digits = base64_digits();
-    std::vector<std::byte> bytes;
-    bytes.reserve((uri.size() - mark) / 4 * 3);
-    std::uint32_t bits = 0;
-    int count = 0;
-    for (std::size_t at = mark + k_mark.size(); at < uri.size() && uri[at] != '='; ++at) {
-        const int digit = digits[static_cast<unsigned char>(uri[at])];
-        if (digit < 0) document.fail("a glTF data URI is not base64");
-        bits = (bits << 6) | static_cast<std::uint32_t>(digit);
-        count += 6;
-        if (count < 8) continue;
-        count -= 8;
-        bytes.push_back(static_cast<std::byte>((bits >> count) & 0xff));
+    std::string_view text = std::string_view(uri).substr(mark + k_mark.size());
+    text = text.substr(0, text.find('='));
+    // Whole groups of four digits are three bytes; what is left is up to two.
+    std::vector<std::byte> bytes(text.size() / 4 * 3 + text.size() % 4 * 3 / 4);
+    std::byte* to = bytes.data();
+    int bad = 0;
+    for (std::size_t at = 0; at < text.size(); at += 4) {
+        const std::size_t count = std::min<std::size_t>(text.size() - at, 4);
+        std::uint32_t bits = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const int digit = k < count ? digits[static_cast<unsigned char>(text[at + k])] : 0;
+            bad |= digit;
+            bits = (bits << 6) | static_cast<std::uint32_t>(digit & 0x3f);
+        }
+        for (std::size_t k = 0; k < count * 3 / 4; ++k)
+            *to++ = static_cast<std::byte>((bits >> (16 - 8 * k)) & 0xff);
     }
+    if (bad < 0) document.fail("a glTF data URI is not base64");
     return bytes;
 }
 
@@ -300,7 +379,7 @@ const std::vector<std::byte>& GltfBytes::buffer(std::size_t index) {
     const Json& json = document_.list("buffers")[index];
     const std::uint64_t size = document_.whole_number(json, "byteLength", 0);
     if (!bytes.empty() || size == 0) return bytes;
-    const std::string uri = json.value("uri", "");
+    const std::string& uri = gltf_uri(json);
     if (uri.empty()) {
         bytes = read_binary_chunk(document_, size);
     } else if (uri.starts_with("data:")) {

@@ -14,13 +14,22 @@ namespace uw {
 /// The file that a relative URI in `gltf_file` refers to (percent-decoded).
 std::filesystem::path gltf_uri_path(const std::filesystem::path& gltf_file, const std::string& uri);
 
+/// The "uri" of a buffer or an image, which may be as long as the file; empty if it has none.
+/// Throws nlohmann's exceptions if it is no text.
+const std::string& gltf_uri(const nlohmann::json& entry);
+
 /// The text of a .gltf file, or of the first chunk of a .glb file. Throws IoError, InputError.
 std::string read_gltf_text(const std::filesystem::path& file);
 
 /// The JSON of a .gltf file, or of the first chunk of a .glb file (glTF 2.0, section 4.4). Throws
 /// IoError, InputError (not glTF 2, truncated, nested too deeply), nlohmann's exceptions. Includes
-/// nlohmann-json, so this header is for gltf_*.cpp only.
+/// nlohmann-json, so this header is for gltf_*.cpp only. Long data URIs are whole in buffers and
+/// images; elsewhere, where nothing looks at them, something short stands for them.
 nlohmann::json load_gltf_json(const std::filesystem::path& file);
+
+/// Throws the InputError for what nlohmann's JSON says of a file.
+[[noreturn]] void fail_broken_gltf(const std::filesystem::path& file,
+                                   const nlohmann::json::exception& error);
 
 /// A glTF file's JSON description, with accessors that do not trust it. Includes nlohmann-json, so
 /// this header is for gltf_*.cpp and their headers only. Errors throw an InputError that names the
@@ -32,7 +41,8 @@ class GltfDocument {
 
     const nlohmann::json& root() const { return root_; }
     const std::filesystem::path& file() const { return file_; }
-    std::string name() const { return file_.string(); }
+    /// Its file, for messages.
+    std::string name() const;
 
     /// Throws InputError "<file>: <what>".
     [[noreturn]] void fail(const std::string& what) const;

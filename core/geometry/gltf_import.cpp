@@ -164,8 +164,7 @@ GltfItems read_gltf_items(const std::filesystem::path& file, const std::optional
         GltfBytes bytes(document);
         return read_items(document, gltf_poses(document, bytes, *time));
     } catch (const Json::exception& error) {
-        throw InputError(
-            fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));
+        fail_broken_gltf(file, error);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/geometry/gltf_document.h"
 #include "core/geometry/gltf_nodes.h"
 
@@ -49,7 +50,7 @@ class Inspection {
                 document_.fail(
                     fmt::format("needs the glTF extension {}, which is not supported; export "
                                 "without it",
-                                extension));
+                                printable(extension)));
             }
         }
         for (const Json& used : document_.list("extensionsUsed")) {
@@ -65,13 +66,15 @@ class Inspection {
 
     /// Bytes available for a buffer: those of its own file, or of the glTF file.
     std::uint64_t source_size(const Json& buffer, std::uint64_t own_size) const {
-        const std::string uri = buffer.value("uri", "");
+        const std::string& uri = gltf_uri(buffer);
         if (uri.empty() || uri.starts_with("data:")) return own_size;
         const std::filesystem::path source = gltf_uri_path(document_.file(), uri);
         std::error_code status;
-        if (!std::filesystem::is_regular_file(source, status)) {
+        // The system would take a name up to its first NUL.
+        if (source.native().find('\0') != std::string::npos ||
+            !std::filesystem::is_regular_file(source, status)) {
             throw IoError(fmt::format("{}: its buffer {} is missing; put it beside the glTF file",
-                                      document_.name(), uri));
+                                      document_.name(), printable(uri, 200)));
         }
         return std::filesystem::file_size(source);
     }
@@ -142,15 +145,16 @@ class Inspection {
         const bool is_color = semantic.starts_with("COLOR_");
         const bool is_share = is_uv && entry.value("normalized", false);
         if ((is_vector || is_uv) && !is_float && !is_share) {
-            document_.fail(
-                fmt::format("glTF {} is quantised; export it as 32-bit floats", semantic));
+            document_.fail(fmt::format("glTF {} is quantised; export it as 32-bit floats",
+                                       printable(semantic)));
         }
         if ((is_vector && type != "VEC3") || (is_uv && type != "VEC2") ||
             (semantic == "TANGENT" && (type != "VEC4" || !is_float)) ||
             (is_color && type != "VEC3" && type != "VEC4") ||
             (semantic.starts_with("JOINTS_") && type != "VEC4") ||
             (semantic.starts_with("WEIGHTS_") && type != "VEC4")) {
-            document_.fail(fmt::format("glTF {} has the invalid type '{}'", semantic, type));
+            document_.fail(fmt::format("glTF {} has the invalid type '{}'", printable(semantic),
+                                       printable(type)));
         }
     }
 
@@ -168,8 +172,8 @@ class Inspection {
                 const Json& entry = accessor(index);
                 check_attribute(semantic, entry);
                 if (document_.whole_number(entry, "count", 0) != count) {
-                    document_.fail(
-                        fmt::format("glTF {} does not have the same count as POSITION", semantic));
+                    document_.fail(fmt::format("glTF {} does not have the same count as POSITION",
+                                               printable(semantic)));
                 }
             }
         };

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/input_files.h"
+#include "core/base/text.h"
 #include "core/geometry/gltf_document.h"
 #include "core/image/image_file.h"
 
@@ -59,10 +60,10 @@ std::shared_ptr<const Texture> GltfMaterials::picture(std::size_t image, Texture
     std::shared_ptr<const Texture>& known = pictures_[{image, encoding, keep_alpha}];
     if (known) return known;
     const Json& json = document_.list("images")[image];
-    const std::string uri = json.value("uri", "");
+    const std::string& uri = gltf_uri(json);
     const auto decode = [&]() -> PixelImage {
         const std::string name = fmt::format("{}: texture {}", document_.name(),
-                                             json.value("name", std::to_string(image)));
+                                             printable(json.value("name", std::to_string(image))));
         if (uri.starts_with("data:")) return read_image(decode_data_uri(document_, uri), name);
         if (!uri.empty()) {
             const std::filesystem::path file = gltf_uri_path(document_.file(), uri);
@@ -292,7 +293,7 @@ class JoinedMesh {
             document_.fail(
                 fmt::format("mesh '{}' has a texture but not the coordinates {} for it; unwrap it "
                             "or remove the texture",
-                            placement.mesh->value("name", ""), k_uv_names[set]));
+                            printable(placement.mesh->value("name", "")), k_uv_names[set]));
         }
         std::vector<float>& to = mesh_.uvs[set];
         if (!is_needed) {

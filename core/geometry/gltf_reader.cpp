@@ -8,7 +8,7 @@
 #include <exception>
 #include <utility>
 
-#include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/geometry/gltf_document.h"
 #include "core/geometry/gltf_inspection.h"
 #include "core/geometry/gltf_nodes.h"
@@ -22,7 +22,7 @@ std::vector<std::filesystem::path> files_named_by_gltf(const std::filesystem::pa
         const GltfDocument document(file);
         for (const char* const list : {"buffers", "images"})
             for (const nlohmann::json& entry : document.list(list)) {
-                const std::string uri = entry.value("uri", "");
+                const std::string& uri = gltf_uri(entry);
                 if (!uri.empty() && !uri.starts_with("data:"))
                     files.push_back(gltf_uri_path(file, uri));
             }
@@ -78,8 +78,7 @@ std::vector<Affine> gltf_placements(const std::filesystem::path& file, double ti
             if (node.json->contains("mesh")) placements.push_back(node.file_from_node);
         return placements;
     } catch (const nlohmann::json::exception& error) {
-        throw InputError(
-            fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));
+        fail_broken_gltf(file, error);
     }
 }
 
@@ -207,10 +206,11 @@ MeshFile read_gltf(const std::filesystem::path& file, const GltfUse& use,
         const std::vector<std::string> ignored = inspect_gltf(document, use);
         if (!ignored.empty()) {
             warnings.push_back(
-                fmt::format("{}: ignored: {}", file.string(), fmt::join(ignored, ", ")));
+                fmt::format("{}: ignored: {}", document.name(),
+                            printable(fmt::format("{}", fmt::join(ignored, ", ")), 1000)));
         }
         if (const std::string motion = unused_motion_of(document, use); !motion.empty()) {
-            warnings.push_back(fmt::format("{}: {}", file.string(), motion));
+            warnings.push_back(fmt::format("{}: {}", document.name(), motion));
         }
         GltfBytes bytes(document);
         GltfMaterials materials(document, bytes, use);
@@ -219,8 +219,7 @@ MeshFile read_gltf(const std::filesystem::path& file, const GltfUse& use,
         if (use.time) poses = gltf_poses(document, bytes, *use.time);
         return GltfContents(document, poses).read(joiner);
     } catch (const Json::exception& error) {
-        throw InputError(
-            fmt::format("{}: the glTF description is broken: {}", file.string(), error.what()));
+        fail_broken_gltf(file, error);
     }
 }
 

@@ -342,9 +342,8 @@ void PathPixels::share_out(int samples) {
     constexpr double k_share = 0.03;          // of all paths
     const RaySource& rays = pixels_.rays();
     const double all = static_cast<double>(rays.width()) * rays.height() * samples;
-    const PathTrial trial =
-        try_out(std::clamp(static_cast<int>(k_share * all / (k_places_across * k_places_across)),
-                           k_fewest, k_most));
+    const PathTrial trial = try_out(std::clamp(
+        static_cast<int>(k_share * all / (k_places_across * k_places_across)), k_fewest, k_most));
     times_ = {};
     std::array<double, k_kinds.size()> worth{};
     double before = 0, after = 0;

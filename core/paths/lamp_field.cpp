@@ -91,7 +91,7 @@ class LampField::Solver {
     static void march(double radius, double h, std::vector<Step>& steps);
 
     std::size_t nr_ = k_radii.count(), nh_ = k_angles.count();
-    std::vector<double> matrix_;  // of a scattering: [from * angles + to]
+    std::vector<double> matrix_;            // of a scattering: [from * angles + to]
     std::vector<std::vector<Step>> steps_;  // of each node
     std::vector<double> order_, source_;
 };
@@ -183,10 +183,9 @@ void LampField::Solver::march(double radius, double h, std::vector<Step>& steps)
                                   std::max(to_lamp, k_radii.front());
             const double near = source * (1 - r.t) * std::exp(k_decay * k_radii[r.index]);
             const double far = source * r.t * std::exp(k_decay * k_radii[r.index + 1]);
-            steps.push_back(
-                {r.index * k_angles.count() + a.index,
-                 {static_cast<float>(near * (1 - a.t)), static_cast<float>(near * a.t),
-                  static_cast<float>(far * (1 - a.t)), static_cast<float>(far * a.t)}});
+            steps.push_back({r.index * k_angles.count() + a.index,
+                             {static_cast<float>(near * (1 - a.t)), static_cast<float>(near * a.t),
+                              static_cast<float>(far * (1 - a.t)), static_cast<float>(far * a.t)}});
         }
         s += step;
     }

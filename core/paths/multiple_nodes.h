@@ -58,7 +58,7 @@ struct MultipleNode {
     struct Moments {
         double mean = 0, variance = 0, work = 0;
     };
-    Moments lit, water;          // NodePaths
+    Moments lit, water;       // NodePaths
     double surface_work = 0;  // of a path of the third kind
 };
 

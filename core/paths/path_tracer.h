@@ -32,8 +32,9 @@ class PathTracer {
     PathTracer(PathTracer&&) = delete;
     PathTracer& operator=(PathTracer&&) = delete;
 
-    /// Prepares a camera ray, with as many paths of each kind as seem worth it: `hit` is the first surface along it, null for none; `surface_light`
-    /// an estimate of that surface's radiance, per band, that guides the paths; may be empty.
+    /// Prepares a camera ray, with as many paths of each kind as seem worth it: `hit` is the first
+    /// surface along it, null for none; `surface_light` an estimate of that surface's radiance, per
+    /// band, that guides the paths; may be empty.
     void begin(const Ray& ray, const SurfaceHit* hit, std::span<const double> surface_light,
                CameraSegment& segment) const;
 

@@ -134,8 +134,7 @@ double PathVertex::draw_candidates(PathRandom& random, const ExpectedLight& expe
                             (of_lobes > 0 ? of_lobes * guide_density(direction) : 0);
         candidate.responds = response_sum(direction);
         candidate.of_particles = tables_->particles.along({x_, direction}, k_far);
-        candidate.light =
-            guides_.radiance(direction) + candidate.of_particles + expected.ambient;
+        candidate.light = guides_.radiance(direction) + candidate.of_particles + expected.ambient;
         if (expected.of_surface > 0 && glm::dot(expected.normal, direction) < 0)
             candidate.light += expected.of_surface;
         if (!(candidate.density > 0) || !(candidate.weight() > 0)) continue;

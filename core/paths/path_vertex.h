@@ -51,9 +51,9 @@ class PathVertex {
     void reflect(const GuideTables& tables, const WaterSegment& segment,
                  const Spectrum& throughput);
 
-    /// Draws candidates, of which `expected` is known beside the lamps. Their weights, in proportion
-    /// to which one of them is to be chosen, sum to the number that is returned. Uses four random
-    /// numbers.
+    /// Draws candidates, of which `expected` is known beside the lamps. Their weights, in
+    /// proportion to which one of them is to be chosen, sum to the number that is returned. Uses
+    /// four random numbers.
     double draw_candidates(PathRandom& random, const ExpectedLight& expected,
                            std::vector<CandidateDirection>& candidates) const;
     const LampGuides& guides() const { return guides_; }

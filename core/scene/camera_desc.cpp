@@ -18,9 +18,6 @@ namespace uw {
 
 namespace {
 
-constexpr int k_longest_side = 32768;
-constexpr long long k_most_pixels = 1LL << 28;
-
 double read_length(const ConfigValue& value, const SceneContext& context) {
     const double length = value.non_negative("give a length in metres");
     if (length > 1) {
@@ -81,13 +78,17 @@ DomePortDesc read_dome(ConfigMap& map, const SceneContext& context) {
 void read_resolution(const ConfigValue& both, const ConfigValue& width, const ConfigValue& height,
                      CameraDesc& camera) {
     constexpr auto k_mend = "give [width, height] in pixels";
-    camera.width = width.integer(1, k_longest_side, k_mend);
-    camera.height = height.integer(1, k_longest_side, k_mend);
-    const long long pixels = static_cast<long long>(camera.width) * camera.height;
-    if (pixels > k_most_pixels) {
-        both.fail(fmt::format("{} x {} are more than {} pixels; give a smaller image", camera.width,
-                              camera.height, k_most_pixels));
-    }
+    camera.width = width.integer(1, k_longest_image_side, k_mend);
+    camera.height = height.integer(1, k_longest_image_side, k_mend);
+    if (const std::string fault = too_many_pixels(camera.width, camera.height); !fault.empty())
+        both.fail(fault);
+}
+
+std::string too_many_pixels(int width, int height) {
+    constexpr long long k_most_pixels = 1LL << 28;
+    if (static_cast<long long>(width) * height <= k_most_pixels) return "";
+    return fmt::format("{} x {} are more than {} pixels; give a smaller image", width, height,
+                       k_most_pixels);
 }
 
 double read_refractive_index(const ConfigValue& value) {
@@ -145,7 +146,8 @@ bool grows_to(double theta, const DistortionDesc& distortion) {
     return true;
 }
 
-IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camera) {
+IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camera,
+                               const SceneContext& context) {
     ConfigMap map(value, {"fx", "fy", "cx", "cy", "fov_x"}, "write {fov_x: 60} or {fx: 1400}");
     IntrinsicsDesc intrinsics;
     intrinsics.cx = camera.width / 2.0;
@@ -156,6 +158,10 @@ IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camer
         const bool fisheye = camera.distortion.model == DistortionDesc::Model::fisheye;
         const double degrees =
             fisheye ? fov->within(1e-3, 360, k_mend) : fov->between(0, 180, k_mend);
+        if (degrees <= std::numbers::pi)
+            context.warn(*fov, fmt::format("{} degrees is a very narrow view; degrees, not radians "
+                                           "({} radians are {:.3g} degrees)?",
+                                           degrees, degrees, degrees * 180 / std::numbers::pi));
         const double half = degrees / 2 * std::numbers::pi / 180;
         const double edge = fisheye ? fisheye_radius(half, camera.distortion) : std::tan(half);
         if (fisheye && !grows_to(half, camera.distortion)) {
@@ -292,7 +298,7 @@ CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
         const auto intrinsics = map.find("intrinsics");
         if (const auto entry = map.find("distortion")) camera.distortion = read_distortion(*entry);
         camera.has_intrinsics = intrinsics.has_value();
-        if (intrinsics) camera.intrinsics = read_intrinsics(*intrinsics, camera);
+        if (intrinsics) camera.intrinsics = read_intrinsics(*intrinsics, camera, context);
     }
     camera.where = value.location();
     if (const auto entry = map.find("port")) camera.port = read_port(*entry, context);

@@ -110,6 +110,11 @@ struct RigCameraDesc {
     CameraDesc camera;
 };
 
+/// The longest side of an image [pixels].
+inline constexpr int k_longest_image_side = 32768;
+/// Why an image of this size is refused, with the mend; "" if it is not.
+std::string too_many_pixels(int width, int height);
+
 /// Readers for what calibration files know of a camera, too: its resolution and its port. All throw
 /// InputError at the value.
 

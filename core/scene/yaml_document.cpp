@@ -10,6 +10,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/text.h"
 
 namespace uw {
@@ -318,12 +320,18 @@ void check_keys_unique(const ConfigNode& node, const std::string& path) {
 
 /// Rejects text for which the parser would need gigabytes or minutes.
 void check_text(std::string_view text, const Source& source, const YamlLimits& limits) {
+    const std::filesystem::path name = *source.origin;
+    const std::size_t bad = first_non_text(text);
+    // The text of a .gltf is JSON, so the parser would take it.
+    if (source.has_lines &&
+        (bad != text.size() || text.size() > limits.bytes || name.extension() == ".gltf"))
+        if (const std::string other = other_format(text, name, limits.subject); !other.empty())
+            throw InputError(fmt::format("{}: {}", *source.origin, other));
     if (text.size() > limits.bytes) {
         source.fail(0, 0,
                     fmt::format("larger than {} bytes; this is not a valid {}", limits.bytes,
                                 limits.subject));
     }
-    const std::size_t bad = first_non_text(text);
     if (bad != text.size()) {
         const auto line = std::count(text.begin(), text.begin() + static_cast<long>(bad), '\n');
         source.fail(static_cast<int>(line), 0,
@@ -341,6 +349,27 @@ void check_text(std::string_view text, const Source& source, const YamlLimits& l
             fmt::format("more than {} brackets, commas, colons and quotes; this is not a valid {}",
                         limits.indicators, limits.subject));
     }
+}
+
+/// Where a tab indents a line in block style, at `error_line` (from 0) or just above it: the parser
+/// stumbles over what follows. Line and column count from 0.
+std::optional<std::pair<int, int>> indenting_tab(std::string_view text, int error_line) {
+    int depth = 0;  // of brackets, within which tabs are allowed
+    std::optional<std::pair<int, int>> tab;
+    for (int line = 0; line <= error_line && !text.empty(); ++line) {
+        const std::string_view here = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(here.size() + 1, text.size()));
+        const std::size_t indent = here.find_first_not_of(" \t");
+        if (indent == std::string_view::npos || here[indent] == '#') continue;
+        const std::size_t found = here.substr(0, indent).find('\t');
+        if (found != std::string_view::npos && depth == 0 && line >= error_line - 1 && !tab)
+            tab = {line, static_cast<int>(found)};
+        for (const char c : here) {
+            if (c == '[' || c == '{') ++depth;
+            if (c == ']' || c == '}') depth = std::max(depth - 1, 0);
+        }
+    }
+    return tab;
 }
 
 /// The parser's own message, except where it is misleading.
@@ -363,6 +392,9 @@ std::optional<ConfigNode> parse(std::string_view text, const Source& source,
         while (parser.HandleNextDocument(builder)) {
         }
     } catch (const YAML::Exception& error) {
+        if (const auto tab = indenting_tab(text, error.mark.line))
+            source.fail(tab->first, tab->second,
+                        "a tab indents this line, but YAML takes none there; indent with spaces");
         source.fail(error.mark.line, error.mark.column, syntax_error(error));
     }
     std::optional<ConfigNode> root = builder.take_root();

@@ -121,10 +121,6 @@ Json located_message(const std::string& message, const std::string& file_name) {
     return located;
 }
 
-std::filesystem::path folder_of(const std::filesystem::path& file) {
-    return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-}
-
 // Whether a change of one of these paths concerns the other: "lamps.left" is all of that lamp.
 bool overlap(const std::string& a, const std::string& b) {
     const auto& [shorter, longer] = a.size() < b.size() ? std::tie(a, b) : std::tie(b, a);
@@ -276,6 +272,7 @@ void EditSession::edit(const Json& request) {
     for (const Json& change : changes) made.apply(change);
     const std::vector<std::string> touched(made.touched().begin(), made.touched().end());
     check_conflicts(revision.get<std::int64_t>(), group, touched);
+    refuse_files_elsewhere(*scene_, *made.scene());
 
     auto scene = std::make_shared<EditedScene>(*made.scene());
     scene->revision = revision_ + 1;
@@ -323,6 +320,12 @@ void EditSession::save_as(const Json& request) {
     const std::lock_guard lock(mutex_);
     const bool overwrites = flag_member(request, "overwrite", false);
     const std::filesystem::path file = file_.parent_path() / new_file_member(request);
+    // Writing would go through it, to wherever it leads.
+    std::error_code ignored;
+    if (file.filename() != file_.filename() &&
+        std::filesystem::is_symlink(std::filesystem::symlink_status(file, ignored)))
+        throw ConflictError(
+            fmt::format("{}: is a symbolic link; choose another name", file.filename().string()));
     if (!overwrites && std::filesystem::exists(file))
         throw ConflictError(fmt::format("{}: exists; choose another name, or overwrite it",
                                         file.filename().string()));

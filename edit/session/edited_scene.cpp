@@ -1,13 +1,17 @@
 #include "edit/session/edited_scene.h"
 
 #include <fmt/format.h>
+#include <limits.h>
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/text.h"
 #include "core/image/colour.h"
 #include "core/light/lamp_factory.h"
@@ -76,6 +80,10 @@ EditedLamp make_edited_lamp(EditedScene& edited, const ConfigNode* entries, std:
 
 }  // namespace
 
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
 std::optional<std::size_t> EditedScene::find_lamp(std::string_view name) const {
     const auto& all = scene.desc().lamps;
     const auto found = std::ranges::find(all, name, &LampDesc::name);
@@ -115,23 +123,37 @@ namespace {
 // Positions that were dragged are written to 0.1 mm, directions to 1e-4: below a tenth of a pixel.
 constexpr NumberStyle k_dragged{.decimals = 4};
 
-bool names_a_file(std::string_view key) {
-    return key == "file" || key == "calibration";
+void add_texts(const ConfigNode& node, std::set<std::string>& texts) {
+    if (node.kind == ConfigNode::Kind::scalar) texts.insert(node.scalar);
+    for (const ConfigNode& item : node.items) add_texts(item, texts);
+    for (const ConfigNode::Entry& entry : node.entries) add_texts(entry.value, texts);
 }
 
-// A page may not have the program open files elsewhere than where the scene is.
-void check_file(const std::string& name) {
-    const std::filesystem::path path = name;
-    if (path.is_absolute() || std::ranges::find(path, "..") != path.end())
-        throw UsageError(fmt::format("{}: choose a file of the scene's folder", printable(name)));
+std::set<std::string> texts_of(const ConfigNode& tree) {
+    std::set<std::string> texts;
+    add_texts(tree, texts);
+    return texts;
 }
 
-void check_files(const Json& value, bool is_file) {
-    if (value.is_string() && is_file) check_file(value.get<std::string>());
-    if (value.is_array())
-        for (const Json& item : value) check_files(item, is_file);
-    if (value.is_object())
-        for (const auto& [key, item] : value.items()) check_files(item, names_a_file(key));
+/// Whether a text, as the name of a file or of one for each frame, leads out of the folder.
+bool leads_elsewhere(const std::filesystem::path& folder, const std::string& text) {
+    if (text.find('\0') != std::string::npos) return true;
+    const std::filesystem::path name = text;
+    // No file has such a name.
+    for (const std::filesystem::path& part : name)
+        if (part.native().size() > NAME_MAX) return false;
+    const std::filesystem::path file = folder / name;
+    if (!lies_within(folder, file)) return true;
+    for (std::filesystem::path part = name; has_frame_pattern(part.string());
+         part = part.parent_path())
+        for (const int frame : frames_found(folder / part))
+            if (!lies_within(folder, file_of_frame(file, frame))) return true;
+    return false;
+}
+
+[[noreturn]] void refuse_file(const std::filesystem::path& name) {
+    throw UsageError(
+        fmt::format("{}: choose a file of the scene's folder", printable(name.string())));
 }
 
 // The name with "left" for "right" and so on; else the name itself.
@@ -147,6 +169,19 @@ std::string mirrored_name(const std::string& name) {
 }
 
 }  // namespace
+
+void refuse_files_elsewhere(const EditedScene& before, const EditedScene& after) {
+    const SceneDesc &old = before.scene.whole(), &desc = after.scene.whole();
+    // Meshes that are there already are not asked again what they name.
+    MeshSideFiles known;
+    for (const GeometryDesc& geometry : old.geometry) known[geometry.file];
+    std::set<std::filesystem::path> there;
+    for (const InputFile& input : input_files(old, before.scene.choice(), known))
+        there.insert(input.file);
+    for (const InputFile& input : input_files(desc, after.scene.choice(), known))
+        if (!there.contains(input.file) && !lies_within(folder_of(desc.file), input.file))
+            refuse_file(input.file);
+}
 
 SceneChanges::SceneChanges(SceneText text, std::filesystem::path file,
                            std::shared_ptr<const EditedScene> scene, std::vector<std::string> off)
@@ -174,8 +209,18 @@ void SceneChanges::apply(const Json& change) {
     if (found == k_changes.end())
         throw UsageError(fmt::format("op: unknown '{}'; {}", printable(op),
                                      suggestion(op, words_of(k_changes))));
+    const std::set<std::string> before = texts_of(text_.tree());
     (this->*found->second)(change);
+    check_texts(before);
     read_again();
+}
+
+// A page may not have the program open files elsewhere than where the scene is. Which keys name
+// files is not asked: none can be forgotten.
+void SceneChanges::check_texts(const std::set<std::string>& before) const {
+    const std::filesystem::path folder = folder_of(file_);
+    for (const std::string& text : texts_of(text_.tree()))
+        if (!before.contains(text) && leads_elsewhere(folder, text)) refuse_file(text);
 }
 
 void SceneChanges::read_again() {
@@ -225,8 +270,6 @@ void SceneChanges::place(std::size_t index, const Point3& world) {
 void SceneChanges::set(const Json& change) {
     const std::string path = text_member(change, "path");
     const Json& value = member(change, "value");
-    const std::string key = path.substr(path.rfind('.') + 1);
-    check_files(value, names_a_file(key));
     touched_.insert(path);
     if (value.is_null())
         text_.remove(path);
@@ -237,7 +280,6 @@ void SceneChanges::set(const Json& change) {
 void SceneChanges::add_lamp(const Json& change) {
     Json lamp = member(change, "lamp");
     if (!lamp.is_object()) throw UsageError("lamp: expected {\"name\": ...}");
-    check_files(lamp, false);
     std::string like;
     if (change.contains("like")) {
         const auto other = scene_->find_lamp(text_member(change, "like"));

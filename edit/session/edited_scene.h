@@ -21,6 +21,9 @@
 
 namespace uw {
 
+/// The folder of a file: "." for a name alone.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
 /// What the editor knows of a lamp besides its description.
 struct EditedLamp {
     /// The index of its entry in the file's list; none: a glTF file provides it.
@@ -59,6 +62,10 @@ std::shared_ptr<const EditedScene> make_edited_scene(std::string_view text, cons
                                                      const std::vector<std::string>& off,
                                                      std::int64_t revision);
 
+/// Throws UsageError if `after` is read from a file outside of the scene's folder, after symbolic
+/// links, from which `before` is not: also one that a mesh names.
+void refuse_files_elsewhere(const EditedScene& before, const EditedScene& after);
+
 /// A scene while the changes of one request are made to it, one after the other: all of them or
 /// none.
 class SceneChanges {
@@ -67,7 +74,8 @@ class SceneChanges {
                  std::shared_ptr<const EditedScene> scene, std::vector<std::string> off);
 
     /// Makes one change, {"op": ...} as docs/edit-api.md says. Throws InputError and UsageError of
-    /// one line, IoError; then this is of no further use.
+    /// one line, IoError; then this is of no further use. A text that is new to the scene and, as a
+    /// file's name, leads out of its folder is refused, whatever its key, before anything is read.
     void apply(const Json& change);
 
     const SceneText& text() const { return text_; }
@@ -83,6 +91,7 @@ class SceneChanges {
     std::string free_name(const std::string& like) const;
     void set_vector(const std::string& path, const Vector3& value);
     void place(std::size_t lamp, const Point3& world);
+    void check_texts(const std::set<std::string>& before) const;
     void read_again();
 
     void set(const Json& change);

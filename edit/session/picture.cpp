@@ -22,9 +22,11 @@ constexpr double k_small_pixels = 160 * 90, k_most_pixels = 1920 * 1200;
 constexpr double k_draft_width = 480, k_draft_height = 270;
 
 /// Layers that are sent if the picture has them.
-constexpr std::array k_lamp_layers{Layer::direct,   Layer::forward, Layer::backscatter,
-                                   Layer::multiple, Layer::clean,   Layer::irradiance};
-constexpr std::array k_unlit_layers{Layer::direct, Layer::forward, Layer::multiple, Layer::clean};
+constexpr std::array k_lamp_layers{Layer::direct,    Layer::forward, Layer::backscatter,
+                                   Layer::multiple,  Layer::snow,    Layer::clean,
+                                   Layer::irradiance};
+constexpr std::array k_unlit_layers{Layer::direct, Layer::forward, Layer::multiple, Layer::snow,
+                                    Layer::clean};
 
 std::string_view layer_name(Layer layer) {
     return k_layers[static_cast<std::size_t>(layer)].name;
@@ -210,12 +212,13 @@ class Mix {
 
     void add(const LightLayers& light, const Spectrum& gain) {
         using Planes = std::vector<PicturePlane> PictureLayers::*;
-        constexpr std::array<std::pair<Layer, Planes>, 8> k_meanings{
+        constexpr std::array<std::pair<Layer, Planes>, 9> k_meanings{
             {{Layer::direct, &PictureLayers::signal},
              {Layer::forward, &PictureLayers::signal},
              {Layer::multiple_surface, &PictureLayers::signal},
              {Layer::backscatter, &PictureLayers::backscatter},
              {Layer::multiple_volume, &PictureLayers::backscatter},
+             {Layer::snow, &PictureLayers::backscatter},
              {Layer::clean, &PictureLayers::clean},
              {Layer::irradiance, &PictureLayers::irradiance},
              {Layer::albedo, &PictureLayers::albedo}}};

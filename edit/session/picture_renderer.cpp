@@ -36,6 +36,7 @@ std::string layers_of(const ImageScene& scene, bool is_lit) {
     layers += is_lit ? ",backscatter,irradiance" : ",depth,albedo";
     const LayerPlan plan = layer_plan(scene, {});
     if (plan.is_provided(Layer::forward)) layers += ",forward";
+    if (plan.is_provided(Layer::snow)) layers += ",snow";
     if (plan.is_provided(Layer::multiple)) layers += ",multiple,multiple.volume,multiple.surface";
     return layers;
 }
@@ -61,8 +62,9 @@ ImageScene scene_of_part(const EditedScene& edited, PictureQuality quality,
 
 // Surfaces that emit light do so beside every lamp, but that light belongs to the unlit part.
 void take_away_emission(LightLayers& light, const LightLayers& unlit) {
-    for (const Layer layer : {Layer::direct, Layer::forward, Layer::multiple,
-                              Layer::multiple_volume, Layer::multiple_surface, Layer::clean}) {
+    for (const Layer layer :
+         {Layer::direct, Layer::forward, Layer::multiple, Layer::multiple_volume,
+          Layer::multiple_surface, Layer::snow, Layer::clean}) {
         if (!light.plan.has(layer)) continue;
         const auto to = static_cast<std::size_t>(light.plan.first_channel(layer));
         const auto from = static_cast<std::size_t>(unlit.plan.first_channel(layer));

@@ -19,10 +19,13 @@
 #include <utility>
 #include <variant>
 
+#include "core/base/input_files.h"
 #include "core/base/text.h"
 #include "core/geometry/mesh_reader.h"
+#include "core/image/layers.h"
 #include "edit/session/view_geometry.h"
 #include "media/water/water_types.h"
+#include "render/scene_rendering.h"
 
 namespace uw {
 
@@ -434,6 +437,16 @@ Json volumes_json(const SceneDesc& desc, const SceneShapes* shapes) {
     return volumes;
 }
 
+/// The layers of light that not every scene has.
+Json light_layers_json(const ImageScene& scene) {
+    const LayerPlan plan = layer_plan(scene, {});
+    Json layers = Json::array();
+    for (const Layer layer : {Layer::forward, Layer::multiple, Layer::snow})
+        if (plan.is_provided(layer))
+            layers.push_back(k_layers[static_cast<std::size_t>(layer)].name);
+    return layers;
+}
+
 Json ies_files_json(const SceneDesc& desc) {
     namespace fs = std::filesystem;
     std::vector<std::string> names;
@@ -446,7 +459,8 @@ Json ies_files_json(const SceneDesc& desc) {
          at.increment(error)) {
         if (at.depth() >= k_folder_depth) at.disable_recursion_pending();
         const std::string ending = at->path().extension().string();
-        if (ending == ".ies" || ending == ".IES")
+        const bool is_there = !at->is_symlink(error) || lies_within(folder, at->path());
+        if (is_there && (ending == ".ies" || ending == ".IES"))
             names.push_back(at->path().lexically_relative(folder).generic_string());
     }
     std::ranges::sort(names);
@@ -472,6 +486,7 @@ Json scene_json(const EditedScene& edited, const ConfigNode& tree, const SceneSh
               {"bands", list_json(desc.water.bands_nm)},
               {"bands_are_rgb", edited.has_plain_colour}}},
             {"warnings", edited.warnings},
+            {"light", light_layers_json(edited.scene)},
             {"camera", camera_json(edited, tree)},
             {"rig", !desc.cameras.empty()},
             {"lamps", std::move(lamps)},

@@ -2,21 +2,48 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _uwvdb
 from .errors import UsageError
+
+# Smaller copies are made without asking whether there is memory for them.
+_SMALL_BYTES = 1 << 24
 
 
 def shape_text(shape: tuple[int, ...]) -> str:
     return "(" + ", ".join(map(str, shape)) + ("," if len(shape) == 1 else "") + ")"
 
 
+def unmasked(what: str, array: ArrayLike) -> NDArray[Any]:
+    """`array` as an array. UsageError, which begins with `what`, if some of its values are masked:
+    what they stand for is for the caller to say."""
+    if isinstance(array, np.ma.MaskedArray) and np.any(array.mask):
+        raise UsageError(f"{what}: some values of the array are masked; say what they are, such as "
+                         "array.filled(0)")
+    return np.asarray(array)
+
+
+def _repeats(array: NDArray[Any]) -> bool:
+    """Whether it has more values than there are in memory, as those of np.broadcast_to have."""
+    steps = zip(array.shape, array.strides)
+    extent = array.itemsize + sum((size - 1) * abs(stride) for size, stride in steps)
+    return array.nbytes > extent
+
+
 def numbers(what: str, array: ArrayLike, dtype: type) -> NDArray[np.generic]:
-    """`array` as an array of real numbers. UsageError, which begins with `what`, for others."""
-    found = np.asarray(array)
+    """`array` as an array of real numbers. UsageError, which begins with `what`, for others and for
+    masked ones; InputError for what does not fit into memory."""
+    found = unmasked(what, array)
     if found.dtype.kind not in "biuf":
         raise UsageError(f"{what}: expected real numbers, found {found.dtype}; convert the array")
+    values_bytes = found.size * np.dtype(dtype).itemsize
+    if values_bytes > _SMALL_BYTES and (found.dtype != dtype or _repeats(found)):
+        _uwvdb.require_memory(values_bytes, f"{what}: an array of shape {shape_text(found.shape)} "
+                              f"takes", "give fewer values")
     with np.errstate(over="ignore"):  # what is infinite then is warned of as such
         return found.astype(dtype, copy=False)
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _uwvdb
+from . import _arrays, _uwvdb
 from .errors import SceneWarning, UsageError
 from .image import Image
 from .scene import Scene
@@ -32,7 +32,7 @@ class LightMatrix(NamedTuple):
     def mix(self, factors: ArrayLike) -> NDArray[np.float64]:
         """The image (height, width, bands) with each lamp's brightness times its factor: (lamps,),
         or (lamps, bands) for its colours."""
-        given = np.asarray(factors, dtype=np.float64)
+        given = _arrays.numbers("mix", factors, np.float64)
         bands = self.images.shape[-1]
         if given.shape not in ((len(self.lamps),), (len(self.lamps), bands)):
             raise UsageError(f"mix: expected factors of shape ({len(self.lamps)},) or "

@@ -81,8 +81,8 @@ class Volumes(Section):
         transform      of a scene file's volume: scale, rotate, translate, applied last
 
         The entry can then be changed as any other: `scene["volumes[0].grids.array1.small"] = 2`.
-        Raises UsageError for an array of another shape, InputError for meanings that no scene file
-        could have.
+        Raises UsageError for an array of another shape or with masked values, InputError for
+        meanings that no scene file could have and for more values than there is memory for.
         """
         where = "volumes.add"
         values = _arrays.numbers(where, array, np.float32)
@@ -139,11 +139,11 @@ class Geometry(Section):
         reflectance  0 to 1, one per band or one for all; 0.5 if left out
         transform, trajectory  as scene files have them
 
-        Raises UsageError for arrays of another shape, and InputError.
+        Raises UsageError for arrays of another shape or with masked values, and InputError.
         """
         where = "geometry.add"
         points = _arrays.numbers(f"{where}: vertices", vertices, np.float64)
-        corners = np.asarray(faces)
+        corners = _arrays.unmasked(f"{where}: faces", faces)
         for what, found in (("vertices", points), ("faces", corners)):
             if found.ndim != 2 or found.shape[1] != 3 or len(found) == 0:
                 raise UsageError(f"{where}: {what}: expected an array of shape "

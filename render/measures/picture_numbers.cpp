@@ -63,6 +63,76 @@ double contrast_of(std::span<double> values) {
     return bright + dark > 0 ? (bright - dark) / (bright + dark) : 0;
 }
 
+/// The side of tiles in which light is taken to be even [pixels].
+std::size_t tile_side(const PictureLayers& picture) {
+    constexpr int k_least = 8, k_tiles = 16;  // pixels, along the shorter side
+    return static_cast<std::size_t>(
+        std::max(k_least, std::min(picture.width, picture.height) / k_tiles));
+}
+
+/// A pixel that sees a surface: its place in a list of values, the tile of the picture that it lies
+/// in, and its albedo.
+struct SurfacePixel {
+    std::size_t place, tile;
+    double albedo;
+};
+
+/// The tiles in which surfaces are patterned, and which of their pixels are bright and which dark
+/// by their albedo.
+class AlbedoPattern {
+  public:
+    explicit AlbedoPattern(std::vector<SurfacePixel> pixels) {
+        std::ranges::stable_sort(pixels, {}, &SurfacePixel::tile);
+        for (auto begin = pixels.begin(); begin != pixels.end();) {
+            const auto end = std::find_if(begin, pixels.end(), [&](const SurfacePixel& pixel) {
+                return pixel.tile != begin->tile;
+            });
+            add({begin, end});
+            begin = end;
+        }
+    }
+
+    bool empty() const { return tiles_.empty(); }
+    /// The mean of the tiles' contrasts, each counted by its pixels.
+    double contrast_of(std::span<const double> values) const {
+        double sum = 0, count = 0;
+        for (const Tile& tile : tiles_) {
+            const double bright = mean(values, tile.bright), dark = mean(values, tile.dark);
+            const auto pixels = static_cast<double>(tile.bright.size() + tile.dark.size());
+            if (bright + dark > 0) sum += pixels * (bright - dark) / (bright + dark);
+            count += pixels;
+        }
+        return sum / count;
+    }
+
+  private:
+    struct Tile {
+        std::vector<std::size_t> bright, dark;  // places
+    };
+
+    void add(std::span<const SurfacePixel> pixels) {
+        constexpr double k_least_contrast = 0.02;  // of a pattern that anyone would call one
+        std::vector<double> albedos;
+        albedos.reserve(pixels.size());
+        for (const SurfacePixel& pixel : pixels) albedos.push_back(pixel.albedo);
+        const double low = percentile(albedos, 0.25), high = percentile(albedos, 0.75);
+        if (!(high - low > k_least_contrast * (high + low))) return;
+        Tile& tile = tiles_.emplace_back();
+        for (const SurfacePixel& pixel : pixels) {
+            if (pixel.albedo >= high) tile.bright.push_back(pixel.place);
+            if (pixel.albedo <= low) tile.dark.push_back(pixel.place);
+        }
+    }
+
+    static double mean(std::span<const double> values, const std::vector<std::size_t>& places) {
+        double sum = 0;
+        for (const std::size_t place : places) sum += values[place];
+        return sum / static_cast<double>(places.size());
+    }
+
+    std::vector<Tile> tiles_;
+};
+
 /// `seen`: the irradiance where there is a surface.
 Evenness evenness_of(std::vector<double> seen) {
     Evenness even;
@@ -88,7 +158,8 @@ PictureLayers picture_layers(const Film& film, const LayerPlan& plan) {
         film.window().width(), film.window().height(), plan.band_count(), {}, {}, {}, {}, {}};
     picture.signal =
         layer_planes(film, plan, {Layer::direct, Layer::forward, Layer::multiple_surface});
-    picture.backscatter = layer_planes(film, plan, {Layer::backscatter, Layer::multiple_volume});
+    picture.backscatter =
+        layer_planes(film, plan, {Layer::backscatter, Layer::multiple_volume, Layer::snow});
     picture.clean = layer_planes(film, plan, {Layer::clean});
     picture.irradiance = layer_planes(film, plan, {Layer::irradiance});
     picture.albedo = layer_planes(film, plan, {Layer::albedo});
@@ -117,6 +188,9 @@ PictureNumbers measure_picture(const PictureLayers& picture, std::span<const std
     const GreyLayers irradiance(picture.irradiance, picture.bands);
     const GreyLayers albedo(picture.albedo, picture.bands);
     std::vector<double> totals, signals, scattered, cleans, lit;
+    std::vector<SurfacePixel> surfaces;
+    const auto width = static_cast<std::size_t>(picture.width);
+    const std::size_t side = tile_side(picture);
     std::size_t above = 0;
     for (const std::size_t pixel : pixels) {
         signals.push_back(signal.at(pixel));
@@ -125,18 +199,25 @@ PictureNumbers measure_picture(const PictureLayers& picture, std::span<const std
         above += signals.back() > 0 && signals.back() >= ratio * scattered.back() ? 1U : 0U;
         cleans.push_back(clean.at(pixel));
         const double light = irradiance.at(pixel);
-        if (light > 0 || albedo.at(pixel) > 0) lit.push_back(light);
+        if (!(light > 0 || albedo.at(pixel) > 0)) continue;
+        lit.push_back(light);
+        surfaces.push_back({signals.size() - 1, pixel / width / side * width + pixel % width / side,
+                            albedo.at(pixel)});
     }
     PictureNumbers numbers;
     numbers.signal = mean_of(signals);
     numbers.backscatter = mean_of(scattered);
     numbers.signal_to_backscatter = ratio_of(numbers.signal, numbers.backscatter);
     numbers.share_above = static_cast<double>(above) / static_cast<double>(totals.size());
-    numbers.contrast = contrast_of(totals);
+    const AlbedoPattern pattern(std::move(surfaces));
+    const auto contrast = [&](std::vector<double>& light) {
+        return pattern.empty() ? contrast_of(light) : pattern.contrast_of(light);
+    };
+    numbers.contrast = contrast(totals);
     if (!clean.empty()) {
         const double without_water = mean_of(cleans);
         if (without_water > 0) numbers.lost_to_water = 1 - numbers.signal / without_water;
-        numbers.clean_contrast = contrast_of(cleans);
+        numbers.clean_contrast = contrast(cleans);
     }
     if (!irradiance.empty()) numbers.evenness = evenness_of(std::move(lit));
     return numbers;
@@ -207,8 +288,9 @@ Distribution distribution_of(const MeasuredImage& image, std::initializer_list<L
 
 std::string layers_to_measure(const ImageScene& scene) {
     std::string layers = k_picture_layers;
-    if (layer_plan(scene, {}).is_provided(Layer::multiple))
-        layers += ",multiple.volume,multiple.surface";
+    const LayerPlan plan = layer_plan(scene, {});
+    if (plan.is_provided(Layer::multiple)) layers += ",multiple.volume,multiple.surface";
+    if (plan.is_provided(Layer::snow)) layers += ",snow";
     return layers;
 }
 
@@ -223,7 +305,8 @@ LightNumbers light_numbers(const MeasuredImage& image, std::span<const std::size
             distribution_of(image, {Layer::multiple_volume, Layer::multiple_surface}, pixels);
     PictureLayers picture = picture_layers(image.film, image.plan);
     picture.signal = planes_of(image, {Layer::direct, Layer::forward, Layer::multiple_surface});
-    picture.backscatter = planes_of(image, {Layer::backscatter, Layer::multiple_volume});
+    picture.backscatter =
+        planes_of(image, {Layer::backscatter, Layer::multiple_volume, Layer::snow});
     picture.clean = planes_of(image, {Layer::clean});
     numbers.picture = measure_picture(picture, pixels);
     return numbers;

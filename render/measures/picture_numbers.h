@@ -69,7 +69,7 @@ struct PictureLayers {
     int width = 0, height = 0;
     std::size_t bands = 0;
     std::vector<PicturePlane> signal;       // direct, forward; multiple.surface
-    std::vector<PicturePlane> backscatter;  // backscatter; multiple.volume
+    std::vector<PicturePlane> backscatter;  // backscatter, snow; multiple.volume
     std::vector<PicturePlane> clean;        // perhaps none
     std::vector<PicturePlane> irradiance;   // perhaps none
     std::vector<PicturePlane> albedo;       // perhaps none
@@ -98,10 +98,12 @@ struct PictureNumbers {
     double signal = 0, backscatter = 0;  // means over the pixels [W m^-2 sr^-1]
     /// signal / backscatter; infinite without backscatter, 0 without either.
     double signal_to_backscatter = 0;
-    /// Michelson contrast (bright - dark) / (bright + dark) of the total light. Bright is the mean
-    /// of the pixels between its percentiles 75 and 95, dark that between 5 and 25: of a black and
-    /// white pattern that fills the part, however its squares lie, neither its edges nor single
-    /// pixels matter. 0 in the dark.
+    /// Michelson contrast (bright - dark) / (bright + dark) of the total light. Where surfaces are
+    /// patterned it is a mean over tiles of a sixteenth of the picture's shorter side, or 8 pixels:
+    /// in each, bright is the mean of the quarter of its pixels with the greatest albedo (and of
+    /// all with the same), dark of that with the least. However unevenly the picture is lit, that
+    /// adds nothing. Without a pattern or a layer of albedo, bright is the mean of the pixels
+    /// between the light's percentiles 75 and 95, dark that between 5 and 25. 0 in the dark.
     double contrast = 0;
     /// The contrast of the same surfaces without water; none if the picture has no such layer.
     std::optional<double> clean_contrast;

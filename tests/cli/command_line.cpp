@@ -44,6 +44,9 @@ TEST_F(CommandLine, HelpOfRenderNamesEveryOptionWithExamples) {
 TEST_F(CommandLine, SaysWhatWasMeant) {
     expect_failure({}, 2, "which command?");
     expect_failure({"rendr", "scene.yaml"}, 2, "'rendr': unknown command; did you mean 'render'?");
+    expect_failure({"rendr", "scene.yaml", "--samples", "3"}, 2, "'rendr': unknown command");
+    expect_failure({"rendr", "--help"}, 2, "'rendr': unknown command; did you mean 'render'?");
+    expect_failure({"--helpp", "--help"}, 2, "--helpp: unknown option; did you mean '--help'?");
     expect_failure({"--versoin"}, 2, "--versoin: unknown option; did you mean '--version'?");
     expect_failure({"render"}, 2, "SCENE is required");
     expect_failure({"render", "scene.yaml", "other.yaml"}, 2, "'other.yaml': not expected");
@@ -60,6 +63,8 @@ TEST_F(CommandLine, ValuesThatMakeNoSense) {
     refused({"--size", "640"}, "--size: expected WxH such as 640x360, found '640'");
     refused({"--size", "640x360x2"}, "expected WxH");
     refused({"--size", "0x360"}, "1 to 32768 pixels");
+    refused({"--size", "16384x16385"},
+            "--size: 16384 x 16385 are more than 268435456 pixels; give a smaller image");
     refused({"--size", "99999999999x1"}, "expected WxH");
     refused({"--quality", "high"}, "--quality: unknown 'high'; use draft, final or exact");
     refused({"--crop", "1,2,3"}, "expected x0,y0,x1,y1, found '1,2,3'");

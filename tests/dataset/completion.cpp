@@ -55,6 +55,30 @@ TEST_F(DatasetCompletion, TheManifestListsEveryViewAndFile) {
     }
 }
 
+TEST_F(DatasetCompletion, RecordsNameTheirFramesAsTheManifestDoes) {
+    make("moving.yaml", "png", {"--frames", "2,5"});
+    for (const Json& view : Json::parse(read("set/manifest.json")).at("views")) {
+        const Json record = Json::parse(read("set/" + view.at("record").get<std::string>()));
+        EXPECT_EQ(record.at("frame"), view.at("frame"));
+    }
+    const Json last = Json::parse(read("set/views/000005.json"));
+    EXPECT_EQ(last.at("frame"), 5);
+    // By which the same command knows them again.
+    const auto written = fs::last_write_time(folder_ / "set/views/000005.json");
+    make("moving.yaml", "png", {"--frames", "2,5"});
+    EXPECT_EQ(fs::last_write_time(folder_ / "set/views/000005.json"), written);
+    EXPECT_NE(read("set/README.md").find("2 views (1 draw × 2 frames × 1 camera)"),
+              std::string::npos);
+}
+
+TEST_F(DatasetCompletion, CountsOneViewAsOne) {
+    make("scene.yaml", "png");
+    EXPECT_TRUE(Json::parse(read("set/views/000000.json")).at("frame").is_null());
+    EXPECT_NE(read("set/README.md").find("1 view (1 draw × 1 frame × 1 camera)"),
+              std::string::npos);
+    EXPECT_NE(read("set/index.html").find("<p>1 view."), std::string::npos);
+}
+
 // The card's command makes the same set, to the byte.
 TEST_F(DatasetCompletion, TheCardTellsHowToMakeTheSetAgain) {
     make("moving.yaml", "exr,npy,depth",

@@ -233,8 +233,8 @@ TEST_F(DatasetPoses, EurocOfARig) {
     make("pair.yaml", "euroc,nerfstudio");
     for (const char* camera : {"cam0", "cam1"}) {
         EXPECT_EQ(read(fmt::format("set/mav0/{}/data.csv", camera)),
-                  "#timestamp [ns],filename\n0,0.png\n");
-        EXPECT_TRUE(exists(fmt::format("set/mav0/{}/data/0.png", camera)));
+                  "#timestamp [ns],filename\n1400000000000000000,1400000000000000000.png\n");
+        EXPECT_TRUE(exists(fmt::format("set/mav0/{}/data/1400000000000000000.png", camera)));
     }
     const std::string right = read("set/mav0/cam1/sensor.yaml");
     EXPECT_NE(right.find("data: [1, 0, 0, 0.1,"), std::string::npos) << right;

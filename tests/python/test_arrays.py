@@ -111,6 +111,43 @@ def test_arrays_that_are_no_volume(scene, array, settings, message):
     assert "\n" not in str(caught.value)
 
 
+def test_masked_arrays(scene, plume):
+    # Which value an unknown one has is for the caller to say.
+    masked = np.ma.masked_greater(plume, 0.5)
+    with pytest.raises(uwvdb.UsageError, match="volumes.add: some values of the array are masked"):
+        scene.volumes.add(masked, **PLACE)
+    for vertices, faces in ((np.ma.masked_less(VERTICES, 0), FACES),
+                            (VERTICES, np.ma.masked_equal(FACES, 1))):
+        with pytest.raises(uwvdb.UsageError, match="some values of the array are masked"):
+            scene.geometry.add(vertices, faces)
+    with pytest.raises(uwvdb.UsageError, match="project: some values of the array are masked"):
+        scene.camera.project(np.ma.masked_less([[0, 0, -1.0]], 0))
+    assert len(scene.volumes) == 0 and len(scene.geometry) == 1
+    filled, unmasked = scene.copy(), scene.copy()
+    filled.volumes.add(masked.filled(0), **PLACE)
+    unmasked.volumes.add(np.ma.array(np.where(plume > 0.5, 0, plume)), **PLACE)  # nothing is masked
+    assert np.array_equal(total(filled), total(unmasked), equal_nan=True)
+
+
+@pytest.mark.parametrize("value", [1.0, np.float32(1), np.int8(1)])
+def test_more_values_than_memory_holds(scene, value):
+    # 17.6 TB as 32-bit floats, 4 or 8 bytes as they are.
+    with pytest.raises(uwvdb.InputError, match=r"volumes.add: an array of shape \(16384, 16384, "
+                       r"16384\) takes 1.76e\+04 GB of memory, but only .* are free; give fewer"):
+        scene.volumes.add(np.broadcast_to(value, (1 << 14,) * 3), **PLACE)
+    with pytest.raises(uwvdb.InputError, match="of memory, but only"):
+        scene.geometry.add(np.broadcast_to(value, (1 << 42, 3)), FACES)
+    assert len(scene.volumes) == 0 and len(scene.geometry) == 1
+
+
+def test_values_that_repeat(scene, plume):
+    repeated, whole = scene.copy(), scene.copy()
+    layer = np.broadcast_to(plume[:, :, :1], (20, 13, 9))
+    repeated.volumes.add(layer, **PLACE)
+    whole.volumes.add(layer.copy(), **PLACE)
+    assert np.array_equal(total(repeated), total(whole), equal_nan=True)
+
+
 def test_meanings_that_no_file_could_have(scene, plume):
     with pytest.raises(uwvdb.InputError, match="must not be negative") as caught:
         scene.volumes.add(plume, **{**PLACE, "concentration": {"small": -1}})

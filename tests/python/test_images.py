@@ -1,7 +1,9 @@
 # ctest labels: unit
 """Images: the pixels of the command line, as arrays."""
 
+import copy
 import gc
+import pickle
 import warnings
 
 import numpy as np
@@ -163,3 +165,38 @@ def test_what_cannot_be_rendered(scene, renderer, settings, message):
         renderer.render(scene, **settings)
     assert "--" not in str(caught.value) and "\n" not in str(caught.value)
     renderer.render(scene)
+
+
+def copies(value):
+    """By every protocol of pickle, and by copy."""
+    return [copy.copy(value), copy.deepcopy(value),
+            *(pickle.loads(pickle.dumps(value, protocol=protocol))
+              for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1))]
+
+
+def test_images_can_be_pickled(tmp_path, scene, renderer):
+    image = renderer.render(scene, "all", crop=(2, 1, 9, 7), integrator="volume",
+                            derivatives=["water.absorption"])
+    image.save(tmp_path / "first.exr")
+    for other in copies(image):
+        assert other.layers == image.layers and other.window == image.window
+        assert other.channels == image.channels and other.bands == image.bands
+        assert np.array_equal(other.pixels, image.pixels, equal_nan=True)
+        assert other.metadata == image.metadata and other.report == image.report
+        assert other.objects == image.objects and other.materials == image.materials
+        assert other.objects and other.warnings == image.warnings
+        assert np.array_equal(other.derivative("water.absorption"),
+                              image.derivative("water.absorption"), equal_nan=True)
+        assert np.array_equal(other.srgb(), image.srgb())
+        other.save(tmp_path / "second.exr")
+        assert (tmp_path / "first.exr").read_bytes() == (tmp_path / "second.exr").read_bytes()
+    deep = copy.deepcopy(image)
+    deep["depth"][:] = 7
+    assert not np.any(image["depth"] == 7) and np.all(deep["depth"] == 7)
+
+
+def test_reports_of_light_paths_can_be_pickled(scene, renderer):
+    image = renderer.render(scene, integrator="path", samples=4)
+    assert image.report["samples"] == 4 and image.report["error"] > 0
+    for other in copies(image):
+        assert other.report == image.report

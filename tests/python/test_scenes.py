@@ -2,6 +2,7 @@
 """Scenes as objects: values at paths, checks, messages."""
 
 import enum
+import itertools
 import pathlib
 import subprocess
 
@@ -147,6 +148,74 @@ def test_messages_are_those_of_set(tmp_path, path, yaml, value):
         expected, found = expected.replace(text, "T"), found.replace(text, "T")
     assert found.replace("quoted text", "text") == expected.replace(
         "too large or too small for a number", "not a finite number")
+
+
+def nested(levels):
+    value = 1
+    for _ in range(levels):
+        value = [value]
+    return value
+
+
+def within_itself(kind):
+    value = kind()
+    if kind is list:
+        value.append(value)
+    else:
+        value["x"] = value
+    return value
+
+
+class Endless:
+    """What NumPy's arrays are not: a list of itself, or a list without an end."""
+
+    def tolist(self):
+        return self
+
+
+@pytest.mark.parametrize("value, path", [
+    (within_itself(list), r"lamps\[0\]\[0\]\[0\]"),
+    (within_itself(dict), r"lamps\.x\.x\.x"),
+    (nested(100_000), r"lamps\[0\]\[0\]\[0\]"),
+    ([{"name": "left", "position": within_itself(list)}], r"lamps\[0\]\.position\[0\]\[0\]"),
+    (Endless(), "lamps"),
+])
+def test_what_contains_itself_is_refused(value, path):
+    scene = uwvdb.Scene.parse(TEXT)
+    before = scene.to_dict()
+    places = [lambda: uwvdb.Scene(**{**SECTIONS, "lamps": value}),
+              lambda: scene.update({"lamps": value}),
+              lambda: scene.__setitem__("lamps", value)]
+    for place in places:
+        with pytest.raises(uwvdb.InputError, match=f": {path}.*: nested more than 64 levels deep") \
+                as caught:
+            place()
+        assert "\n" not in str(caught.value) and len(str(caught.value)) < 200
+        assert caught.value.key.startswith("lamps") and caught.value.mend
+    assert scene.to_dict() == before
+    with pytest.raises(uwvdb.InputError, match="Water: water.particles.*: nested more than 64"):
+        uwvdb.Water("jerlov-II", particles=value)
+    with pytest.raises(uwvdb.InputError, match="volumes.add: transform.*: nested more than 64"):
+        scene.volumes.add(np.ones((2, 2, 2)), voxel_size=1, concentration={"small": 1},
+                          transform={"scale": value})
+
+
+def test_as_deep_and_as_long_as_a_file_may_be():
+    scene = uwvdb.Scene.parse(TEXT)
+    # The map of sections itself is one level. The reader's complaint, not that of the depth.
+    with pytest.raises(uwvdb.InputError, match="name: expected"):
+        uwvdb.Scene(**{**SECTIONS, "lamps": [{"name": nested(61)}]})
+    with pytest.raises(uwvdb.InputError, match="nested more than 64"):
+        uwvdb.Scene(**{**SECTIONS, "lamps": [{"name": nested(62)}]})
+    for endless in (itertools.count(), range(10**12), np.broadcast_to(1.0, (10**4,) * 3)):
+        with pytest.raises(uwvdb.InputError, match="bands.*: more than 200000 values"):
+            scene["water.bands"] = endless
+
+
+def test_paths_without_an_end():
+    scene = uwvdb.Scene.parse(TEXT)
+    with pytest.raises(uwvdb.Error):
+        scene["water." + "a." * 100_000 + "b"] = 1
 
 
 def test_copies_are_scenes_of_their_own():

@@ -1,9 +1,11 @@
 # ctest labels: unit
 """Cameras, water, files."""
 
+import copy
 import csv
 import io
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -150,3 +152,65 @@ def test_calibrations(tmp_path):
     (tmp_path / "broken.yaml").write_text(OPENCV.replace("camera_matrix", "matrix"))
     with pytest.raises(uwvdb.InputError, match="broken.yaml"):
         uwvdb.calibration.load(tmp_path / "broken.yaml")
+
+
+def pickled(value):
+    return pickle.loads(pickle.dumps(value))
+
+
+@pytest.mark.parametrize("name", ["port.yaml", "stereo.yaml", "uniform.yaml"])
+def test_cameras_can_be_pickled(name):
+    scene = uwvdb.Scene.load(SCENES / name)
+    for camera in [scene.camera_at(index) for index in range(max(1, len(scene.cameras)))]:
+        for other in (pickled(camera), copy.copy(camera), copy.deepcopy(camera)):
+            pixels = camera.pixel_centres()[::37, ::41]
+            assert (other.width, other.height) == (camera.width, camera.height)
+            for ours, theirs in zip(other.rays(pixels), camera.rays(pixels)):
+                assert np.array_equal(ours, theirs, equal_nan=True)
+            points = camera.rays(pixels).origin + 2 * camera.rays(pixels).direction
+            assert np.array_equal(other.project(points), camera.project(points), equal_nan=True)
+            assert np.array_equal(other.world_from_camera, camera.world_from_camera)
+
+
+@pytest.mark.parametrize("keys", [
+    {"port": {"type": "dome", "center": [0.001, 0, 0.002], "radius": 0.05, "thickness": 0.005}},
+    {"port": {"type": "flat", "distance": 0.02, "thickness": 0.01, "normal": [0.1, 0, 1]}},
+    {"distortion": {"model": "fisheye", "k": [0.1, 0.01, 0, 0.001]}},
+    {"distortion": {"k": [-0.1, 0.01, 0.003], "p": [0.001, 0.002]}},
+])
+def test_lenses_and_ports_are_pickled(keys):
+    scene = uwvdb.Scene(camera={"resolution": [100, 50], "intrinsics": {"fov_x": 90}, **keys})
+    camera, other = scene.camera, pickled(scene.camera)
+    pixels = camera.pixel_centres()[::7, ::7]
+    for ours, theirs in zip(other.rays(pixels), camera.rays(pixels)):
+        assert np.array_equal(ours, theirs, equal_nan=True)
+    assert other.distortion[0] == camera.distortion[0]
+    assert np.array_equal(other.distortion[1], camera.distortion[1])
+    assert np.array_equal(other.matrix, camera.matrix)
+
+
+def test_water_can_be_pickled():
+    scene = uwvdb.Scene.load(SCENES / "uniform.yaml")
+    scene.volumes.add(np.ones((2, 2, 2)), voxel_size=1, concentration={"small": 1, "large": 2})
+    of_scene = scene.water
+    scene["water.salinity"] = 1  # which is no business of the water that was taken before
+    for water in (uwvdb.Water("jerlov-II", bands=range(400, 701, 50), particles={"small": 0.5}),
+                  of_scene):
+        for other in (pickled(water), copy.copy(water), copy.deepcopy(water)):
+            assert np.array_equal(other.bands, water.bands)
+            assert np.array_equal(other.absorption, water.absorption)
+            assert np.array_equal(other.scattering, water.scattering)
+            assert np.array_equal(other.phase(range(0, 181, 5)), water.phase(range(0, 181, 5)))
+            assert other.phase_functions == water.phase_functions
+            assert [c["name"] for c in other.constituents] == [
+                c["name"] for c in water.constituents]
+    assert of_scene.constituents
+
+
+def test_a_camera_behind_a_rolling_shutter_says_how_to_pickle_it():
+    scene = uwvdb.Scene(camera={
+        "resolution": [100, 50], "intrinsics": {"fov_x": 90}, "line_time": 1e-3,
+        "trajectory": {"keyframes": [{"time": 0, "position": [0, 0, 0], "look_at": [0, 0, 9]},
+                                     {"time": 9, "position": [9, 0, 0], "look_at": [9, 0, 9]}]}})
+    with pytest.raises(TypeError, match="rolling shutter cannot be pickled; pickle its scene"):
+        pickle.dumps(scene.camera_at(frame=24))

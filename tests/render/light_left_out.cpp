@@ -24,7 +24,7 @@ class LeftOut : public testing::Test {
     }
     std::optional<std::string> warning() {
         const std::optional<LightLeftOut> left_out = estimate();
-        return left_out_warning(renderer_.assembled(), left_out);
+        return left_out_note(renderer_.assembled(), left_out);
     }
     /// The share of the layer `multiple` in an image of many paths.
     double share_in_image() {

@@ -3,10 +3,13 @@
 
 /** What can be looked at, in the order of its buttons. */
 export const LOOKS = {
-    total: { label: "Total", layers: ["direct", "backscatter", "forward", "multiple"] },
+    total: { label: "Total", layers: ["direct", "backscatter", "forward", "multiple", "snow"] },
     direct: { label: "Direct", layers: ["direct"] },
-    backscatter: { label: "Backscatter", layers: ["backscatter"] },
-    forward: { label: "Forward", layers: ["forward"] },
+    backscatter: { label: "Backscatter", layers: ["backscatter", "snow"] },
+    multiple: { label: "Multiple", layers: ["multiple"],
+        needs: "scattered or reflected more than once: set render.scattering to multiple" },
+    forward: { label: "Forward", layers: ["forward"],
+        needs: "the paper's blur: set water.forward_scatter.K" },
     clean: { label: "Clean", layers: ["clean"] },
     irradiance: { label: "Irradiance", layers: ["irradiance"], falseColour: true },
 };

@@ -5,7 +5,7 @@ import { LOOKS } from "../picture/mix.js";
 
 const LIST = [
     ["Ctrl S", "save"], ["Ctrl Z, Ctrl Shift Z", "undo, redo"],
-    ["1 … 6", Object.values(LOOKS).map(({ label }) => label.toLowerCase()).join(", ")],
+    ["1 … 7", Object.values(LOOKS).map(({ label }) => label.toLowerCase()).join(", ")],
     ["A", "choose the exposure anew"], ["[ and ]", "darker, brighter by a third of a stop"],
     ["K", "keep a snapshot"], ["V", "split view"], ["P", "choose a patch in the picture"],
     ["N", "next lamp"], ["O", "lamp on or off"], ["S", "this lamp alone"],

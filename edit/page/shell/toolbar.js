@@ -110,7 +110,11 @@ export class Toolbar {
         setAttributes(redo, {
             title: `Redo${scene.can_redo ? ` ${scene.redo_label}` : ""} (Ctrl Shift Z)` });
         for (const [each, element] of Object.entries(looks)) {
-            setAttributes(element, { "aria-pressed": String(each === look) });
+            const { label, layers, needs } = LOOKS[each];
+            element.disabled = needs !== undefined && !scene.light.includes(layers[0]);
+            setAttributes(element, { "aria-pressed": String(each === look),
+                title: element.disabled ? `Not in this scene; ${needs}`
+                    : `See ${label.toLowerCase()}` });
         }
         this.#showLamps(scene.lamps, onlyLamp);
         if (!slider.matches(":active")) slider.value = stops ?? 0;

@@ -56,6 +56,9 @@ TEST_F(DraftContrastTest, OfAnAbsorbingSlabIsOneLessItsTransmittance) {
         // Drafts are within 3 % of the transmittance, and the wall's light within 1 % of its mean.
         EXPECT_NEAR(contrast.at("contrast").get<double>(), 1 - std::exp(-depth),
                     0.03 * std::exp(-depth) + 0.01);
+        // The slab is even, so half of its pixels have all of its contrast.
+        EXPECT_NEAR(contrast.at("median_contrast").get<double>(),
+                    contrast.at("contrast").get<double>(), 0.05);
         // The slab's last voxel slopes down over a tenth of the view.
         EXPECT_NEAR(contrast.at("seen").get<double>(), 0.5, 0.15);
         EXPECT_NEAR(contrast.at("optical_depth").get<double>(), depth, 0.02 * depth);

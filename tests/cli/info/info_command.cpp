@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/cli_test.h"
@@ -206,6 +207,57 @@ lamps: [{name: left, position: [0.5, 0.2, 0], intensity: 50}]
     EXPECT_TRUE(warns(json_of({"plume.yaml", "--set", "volumes[0].grids.density={large: 1e4}"}),
                       "it is opaque"));
     EXPECT_TRUE(warns(json_of({"plume.yaml", "--set", "water.absorption=3"}), "none will be seen"));
+}
+
+TEST_F(Info, AWholeSceneNamesItsFileFromTheFolderItIsPrintedTo) {
+    test::VdbFixture smoke;
+    smoke.boxes = {{{0, 0, 0}, {19, 19, 19}, 1}};
+    smoke.file_from_index = Affine::scale(Vector3(0.05));
+    test::write_fixture(folder_ / "smoke.vdb", {smoke});
+    std::filesystem::create_directory(folder_ / "sub");
+    const auto print_to = [&](const std::string& file) {
+        const std::string command = "cd '" + folder_.path().string() +
+                                    "' && '" UWVDB_PROGRAM "' info smoke.vdb --scene > " + file;
+        EXPECT_EQ(std::system(command.c_str()), 0) << command;
+        return read(file);
+    };
+    EXPECT_NE(print_to("sub/smoke.yaml").find("- file: '../smoke.vdb'"), std::string::npos)
+        << read("sub/smoke.yaml");
+    const test::ProgramResult info = run({"info", "sub/smoke.yaml"});
+    EXPECT_EQ(info.exit_code, 0) << info.err;
+    EXPECT_NE(print_to("smoke.yaml").find("- file: 'smoke.vdb'"), std::string::npos);
+    // Elsewhere it may be copied from: "File names are relative to this scene".
+    EXPECT_NE(print_to("sub/smoke.txt").find("- file: 'smoke.vdb'"), std::string::npos);
+}
+
+TEST_F(Info, TellsWhatHidesAVolumeAndHowLittleIsInView) {
+    test::VdbFixture smoke;
+    smoke.boxes = {{{-10, -10, -10}, {9, 9, 9}, 1}};
+    smoke.file_from_index = Affine::scale(Vector3(0.1));
+    test::write_fixture(folder_ / "smoke.vdb", {smoke});
+    write("box.yaml", R"(uwvdb: 1
+camera: {resolution: [64, 64], intrinsics: {fov_x: 60}, pose: {position: [0, 0, -6], look_at: [0, 0, 0]}}
+volumes: [{file: smoke.vdb, centering: cell, grids: {density: {large: 1}}}]
+geometry: [{type: plane, point: [0, 0, 9], normal: [0, 0, -1]}, {type: box, min: [-1.1, -1.1, -1.1], max: [1.1, 1.1, 1.1]}]
+lamps: [{position: [0, 0, 0], intensity: 1}]
+)");
+    const ParsedJson hidden = json_of({"box.yaml"});
+    const ParsedJson& grid = hidden.at("grids").at(0);
+    EXPECT_EQ(grid.at("in_view"), 0);
+    EXPECT_NEAR(grid.at("hidden").get<double>(), 1, 1e-9);
+    EXPECT_NE(grid.at("hidden_behind").get<std::string>().find("geometry[1]"), std::string::npos);
+    EXPECT_TRUE(warns(hidden, "hidden behind "));
+    EXPECT_FALSE(warns(hidden, "nothing of it is in view"));
+    const ParsedJson open = json_of({"box.yaml", "--set", "geometry=[]"});
+    EXPECT_TRUE(open.at("grids").at(0).at("hidden_behind").is_null());
+    EXPECT_FALSE(warns(open, "hidden behind "));
+    // The rays leave the volume just behind its corner at (1, 1, -1), so that a few of the 32^3
+    // points at which it is looked at are in view.
+    const ParsedJson corner = json_of({"box.yaml", "--set", "geometry=[]", "--set",
+                                       "camera.pose={position: [0, 0, -6], look_at: [1, 1, -1]}",
+                                       "--set", "camera.intrinsics={fx: 1400}"});
+    EXPECT_GT(corner.at("grids").at(0).at("in_view").get<double>(), 0);
+    EXPECT_TRUE(warns(corner, "of it is in view of the camera")) << corner.at("warnings");
 }
 
 TEST_F(Info, AHalfInViewIsAHalf) {

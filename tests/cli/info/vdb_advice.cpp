@@ -56,6 +56,51 @@ TEST_F(VdbAdviceTest, WithoutAConcentrationThereIsNoBlock) {
     EXPECT_TRUE(says(advise({negative}), "has no value above 0"));
 }
 
+TEST_F(VdbAdviceTest, LiquidsAreCalledSo) {
+    // A cache of a liquid: distances with a negative inside, whose class says nothing, a background
+    // of 0, and no density.
+    test::VdbFixture phi = cube("phi");
+    phi.grid_class = "";
+    phi.boxes.push_back({{5, 5, 5}, {14, 14, 14}, -1});
+    const VdbAdvice advice = advise({phi});
+    EXPECT_TRUE(advice.map.empty());
+    EXPECT_TRUE(says(advice,
+                     "this looks like a liquid simulation, whose surface or particles are "
+                     "in 'phi'. A surface is geometry: export it as a mesh"));
+    test::VdbFixture surface = cube("surface");
+    surface.grid_class = "level set";
+    EXPECT_TRUE(says(advise({surface}), "looks like a liquid simulation"));
+    // Beside smoke there is something to map; distances to no liquid are no liquid.
+    EXPECT_FALSE(says(advise({surface, cube("density")}), "liquid"));
+    surface.name = "sphere";
+    EXPECT_FALSE(says(advise({surface}), "liquid"));
+    // A volume fraction of this name is one.
+    EXPECT_EQ(advise({cube("phi")}).map, GridNames{"phi"});
+    test::write_point_grid(dir_ / "points.vdb");
+    EXPECT_TRUE(says(advise_on_vdb(inspect_vdb(dir_ / "points.vdb", "here"), "points.vdb"),
+                     "looks like a liquid simulation"));
+}
+
+TEST_F(VdbAdviceTest, SizesAreThoseOfWhatIsNotEmpty) {
+    // A dense grid of 64 m, all of it active, with 1 m of smoke at one end.
+    test::VdbFixture dense = cube("density");
+    dense.boxes = {{{0, 0, 0}, {1279, 19, 19}, 0}, {{0, 0, 0}, {19, 19, 19}, 1}};
+    const VdbAdvice advice = advise({dense});
+    EXPECT_EQ(advice.scale, 1);
+    EXPECT_TRUE(says(advice, "Units are plausible: 1 m along its longest side."));
+}
+
+TEST_F(VdbAdviceTest, SaysWhatLiesBelowASeaFloor) {
+    test::VdbFixture low = cube("density");
+    low.file_from_index = Affine(Matrix3(0.05), {0, -0.725, 0});
+    const VdbAdvice advice = advise({low});
+    // The first node's cell begins half a voxel below it.
+    EXPECT_TRUE(says(advice, "Its lowest point lies at y = -0.75 m, below y = 0"));
+    EXPECT_TRUE(says(advice, "transform.translate: [0, 0.75, 0]"));
+    low.file_from_index = Affine(Matrix3(0.05), {0, 0.025, 0});
+    EXPECT_FALSE(says(advise({low}), "Its lowest point"));
+}
+
 TEST_F(VdbAdviceTest, TheBlockNamesTheFileAsTheSceneHasIt) {
     const VdbAdvice advice = advise({cube("density")});
     EXPECT_TRUE(advice.volumes.starts_with("volumes:\n  - file: 'my plume.vdb'\n"))
@@ -71,7 +116,11 @@ TEST_F(VdbAdviceTest, UnitsThatAreUnlikelyGetAScale) {
     EXPECT_NEAR(unset.scale * 20, 2, 1e-9);
     const VdbAdvice centimetres = advise({cube("density", 5)});  // 100 m
     EXPECT_EQ(centimetres.scale, 0.01);
-    EXPECT_TRUE(says(centimetres, "if these are centimetres"));
+    EXPECT_TRUE(says(centimetres,
+                     "lamps can light under water; if these are centimetres, transform.scale: 0.01 "
+                     "makes it 1 m."));
+    const VdbAdvice huge = advise({cube("density", 50)});  // 1 km
+    EXPECT_TRUE(says(huge, "lamps can light under water; transform.scale: 0.002 makes it 2 m."));
     EXPECT_EQ(advise({cube("density", 0.001)}).scale, 100);  // 2 cm
 }
 

@@ -34,6 +34,46 @@ TEST(LightTable, IsRedWhereAnErrorIsExceeded) {
     EXPECT_NE(text.find("FAILED"), std::string::npos) << text;
 }
 
+/// A scene of 2 x 1 pixels, an edge of shadow in the rays of both, with one row that is
+/// `everywhere` and one that is not.
+SceneValidation edgy_scene(double rms) {
+    SceneValidation scene;
+    scene.name = "edges";
+    scene.width = 2;
+    scene.height = 1;
+    scene.bands_nm = {540};
+    scene.smooth = {0, 0};
+    MethodImage image;
+    image.direct = image.backscatter = {Spectrum{}, Spectrum{}};
+    scene.images = {{"volume", image}, {"reference", image}};
+    Check check{"volume", "reference", k_backscatter, 0, true, 2, 0.01};
+    check.tolerance = 0.001;
+    check.rms_tolerance = 0.003;
+    scene.checks = {check, check};
+    scene.checks[1].everywhere = false;
+    scene.checks[1].pixels = 0;
+    scene.checks[1].rms = rms;
+    scene.planes = {{8, 0, 0}};
+    return scene;
+}
+
+TEST(ValidationTable, RowsWithoutAPixelAreNotPassed) {
+    const std::string text = validation_table(edgy_scene(0), false);
+    EXPECT_NE(text.find("-  0.0000 %      0.1 %  not compared"), std::string::npos) << text;
+    EXPECT_NE(text.find("1 of 2 rows have no pixel to compare"), std::string::npos) << text;
+    EXPECT_EQ(text.find("  passed"), text.rfind("  passed")) << text;
+    const std::string html = validation_page({edgy_scene(0)}, {});
+    for (const char* part : {"<td>not compared</td>", "volume − reference: not compared",
+                             "<p>1 of 2 rows have no pixel"})
+        EXPECT_NE(html.find(part), std::string::npos) << part;
+}
+
+TEST(ValidationTable, RowsWithoutAPixelStillFailByTheirRms) {
+    EXPECT_TRUE(edgy_scene(0).passed());
+    EXPECT_FALSE(edgy_scene(0.01).passed());
+    EXPECT_NE(validation_table(edgy_scene(0.01), false).find("FAILED"), std::string::npos);
+}
+
 TEST(ValidationReport, ShowsTheLightOnOnePage) {
     const std::string html = validation_page({}, {light_with(0.002)});
     for (const char* part : {"scene, all light: <span class=passed>", "data:image/png;base64,",

@@ -121,6 +121,28 @@ TEST_F(InputFiles, AreReplacedByTheirNextVersionAlone) {
     EXPECT_THROW(AtomicFile{file}, IoError) << "it has been read again";
 }
 
+TEST(LiesWithin, FollowsLinks) {
+    const test::TempDir directory;
+    const fs::path folder = directory / "scene";
+    fs::create_directories(folder / "sub");
+    fs::create_directories(directory / "scenes");
+    for (const fs::path& file : {folder / "in", directory / "out"}) std::ofstream(file) << "text";
+    fs::create_symlink(directory / "out", folder / "link");
+    fs::create_symlink(directory.path(), folder / "up");
+    fs::create_symlink("../in", folder / "sub/in");
+    fs::create_symlink(directory / "none", folder / "dangling");
+    fs::create_symlink("none", folder / "sub/dangling");
+    for (const char* name : {"in", "sub/in", "sub/../in", ".", "none", "sub/none/at/all",
+                             "up/scene/in", "../scene/in"})
+        EXPECT_TRUE(lies_within(folder, folder / name)) << name;
+    for (const char* name : {"..", "../out", "../scenes/in", "link", "up", "up/out", "up/none",
+                             "dangling", "dangling/x", "sub/dangling", "/etc/passwd"})
+        EXPECT_FALSE(lies_within(folder, folder / name)) << name;
+    fs::create_directory_symlink(folder, directory / "same");
+    EXPECT_TRUE(lies_within(directory / "same", folder / "in"));
+    EXPECT_TRUE(lies_within(folder, directory / "same/in"));
+}
+
 TEST(FileStamp, ChangesWithAllThatTellsFilesApart) {
     const test::TempDir folder;
     const fs::path file = folder / "a";

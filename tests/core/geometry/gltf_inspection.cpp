@@ -109,6 +109,21 @@ TEST_F(GltfInspection, BuffersAreFilesOfTheirLength) {
     EXPECT_NE(message.find("its buffer none.bin is missing"), std::string::npos) << message;
 }
 
+// The system takes a name up to its first NUL, and so do messages.
+TEST_F(GltfInspection, NamesWithNulAreShownWhole) {
+    folder_.write("there.bin", std::string(1000, '\0'));
+    for (const char* uri : {R"(there.bin\u0000.png)", "there.bin%00.png"}) {
+        const std::string message = test::message_of<IoError>([&] {
+            inspect({{"buffers", std::string(R"([{"byteLength":44,"uri":")") + uri + "\"}]"}});
+        });
+        EXPECT_TRUE(message.ends_with(" is missing; put it beside the glTF file")) << message;
+        EXPECT_NE(message.find("there.bin"), std::string::npos) << message;
+        EXPECT_EQ(message.find('\0'), std::string::npos);
+    }
+    expect_refused({{"extensionsRequired", R"(["KHR_\u0000_draco"])"}},
+                   "needs the glTF extension KHR_?_draco, which is not supported; export without");
+}
+
 TEST_F(GltfInspection, AttributesAreOfTheirKind) {
     expect_refused(attributes(R"("NORMAL":0)"), "has no POSITION");
     expect_refused(attributes(R"("POSITION":9)"), "refers to an accessor that does not exist");

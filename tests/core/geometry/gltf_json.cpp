@@ -69,5 +69,29 @@ TEST_F(GltfJson, ThatIsNoFileCannotBeOpened) {
     EXPECT_THROW(load_gltf_json(folder_.path("")), IoError);
 }
 
+// Long data URIs bypass the parser: what it returns is the same as by itself.
+TEST_F(GltfJson, LongDataUrisAreWhole) {
+    const std::string first = "data:;base64," + std::string(100000, 'A'),
+                      second = "data:;base64," + std::string(200000, 'B');
+    const std::string json = R"({"asset":{"version":"2.0"},
+        "images":[{"name":"\\\"[{","uri":")" +
+                             second + R"("},{"uri":"a.png"}, {}, 5],
+        "buffers":[{"uri":"data:;base64,AAAA"},{"byteLength":3,"uri":")" +
+                             first + R"("}],"last":"\\"})";
+    EXPECT_EQ(load(json), nlohmann::json::parse(json));
+    EXPECT_EQ(gltf_uri(load(json)["buffers"][1]), first);
+    EXPECT_EQ(gltf_uri(load(json)["images"][2]), "");
+    EXPECT_THROW(gltf_uri(load(json)["images"][3]), nlohmann::json::exception);
+    EXPECT_THROW(gltf_uri(nlohmann::json::parse(R"({"uri":5})")), nlohmann::json::exception);
+    // What only looks like one, or like what stands for one in between, is left to it.
+    std::string escaped = json, forged = json;
+    escaped.insert(escaped.find("data:;base64,BB") + 13, R"(\u0041)");
+    EXPECT_EQ(load(escaped), nlohmann::json::parse(escaped));
+    forged.replace(forged.find("a.png"), 5, "data:left out by uwvdb 0");
+    EXPECT_EQ(load(forged), nlohmann::json::parse(forged));
+    EXPECT_THROW(load(json.substr(0, json.size() - 200000)), nlohmann::json::exception);
+    EXPECT_THROW(load(json.substr(0, json.size() - 4)), nlohmann::json::exception);
+}
+
 }  // namespace
 }  // namespace uw

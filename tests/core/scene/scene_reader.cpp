@@ -234,6 +234,20 @@ TEST_F(SceneReader, fillsInDefaults) {
               std::string::npos);
 }
 
+TEST_F(SceneReader, warnsOfFieldsOfViewInRadians) {
+    const auto warned = [this](const char* fov) {
+        const SceneDesc scene =
+            read(k_minimal, {std::string("camera.intrinsics.fov_x=") + fov, "lamps=[]"});
+        return scene.warnings.size() > 1 ? scene.warnings[0] : "";
+    };
+    EXPECT_NE(warned("1.2").find("camera.intrinsics.fov_x: 1.2 degrees is a very narrow view; "
+                                 "degrees, not radians (1.2 radians are 68.8 degrees)?"),
+              std::string::npos)
+        << warned("1.2");
+    EXPECT_NE(warned("3.14"), "");
+    EXPECT_EQ(warned("3.2"), "");
+}
+
 TEST_F(SceneReader, takesLightPaths) {
     const SceneDesc scene = read(std::string(k_minimal) +
                                  "render: {integrator: path, scattering: multiple, samples: "
