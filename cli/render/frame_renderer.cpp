@@ -134,7 +134,6 @@ void FrameRenderer::loaded(std::size_t place) {
         for (const VolumeReport& report : scene.volume_reports)
             print_message(describe_grid(report, scene.water.medium));
     engine_.warn_of_image();
-    if (const std::string& note = renderer.report().light_note; !note.empty()) say("note: " + note);
     if (!arguments_.parts.object.empty())
         chosen_object(arguments_.parts.object, renderer.scene().desc().geometry,
                       scene.surfaces->names());
@@ -180,6 +179,7 @@ ImageWork FrameRenderer::take(std::size_t place, FinishedImage image) {
     if (report.multiple_error)
         say(fmt::format("multiple scattering: standard error {:.2g} % of the image's mean",
                         100 * *report.multiple_error));
+    if (!report.light_note.empty()) say("note: " + report.light_note);
     count_work(report);
     OutputGroup outputs;
     if (!frame.files.irradiance_vdb.empty()) {

@@ -78,11 +78,11 @@ TEST_F(Info, TellsHowASceneIsRendered) {
                   .find("all light, by 7 random paths per pixel"),
               std::string::npos);
     const ParsedJson json = json_of(
-        {"scene.yaml", "--set", "render.scattering=multiple", "--set", "water.absorption=12"});
+        {"scene.yaml", "--set", "render.scattering=multiple", "--set", "water.absorption=50"});
     EXPECT_EQ(json.at("render").at("integrator"), "volume");
     EXPECT_EQ(json.at("render").at("scattering"), "multiple");
     EXPECT_TRUE(warns(json, "the nearest lamp lies behind an optical depth"));
-    EXPECT_FALSE(warns(json_of({"scene.yaml", "--set", "water.absorption=12"}), "nearest lamp"));
+    EXPECT_FALSE(warns(json_of({"scene.yaml", "--set", "water.absorption=50"}), "nearest lamp"));
 }
 
 TEST_F(Info, CountsWhatIsBadInValues) {
@@ -196,7 +196,9 @@ lamps: [{name: left, position: [0.5, 0.2, 0], intensity: 50}]
                 6 * json.at("water").at("c")[1].get<double>(), 1e-9);
     EXPECT_GT(json.at("central_ray").at("optical_depth_volumes")[1].get<double>(), 0.1);
     EXPECT_EQ(json.at("view").at("on_surface"), 1.0);
-    EXPECT_TRUE(json.at("warnings").empty()) << json.at("warnings");
+    EXPECT_EQ(json.at("warnings").size(), 1U) << json.at("warnings");
+    EXPECT_TRUE(warns(json, "single scattering leaves out about"));
+    EXPECT_GT(json.at("render").at("light_left_out").get<double>(), 0.05);
 
     EXPECT_TRUE(warns(json_of({"plume.yaml", "--set", "volumes[0].transform.translate=[0,0,20]"}),
                       "nothing of it is in view"));

@@ -64,9 +64,11 @@ TEST(VdbConcentration, IsThatOfADraftInWhichItIsPlainToSee) {
     const double per_ppm = kopelevich_small_scattering(540) + 5 * kopelevich_large_scattering(540);
     EXPECT_NEAR(advice.optical_depth[1], 0.5 * per_ppm * advice.small_ppm,
                 0.02 * advice.optical_depth[1]);
-    ASSERT_EQ(advice.lines.size(), 1U);
+    ASSERT_EQ(advice.lines.size(), 2U);
     EXPECT_NE(advice.lines[0].find("neither invisible nor black"), std::string::npos)
         << advice.lines[0];
+    EXPECT_NE(advice.lines[1].find("with render.scattering: multiple"), std::string::npos)
+        << advice.lines[1];
 }
 
 }  // namespace
