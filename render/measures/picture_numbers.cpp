@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -75,21 +76,35 @@ std::size_t tile_side(const PictureLayers& picture) {
 struct SurfacePixel {
     std::size_t place, tile;
     double albedo;
+    bool is_edge;  // of a step in the albedo, whose light is that of both its sides
 };
+
+/// Whether the albedo of a pixel is not that of a neighbour.
+bool is_at_edge(const GreyLayers& albedo, std::size_t pixel, std::size_t width,
+                std::size_t height) {
+    constexpr double k_step = 0.2;
+    const std::size_t x = pixel % width, y = pixel / width;
+    const double own = albedo.at(pixel);
+    const auto differs = [&](std::size_t neighbour) {
+        const double other = albedo.at(neighbour);
+        return std::abs(own - other) > k_step * std::max(own, other);
+    };
+    return (x > 0 && differs(pixel - 1)) || (x + 1 < width && differs(pixel + 1)) ||
+           (y > 0 && differs(pixel - width)) || (y + 1 < height && differs(pixel + width));
+}
 
 /// The tiles in which surfaces are patterned, and which of their pixels are bright and which dark
 /// by their albedo.
 class AlbedoPattern {
   public:
+    /// Without pixels at edges, unless there are no others to compare.
     explicit AlbedoPattern(std::vector<SurfacePixel> pixels) {
         std::ranges::stable_sort(pixels, {}, &SurfacePixel::tile);
-        for (auto begin = pixels.begin(); begin != pixels.end();) {
-            const auto end = std::find_if(begin, pixels.end(), [&](const SurfacePixel& pixel) {
-                return pixel.tile != begin->tile;
-            });
-            add({begin, end});
-            begin = end;
-        }
+        std::vector<SurfacePixel> within;
+        std::ranges::copy_if(pixels, std::back_inserter(within),
+                             [](const SurfacePixel& pixel) { return !pixel.is_edge; });
+        add_tiles(within);
+        if (tiles_.empty()) add_tiles(pixels);
     }
 
     bool empty() const { return tiles_.empty(); }
@@ -109,6 +124,16 @@ class AlbedoPattern {
     struct Tile {
         std::vector<std::size_t> bright, dark;  // places
     };
+
+    void add_tiles(const std::vector<SurfacePixel>& pixels) {
+        for (auto begin = pixels.begin(); begin != pixels.end();) {
+            const auto end = std::find_if(begin, pixels.end(), [&](const SurfacePixel& pixel) {
+                return pixel.tile != begin->tile;
+            });
+            add({begin, end});
+            begin = end;
+        }
+    }
 
     void add(std::span<const SurfacePixel> pixels) {
         constexpr double k_least_contrast = 0.02;  // of a pattern that anyone would call one
@@ -201,8 +226,11 @@ PictureNumbers measure_picture(const PictureLayers& picture, std::span<const std
         const double light = irradiance.at(pixel);
         if (!(light > 0 || albedo.at(pixel) > 0)) continue;
         lit.push_back(light);
-        surfaces.push_back({signals.size() - 1, pixel / width / side * width + pixel % width / side,
-                            albedo.at(pixel)});
+        surfaces.push_back(
+            {signals.size() - 1, pixel / width / side * width + pixel % width / side,
+             albedo.at(pixel),
+             !albedo.empty() &&
+                 is_at_edge(albedo, pixel, width, static_cast<std::size_t>(picture.height))});
     }
     PictureNumbers numbers;
     numbers.signal = mean_of(signals);

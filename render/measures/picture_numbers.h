@@ -101,9 +101,10 @@ struct PictureNumbers {
     /// Michelson contrast (bright - dark) / (bright + dark) of the total light. Where surfaces are
     /// patterned it is a mean over tiles of a sixteenth of the picture's shorter side, or 8 pixels:
     /// in each, bright is the mean of the quarter of its pixels with the greatest albedo (and of
-    /// all with the same), dark of that with the least. However unevenly the picture is lit, that
-    /// adds nothing. Without a pattern or a layer of albedo, bright is the mean of the pixels
-    /// between the light's percentiles 75 and 95, dark that between 5 and 25. 0 in the dark.
+    /// all with the same), dark of that with the least, without those at edges. However unevenly
+    /// the picture is lit, that adds nothing. Without a pattern or a layer of albedo, bright is the
+    /// mean of the pixels between the light's percentiles 75 and 95, dark that between 5 and 25. 0
+    /// in the dark.
     double contrast = 0;
     /// The contrast of the same surfaces without water; none if the picture has no such layer.
     std::optional<double> clean_contrast;

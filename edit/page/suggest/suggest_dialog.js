@@ -134,9 +134,13 @@ export class SuggestDialog {
         const { search, cancel, apply } = this.#buttons;
         search.hidden = this.#running;
         cancel.hidden = !this.#running;
-        apply.disabled = this.#running || this.#result === null;
+        apply.disabled = this.#running || !this.#isBetter();
         this.#progress.hidden = !this.#running;
         setText(this.#status, text);
+    }
+
+    #isBetter() {
+        return this.#result !== null && this.#result.best.value > this.#result.before.value;
     }
 
     async #search() {
@@ -180,6 +184,9 @@ export class SuggestDialog {
 
     #outcome({ before, best, tried }) {
         const value = (point) => formatNumber(point.value, 4);
+        if (!this.#isBetter())
+            return `${OBJECTIVES[this.#wish.objective]}: ${value(before)} now; none of ${tried} ` +
+                `positions is better, the best reaches ${value(best)}.`;
         const place = best.position.map((each) => formatNumber(each, 3)).join(", ");
         const light = best.numbers.irradiance / before.numbers.irradiance;
         return `${OBJECTIVES[this.#wish.objective]}: ${value(before)} now, ${value(best)} at ` +

@@ -173,6 +173,13 @@ TEST(Pictures, MixedFromLampsTheyAreTheWhole) {
     expect_mixed_from_lamps(k_edit_scene);
 }
 
+TEST(Pictures, ShowMarineSnow) {
+    std::string text = k_edit_scene;
+    text.insert(text.find("geometry:"),
+                "  snow: {number: 3000, diameter: [1 mm, 4 mm], mean: added, seed: 2}\n");
+    expect_mixed_from_lamps(text);
+}
+
 TEST(Pictures, ShowSurfacesThatEmitLightOnce) {
     const MeshFolder folder;
     folder.write("glow.gltf", gltf_text({{"materials", R"([{"emissiveFactor":[1,0.5,0.2]}])"},
