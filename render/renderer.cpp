@@ -84,10 +84,6 @@ std::optional<LightLeftOut> Renderer::light_left_out() {
     return estimate_light_left_out(*scene_);
 }
 
-void Renderer::note_light_left_out() {
-    report_.light_note = left_out_note(*scene_, light_left_out()).value_or("");
-}
-
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
     assemble();
     light_.clear();

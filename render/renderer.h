@@ -30,7 +30,7 @@ struct RenderOptions {
 struct RenderReport : ImageProgress {
     /// About the scene, then about the image: one line each, in the order met.
     std::vector<std::string> warnings;
-    /// What its light lacks (Renderer::note_light_left_out), one line; empty: little, or not asked.
+    /// What its light lacks (left_out_note), one line, set by those who ask; empty: little.
     std::string light_note;
     std::uint64_t pixels = 0;  // rendered: with forward scatter always the whole image
     std::uint64_t camera_rays = 0;
@@ -103,10 +103,8 @@ class Renderer {
     const AssembledScene& assembled() const { return *scene_; }
     const DeepShadows& light() const { return light_; }
 
-    /// What an image of this scene leaves out (estimate_light_left_out); assembles it. The second
-    /// notes it in the report of the image that was prepared.
+    /// What an image of this scene leaves out (estimate_light_left_out); assembles it.
     std::optional<LightLeftOut> light_left_out();
-    void note_light_left_out();
 
     /// Changes the assembled scene by hand: for water, volumes and slabs that no description can
     /// express. The next scene that is set has nothing of it.

@@ -75,12 +75,15 @@ void RunEngine::render(std::size_t place) {
     const RenderOptions options = rendered_for(wanted, scene.desc().camera);
     renderer_.set_scene(std::move(scene));
     renderer_.prepare(options);
-    if (!std::exchange(looked_for_light_, true)) renderer_.note_light_left_out();
+    std::string light_note;
+    if (!std::exchange(looked_for_light_, true))
+        light_note = left_out_note(renderer_.assembled(), renderer_.light_left_out()).value_or("");
     client_->loaded(place);
     warn_of_image();
     renderer_.render(options);
     warn_of_image();
     FinishedImage there = finished(wanted);
+    there.report.light_note = std::move(light_note);
     const std::size_t bytes = there.film.values().size_bytes();
     ImageWork work = client_->take(place, std::move(there));
     begin_writing(std::move(work), bytes);

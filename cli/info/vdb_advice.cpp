@@ -431,7 +431,7 @@ std::vector<double> across_voxel(const LoadedVolume& volume, const Medium& mediu
     return depth;
 }
 
-/// Of all that is not 0.
+/// What all voxels that are not 0 lie in.
 Bounds bounds_of(const LoadedVolume& volume) {
     Bounds bounds;
     for (const GridVolume& grid : volume.grids) bounds.extend(grid.voxel_bounds());
