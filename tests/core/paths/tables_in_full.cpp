@@ -33,12 +33,13 @@ void compare_fluence_tables(const std::string& file, double g) {
     for (const TableRow& row : table)
         if ((row.albedo == 0.5 || row.albedo == 0.95) &&
             (row.r == 0.5 || row.r == 1 || row.r == 3 || row.r == 5))
-            compare_fluence({row}, g, {64, 1 << 6, 64}, ++seed, deviations);
+            // Far from the lamp hardly any light is of order 2, and few paths bring it.
+            compare_fluence({row}, g, {64, row.r < 3 ? 1U << 6 : 1U << 11, 64}, ++seed, deviations);
     EXPECT_EQ(deviations.count(), 8 * 6);
     deviations.expect_within_errors();
     deviations.expect_errors_below(0.001, "order 1");
-    // The attained ones, doubled. Far from the lamp hardly any light is of order 2.
-    deviations.expect_errors_below(0.015, "order 2");
+    deviations.expect_errors_below(0.002, "order 2");
+    // The attained ones, doubled.
     deviations.expect_errors_below(0.05, "total");
 }
 
