@@ -40,9 +40,10 @@ std::size_t knot_before(const ConcentrationProfile& profile, double distance) {
 
 }  // namespace
 
-WaterOptics::WaterOptics(const LitScene& scene)
+WaterOptics::WaterOptics(const LitScene& scene, bool exact)
     : scene_(scene),
       attenuation_(*scene.medium),
+      exact_(exact),
       bands_(static_cast<std::size_t>(scene.medium->band_count())),
       bounds_(scene.field->bounds()) {
     const std::span<const double> c = attenuation_.uniform.first(bands_);
@@ -71,7 +72,11 @@ void WaterOptics::set(const Ray& ray, const SurfaceHit* hit, WaterSegment& segme
     if (hit && hit != &segment.hit) segment.hit = *hit;
     segment.profile.s.clear();
     segment.has_field = crosses(bounds_, ray, segment.length);
-    if (segment.has_field) scene_.field->profile(ray, segment.length, segment.profile);
+    if (!segment.has_field) return;
+    if (exact_)
+        scene_.field->profile(ray, segment.length, segment.profile);
+    else
+        scene_.field->coarse_profile(ray, segment.length, segment.profile);
 }
 
 void WaterOptics::look_up(const WaterSegment& segment, double distance, WaterPoint& point) const {

@@ -91,7 +91,9 @@ struct WaterPoint {
 /// What WaterSegments need to know of a scene. Thread safe.
 class WaterOptics {
   public:
-    explicit WaterOptics(const LitScene& scene);
+    /// `exact`: profiles are as fine as the field knows, or coarse ones, faster and right on
+    /// average.
+    WaterOptics(const LitScene& scene, bool exact);
 
     const LitScene& scene() const { return scene_; }
     const AttenuationTable& attenuation() const { return attenuation_; }
@@ -128,6 +130,7 @@ class WaterOptics {
 
     LitScene scene_;
     AttenuationTable attenuation_;
+    bool exact_;
     std::size_t bands_, clearest_band_ = 0;
     Bounds bounds_;  // of the field
 };

@@ -8,7 +8,7 @@ namespace uw {
 
 PathTables::PathTables(const LitScene& scene, const ScatteringTables& tables,
                        std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
-    : optics(scene),
+    : optics(scene, /*exact=*/deep_shadows.empty()),
       scattering(tables),
       lamps(optics, scattering, std::move(deep_shadows)),
       guides(optics, scattering, lamps) {

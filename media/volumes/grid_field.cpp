@@ -177,6 +177,8 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // The interpolant is a cubic in each cell; linear interpolation with four knots per voxel has an
 // error of 0.06 % in the in-scatter of a rough plume, with two knots 0.2 %.
 constexpr double k_voxels_per_knot = 0.25;
+// coarse_profile has intervals of this many such steps, one voxel.
+constexpr double k_steps_of_voxel = 4;
 // profile_within starts with intervals of this many such steps, two voxels, and samples halfway.
 constexpr double k_coarse_steps = 8;
 
@@ -336,28 +338,39 @@ void GridField::sample_knots(const Ray& ray, std::span<const double> s,
     }
 }
 
-void GridField::profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const {
-    profile_within({}, ray, s_end, profile);
-}
-
-void GridField::profile_within(const DepthTolerance& tolerance, const Ray& ray, double s_end,
+bool GridField::sample_profile(const Ray& ray, double s_end, double steps,
                                ConcentrationProfile& profile) const {
     Scratch& scratch = scratch_of_thread();
     profile.constituent_count = constituent_count_;
     gather_stretches(volumes_, ray, s_end, scratch);
-    place_knots(s_end, tolerance.exact() ? 1 : k_coarse_steps, profile, scratch);
+    place_knots(s_end, steps, profile, scratch);
     if (scratch.paced.empty()) {
         profile.concentration.assign(
             profile.s.size() * static_cast<std::size_t>(constituent_count_), 0.0);
         profile.column = profile.concentration;
-        return;
+        return false;
     }
     sample_knots(ray, profile.s, profile.concentration);
     clear_at_empty(scratch, profile);
+    return true;
+}
+
+void GridField::profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const {
+    if (sample_profile(ray, s_end, 1, profile)) profile.integrate();
+}
+
+void GridField::coarse_profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const {
+    if (sample_profile(ray, s_end, k_steps_of_voxel, profile)) profile.integrate();
+}
+
+void GridField::profile_within(const DepthTolerance& tolerance, const Ray& ray, double s_end,
+                               ConcentrationProfile& profile) const {
     if (tolerance.exact()) {
-        profile.integrate();
+        this->profile(ray, s_end, profile);
         return;
     }
+    if (!sample_profile(ray, s_end, k_coarse_steps, profile)) return;
+    Scratch& scratch = scratch_of_thread();
     scratch.refinement.run(
         tolerance,
         [&](std::span<const double> s, std::vector<double>& values) {

@@ -58,12 +58,16 @@ class GridField final : public ConcentrationField {
     void sample(const Point3& x, std::span<double> concentration) const override;
     void column(const Point3& a, const Point3& b, std::span<double> column) const override;
     void profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const override;
+    void coarse_profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const override;
     /// Knots every voxel where the tolerance permits, and closer where it does not, down to those
     /// of profile().
     void profile_within(const DepthTolerance& tolerance, const Ray& ray, double s_end,
                         ConcentrationProfile& profile) const override;
 
   private:
+    // With knots `steps` times as far apart as those of profile(). Whether there are any particles.
+    bool sample_profile(const Ray& ray, double s_end, double steps,
+                        ConcentrationProfile& profile) const;
     // The concentrations at the distances `s`.
     void sample_knots(const Ray& ray, std::span<const double> s,
                       std::vector<double>& concentration) const;
