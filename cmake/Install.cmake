@@ -1,7 +1,6 @@
 # What `cmake --install` installs: the program with its documents, example scenes, man page and shell
 # completions (component "program"), and for C++ users a shared library with its headers and
 # find_package(uwvdb) (component "development").
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 include(PublicHeaders)
 

@@ -48,6 +48,16 @@ target_compile_definitions(uwvdb_nanovdb INTERFACE NANOVDB_USE_TBB)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 
+# Only for the module image_formats, and for tests. The exported target names an OpenCV include
+# folder that its package does not provide.
+find_package(OpenImageIO QUIET)
+if(OpenImageIO_FOUND)
+    get_target_property(uwvdb_oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+    list(FILTER uwvdb_oiio_includes EXCLUDE REGEX opencv)
+    set_target_properties(OpenImageIO::OpenImageIO PROPERTIES
+                          INTERFACE_INCLUDE_DIRECTORIES "${uwvdb_oiio_includes}")
+endif()
+
 # The system's interpreter, of which the packages pybind11 and NumPy are, whatever else is in PATH.
 if(UWVDB_BUILD_PYTHON)
     if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)

@@ -72,7 +72,7 @@ Texture::Texture(const PixelImage& image, TextureEncoding encoding, bool keep_al
         throw_if_stopped();
         for (std::size_t color = 0; color < 3; ++color) {
             const float encoded = image.pixels[pixel * channels + (channels < 3 ? 0 : color)];
-            rgb_[3 * pixel + color] = encoding == TextureEncoding::linear
+            rgb_[3 * pixel + color] = encoding == TextureEncoding::linear || image.is_linear
                                           ? encoded
                                           : static_cast<float>(linear_from_srgb(encoded));
         }

@@ -59,8 +59,9 @@ enum class TextureEncoding { srgb, linear };
 class Texture {
   public:
     /// Decodes sRGB code values of colours (glTF 2.0, 3.9.2); `linear` values, as in normal maps,
-    /// are used as they are. Grey images fill all three channels; alpha, which is always linear, is
-    /// dropped unless `keep_alpha`. Throws std::invalid_argument for an image without pixels.
+    /// and those of linear images are used as they are. Grey images fill all three channels; alpha,
+    /// which is always linear, is dropped unless `keep_alpha`. Throws std::invalid_argument for an
+    /// image without pixels.
     explicit Texture(const PixelImage& image, TextureEncoding encoding = TextureEncoding::srgb,
                      bool keep_alpha = false);
 

@@ -20,6 +20,7 @@
 #include "core/geometry/obj_file.h"
 #include "core/geometry/polygon.h"
 #include "core/image/image_file.h"
+#include "core/image/image_formats.h"
 
 namespace uw {
 
@@ -95,14 +96,6 @@ std::optional<fs::path> texture_file(const fs::path& library, const std::string&
     return std::nullopt;
 }
 
-bool is_readable_picture(const fs::path& file) {
-    std::string ending = file.extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) {
-        return static_cast<char>(c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c);
-    });
-    return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
-}
-
 class Materials {
   public:
     explicit Materials(bool is_pbr) : is_pbr_(is_pbr) {}
@@ -153,8 +146,8 @@ class Materials {
                  "their surfaces have reflectance 0.5");
         warn(missing_, "textures are missing",
              "their surfaces have the colour Kd; put them beside the library");
-        warn(other_formats_, "textures that are neither PNG nor JPEG",
-             "their surfaces have the colour Kd; convert them");
+        warn(other_formats_, "textures of unknown formats",
+             "their surfaces have the colour Kd; save them as PNG or JPEG");
         std::set<std::string> lost = lost_;
         if (!is_pbr_) lost.erase("gloss maps");
         if (!lost.empty()) {
@@ -190,7 +183,7 @@ class Materials {
             missing_.insert(map.file);
             return use;
         }
-        if (!is_readable_picture(*file)) {
+        if (!has_ending_of_image(*file)) {
             other_formats_.insert(map.file);
             return use;
         }

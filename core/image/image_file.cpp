@@ -12,6 +12,7 @@
 #include "core/base/output_files.h"
 #include "core/base/text.h"
 #include "core/image/exr_file.h"
+#include "core/image/image_formats.h"
 #include "core/image/jpeg_file.h"
 #include "core/image/png_file.h"
 
@@ -48,8 +49,10 @@ PixelImage read_image(const std::filesystem::path& file) {
 PixelImage read_image(std::span<const std::byte> encoded, const std::string& name) {
     if (starts_with(encoded, {0x89, 'P', 'N', 'G'})) return read_png(encoded, name);
     if (starts_with(encoded, {0xff, 0xd8, 0xff})) return read_jpeg(encoded, name);
+    if (const std::optional<ImageFormat> other = other_image_format(encoded, name))
+        return read_other_image(encoded, *other, name);
     throw InputError(name +
-                     ": cannot read the image: neither PNG nor JPEG; save it as one of these");
+                     ": cannot read the image: none of the formats known; save it as PNG or JPEG");
 }
 
 bool has_header_of(const std::filesystem::path& file, const ImageLayout& layout,

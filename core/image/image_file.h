@@ -14,8 +14,9 @@
 
 namespace uw {
 
-/// Reads a PNG or JPEG file. Throws IoError if it cannot be opened, InputError if it is neither, is
-/// truncated or damaged, or is larger than 2^28 pixels.
+/// Reads a PNG or JPEG file, or another by a module (core/image/image_formats.h). Throws IoError if
+/// it cannot be opened, InputError if it is none of these, is truncated or damaged, or is larger
+/// than 2^28 pixels.
 PixelImage read_image(const std::filesystem::path& file);
 
 /// The same for an image in memory; messages call it `name`. Throws InputError.

@@ -22,6 +22,7 @@ using ImageMetadata = std::map<std::string, std::variant<std::string, double>>;
 struct PixelImage {
     int width = 0, height = 0, channels = 0;
     std::vector<float> pixels;  // width * height * channels
+    bool is_linear = false;     // values are light, whatever such images usually hold
 };
 
 /// To be called before anything is allocated for an image whose header says so. Throws InputError

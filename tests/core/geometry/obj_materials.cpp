@@ -103,10 +103,10 @@ TEST_F(ObjMaterials, WhatIsLostIsNamedInOneLine) {
 }
 
 TEST_F(ObjMaterials, MissingTexturesLeaveTheColour) {
-    folder_.write("old.tga", "TGA");
+    folder_.write("old.iff", "FORM");
     folder_.write("copy.png", test::four_texel_png());
     const auto materials = read(
-        "newmtl a\nKd 0.2 0.2 0.2\nmap_Kd gone.png\nnewmtl b\nmap_Kd old.tga\n"
+        "newmtl a\nKd 0.2 0.2 0.2\nmap_Kd gone.png\nnewmtl b\nmap_Kd old.iff\n"
         "newmtl c\nmap_Kd C:\\pictures\\copy.png\n",
         {"a", "b", "c"});
     EXPECT_FALSE(materials[0].base_map);
@@ -115,7 +115,7 @@ TEST_F(ObjMaterials, MissingTexturesLeaveTheColour) {
     EXPECT_TRUE(materials[2].base_map);  // beside the library
     ASSERT_EQ(warnings_.size(), 2U);
     EXPECT_NE(warnings_[0].find("textures are missing: 'gone.png'"), std::string::npos);
-    EXPECT_NE(warnings_[1].find("neither PNG nor JPEG: 'old.tga'"), std::string::npos);
+    EXPECT_NE(warnings_[1].find("unknown formats: 'old.iff'"), std::string::npos);
 }
 
 TEST_F(ObjMaterials, LibrariesThatAreMissingOrUnknownAreNamed) {

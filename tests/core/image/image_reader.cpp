@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/geometry/mesh.h"
 #include "tests/support/image_file.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 #include "tests/support/message_of.h"
@@ -79,7 +80,7 @@ TEST(ImageReader, TellsAFileItCannotOpenFromOneItCannotRead) {
                 }).starts_with(text.string() + ": cannot read the image"));
     EXPECT_NE(test::message_of<InputError>([&] {
                   read_image(encoded_bytes("GIF89a"), "x");
-              }).find("x: cannot read the image: neither PNG nor JPEG"),
+              }).find("x: cannot read the image: none of the formats known"),
               std::string::npos);
 }
 
@@ -121,6 +122,65 @@ TEST(ImageReader, ReadsJpegAsFarAsItIsExact) {
         // Colours are rounded to YCbCr and back, and so are their frequencies, by 1 each.
         for (std::size_t i = 0; i < values.size(); ++i)
             EXPECT_NEAR(image.pixels[i], values[i] / 255.0, 3.5 / 255) << channels;
+    }
+}
+
+struct OtherFormat {
+    const char* ending;
+    int channels;
+    int bits;
+    bool is_linear;
+    double tolerance;
+};
+
+class OtherFormats : public testing::TestWithParam<OtherFormat> {};
+
+TEST_P(OtherFormats, AreDecodedByTheModule) {
+    const OtherFormat& format = GetParam();
+    const auto [values, image] = decoded(format.ending, format.channels, format.bits);
+    ASSERT_EQ(image.channels, format.channels);
+    EXPECT_EQ(image.is_linear, format.is_linear);
+    ASSERT_EQ(image.pixels.size(), values.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_NEAR(image.pixels[i], values[i] / ((1 << format.bits) - 1.0), format.tolerance);
+}
+
+// Whole numbers are exact; half floats have 11 bits, RGBE 8 bits for the brightest of a pixel.
+INSTANTIATE_TEST_SUITE_P(
+    ImageReader, OtherFormats,
+    testing::Values(OtherFormat{"tif", 1, 8, false, 1e-7}, OtherFormat{"tif", 3, 16, false, 1e-7},
+                    OtherFormat{"tif", 4, 16, false, 1e-7}, OtherFormat{"tga", 3, 8, false, 1e-7},
+                    OtherFormat{"tga", 4, 8, false, 1e-7}, OtherFormat{"bmp", 3, 8, false, 1e-7},
+                    OtherFormat{"exr", 3, 8, true, 5e-4},
+                    OtherFormat{"hdr", 3, 8, true, 1.0 / 256}),
+    [](const auto& test) {
+        return test.param.ending + std::to_string(test.param.channels) + "x" +
+               std::to_string(test.param.bits);
+    });
+
+TEST(ImageReader, LinearImagesBecomeTexturesAsTheyAre) {
+    const auto [values, image] = decoded("exr", 3);
+    const Texture texture(image);
+    const Rgb texel = texture.sample(0.5 / image.width, 0.5 / image.height, {});
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(texel[c], values[c] / 255.0, 5e-4 * values[c] / 255.0);
+}
+
+TEST(ImageReader, RefusesOtherImagesThatAreDamaged) {
+    for (const std::string format : {"tif", "exr", "hdr", "bmp", "tga", "webp"}) {
+        std::vector<int> noise;
+        for (unsigned i = 0; i < 64 * 64 * 3; ++i)
+            noise.push_back(static_cast<int>(i * i * 2654435761u >> 24));
+        const std::string bytes = test::encoded_image(format, 64, 64, 3, noise);
+        const std::string name = "x." + format;
+        EXPECT_EQ(read_image(encoded_bytes(bytes), name).width, 64);
+        // In the pixels and in the header.
+        for (const std::size_t size : {bytes.size() / 2, std::size_t{20}}) {
+            const std::string message = test::message_of<InputError>(
+                [&] { read_image(encoded_bytes(bytes.substr(0, size)), name); });
+            EXPECT_TRUE(message.starts_with(name + ": ")) << message;
+            EXPECT_EQ(message.find('\n'), std::string::npos);
+        }
     }
 }
 
