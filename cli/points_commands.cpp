@@ -272,10 +272,10 @@ void run_project(const PointsArguments& a) {
         });
     write_text(a.output, table, a.quiet);
     if (a.quiet) return;
-    print_message(fmt::format(
-        "{} points: {} visible, {} behind surfaces, {} outside the image, {} without a ray\n",
-        points.row_count(), visible.load(), occluded.load(), outside.load(),
-        points.row_count() - visible - occluded - outside));
+    print_message(
+        fmt::format("{}: {} visible, {} behind surfaces, {} outside the image, {} without a ray\n",
+                    counted(points.row_count(), "point"), visible.load(), occluded.load(),
+                    outside.load(), points.row_count() - visible - occluded - outside));
 }
 
 void run_rays(const PointsArguments& a) {
@@ -302,8 +302,9 @@ void run_rays(const PointsArguments& a) {
         });
     write_text(a.output, table, a.quiet);
     if (a.quiet) return;
-    print_message(fmt::format("{} pixels: {} outside the image, {} without a ray into the water\n",
-                              pixels.row_count(), outside.load(), without_ray.load()));
+    print_message(fmt::format("{}: {} outside the image, {} without a ray into the water\n",
+                              counted(pixels.row_count(), "pixel"), outside.load(),
+                              without_ray.load()));
 }
 
 }  // namespace

@@ -44,8 +44,9 @@ DatasetFormat calibration_format() {
 
 namespace {
 
-void check_nerfstudio(const DatasetDefinition&, const SceneDesc& scene) {
-    const auto check = [](const CameraDesc& camera) {
+void check_nerfstudio(const DatasetDefinition& definition, const SceneDesc& scene) {
+    const auto check = [&](const CameraDesc& camera) {
+        if (definition.pinhole_fit && camera.port) return;  // what is fitted has none
         const auto& k = camera.distortion.k;
         if (camera.distortion.model == DistortionDesc::Model::brown_conrady &&
             (k[3] != 0 || k[4] != 0 || k[5] != 0))
@@ -102,7 +103,7 @@ void write_transforms(const CompleteSequence& sequence, SetFiles& files) {
     const DatasetDefinition& definition = sequence.definition;
     const bool has_one_camera = definition.cameras.size() == 1;
     const CameraDesc& first = sequence.records.front().camera;
-    Json json = has_one_camera ? intrinsics_json(first) : Json::object();
+    Json json = has_one_camera ? intrinsics_json(sequence.portless(0)) : Json::object();
     // It is read from here alone, for all frames.
     if (std::ranges::all_of(sequence.records, [&](const ViewRecord& record) {
             return is_fisheye_lens(record.camera) == is_fisheye_lens(first);
@@ -115,7 +116,7 @@ void write_transforms(const CompleteSequence& sequence, SetFiles& files) {
     Json frames = Json::array();
     for (const ViewRecord& record : sequence.records) {
         Json frame{{"file_path", within(sequence, "", *record.file("image"))}};
-        if (!has_one_camera) frame.update(intrinsics_json(record.camera));
+        if (!has_one_camera) frame.update(intrinsics_json(sequence.portless(record.view.camera)));
         if (const SetFile* depth = record.file("depth"))
             frame["depth_file_path"] = within(sequence, "", *depth);
         if (const SetFile* mask = record.file("mask"))
@@ -141,9 +142,10 @@ DatasetFormat nerfstudio_format() {
                 "0.001, its parser needs that value as `--depth-unit-scale-factor`. It has one "
                 "`camera_model` for all images: those of a rig that mixes fisheyes with other "
                 "lenses are read as perspective, so that such cameras need sets of their own. "
-                "Behind a port intrinsics are those in air, and `uwvdb_port`, which nerfstudio "
-                "does not read, describes the port.",
+                "Behind a port intrinsics are those in air, or fitted (above), and `uwvdb_port`, "
+                "which nerfstudio does not read, describes the port. Poses are the true camera's.",
             .needs_images = true,
+            .knows_no_port = true,
             .check = check_nerfstudio,
             .complete = write_transforms};
 }

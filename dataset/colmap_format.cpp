@@ -31,11 +31,11 @@ struct Track {
     bool is_kept() const { return places.size() > 1; }
 };
 
-std::string camera_line(std::size_t id, const CameraDesc& camera, bool with_port) {
+std::string camera_line(std::size_t id, const CameraDesc& camera) {
     const ColmapParameters model = colmap_model_of(camera);
     std::string line = fmt::format("{} {} {} {} {}", id, model.name, camera.width, camera.height,
                                    fmt::join(model.values, " "));
-    if (with_port && camera.port) {
+    if (camera.port) {
         const ColmapParameters port = port_model_of(*camera.port);
         line += fmt::format(" {} {}", port.name, fmt::join(port.values, " "));
     }
@@ -55,11 +55,13 @@ std::string cameras_text(const CompleteSequence& sequence, bool with_port) {
     text += with_port ? " [REFRAC_MODEL, REFRAC_PARAMS[]]\n" : "\n";
     text += fmt::format("# Number of cameras: {}\n", count);
     if (!with_port && has_ports(sequence))
-        text +=
-            "# These models know no port: they are those of the cameras in air. The points of\n"
-            "# images.txt are seen through the port; ../refractive/cameras.txt describes it.\n";
+        text += fmt::format(
+            "# These models know no port: they are those of the cameras {}. The points of\n"
+            "# images.txt are seen through the port; ../refractive/cameras.txt describes it.\n",
+            sequence.definition.pinhole_fit ? "fitted to the rays in water" : "in air");
     for (std::size_t camera = 0; camera < count; ++camera)
-        text += camera_line(camera + 1, sequence.at(0, camera).camera, with_port);
+        text += camera_line(camera + 1,
+                            with_port ? sequence.at(0, camera).camera : sequence.portless(camera));
     return text;
 }
 
@@ -72,8 +74,8 @@ std::vector<Track> tracks_of(const CompleteSequence& sequence,
     std::vector<Track> tracks(points.size());
     for (std::size_t i = 0; i < sequence.records.size(); ++i) {
         const ViewRecord& record = sequence.records[i];
-        CameraDesc stock = record.camera;
-        stock.port.reset();
+        CameraDesc stock = sequence.portless(record.view.camera);
+        stock.world_from_camera = record.camera.world_from_camera;
         const Camera camera(stock);
         const std::vector<Observation> seen = read_observations(observation_file(record, files));
         for (std::size_t k = 0; k < seen.size(); ++k) {
@@ -207,12 +209,13 @@ DatasetFormat colmap_format() {
                 "centre at (0.5, 0.5). Points are exact points of surfaces that do not move, "
                 "observed where the camera sees them, to 1e-6 px, in every image in which "
                 "nothing hides them. Behind a port the stock models cannot express what the "
-                "camera sees: `cameras.txt` is the camera in air, observations are those through "
-                "the port, the column ERROR says by how much they differ, and "
-                "`sparse/refractive/cameras.txt` describes the port in the words of COLMAP's "
-                "refractive fork.",
+                "camera sees: `cameras.txt` is the camera in air, or fitted (above), "
+                "observations are those through the port, the column ERROR says by how much they "
+                "differ, and `sparse/refractive/cameras.txt` describes the port in the words of "
+                "COLMAP's refractive fork. Poses are the true camera's.",
             .needs_points = true,
             .needs_images = true,
+            .knows_no_port = true,
             .check = check_one_pose,
             .write_view =
                 [](const ViewImages& images, SetFiles& files) {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 #include "core/base/json.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
+#include "core/base/text.h"
 #include "core/image/contact_sheet.h"
 #include "core/image/image_file.h"
 #include "core/scene/trajectory.h"
@@ -166,11 +168,12 @@ class Completion {
           files_(folder) {}
 
     void run(bool check) {
+        check_inputs();
         if (check) check_files();
         remove_left_overs();
         for (std::size_t draw = 0; draw < definition_.draws.size(); ++draw) complete_draw(draw);
         write_pictures();
-        files_.add_bytes("card", "README.md", data_card(set_, view_bytes_));
+        files_.add_bytes("card", "README.md", data_card(set_, first_fits_, view_bytes_));
         files_.add_bytes("manifest", "manifest.csv", manifest_.csv());
         files_.add_bytes("manifest", "manifest.json", manifest_.json());
         files_.add("set", k_dataset_file, [](const fs::path&) {});  // is there
@@ -184,6 +187,33 @@ class Completion {
         throw_if_stopped();
     }
 
+    /// Checks that all views which are there were rendered from the same files. This comes first,
+    /// since what they have in common differs as well if they were not.
+    void check_inputs() const {
+        struct InputOf {
+            std::string sum, view;  // as the first view has it that was rendered from it
+        };
+        std::map<std::string, InputOf> inputs;
+        for (std::size_t index = 0; index < definition_.view_count(); ++index) {
+            throw_if_stopped();
+            const View view = definition_.view(index);
+            const auto record = read_record(folder_, definition_, sum_, view);
+            if (!record) continue;
+            const std::string name = definition_.folder(view.draw) + definition_.stem(view);
+            for (const auto& [file, sum] : record->inputs) {
+                const auto [known, is_new] = inputs.try_emplace(file, InputOf{sum, name});
+                if (is_new || known->second.sum == sum) continue;
+                constexpr std::size_t k_shown = 12;  // digits
+                throw InputError(fmt::format(
+                    "{}: {} was rendered from another version of {} (SHA-256 {}...) than {} "
+                    "({}...); run the same command again where the right one is, which renders "
+                    "those views again that were made from others",
+                    folder_.string(), name, printable(file, 200), sum.substr(0, k_shown),
+                    known->second.view, known->second.sum.substr(0, k_shown)));
+            }
+        }
+    }
+
     /// Checks all views' files by their content.
     void check_files() {
         std::mutex mutex;
@@ -191,11 +221,7 @@ class Completion {
         std::atomic<std::size_t> done = 0;
         parallel_for(definition_.view_count(), [&](std::size_t index) {
             const View view = definition_.view(index);
-            const auto record = read_record(folder_, definition_, sum_, view);
-            const bool is_there =
-                record && std::ranges::all_of(record->files, [&](const SetFile& file) {
-                    return is_whole(folder_, file, true);
-                });
+            const bool is_there = complete_record(folder_, definition_, sum_, view).has_value();
             const std::lock_guard lock(mutex);
             if (!is_there) faulty.push_back(index);
             tell(k_checking * static_cast<double>(++done) /
@@ -232,15 +258,13 @@ class Completion {
     }
 
     void complete_draw(std::size_t draw) {
-        CompleteSequence sequence{definition_, draw, definition_.folder(draw), {}};
+        CompleteSequence sequence{definition_, draw, definition_.folder(draw), {}, {}};
         const std::size_t count = definition_.frames.size() * definition_.cameras.size();
         std::vector<std::size_t> missing;
         for (std::size_t i = draw * count; i < (draw + 1) * count; ++i) {
             const View view = definition_.view(i);
             auto record = read_record(folder_, definition_, sum_, view);
-            if (!record || !std::ranges::all_of(record->files, [&](const SetFile& file) {
-                    return is_whole(folder_, file, false);
-                })) {
+            if (!record || !record->has_all_files(folder_, false)) {
                 missing.push_back(i);
                 continue;
             }
@@ -248,20 +272,40 @@ class Completion {
         }
         refuse(std::move(missing));
         for (const ViewRecord& record : sequence.records) take(record);
+        take_shared(sequence);
+        check_pinholes(sequence);
+        if (draw == 0) first_fits_ = sequence.fits;
         for (const std::string& name : definition_.formats)
             if (const auto complete = dataset_format(name).complete) complete(sequence, files_);
-        if (needs_points()) {
-            const std::string points = definition_.folder(draw) + "views/points.csv";
-            files_.add("points", points, [](const fs::path&) {});  // is there
-        }
         tell(k_checking + (1 - k_checking) * static_cast<double>(draw + 1) /
                               static_cast<double>(definition_.draws.size() + 1));
     }
 
-    bool needs_points() const {
-        return std::ranges::any_of(definition_.formats, [](const std::string& name) {
-            return dataset_format(name).needs_points;
-        });
+    /// Lists what the views of a draw have in common, and reads the fits among it.
+    void take_shared(CompleteSequence& sequence) {
+        const std::vector<SetFile>& shared = sequence.records.front().shared;
+        std::vector<std::size_t> others;
+        for (const ViewRecord& record : sequence.records)
+            if (record.shared != shared) others.push_back(definition_.index(record.view));
+        refuse(std::move(others));
+        for (const SetFile& file : shared) {
+            files_.take(file);
+            if (file.path == pinhole_file(definition_, sequence.draw))
+                sequence.fits = read_pinholes(folder_ / file.path, definition_.cameras.size());
+        }
+    }
+
+    /// With --pinhole-fit every camera that has a port is to have been fitted.
+    void check_pinholes(const CompleteSequence& sequence) const {
+        if (!definition_.pinhole_fit) return;
+        for (std::size_t camera = 0; camera < definition_.cameras.size(); ++camera)
+            if (sequence.at(0, camera).camera.port &&
+                (camera >= sequence.fits.size() || !sequence.fits[camera]))
+                throw InputError(fmt::format(
+                    "{}{}: --pinhole-fit: there is no surface in view{}{} at whose distance a "
+                    "pinhole could be fitted; make the set without it",
+                    folder_.string(), sequence.folder.empty() ? "" : "/" + sequence.folder,
+                    definition_.has_rig() ? " of " : "", definition_.cameras[camera]));
     }
 
     void take(const ViewRecord& record) {
@@ -326,6 +370,7 @@ class Completion {
     Manifest manifest_;
     SetFiles files_;
     std::uint64_t view_bytes_ = 0;
+    PinholeFits first_fits_;  // of the first draw
     std::vector<PageView> page_;
     std::vector<fs::path> sheet_;
 };

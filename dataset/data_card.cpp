@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "core/base/text.h"
 #include "core/light/integrator_table.h"
 #include "core/light/medium.h"
 #include "dataset/camera_json.h"
@@ -129,11 +132,43 @@ std::string water_lines(const Json& water) {
 
 }  // namespace
 
-std::string counted(std::size_t number, std::string_view thing) {
-    return fmt::format("{} {}{}", number, thing, number == 1 ? "" : "s");
+namespace {
+
+/// The least and the most light left out of some views; null if they are rendered with all of it.
+Json left_out_json(const SceneDesc& first, std::span<const LightLeftOut> left_out) {
+    // The paper's image has no other light.
+    if (left_out.empty() || first.render.output == RenderDesc::Output::paper) return nullptr;
+    const auto [least, most] = std::ranges::minmax(left_out, {}, &LightLeftOut::share);
+    return {{"least", least.share},
+            {"most", most.share},
+            {"views", left_out.size()},
+            {"all_light", settings_of_all_light(first)}};
 }
 
-Json facts_of(const SceneDesc& first) {
+/// "12 % of their light" or "4 to 12 % ...", and how it is rendered.
+std::string left_out_text(const Json& left_out) {
+    const auto percent = [&](const char* key) {
+        return fmt::format("{:.0f}", 100 * left_out.at(key).get<double>());
+    };
+    const std::string least = percent("least"), most = percent("most");
+    const auto views = left_out.at("views").get<std::size_t>();
+    return fmt::format(
+        "single scattering leaves out about {} % of the light of {}, which is scattered or "
+        "reflected more than once; {} renders it",
+        least == most ? most : least + " to " + most,
+        views == 1 ? std::string("the first view") : fmt::format("the {} views looked at", views),
+        left_out.at("all_light").get<std::string>());
+}
+
+}  // namespace
+
+std::string light_note(const DatasetFile& set) {
+    const Json& left_out = set.facts.at("light_left_out");
+    if (left_out.is_null() || !LightLeftOut{left_out.at("most").get<double>()}.matters()) return {};
+    return left_out_text(left_out);
+}
+
+Json facts_of(const SceneDesc& first, std::span<const LightLeftOut> left_out) {
     Json geometry = Json::array();
     for (const GeometryDesc& entry : first.geometry)
         geometry.push_back(entry.type == GeometryDesc::Type::file ? entry.file.filename().string()
@@ -146,10 +181,34 @@ Json facts_of(const SceneDesc& first) {
             {"integrator", name_of(first.render.integrator, k_integrator_names)},
             {"scattering", name_of(scattering_of(first.render), k_scattering_names)},
             {"quality", name_of(first.render.quality, k_quality_names)},
+            {"light_left_out", left_out_json(first, left_out)},
             {"samples", samples_of(first.render)}};
 }
 
-std::string data_card(const DatasetFile& set, std::uint64_t bytes) {
+namespace {
+
+/// What formats without ports make of a camera that has one; empty for one without.
+std::string pinhole_lines(const Json& camera, const std::optional<PinholeFit>& fit,
+                          bool is_fitted) {
+    if (!fit) return {};
+    std::string text = fmt::format(
+        "  - seen through its port: surfaces {:.3g} to {:.3g} m away, {:.3g} m in the median. A "
+        "camera without port, as this one is in air, is off by {}",
+        fit->nearest, fit->farthest, fit->median, error_text(fit->in_air));
+    if (!is_fitted)
+        return text + fmt::format("; fitted (`--pinhole-fit`) it would be off by {}\n",
+                                  error_text(fit->fitted));
+    const IntrinsicsDesc& i = fit->intrinsics;
+    return text + fmt::format(
+                      "; fitted, as formats without ports have it, by {}: {}, fx {:.6g}, fy "
+                      "{:.6g}, cx {:.6g}, cy {:.6g}; k {}; p {}\n",
+                      error_text(fit->fitted), camera.at("model").get<std::string>(), i.fx, i.fy,
+                      i.cx, i.cy, numbers(fit->distortion.k), numbers(fit->distortion.p));
+}
+
+}  // namespace
+
+std::string data_card(const DatasetFile& set, const PinholeFits& fits, std::uint64_t bytes) {
     const DatasetDefinition& d = set.definition;
     std::string text = fmt::format("# Data set of {}\n\n", d.scene);
     text += fmt::format(
@@ -168,13 +227,25 @@ std::string data_card(const DatasetFile& set, std::uint64_t bytes) {
         set.facts.at("scattering").get<std::string>(), set.facts.at("quality").get<std::string>(),
         counted(set.facts.at("samples").get<std::size_t>(), "sample"),
         set.facts.at("frames_per_second").get<double>());
+    if (const Json& left_out = set.facts.at("light_left_out"); !left_out.is_null())
+        text += fmt::format("- light: {}\n", left_out_text(left_out));
     text +=
         fmt::format("- exposure of images without a sensor: R G B × {:.6g}", set.exposures.image);
     if (d.has_format("clean"))
         text += fmt::format("; of those without water × {:.6g}", set.exposures.clean);
     text += "\n";
     text += "\n## Cameras\n\n";
-    for (const Json& camera : set.facts.at("cameras")) text += camera_lines(camera);
+    for (const Json& camera : set.facts.at("cameras")) {
+        text += camera_lines(camera);
+        const auto place = std::ranges::find(d.cameras, camera.at("name").get<std::string>());
+        const auto index = static_cast<std::size_t>(place - d.cameras.begin());
+        if (index < fits.size()) text += pinhole_lines(camera, fits[index], d.pinhole_fit);
+    }
+    if (!fits.empty() && d.draws.size() > 1)
+        text +=
+            "\nWhat is seen through ports is that of the first draw; `views/pinholes.json` has "
+            "that "
+            "of each.\n";
     text +=
         "\nPoses are of a camera with x right, y down, z forward; world and units (metres) are "
         "the scene's.\n\n## Water\n\n" +
@@ -186,7 +257,8 @@ std::string data_card(const DatasetFile& set, std::uint64_t bytes) {
     for (const std::string& name : d.formats)
         text += fmt::format("- {}\n", dataset_format(name).card);
     text +=
-        "- `views/`: a JSON per view: pose, camera, time, files and their checksums.\n"
+        "- `views/`: a JSON per view: pose, camera, time, its files and those that it was rendered "
+        "from, with checksums.\n"
         "- `manifest.csv`, `manifest.json`: all views, their poses and files.\n"
         "- `SHA256SUMS`: `sha256sum -c SHA256SUMS` checks every file.\n"
         "- `index.html`: to look at; `contact_sheet.png`: the views at a glance.\n"

@@ -2,25 +2,27 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
-#include <string_view>
 
 #include "core/base/json.h"
 #include "core/scene/scene_desc.h"
 #include "dataset/definition.h"
+#include "dataset/pinhole_fit.h"
+#include "render/light_left_out.h"
 
 namespace uw {
 
-/// A number of things, in words: "1 frame", "3 frames".
-std::string counted(std::size_t number, std::string_view thing);
-
 /// What a data card says of a scene: water, lamps, cameras, what is in it and how it is rendered.
-/// `first` is the resolved
-/// scene of the set's first view.
-Json facts_of(const SceneDesc& first);
+/// `first` is the resolved scene of the set's first view, and `left_out` what some of its views
+/// leave out (estimate_light_left_out).
+Json facts_of(const SceneDesc& first, std::span<const LightLeftOut> left_out);
 
-/// The data card of a set, README.md in Markdown. `bytes` is the size of the files of
-/// all views.
-std::string data_card(const DatasetFile& set, std::uint64_t bytes);
+/// One line on the light that the images leave out, as a run says it; empty: little, or none.
+std::string light_note(const DatasetFile& set);
+
+/// The data card of a set, README.md in Markdown. `fits` are those of its first draw, and `bytes`
+/// is the size of the files of all views.
+std::string data_card(const DatasetFile& set, const PinholeFits& fits, std::uint64_t bytes);
 
 }  // namespace uw

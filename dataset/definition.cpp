@@ -105,6 +105,7 @@ Json definition_json(const DatasetDefinition& d) {
             {"exposure", optional_json(d.exposure)},
             {"depth_scale", d.depth_scale},
             {"depth_far", optional_json(d.depth_far)},
+            {"pinhole_fit", d.pinhole_fit},
             {"licence", d.licence}};
 }
 
@@ -133,6 +134,7 @@ DatasetDefinition definition_from_json(const Json& json, const std::string& subj
         optional("exposure", d.exposure);
         json.at("depth_scale").get_to(d.depth_scale);
         optional("depth_far", d.depth_far);
+        json.at("pinhole_fit").get_to(d.pinhole_fit);
         json.at("licence").get_to(d.licence);
         if (d.draws.empty() || d.frames.empty() || d.cameras.empty())
             throw InputError(subject + ": it has no views");
@@ -159,7 +161,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int k_dataset_version = 2;
+constexpr int k_dataset_version = 3;
 
 /// Whether there is anything in the folder but what AtomicFile left when it was killed.
 bool has_files(const fs::path& folder) {

@@ -43,6 +43,7 @@ struct DatasetDefinition {
     std::optional<double> exposure;                        // of tone-mapped images; none: automatic
     double depth_scale = 1000;        // of 16-bit depth [1/m], but for formats with their own
     std::optional<double> depth_far;  // beyond, depth images have nothing [m]
+    bool pinhole_fit = false;         // of cameras with ports, in formats that know none
     std::string licence;              // empty: not stated
 
     std::size_t view_count() const { return draws.size() * frames.size() * cameras.size(); }

@@ -61,22 +61,30 @@ bool needs_points(const DatasetDefinition& definition) {
     });
 }
 
+std::string portless_formats(const DatasetDefinition& definition) {
+    std::string names;
+    for (const std::string& name : definition.formats)
+        if (dataset_format(name).knows_no_port) names += (names.empty() ? "" : ",") + name;
+    return names;
+}
+
 void write_view(const std::filesystem::path& folder, const std::string& sum,
                 const ViewImages& images) {
     SetFiles files(folder);
     for (const std::string& name : images.definition.formats)
         if (const auto write = dataset_format(name).write_view) write(images, files);
-    const ViewRecord record{images.view, sum, images.time, images.camera, files.written()};
+    const ViewRecord record{images.view,   sum,           images.time,    images.camera,
+                            images.inputs, images.shared, files.written()};
     SetFiles(folder).add_bytes("record", record_file(images.definition, images.view),
                                record_text(images.definition, record));
 }
 
-bool is_view_complete(const std::filesystem::path& folder, const DatasetDefinition& definition,
-                      const std::string& sum, const View& view) {
-    const auto record = read_record(folder, definition, sum, view);
-    return record && std::ranges::all_of(record->files, [&](const SetFile& file) {
-               return is_whole(folder, file, true);
-           });
+std::optional<ViewRecord> complete_record(const std::filesystem::path& folder,
+                                          const DatasetDefinition& definition,
+                                          const std::string& sum, const View& view) {
+    auto record = read_record(folder, definition, sum, view);
+    if (record && !record->has_all_files(folder, true)) record.reset();
+    return record;
 }
 
 }  // namespace uw

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "core/scene/scene_desc.h"
 #include "core/scene/trajectory.h"
 #include "dataset/definition.h"
+#include "dataset/pinhole_fit.h"
 #include "dataset/set_files.h"
 #include "dataset/view.h"
 
@@ -21,7 +23,15 @@ struct CompleteSequence {
     std::size_t draw = 0;
     std::string folder;  // DatasetDefinition::folder
     std::vector<ViewRecord> records;
+    /// What is fitted to each camera with a port (fit_pinholes); none for any if no format asks.
+    PinholeFits fits;
 
+    /// A camera of the set without its port, as formats describe it that know none.
+    CameraDesc portless(std::size_t camera) const {
+        return without_port(at(0, camera).camera,
+                            camera < fits.size() ? fits[camera] : std::nullopt,
+                            definition.pinhole_fit);
+    }
     /// The view of a frame and a camera, by their places.
     const ViewRecord& at(std::size_t frame, std::size_t camera) const {
         return records[frame * definition.cameras.size() + camera];
@@ -56,6 +66,8 @@ struct DatasetFormat {
     std::string_view layers = {};
     bool needs_points = false;  // ViewImages::points
     bool needs_images = false;  // those of png, which is then written as well
+    /// Whether its cameras have no ports, so that --pinhole-fit may fit them.
+    bool knows_no_port = false;
     /// Throws UsageError of one line for a set that it cannot express. `scene` is that of the first
     /// view, with its rig. May be null.
     void (*check)(const DatasetDefinition& definition, const SceneDesc& scene) = nullptr;
@@ -95,14 +107,18 @@ std::string layers_of(const DatasetDefinition& definition);
 /// Whether any of its formats needs ViewImages::points.
 bool needs_points(const DatasetDefinition& definition);
 
+/// The set's formats whose cameras have no ports, as --format takes them; empty if there are none.
+std::string portless_formats(const DatasetDefinition& definition);
+
 /// Writes the files of a view in every format of its set, then its record. Throws IoError and
 /// InputError.
 void write_view(const std::filesystem::path& folder, const std::string& sum,
                 const ViewImages& images);
 
-/// Whether a view's record is there and all of its files are as they were written, by their
-/// checksums.
-bool is_view_complete(const std::filesystem::path& folder, const DatasetDefinition& definition,
-                      const std::string& sum, const View& view);
+/// The record of a view all of whose files are as they were written, by their checksums; none if
+/// there is none.
+std::optional<ViewRecord> complete_record(const std::filesystem::path& folder,
+                                          const DatasetDefinition& definition,
+                                          const std::string& sum, const View& view);
 
 }  // namespace uw

@@ -90,15 +90,10 @@ std::string cam_folder(const DatasetDefinition& definition, std::size_t draw, st
     return fmt::format("{}mav0/cam{}/", definition.folder(draw), camera);
 }
 
-CameraDesc in_air(CameraDesc camera) {
-    camera.port.reset();
-    return camera;
-}
-
 void check_euroc(const DatasetDefinition&, const SceneDesc& scene) {
     const auto check = [](const CameraDesc& camera) {
-        const std::string obstacle =
-            calibration_obstacle(CalibrationFormat::kalibr, in_air(camera));
+        const std::string obstacle = calibration_obstacle(
+            CalibrationFormat::kalibr, without_port(camera, std::nullopt, false));
         if (!obstacle.empty())
             throw UsageError(fmt::format("--format euroc: {}; leave the format out", obstacle));
     };
@@ -114,7 +109,9 @@ std::string matrix_yaml(const Affine& map) {
     return text + "0.0, 0.0, 0.0, 1.0]\n";
 }
 
-std::string camera_yaml(const CameraDesc& camera, const Affine& body_from_camera, double rate) {
+/// `note` is a comment on the intrinsics, or empty.
+std::string camera_yaml(const CameraDesc& camera, const char* note, const Affine& body_from_camera,
+                        double rate) {
     const IntrinsicsDesc& k = camera.intrinsics;
     const DistortionDesc& d = camera.distortion;
     const bool is_fisheye = d.model == DistortionDesc::Model::fisheye;
@@ -122,8 +119,7 @@ std::string camera_yaml(const CameraDesc& camera, const Affine& body_from_camera
                                                    ? std::array{d.k[0], d.k[1], d.k[2], d.k[3]}
                                                    : std::array{d.k[0], d.k[1], d.p[0], d.p[1]};
     std::string text = "# The body is the first camera.\n";
-    if (camera.port)
-        text += "# Behind a port, which this format has no words for: as it is in air.\n";
+    text += note;
     text += "sensor_type: camera\ncomment: rendered\n" + matrix_yaml(body_from_camera);
     text += fmt::format(
         "rate_hz: {:.9g}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
@@ -185,7 +181,14 @@ void write_euroc_tables(const CompleteSequence& sequence, SetFiles& files) {
         const Affine body_from_camera =
             camera == 0 ? Affine() : body_from_world * desc.world_from_camera;
         files.add_bytes("euroc", folder + "data.csv", table);
-        files.add_bytes("euroc", folder + "sensor.yaml", camera_yaml(desc, body_from_camera, rate));
+        const char* const note =
+            !desc.port ? ""
+            : definition.pinhole_fit
+                ? "# Behind a port, which this format has no words for: fitted to the rays in "
+                  "water.\n"
+                : "# Behind a port, which this format has no words for: as it is in air.\n";
+        files.add_bytes("euroc", folder + "sensor.yaml",
+                        camera_yaml(sequence.portless(camera), note, body_from_camera, rate));
     }
     const std::string folder = sequence.folder + "mav0/state_groundtruth_estimate0/";
     files.add_bytes("euroc", folder + "data.csv", truth_csv(sequence));
@@ -206,7 +209,8 @@ DatasetFormat euroc_format() {
                 "`sensor.yaml` with intrinsics (first pixel's centre at (0, 0)) and `T_BS`, and "
                 "`state_groundtruth_estimate0`. The body is the first camera. Velocities are "
                 "differences of the positions in the frames around; there is no IMU, and biases "
-                "are 0.",
+                "are 0. Behind a port intrinsics are those in air, or fitted (above).",
+            .knows_no_port = true,
             .check = check_euroc,
             .write_view = write_euroc_image,
             .complete = write_euroc_tables};

@@ -63,6 +63,28 @@ ImageChoice choice_of(const DatasetDefinition& definition, const SceneDesc& scen
             is_of_rig ? static_cast<std::size_t>(camera - scene.cameras.begin()) : 0};
 }
 
+CameraDesc camera_of_view(const DatasetDefinition& definition, const SceneDesc& scene,
+                          const View& view) {
+    SceneDesc without_light = scene;  // which is not needed, and takes time to read
+    without_light.volumes.clear();
+    return scene_of_image(without_light, choice_of(definition, scene, view)).desc().camera;
+}
+
+std::vector<ImageSight> sights_of(const Camera& camera, int side, const Surfaces& surfaces) {
+    std::vector<ImageSight> sights;
+    for (int row = 0; row < side; ++row)
+        for (int column = 0; column < side; ++column) {
+            const ImagePoint pixel{(column + 0.5) / side * camera.width(),
+                                   (row + 0.5) / side * camera.height()};
+            const auto ray = camera.refracted_ray(pixel.x, pixel.y);
+            if (!ray) continue;
+            ImageSight& sight = sights.emplace_back(pixel, *ray, SurfaceHit{});
+            if (!surfaces.closest_hit(*ray, std::numeric_limits<double>::infinity(), *sight.hit))
+                sight.hit.reset();
+        }
+    return sights;
+}
+
 std::vector<SurfacePoint> point_seeds(const DatasetDefinition& definition, std::size_t draw,
                                       const SceneDesc& scene, const Surfaces& surfaces) {
     constexpr std::size_t k_most_views = 64;
@@ -70,24 +92,15 @@ std::vector<SurfacePoint> point_seeds(const DatasetDefinition& definition, std::
     const std::size_t views = std::min(all, k_most_views);
     const auto side = static_cast<int>(
         std::sqrt(static_cast<double>(k_most_points) / static_cast<double>(views)));
-    SceneDesc without_light = scene;  // which is not needed, and takes time to read
-    without_light.volumes.clear();
     std::vector<SurfacePoint> points;
     for (std::size_t i = 0; i < views; ++i) {
         const View view = definition.view(draw * all + i * all / views);
-        const ImageScene image = scene_of_image(without_light, choice_of(definition, scene, view));
-        const Camera camera(image.desc().camera);
-        for (int row = 0; row < side; ++row)
-            for (int column = 0; column < side; ++column) {
-                const auto ray = camera.refracted_ray((column + 0.5) / side * camera.width(),
-                                                      (row + 0.5) / side * camera.height());
-                SurfaceHit hit;
-                if (!ray ||
-                    !surfaces.closest_hit(*ray, std::numeric_limits<double>::infinity(), hit))
-                    continue;
-                const SurfaceName& object = surfaces.names().objects[hit.object_id - 1];
-                if (is_still(scene.geometry[object.entry])) points.push_back({hit.position});
-            }
+        const Camera camera(camera_of_view(definition, scene, view));
+        for (const ImageSight& sight : sights_of(camera, side, surfaces)) {
+            if (!sight.hit) continue;
+            const SurfaceName& object = surfaces.names().objects[sight.hit->object_id - 1];
+            if (is_still(scene.geometry[object.entry])) points.push_back({sight.hit->position});
+        }
     }
     return points;
 }

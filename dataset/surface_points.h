@@ -3,9 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "camera/camera.h"
+#include "core/base/ray.h"
 #include "core/geometry/surfaces.h"
 #include "core/scene/scene_desc.h"
 #include "dataset/definition.h"
@@ -22,6 +25,20 @@ std::vector<SurfacePoint> read_points(const std::filesystem::path& file);
 
 /// How many surface points a draw has at most.
 inline constexpr std::size_t k_most_points = 4096;
+
+/// What a camera sees at a place of its image.
+struct ImageSight {
+    ImagePoint pixel;
+    Ray ray;                        // in the water, world space
+    std::optional<SurfaceHit> hit;  // none: no surface
+};
+
+/// What it sees in the middles of `side` times `side` equal parts of its image, where it has rays.
+std::vector<ImageSight> sights_of(const Camera& camera, int side, const Surfaces& surfaces);
+
+/// The camera of a view, with its pose, in the scene of its draw.
+CameraDesc camera_of_view(const DatasetDefinition& definition, const SceneDesc& scene,
+                          const View& view);
 
 /// Points on the surfaces that never move, evenly over the images of up to 64 views of a draw, as
 /// they are seen past the surfaces of its first frame. `scene` is the draw's, as it was

@@ -112,6 +112,14 @@ const SetFile* ViewRecord::file(std::string_view role) const {
     return found == files.end() ? nullptr : &*found;
 }
 
+bool ViewRecord::has_all_files(const std::filesystem::path& folder, bool by_content) const {
+    const auto are_whole = [&](const std::vector<SetFile>& list) {
+        return std::ranges::all_of(
+            list, [&](const SetFile& file) { return is_whole(folder, file, by_content); });
+    };
+    return are_whole(shared) && are_whole(files);
+}
+
 std::string sum_of(const DatasetDefinition& definition) {
     return sha256_of(definition_json(definition).dump());
 }
@@ -131,8 +139,11 @@ Json frame_json(const DatasetDefinition& definition, const View& view) {
 }  // namespace
 
 std::string record_text(const DatasetDefinition& definition, const ViewRecord& record) {
-    Json files = Json::array();
-    for (const SetFile& file : record.files) files.push_back(set_file_json(file));
+    const auto list = [](const std::vector<SetFile>& files) {
+        Json all = Json::array();
+        for (const SetFile& file : files) all.push_back(set_file_json(file));
+        return all;
+    };
     const View& v = record.view;
     return json_text({{"set", record.set},
                       {"draw", v.draw},
@@ -140,7 +151,9 @@ std::string record_text(const DatasetDefinition& definition, const ViewRecord& r
                       {"camera", v.camera},
                       {"time", record.time},
                       {"view", camera_json(record.camera)},
-                      {"files", files}});
+                      {"inputs", record.inputs},
+                      {"shared", list(record.shared)},
+                      {"files", list(record.files)}});
 }
 
 std::optional<ViewRecord> read_record(const std::filesystem::path& folder,
@@ -156,6 +169,9 @@ std::optional<ViewRecord> read_record(const std::filesystem::path& folder,
                        json.at("camera").get<std::size_t>()};
         json.at("time").get_to(record.time);
         record.camera = camera_from_json(json.at("view"));
+        json.at("inputs").get_to(record.inputs);
+        for (const Json& file : json.at("shared"))
+            record.shared.push_back(set_file_from_json(file));
         for (const Json& file : json.at("files")) record.files.push_back(set_file_from_json(file));
         if (record.set != sum || record.view != view ||
             json.at("frame") != frame_json(definition, view))

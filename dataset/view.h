@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -26,6 +27,10 @@ struct SurfacePoint {
     Point3 position;  // world
 };
 
+/// The checksums (SHA-256) of the files that a view was rendered from, by their names relative to
+/// the scene's folder. Those that the scene's own hash tells of are not among them.
+using InputSums = std::map<std::string, std::string>;
+
 /// A view that has been rendered: what formats write files of.
 struct ViewImages {
     const DatasetDefinition& definition;
@@ -41,6 +46,8 @@ struct ViewImages {
     ImageMetadata metadata;
     std::shared_ptr<const Surfaces> surfaces;
     std::shared_ptr<const std::vector<SurfacePoint>> points;  // null: no format needs them
+    InputSums inputs;
+    std::vector<SetFile> shared;  // see ViewRecord
 
     int width() const { return film.width(); }
     int height() const { return film.height(); }
@@ -86,10 +93,15 @@ struct ViewRecord {
     std::string set;    // the sum of the definition (sum_of)
     double time = 0;    // [s]
     CameraDesc camera;  // resolution, intrinsics, distortion, port, pose: no more of it
+    InputSums inputs;
+    /// Files that the views of a draw have in common and were made with: surface points, pinholes.
+    std::vector<SetFile> shared;
     std::vector<SetFile> files;
 
     /// The file with a role; null if there is none.
     const SetFile* file(std::string_view role) const;
+    /// Whether its files and those that it shares are whole (is_whole).
+    bool has_all_files(const std::filesystem::path& folder, bool by_content) const;
 };
 
 /// The sum by which records know their set.

@@ -38,20 +38,24 @@ std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene)
     return LightLeftOut{more / all, std::sqrt(variance) * trial.once / (all * all)};
 }
 
+std::string settings_of_all_light(const SceneDesc& scene) {
+    std::string how = "render.scattering: multiple";
+    if (!integrator_kind(scene.render.integrator).multiple_scattering)
+        how += " and render.integrator: volume";
+    if (scene.water.forward_scatter.K > 0) how += " and water.forward_scatter.K: 0";
+    return how;
+}
+
 std::optional<std::string> left_out_note(const AssembledScene& scene,
                                          const std::optional<LightLeftOut>& left_out) {
     if (!left_out || !left_out->matters()) return std::nullopt;
     const SceneDesc& desc = scene.desc();
     // The paper's image has no other.
     if (desc.render.output == RenderDesc::Output::paper) return std::nullopt;
-    std::string how = "render.scattering: multiple";
-    if (!integrator_kind(desc.render.integrator).multiple_scattering)
-        how += " and render.integrator: volume";
-    if (desc.water.forward_scatter.K > 0) how += " and water.forward_scatter.K: 0";
     return fmt::format(
         "single scattering leaves out about {:.0f} % of this image's light, which is scattered or "
         "reflected more than once; {} renders it",
-        100 * left_out->share, how);
+        100 * left_out->share, settings_of_all_light(desc));
 }
 
 }  // namespace uw

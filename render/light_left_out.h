@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "core/scene/scene_desc.h"
 #include "render/assembled_scene.h"
 
 namespace uw {
@@ -19,6 +20,10 @@ struct LightLeftOut {
 /// Estimates it by a few light paths all over the image, in a few hundredths of a second. None for
 /// a scene that is rendered with all light, or without any.
 std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene);
+
+/// What of a scene that is rendered with single scattering is to be set so that it is rendered with
+/// all light: "render.scattering: multiple".
+std::string settings_of_all_light(const SceneDesc& scene);
 
 /// One line that says so, and how to render it, where it matters.
 std::optional<std::string> left_out_note(const AssembledScene& scene,

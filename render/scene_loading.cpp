@@ -42,6 +42,21 @@ void calibrate(CameraDesc& camera, SceneDesc& scene) {
     add_to_hash(calibration->hash, scene);
 }
 
+// Finds when a glTF file's nodes move, and warns if that is at other frames than the scene's.
+void look_for_animation(GeometryDesc& geometry, SceneDesc& scene) {
+    const auto keys = gltf_keys(geometry.file);
+    if (!keys) return;
+    geometry.animation = keys->range;
+    const double fps = scene.render.fps;
+    const bool is_by_fps = scene.render.times == RenderDesc::Times::fps;
+    if (!is_by_fps || are_whole_frames(keys->times, fps)) return;
+    if (const auto rate = frame_rate_of(keys->times))
+        scene.warnings.push_back(fmt::format(
+            "{}.file: {}: its keys are those of frames at {:.5g} per second, but render.fps is "
+            "{:.5g}, so that frame n is not the file's frame n; give render.fps: {:.5g}",
+            geometry.where, printable(geometry.file.string(), 300), *rate, fps, *rate));
+}
+
 // Makes the trajectories, reading their files, and looks for animations.
 void set_in_motion(SceneDesc& scene) {
     const auto load = [&](std::optional<TrajectoryDesc>& desc) {
@@ -56,7 +71,7 @@ void set_in_motion(SceneDesc& scene) {
         load(geometry.trajectory);
         const std::string extension = geometry.file.extension().string();
         if (!geometry.is_sequence && (extension == ".gltf" || extension == ".glb"))
-            geometry.animation = gltf_time_range(geometry.file);
+            look_for_animation(geometry, scene);
     }
 }
 

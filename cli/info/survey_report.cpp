@@ -97,7 +97,9 @@ Report report_on_geometry(const AssembledScene& scene) {
     Report report(entries == 0 ? "no geometry" : "geometry");
     const auto triangles = scene.surfaces->triangle_count();
     const Bounds bounds = scene.surfaces->bounds();
-    if (entries > 0) report.say(fmt::format("{} entries, {} triangles", entries, triangles));
+    if (entries > 0)
+        report.say(fmt::format("{} {}, {}", entries, entries == 1 ? "entry" : "entries",
+                               counted(triangles, "triangle")));
     if (entries > 0 && !bounds.empty()) report.say("finite parts " + bounds_text(bounds));
     report.set({{"entries", entries}, {"triangles", triangles}, {"bounds", bounds_json(bounds)}});
     return report;
@@ -208,8 +210,8 @@ Report report_on_variations(const VariationsSurvey& survey) {
     }
     for (const DrawnRows& rows : survey.desc.together) {
         Report& part = together.emplace_back();
-        part.say(fmt::format("{}: together, one of {} rows", fmt::join(rows.keys, ", "),
-                             rows.rows.size()));
+        part.say(fmt::format("{}: together, one of {}", fmt::join(rows.keys, ", "),
+                             counted(rows.rows.size(), "row")));
         part.set({{"keys", rows.keys}, {"rows", rows.rows.size()}});
     }
     report.add("keys", keys);

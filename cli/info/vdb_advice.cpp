@@ -142,10 +142,12 @@ void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
     if (!grid.values || grid.values->active == 0 || !grid.unusable.empty()) return;
     const ValueSummary& v = *grid.values;
     if (v.nan > 0)
-        say(fmt::format("has {} NaN among its {} values: they count as 0", v.nan, v.active));
-    if (v.infinite > 0) say(fmt::format("has {} infinite values: they count as 0", v.infinite));
+        say(fmt::format("has {} NaN among its {}: counted as 0", v.nan,
+                        counted(v.active, "value")));
+    if (v.infinite > 0)
+        say(fmt::format("has {}: counted as 0", counted(v.infinite, "infinite value")));
     if (v.negative > 0 && v.negative < v.finite && !is_level_set_in_disguise(grid))
-        say(fmt::format("has {} negative values: they count as 0", v.negative));
+        say(fmt::format("has {}: counted as 0", counted(v.negative, "negative value")));
     if (v.finite > 0 && v.max <= 0)
         say(fmt::format("has no value above 0 (from {:g} to {:g}): it would be invisible", v.min,
                         v.max));

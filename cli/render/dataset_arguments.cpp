@@ -117,6 +117,9 @@ void add_output_options(Options& options, DatasetArguments& a) {
                    "scale of 16-bit depth: N per metre; default 1000");
     options.number("--depth-far", "D", a.depth_far, 0, 1e9,
                    "leave out of 16-bit depth what is farther than D metres");
+    options.flag("--pinhole-fit", a.pinhole_fit,
+                 "fit the cameras of colmap, nerfstudio and euroc, which know no port, to what is "
+                 "seen through it, instead of giving them as they are in air");
     options.text("--licence", "TEXT", a.licence, "licence of the set, for its data card");
 }
 
@@ -242,6 +245,7 @@ std::string set_options(const DatasetArguments& a, const DatasetDefinition& d) {
     if (d.exposure) add("--exposure", fmt::format("{}", *d.exposure));
     if (a.depth_scale) add("--depth-scale", fmt::format("{}", d.depth_scale));
     if (d.depth_far) add("--depth-far", fmt::format("{}", *d.depth_far));
+    if (d.pinhole_fit) text += " --pinhole-fit";
     add("--licence", d.licence);
     return text;
 }
@@ -275,6 +279,7 @@ DatasetDefinition definition_of(const DatasetArguments& a, const SceneDesc& scen
     d.exposure = a.exposure;
     if (a.depth_scale) d.depth_scale = *a.depth_scale;
     d.depth_far = a.depth_far;
+    d.pinhole_fit = a.pinhole_fit;
     d.licence = a.licence;
     if (!d.layers.empty() && !d.has_format("exr") && !d.has_format("npy"))
         throw UsageError("--layers: are those of exr and npy; add one of them to --format");

@@ -29,6 +29,7 @@ struct DatasetArguments {
     std::optional<double> exposure;      // --exposure; none: automatic
     std::optional<double> depth_scale;   // --depth-scale
     std::optional<double> depth_far;     // --depth-far
+    bool pinhole_fit = false;            // --pinhole-fit
     std::string licence;                 // --licence
     std::optional<ShardArgument> shard;  // --shard
     std::optional<int> slurm_tasks;      // --slurm: of the array job; none: render here

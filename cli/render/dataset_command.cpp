@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -24,10 +25,13 @@
 #include "dataset/data_card.h"
 #include "dataset/definition.h"
 #include "dataset/formats.h"
+#include "dataset/input_summing.h"
+#include "dataset/pinhole_fit.h"
 #include "dataset/set_files.h"
 #include "dataset/surface_points.h"
 #include "dataset/view.h"
 #include "render/image_scene.h"
+#include "render/light_left_out.h"
 #include "run/draft.h"
 #include "run/job.h"
 #include "run/run_engine.h"
@@ -58,17 +62,22 @@ class ViewClient : public RunClient {
     Progress progress_;
 };
 
-/// Finds the exposures that bring the brightest of a few views to a good brightness, by small
-/// drafts of them.
-class ExposureDrafts : public ViewClient {
+/// Looks at small drafts of a few views before the set is begun: for the exposures that bring the
+/// brightest to a good brightness, and for the light that the images leave out.
+class FirstLook : public ViewClient {
   public:
-    ExposureDrafts(const DatasetDefinition& definition, bool quiet)
-        : ViewClient(1, quiet), with_clean_(definition.has_format("clean")) {}
+    /// The exposures follow from the first `for_exposure` of the views.
+    FirstLook(const DatasetDefinition& definition, std::size_t for_exposure, std::size_t views,
+              bool quiet)
+        : ViewClient(views, quiet),
+          with_clean_(definition.has_format("clean")),
+          for_exposure_(for_exposure) {}
 
-    Exposures find(const Job& job) {
-        engine_.run(job, *this);
-        return {image_.value_or(1), clean_.value_or(1)};
-    }
+    void look(const Job& job) { engine_.run(job, *this); }
+
+    Exposures exposures() const { return {image_.value_or(1), clean_.value_or(1)}; }
+    /// Of each view; none of one that is rendered with all light.
+    const std::vector<LightLeftOut>& left_out() const { return left_out_; }
 
     WantedImage want(std::size_t /*place*/, ImageScene& scene) override {
         scene =
@@ -76,7 +85,10 @@ class ExposureDrafts : public ViewClient {
         return {{.layers = with_clean_ ? "clean" : "depth"}};
     }
 
-    ImageWork take(std::size_t /*place*/, FinishedImage image) override {
+    ImageWork take(std::size_t place, FinishedImage image) override {
+        if (const auto left_out = engine_.renderer().light_left_out())
+            left_out_.push_back(*left_out);
+        if (place >= for_exposure_) return {};
         lower(image_, image.film);
         const SceneDesc& scene = engine_.renderer().scene().desc();
         if (with_clean_)
@@ -96,8 +108,17 @@ class ExposureDrafts : public ViewClient {
     }
 
     bool with_clean_;
+    std::size_t for_exposure_;
     std::optional<double> image_, clean_;  // the least so far; none: all black
+    std::vector<LightLeftOut> left_out_;
 };
+
+bool has_port(const SceneDesc& scene) {
+    return scene.camera.port.has_value() ||
+           std::ranges::any_of(scene.cameras, [](const RigCameraDesc& entry) {
+               return entry.camera.port.has_value();
+           });
+}
 
 /// Renders views of a data set, and has them written.
 class ViewRenderer : public ViewClient {
@@ -109,7 +130,8 @@ class ViewRenderer : public ViewClient {
           folder_(arguments.image.output),
           set_(set),
           sum_(sum_of(set.definition)),
-          views_(views) {}
+          views_(views),
+          quiet_(arguments.image.quiet) {}
 
     /// Throws InputError; IoError; Interrupted, and then all views that were written are whole.
     void run(const Job& job) {
@@ -117,9 +139,9 @@ class ViewRenderer : public ViewClient {
         try {
             engine_.run(job, *this);
         } catch (const Interrupted&) {
-            throw Interrupted(
-                fmt::format("interrupted; {} of {} views are done; the same command continues",
-                            engine_.written(), views_.size()));
+            throw Interrupted(fmt::format(
+                "interrupted; {} of {} {} done; the same command continues", engine_.written(),
+                counted(views_.size(), "view"), engine_.written() == 1 ? "is" : "are"));
         }
     }
 
@@ -127,7 +149,8 @@ class ViewRenderer : public ViewClient {
     const std::vector<std::chrono::steady_clock::time_point>& ends() const { return ends_; }
 
     WantedImage want(std::size_t place, ImageScene& scene) override {
-        load_points(set_.definition.view(views_[place]).draw);
+        load_draw(set_.definition.view(views_[place]).draw);
+        inputs_ = summer_.sums_of(scene.whole(), scene.choice());
         const bool has_sensor = scene.desc().camera.sensor.has_value();
         return {{.layers = layers_of(set_.definition) + (has_sensor ? ",sensor" : "")}, has_sensor};
     }
@@ -138,11 +161,11 @@ class ViewRenderer : public ViewClient {
         const ImageScene& rendered = engine_.renderer().scene();
         const SceneDesc& scene = rendered.desc();
         const double number = definition.frames[view.frame].value_or(0);
-        const auto images = std::make_shared<ViewImages>(
-            ViewImages{definition, view, rendered.time().value_or(number / scene.render.fps),
-                       scene.camera, scene.render.colour, scene.water.bands_nm,
-                       std::move(image.film), image.plan, std::move(image.sensor), set_.exposures,
-                       std::move(image.metadata), image.surfaces, points_});
+        const auto images = std::make_shared<ViewImages>(ViewImages{
+            definition, view, rendered.time().value_or(number / scene.render.fps), scene.camera,
+            scene.render.colour, scene.water.bands_nm, std::move(image.film), image.plan,
+            std::move(image.sensor), set_.exposures, std::move(image.metadata), image.surfaces,
+            points_, std::move(inputs_), shared_});
         ends_.push_back(std::chrono::steady_clock::now());
         return {[this, images] { write_view(folder_, sum_, *images); }};
     }
@@ -153,33 +176,64 @@ class ViewRenderer : public ViewClient {
     }
 
   private:
-    /// Reads a draw's surface points, or finds and writes them.
-    void load_points(std::size_t draw) {
+    /// Finds what a draw's views have in common, its surface points and pinholes, and writes it
+    /// unless another process has. What is there already may be of other meshes.
+    void load_draw(std::size_t draw) {
+        if (draw_ == draw) return;
+        draw_ = draw;
+        shared_.clear();
         const DatasetDefinition& definition = set_.definition;
-        if (!needs_points(definition) || (points_ && draw_of_points_ == draw)) return;
-        const std::string name = points_file(definition, draw);
-        std::error_code error;
-        if (!fs::exists(folder_ / name, error)) {
-            const SceneDesc& scene = scenes_->of(static_cast<int>(draw));
-            engine_.renderer().set_scene(
-                scene_of_image(scene, choice_of(definition, scene, {draw, 0, 0})));
-            SetFiles(folder_).add_bytes(
-                "points", name,
-                points_csv(
-                    point_seeds(definition, draw, scene, *engine_.renderer().assemble().surfaces)));
+        const SceneDesc& scene = scenes_->of(static_cast<int>(draw));
+        if (needs_points(definition)) {
+            const std::string name = points_file(definition, draw);
+            share("points", name,
+                  points_csv(point_seeds(definition, draw, scene, surfaces_of(draw))));
+            points_ =
+                std::make_shared<const std::vector<SurfacePoint>>(read_points(folder_ / name));
         }
-        points_ = std::make_shared<const std::vector<SurfacePoint>>(read_points(folder_ / name));
-        draw_of_points_ = draw;
+        const std::string portless = portless_formats(definition);
+        if (portless.empty() || !has_port(scene)) return;
+        const PinholeFits fits = fit_pinholes(definition, draw, scene, surfaces_of(draw));
+        share("pinholes", pinhole_file(definition, draw), pinhole_text(fits));
+        if (!std::exchange(has_told_of_pinholes_, true)) tell_of_pinholes(portless, fits);
+    }
+
+    /// Writes a file that a draw's views have in common unless it is there as it is to be.
+    void share(const char* role, const std::string& name, const std::string& text) {
+        const SetFile file{role, name, text.size(), sha256_of(text)};
+        if (!is_whole(folder_, file, true)) SetFiles(folder_).add_bytes(role, name, text);
+        shared_.push_back(file);
+    }
+
+    /// The surfaces of a draw's first frame.
+    const Surfaces& surfaces_of(std::size_t draw) {
+        const SceneDesc& scene = scenes_->of(static_cast<int>(draw));
+        engine_.renderer().set_scene(
+            scene_of_image(scene, choice_of(set_.definition, scene, {draw, 0, 0})));
+        return *engine_.renderer().assemble().surfaces;
+    }
+
+    void tell_of_pinholes(const std::string& formats, const PinholeFits& fits) {
+        const bool is_fitted = set_.definition.pinhole_fit;
+        const std::string line = pinhole_message(formats, is_fitted, fits);
+        if (line.empty() || (is_fitted && quiet_)) return;
+        progress_.end_line();
+        print_message(fmt::format("{}: {}\n", is_fitted ? "note" : "warning", line));
     }
 
     const fs::path& folder_;
     const DatasetFile& set_;
     std::string sum_;
     const std::vector<std::size_t>& views_;
+    bool quiet_;
     JobScenes* scenes_ = nullptr;
     std::vector<std::chrono::steady_clock::time_point> ends_;
-    std::shared_ptr<const std::vector<SurfacePoint>> points_;  // null: none are needed
-    std::size_t draw_of_points_ = 0;
+    std::optional<std::size_t> draw_;                          // that of the last view
+    std::shared_ptr<const std::vector<SurfacePoint>> points_;  // of it; null: none are needed
+    std::vector<SetFile> shared_;                              // of it
+    bool has_told_of_pinholes_ = false;
+    InputSummer summer_;
+    InputSums inputs_;  // of the image that is being rendered
 };
 
 }  // namespace
@@ -196,8 +250,8 @@ void complete(const fs::path& folder, const DatasetFile& set, bool check, bool q
         throw Interrupted("interrupted; the views are there, --merge completes the set");
     }
     if (!quiet)
-        print_message(
-            fmt::format("{}: complete, {} views\n", folder.string(), set.definition.view_count()));
+        print_message(fmt::format("{}: complete, {}\n", folder.string(),
+                                  counted(set.definition.view_count(), "view")));
 }
 
 void merge(const DatasetArguments& a) {
@@ -218,6 +272,15 @@ void merge(const DatasetArguments& a) {
     complete(a.merge, *set, true, a.image.quiet);
 }
 
+void check_pinhole_fit(const DatasetDefinition& definition, const SceneDesc& scene) {
+    if (portless_formats(definition).empty())
+        throw UsageError(
+            "--pinhole-fit: is for the cameras of colmap, nerfstudio and euroc; add one of them "
+            "to --format");
+    if (!has_port(scene))
+        throw UsageError("--pinhole-fit: no camera of the scene has a port; leave it out");
+}
+
 /// Checks before the work that the first draw can be rendered in all frames and all draws written
 /// in all formats.
 void check(const DatasetDefinition& definition, JobScenes& scenes) {
@@ -226,6 +289,7 @@ void check(const DatasetDefinition& definition, JobScenes& scenes) {
     check_inputs(job);
     const SceneDesc& scene = scenes.of(0);
     const ImageScene first = scene_of_image(scene, choice_of(definition, scene, {}));
+    if (definition.pinhole_fit) check_pinhole_fit(definition, first.desc());
     for (const std::string& name : definition.formats)
         if (const auto check = dataset_format(name).check) check(definition, first.desc());
     layer_plan(first, layers_of(definition));  // throws for what does not exist
@@ -237,6 +301,12 @@ void check(const DatasetDefinition& definition, JobScenes& scenes) {
     };
     refuse_jpeg(scene.camera);
     for (const RigCameraDesc& entry : scene.cameras) refuse_jpeg(entry.camera);
+}
+
+/// "3 of 7 views are there already".
+std::string there_text(std::size_t all, std::size_t missing) {
+    return fmt::format("{} of {} {} there already\n", all - missing, counted(all, "view"),
+                       all - missing == 1 ? "is" : "are");
 }
 
 class DatasetRun {
@@ -259,6 +329,8 @@ class DatasetRun {
         begin_orderly_stop();  // or temporary files might stay
         const StopScope scope(stop_flag());
         begin(wanted);
+        const std::string light = light_note(set_);
+        if (!light.empty() && !a_.image.quiet) print_message(fmt::format("note: {}\n", light));
         if (a_.slurm_tasks)
             submit();
         else
@@ -270,9 +342,7 @@ class DatasetRun {
         const ViewRange range = shard_of(set_.definition, shard.number, shard.count);
         const std::vector<std::size_t> missing = look_for_missing(range);
         if (!a_.image.quiet && missing.size() < range.end - range.begin)
-            print_message(fmt::format("{} of {} views are there already\n",
-                                      range.end - range.begin - missing.size(),
-                                      range.end - range.begin));
+            print_message(there_text(range.end - range.begin, missing.size()));
         render(missing);
         if (shard.count == 1) complete(a_.image.output, set_, false, a_.image.quiet);
     }
@@ -286,24 +356,23 @@ class DatasetRun {
     }
 
     /// The views of `range` that are to be rendered, by their indices: those that are not there
-    /// whole, and those that an input file has changed since. Inputs that are part of the scene's
-    /// hash are part of the definition.
+    /// whole, and those that were rendered from input files with another content. Inputs that are
+    /// part of the scene's hash are part of the definition.
     std::vector<std::size_t> missing_views(ViewRange range) {
         const DatasetDefinition& definition = set_.definition;
         const fs::path& folder = a_.image.output;
         const std::string sum = sum_of(definition);
-        std::vector<char> is_there(range.end - range.begin);
-        parallel_for(is_there.size(), [&](std::size_t i) {
+        std::vector<std::optional<InputSums>> made_of(range.end - range.begin);
+        parallel_for(made_of.size(), [&](std::size_t i) {
             const View view = definition.view(range.begin + i);
-            is_there[i] = is_view_complete(folder, definition, sum, view) ? 1 : 0;
+            if (auto record = complete_record(folder, definition, sum, view))
+                made_of[i] = std::move(record->inputs);
         });
-        InputTimes inputs(scenes_);
+        InputSummer summer;
         std::vector<std::size_t> missing;
-        for (std::size_t i = 0; i < is_there.size(); ++i) {
-            const View view = definition.view(range.begin + i);
-            std::error_code error;
-            if (is_there[i] == 0 || fs::last_write_time(folder / record_file(definition, view),
-                                                        error) < inputs.last_change(image_of(view)))
+        for (std::size_t i = 0; i < made_of.size(); ++i) {
+            const JobImage image = image_of(definition.view(range.begin + i));
+            if (!made_of[i] || *made_of[i] != summer.sums_of(scenes_.of(image.scene), image.choice))
                 missing.push_back(range.begin + i);
         }
         return missing;
@@ -349,10 +418,12 @@ class DatasetRun {
         request.moments = d.view_count() / cameras;
         write_jobs(request);
         if (!a_.image.quiet)
-            print_message(fmt::format("{} tasks of {} minutes, {} threads and {} MB: {}\n",
-                                      request.tasks, task_minutes(request), measured.threads,
-                                      task_megabytes(request),
-                                      jobs_folder(request.folder).string()));
+            print_message(
+                fmt::format("{} of {}, {} and {} MB: {}\n",
+                            counted(static_cast<std::size_t>(request.tasks), "task"),
+                            counted(static_cast<std::size_t>(task_minutes(request)), "minute"),
+                            counted(static_cast<std::size_t>(measured.threads), "thread"),
+                            task_megabytes(request), jobs_folder(request.folder).string()));
         if (!a_.slurm_dry_run) print_message(submit_jobs(request) + "\n");
     }
 
@@ -366,11 +437,7 @@ class DatasetRun {
         }
         const AtomicFile probe(folder / k_dataset_file);  // before the work rather than after it
         set_.definition = wanted;
-        if (const auto& exposure = set_.definition.exposure)
-            set_.exposures = {*exposure, *exposure};
-        else
-            set_.exposures = find_exposures();
-        set_.facts = facts_of(scenes_.look_at(image_of({})).desc());
+        look_first();
         {
             const FolderLock lock(folder);  // of several that begin at once, one says what it is
             if (!read_dataset_file(folder))
@@ -381,17 +448,27 @@ class DatasetRun {
         check_same_set(folder, set_.definition, wanted);
     }
 
-    /// By drafts of a few views of the first draw.
-    Exposures find_exposures() {
+    /// Finds the exposures and facts of a new set at a few views of the first draw, one if the
+    /// exposure is given, and one view of a few other draws.
+    void look_first() {
         const DatasetDefinition& definition = set_.definition;
         const std::size_t views = definition.frames.size() * definition.cameras.size();
-        const std::size_t drafts = std::min(views, k_most_drafts);
+        const std::size_t of_first = definition.exposure ? 1 : std::min(views, k_most_drafts);
         Job job{scenes_, {}};
-        for (std::size_t i = 0; i < drafts; ++i) {
-            const std::size_t index = drafts > 1 ? i * (views - 1) / (drafts - 1) : 0;
+        for (std::size_t i = 0; i < of_first; ++i) {
+            const std::size_t index = of_first > 1 ? i * (views - 1) / (of_first - 1) : 0;
             job.images.push_back(image_of(definition.view(index)));
         }
-        return ExposureDrafts(definition, a_.image.quiet).find(job);
+        const std::size_t draws = std::min(definition.draws.size(), k_most_drafts);
+        for (std::size_t i = 1; i < draws; ++i)
+            job.images.push_back(image_of({i * (definition.draws.size() - 1) / (draws - 1), 0, 0}));
+        FirstLook first(definition, of_first, job.images.size(), a_.image.quiet);
+        first.look(job);
+        if (const auto& exposure = definition.exposure)
+            set_.exposures = {*exposure, *exposure};
+        else
+            set_.exposures = first.exposures();
+        set_.facts = facts_of(scenes_.look_at(image_of({})).desc(), first.left_out());
     }
 
     /// When each of the views was rendered.

@@ -11,6 +11,7 @@
 #include "cli/process.h"
 #include "cli/render/image_output.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/light/integrator_table.h"
 #include "render/measures/irradiance_vdb.h"
 
@@ -21,7 +22,7 @@ namespace {
 // "64 samples, error 1.83 %"; empty if no light paths have been traced.
 std::string describe(const PathAccuracy& reached) {
     if (reached.samples == 0) return {};
-    std::string text = fmt::format("{} samples", reached.samples);
+    std::string text = counted(static_cast<std::size_t>(reached.samples), "sample");
     if (reached.error) text += fmt::format(", error {:.3g} %", 100 * *reached.error);
     return text;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/image/image_file.h"
 #include "core/image/jpeg_file.h"
 #include "core/image/pixel_image.h"
@@ -29,10 +30,10 @@ void warn_of_darkness(const PixelWindow& window, std::size_t empty, bool black,
     const std::size_t pixels =
         static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
     if (empty > 0)
-        warn(
-            fmt::format("{} of {} pixels are empty (alpha 0): their rays do not pass through the "
-                        "port, or the lens's distortion leaves no ray for them",
-                        empty, pixels));
+        warn(fmt::format(
+            "{} of {} {} empty (alpha 0): no ray passes through the port there, or the lens's "
+            "distortion leaves none",
+            empty, counted(pixels, "pixel"), empty == 1 ? "is" : "are"));
     if (black && empty < pixels)
         warn(
             "the image is black: no lamp's light reaches the camera; check the "
@@ -43,9 +44,9 @@ void warn_of_darkness(const PixelWindow& window, std::size_t empty, bool black,
 void warn_of_half(const HalfLoss& loss, const SayCallback& warn) {
     if (loss.too_large > 0)
         warn(fmt::format(
-            "--precision half: {} values are too large for half floats, and infinite in "
-            "the file; use --precision float",
-            loss.too_large));
+            "--precision half: {} {} too large for half floats, and infinite in the file; use "
+            "--precision float",
+            counted(loss.too_large, "value"), loss.too_large == 1 ? "is" : "are"));
     if (loss.too_dark)
         warn(
             "--precision half: the light is so weak that half floats round it visibly; use "

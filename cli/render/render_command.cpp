@@ -23,6 +23,7 @@
 #include "core/base/error.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
+#include "core/base/text.h"
 #include "core/image/contact_sheet.h"
 #include "core/image/image_file.h"
 #include "render/image_header.h"
@@ -57,7 +58,7 @@ void leave_out_rendered(FrameSequence& sequence, RunScenes& scenes, const Render
     };
     InputTimes inputs(scenes.job());
     std::vector<int> there;  // frames of the scene itself
-    const char* noun = "";
+    bool is_of_frames = true;
     const std::size_t all = sequence.frames.size();
     std::vector<Frame> left;
     for (Frame& frame : sequence.frames) {
@@ -70,18 +71,20 @@ void leave_out_rendered(FrameSequence& sequence, RunScenes& scenes, const Render
         }
         if (rendered && !frame.variation && (there.empty() || there.back() != *frame.number))
             there.push_back(*frame.number);
-        noun = frame.variation || !frame.camera_name.empty() ? "images " : "";
+        is_of_frames = !frame.variation && frame.camera_name.empty();
         if (!rendered) left.push_back(std::move(frame));
     }
     sequence.frames = std::move(left);
     const std::size_t done = all - sequence.frames.size();
     if (done == 0 || a.quiet) return;
     const std::string which =
-        there.empty() ? fmt::format("{} of {} images are", done, all)
-                      : fmt::format("{} {} {}", there.size() == 1 ? "frame" : "frames",
-                                    format_frame_list(there), there.size() == 1 ? "is" : "are");
-    print_message(
-        fmt::format("resume: {} there already, {} {}left\n", which, sequence.frames.size(), noun));
+        there.empty()
+            ? fmt::format("{} of {} {}", done, counted(all, "image"), done == 1 ? "is" : "are")
+            : fmt::format("{} {} {}", there.size() == 1 ? "frame" : "frames",
+                          format_frame_list(there), there.size() == 1 ? "is" : "are");
+    print_message(fmt::format("resume: {} there already, {} left\n", which,
+                              is_of_frames ? std::to_string(sequence.frames.size())
+                                           : counted(sequence.frames.size(), "image")));
 }
 
 PixelWindow window_of(const RenderArguments& a, const CameraDesc& camera) {
@@ -246,8 +249,9 @@ void run_render(const RenderArguments& typed) {
     } catch (const Interrupted&) {
         write_stats();  // of the frames done
         if (done == 0) throw;
-        throw Interrupted(fmt::format("interrupted; {} of {} frames are done; --resume continues",
-                                      done, sequence.frames.size()));
+        throw Interrupted(fmt::format("interrupted; {} of {} {} done; --resume continues", done,
+                                      counted(sequence.frames.size(), "frame"),
+                                      done == 1 ? "is" : "are"));
     } catch (...) {
         write_stats();
         throw;

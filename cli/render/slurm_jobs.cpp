@@ -98,16 +98,17 @@ std::string task_script(const SlurmRequest& r) {
     return directives(r, "", task_minutes(r), "%a.log") +
            fmt::format(
                "#SBATCH --array=1-{}\n"
-               "# Measured on {} threads: {:.3g} s to the end of the first moment (all "
+               "# Measured on {}: {:.3g} s to the end of the first moment (all "
                "cameras of a frame), {:.3g} s for\n"
-               "# another, {:.0f} MB. There are {} moments, at most {} in a task. Asked for: "
-               "{:g} times that time, at\n"
+               "# another, {:.0f} MB. At most {} of {} in a task. Asked for: {:g} times that time, "
+               "at\n"
                "# least {} minutes, and {:g} times that memory, at least {} MB.\n",
-               r.tasks, m.threads, m.first_seconds, m.next_seconds,
-               static_cast<double>(m.memory_bytes) / 1048576, r.moments,
+               r.tasks, counted(static_cast<std::size_t>(m.threads), "thread"), m.first_seconds,
+               m.next_seconds, static_cast<double>(m.memory_bytes) / 1048576,
                (r.moments + static_cast<std::size_t>(r.tasks) - 1) /
                    static_cast<std::size_t>(r.tasks),
-               k_time_margin, k_least_minutes, k_memory_margin, k_least_megabytes) +
+               counted(r.moments, "moment"), k_time_margin, k_least_minutes, k_memory_margin,
+               k_least_megabytes) +
            restarting(fmt::format("{} --quiet --threads {} --shard \"$SLURM_ARRAY_TASK_ID/{}\"",
                                   r.command, m.threads, r.tasks));
 }
@@ -129,9 +130,10 @@ merge=$(sbatch --parsable --dependency="afterok:${{tasks%%;*}}" --kill-on-invali
     scancel "${{tasks%%;*}}"
     exit 1
 }}
-echo "submitted job ${{tasks%%;*}} of {} tasks, and ${{merge%%;*}}, which merges and checks"
+echo "submitted job ${{tasks%%;*}} of {}, and ${{merge%%;*}}, which merges and checks"
 )",
-                       shell_word(folder + "/tasks.sh"), shell_word(folder + "/merge.sh"), r.tasks);
+                       shell_word(folder + "/tasks.sh"), shell_word(folder + "/merge.sh"),
+                       counted(static_cast<std::size_t>(r.tasks), "task"));
 }
 
 void write_jobs(const SlurmRequest& r) {

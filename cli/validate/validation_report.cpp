@@ -11,6 +11,7 @@
 #include "cli/report.h"
 #include "cli/svg_plot.h"
 #include "core/base/output_files.h"
+#include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/image/colour.h"
 #include "core/image/image_file.h"
@@ -129,9 +130,11 @@ std::string left_uncompared(const SceneValidation& scene) {
         scene.checks, [](const Check& check) { return !check.is_compared(); });
     if (count == 0) return "";
     return fmt::format(
-        "{} of {} rows have no pixel to compare, as an edge of shadow or beam crosses every ray: "
-        "their RMS is all that was checked",
-        count, scene.checks.size());
+        "{} of {} {} no pixel to compare, as an edge of shadow or beam crosses every ray: {} RMS "
+        "is "
+        "all that was checked",
+        count, counted(scene.checks.size(), "row"), count == 1 ? "has" : "have",
+        count == 1 ? "its" : "their");
 }
 
 Table checks_of(const LightValidation& light) {

@@ -88,6 +88,13 @@ std::string alternatives(std::span<const std::string_view> words) {
     return list;
 }
 
+std::string counted(std::size_t number, std::string_view thing) {
+    std::string text = std::to_string(number) + " ";
+    text += thing;
+    if (number != 1) text += 's';
+    return text;
+}
+
 NumberText parse_number(std::string_view text, double& value) {
     const bool plus = text.starts_with('+');
     if (plus) text.remove_prefix(1);

@@ -25,6 +25,9 @@ std::string suggestion(std::string_view text, std::span<const std::string_view> 
 /// The words as "a, b or c".
 std::string alternatives(std::span<const std::string_view> words);
 
+/// A number of things in words: "1 frame", "3 frames".
+std::string counted(std::size_t number, std::string_view thing);
+
 /// The words of a table that maps words to values.
 template <class T, std::size_t N>
 constexpr std::array<std::string_view, N> words_of(

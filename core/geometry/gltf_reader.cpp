@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
+#include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "core/base/text.h"
@@ -41,31 +44,91 @@ double bound_of(const Json& input, const char* key) {
     return input.at(key).at(0).get<double>();
 }
 
-std::optional<TimeRange> time_range_of(const GltfDocument& document) {
-    std::optional<TimeRange> range;
+/// The times of the samplers that move nodes, as accessors.
+std::vector<const Json*> key_accessors(const GltfDocument& document) {
+    std::vector<const Json*> inputs;
     for (const Json& animation : document.list("animations"))
         for (const Json& channel : document.list(animation, "channels")) {
             if (!moves_node(document, channel)) continue;
             const Json& sampler = document.list(animation, "samplers")
                                       .at(document.whole_number(channel, "sampler", 0));
-            const Json& input = document.element("accessors", sampler, "input");
-            const TimeRange keys{bound_of(input, "min"), bound_of(input, "max")};
-            if (!range) range = keys;
-            range = {std::min(range->first, keys.first), std::max(range->last, keys.last)};
+            inputs.push_back(&document.element("accessors", sampler, "input"));
         }
-    return range;
+    return inputs;
+}
+
+/// All times of these accessors, ascending, each once.
+std::vector<double> times_in(const GltfDocument& document, std::vector<const Json*> inputs) {
+    try {
+        inspect_gltf(document, {});
+        std::ranges::sort(inputs);
+        inputs.erase(std::ranges::unique(inputs).begin(), inputs.end());
+        GltfBytes bytes(document);
+        std::vector<double> times;
+        for (const Json* input : inputs)
+            std::ranges::copy(bytes.floats(*input, 1), std::back_inserter(times));
+        std::ranges::sort(times);
+        times.erase(std::ranges::unique(times).begin(), times.end());
+        return times;
+    } catch (const std::exception&) {
+        return {};
+    }
 }
 
 }  // namespace
 
-std::optional<TimeRange> gltf_time_range(const std::filesystem::path& file) {
+std::optional<GltfKeys> gltf_keys(const std::filesystem::path& file) {
     try {
         // Without the word there is no need to parse what may be 100 MB.
         if (read_gltf_text(file).find("\"animations\"") == std::string::npos) return std::nullopt;
-        return time_range_of(GltfDocument(file));
+        const GltfDocument document(file);
+        const std::vector<const Json*> inputs = key_accessors(document);
+        if (inputs.empty()) return std::nullopt;
+        TimeRange range{bound_of(*inputs.front(), "min"), bound_of(*inputs.front(), "max")};
+        for (const Json* input : inputs)
+            range = {std::min(range.first, bound_of(*input, "min")),
+                     std::max(range.last, bound_of(*input, "max"))};
+        return GltfKeys{range, times_in(document, inputs)};
     } catch (const std::exception&) {
         return std::nullopt;
     }
+}
+
+bool are_whole_frames(const std::vector<double>& times, double rate) {
+    // Files hold times as 32-bit floats; exporters may have added them up.
+    constexpr double k_tolerance = 0.01;  // [frames]
+    constexpr double k_relative = 2.5e-7;
+    return std::ranges::all_of(times, [&](double time) {
+        const double frame = time * rate;
+        return std::abs(frame - std::round(frame)) <= k_tolerance + k_relative * std::abs(frame);
+    });
+}
+
+std::optional<double> frame_rate_of(const std::vector<double>& key_times) {
+    // Those of television last: of few frames they cannot be told from whole numbers.
+    constexpr double k_television = 1000.0 / 1001;
+    constexpr std::array<double, 14> k_rates{12,
+                                             15,
+                                             24,
+                                             25,
+                                             30,
+                                             48,
+                                             50,
+                                             60,
+                                             100,
+                                             120,
+                                             240,
+                                             24 * k_television,
+                                             30 * k_television,
+                                             60 * k_television};
+    for (const double rate : k_rates) {
+        if (!are_whole_frames(key_times, rate)) continue;
+        // Keys all of whose frames are even, say, are those of whole frames at half the rate, too.
+        long long common = 0;
+        for (const double time : key_times) common = std::gcd(common, std::llround(time * rate));
+        if (common == 1) return rate;
+    }
+    return std::nullopt;
 }
 
 std::vector<Affine> gltf_placements(const std::filesystem::path& file, double time) {

@@ -15,9 +15,24 @@ namespace uw {
 /// that cannot be read or is damaged; the actual reader reports what is wrong.
 std::vector<std::filesystem::path> files_named_by_gltf(const std::filesystem::path& file);
 
-/// From the first to the last key of the animations that move nodes of a glTF file; none if there
-/// are none. A file that cannot be read has none: whoever loads it says what is wrong with it.
-std::optional<TimeRange> gltf_time_range(const std::filesystem::path& file);
+/// The keys of the animations that move nodes of a glTF file.
+struct GltfKeys {
+    TimeRange range;            ///< from the first to the last
+    std::vector<double> times;  ///< of all, ascending, each once [s]; none if they cannot be read
+};
+
+/// The keys of a file; none if nothing in it moves. A file that cannot be read has none: whoever
+/// loads it says what is wrong with it.
+std::optional<GltfKeys> gltf_keys(const std::filesystem::path& file);
+
+/// The frames per second, of those that animations are made with, at which a file's keys are those
+/// of whole frames; none if there is no such rate, or if the keys, few as they are, would suit many
+/// rates. The format has times in seconds, and says nothing of frames.
+std::optional<double> frame_rate_of(const std::vector<double>& key_times);
+
+/// Whether all of these times [s] are those of whole frames at a rate, but for the rounding of
+/// files.
+bool are_whole_frames(const std::vector<double>& times, double rate);
 
 /// file_from_node of everything that a glTF file counts as an object, in the order of
 /// MeshFile::objects, where its animations have it at `time` [s]. Throws IoError, InputError.

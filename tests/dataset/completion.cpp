@@ -72,11 +72,65 @@ TEST_F(DatasetCompletion, RecordsNameTheirFramesAsTheManifestDoes) {
 }
 
 TEST_F(DatasetCompletion, CountsOneViewAsOne) {
-    make("scene.yaml", "png");
+    const test::ProgramResult made = run({"dataset", "scene.yaml", "-o", "set"});
+    EXPECT_TRUE(made.err.ends_with("set: complete, 1 view\n")) << made.err;
     EXPECT_TRUE(Json::parse(read("set/views/000000.json")).at("frame").is_null());
     EXPECT_NE(read("set/README.md").find("1 view (1 draw × 1 frame × 1 camera)"),
               std::string::npos);
     EXPECT_NE(read("set/index.html").find("<p>1 view."), std::string::npos);
+}
+
+// In water that scatters as much as it absorbs a set of single scattering lacks light, and says so.
+TEST_F(DatasetCompletion, TheCardTellsOfTheLightLeftOut) {
+    const auto said_by = [&](const std::string& folder, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"dataset",  "moving.yaml", "-o",       folder,
+                                           "--format", "png",         "--frames", "0-1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const test::ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return result.err;
+    };
+    const std::string words = "single scattering leaves out about ";
+    const std::string said = said_by("single", {});
+    const std::size_t begin = said.find("note: " + words);
+    ASSERT_NE(begin, std::string::npos) << said;
+    const std::string note = said.substr(begin + 6, said.find('\n', begin) - begin - 6);
+    EXPECT_TRUE(note.ends_with("; render.scattering: multiple renders it")) << note;
+    EXPECT_NE(read("single/README.md").find("- light: " + note + "\n"), std::string::npos);
+    // What it says is what a run of one image says.
+    const test::ProgramResult image =
+        run({"render", "moving.yaml", "--frames", "0", "-o", "x.exr"});
+    const Json left_out = Json::parse(read("single/dataset.json")).at("facts").at("light_left_out");
+    const std::size_t at = image.err.find(words);
+    ASSERT_NE(at, std::string::npos) << image.err;
+    const double percent = std::stod(image.err.substr(at + words.size()));
+    EXPECT_NEAR(percent, 100 * left_out.at("most").get<double>(), 5);
+    EXPECT_EQ(said_by("fixed", {"--exposure", "2"}).find("note: " + words), 0U);
+    // Too little to speak of: the card has it all the same.
+    EXPECT_EQ(said_by("clear", {"--set", "water.scattering.b=0.001"}).find(words),
+              std::string::npos);
+    EXPECT_NE(read("clear/README.md").find("- light: " + words), std::string::npos);
+    EXPECT_EQ(said_by("all", {"--set", "render.scattering=multiple"}).find(words),
+              std::string::npos);
+    EXPECT_EQ(read("all/README.md").find(words), std::string::npos);
+}
+
+// Draws of other waters leave out other shares: the card has the least and the most.
+TEST_F(DatasetCompletion, TheCardTellsOfTheLightThatDrawsLeaveOut) {
+    write("varied.yaml", read("scene.yaml") +
+                             "variations: {keys: {water.scattering.b: {uniform: [0.01, 0.4]}}}\n");
+    const test::ProgramResult result =
+        run({"dataset", "varied.yaml", "-o", "set", "--format", "png", "--variations", "8"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json left_out = Json::parse(read("set/dataset.json")).at("facts").at("light_left_out");
+    EXPECT_EQ(left_out.at("views"), 5);
+    EXPECT_GT(left_out.at("most").get<double>(), left_out.at("least").get<double>() + 0.02);
+    EXPECT_NE(
+        read("set/README.md")
+            .find(fmt::format("leaves out about {:.0f} to {:.0f} % of the light of the 5 views",
+                              100 * left_out.at("least").get<double>(),
+                              100 * left_out.at("most").get<double>())),
+        std::string::npos);
 }
 
 // The card's command makes the same set, to the byte.

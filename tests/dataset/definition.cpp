@@ -17,6 +17,7 @@ DatasetDefinition some_set() {
     d.cameras = {"left", "right"};
     d.formats = {"png", "depth"};
     d.depth_far = 12.5;
+    d.pinhole_fit = true;
     d.licence = "CC0";
     return d;
 }

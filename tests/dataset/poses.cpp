@@ -186,8 +186,10 @@ TEST_F(DatasetPoses, ColmapsModelReprojectsExactly) {
 }
 
 TEST_F(DatasetPoses, APortIsInTheObservationsAndDescribed) {
-    make("moving.yaml", "colmap,calibration",
-         {"--set", "camera.port={type: flat, distance: 0.02, thickness: 0.03}"});
+    const test::ProgramResult made =
+        run({"dataset", "moving.yaml", "-o", "set", "--format", "colmap,calibration", "--quiet",
+             "--set", "camera.port={type: flat, distance: 0.02, thickness: 0.03}"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
     const std::vector<ColmapImage> images = colmap_images();
     const std::map<long, ColmapPoint> points = colmap_points();
     expect_consistent(images, points);

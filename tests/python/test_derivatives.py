@@ -60,6 +60,23 @@ def test_by_coefficients_of_the_water(murky, name, path):
                  central(lambda h: rendered(scene, path, values, h), 0.004))
 
 
+@pytest.mark.parametrize("has_plume, rms, worst", [(False, 3e-3, 1e-2), (True, 4e-3, 3e-2)])
+@pytest.mark.parametrize("name, path", [("water.absorption", "water.absorption"),
+                                        ("water.scattering", "water.scattering.b")])
+def test_at_final_are_those_of_what_is_interpolated(murky, name, path, has_plume, rms, worst):
+    """Against differences at exact: those of images at final are farther off than derivatives."""
+    murky["camera.resolution"] = [24, 16]
+    scene = with_volumes(murky) if has_plume else murky
+    values = scene[path]
+    expected = central(lambda h: rendered(scene, path, values, h), 0.004)
+    derivative = RENDERER.render(scene, quality="final", derivatives=[name]).derivative(name)
+    error = np.abs(derivative - expected) / np.abs(expected).max(axis=(0, 1))
+    assert np.sqrt((error**2).mean()) < rms
+    assert error.max() < worst
+    exact = RENDERER.render(scene, quality="exact", derivatives=[name]).derivative(name)
+    assert_alike(exact, expected)
+
+
 @pytest.mark.parametrize("name, path", [
     ("small", "volumes[0].grids.array1.small"), ("large", "volumes[0].grids.array1.large")])
 def test_by_concentrations(murky, name, path):

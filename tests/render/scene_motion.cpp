@@ -207,6 +207,32 @@ TEST_F(Motion, NodesOfGltfFilesMoveWithTheFrames) {
     EXPECT_FALSE(scene_of_image(sequence, {3}).desc().geometry[0].time);
 }
 
+/// Blender's frames are 1/24 s apart in this file, which the format does not say.
+TEST_F(Motion, AtAnotherRateThanItsGltfFileIsWarnedOf) {
+    folder_.write("vehicle.gltf", vehicle_gltf());
+    const auto warnings = [&](const char* render) {
+        auto all = load(std::string("camera: {resolution: [64, 36]}\n"
+                                    "geometry: [{file: vehicle.gltf, camera: true}]\n") +
+                        render)
+                       .warnings;
+        std::erase_if(all, [](const std::string& line) {  // of a scene without water and lamps
+            return line.find("render.fps") == std::string::npos;
+        });
+        return all;
+    };
+    const auto said = warnings("");  // 25 by default
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_NE(said.front().find("geometry[0].file: "), std::string::npos) << said.front();
+    EXPECT_NE(said.front().find("vehicle.gltf: its keys are those of frames at 24 per second, but "
+                                "render.fps is 25, so that frame n is not the file's frame n; give "
+                                "render.fps: 24"),
+              std::string::npos)
+        << said.front();
+    EXPECT_TRUE(warnings("render: {fps: 24}\n").empty());
+    EXPECT_TRUE(warnings("render: {fps: 48}\n").empty());  // each of the file's, and one between
+    EXPECT_EQ(warnings("render: {fps: 30}\n").size(), 1U);
+}
+
 /// While a frame is exposed: at the time of another frame everything is where that one has it.
 TEST_F(Motion, GoesOnWhileAFrameIsExposed) {
     folder_.write("vehicle.gltf", vehicle_gltf());

@@ -279,7 +279,7 @@ TEST_F(Frames, ThatAreDoneStayWhenInterrupted) {
     const test::ProgramResult result = program.wait();
     EXPECT_EQ(result.exit_code, 130);
     EXPECT_TRUE(
-        result.err.ends_with("uwvdb: interrupted; 1 of 3 frames are done; --resume continues\n"))
+        result.err.ends_with("uwvdb: interrupted; 1 of 3 frames is done; --resume continues\n"))
         << result.err;
     EXPECT_TRUE(exists("smoke.0001.exr"));
     EXPECT_FALSE(exists("smoke.0002.exr"));

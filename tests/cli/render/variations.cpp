@@ -112,7 +112,7 @@ TEST_F(RenderedVariations, ASetContinuesWhereItStopped) {
     expect_runs({"render", "varied.yaml", "--variation", "0,2"});
     const std::string first = read("varied.v0000.exr");
     const test::ProgramResult rest = expect_runs(all);
-    EXPECT_NE(rest.err.find("resume: 2 of 3 images are there already, 1 images left"),
+    EXPECT_NE(rest.err.find("resume: 2 of 3 images are there already, 1 image left"),
               std::string::npos)
         << rest.err;
     EXPECT_TRUE(read("varied.v0000.exr") == first);

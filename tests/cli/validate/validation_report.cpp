@@ -60,11 +60,11 @@ SceneValidation edgy_scene(double rms) {
 TEST(ValidationTable, RowsWithoutAPixelAreNotPassed) {
     const std::string text = validation_table(edgy_scene(0), false);
     EXPECT_NE(text.find("-  0.0000 %      0.1 %  not compared"), std::string::npos) << text;
-    EXPECT_NE(text.find("1 of 2 rows have no pixel to compare"), std::string::npos) << text;
+    EXPECT_NE(text.find("1 of 2 rows has no pixel to compare"), std::string::npos) << text;
     EXPECT_EQ(text.find("  passed"), text.rfind("  passed")) << text;
     const std::string html = validation_page({edgy_scene(0)}, {});
     for (const char* part : {"<td>not compared</td>", "volume − reference: not compared",
-                             "<p>1 of 2 rows have no pixel"})
+                             "<p>1 of 2 rows has no pixel"})
         EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 

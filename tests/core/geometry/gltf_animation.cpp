@@ -72,10 +72,12 @@ void expect_rows(const Affine& map, const std::array<std::array<double, 4>, 3>& 
 // The file's numbers have single precision, of values up to 3.
 TEST_F(GltfAnimation, HasThePosesOfBlender) {
     const auto file = folder_.write("vehicle.gltf", test::vehicle_gltf());
-    const auto range = gltf_time_range(file);
-    ASSERT_TRUE(range);
-    EXPECT_EQ(range->first, 0);
-    EXPECT_EQ(range->last, 0.5);
+    const auto keys = gltf_keys(file);
+    ASSERT_TRUE(keys);
+    EXPECT_EQ(keys->range, (TimeRange{0, 0.5}));
+    ASSERT_EQ(keys->times.size(), 13U);
+    for (int frame = 0; frame <= 12; ++frame)
+        EXPECT_NEAR(keys->times[static_cast<std::size_t>(frame)], frame / 24.0, 1e-7);
     for (const test::VehicleFrame& frame : test::k_vehicle_frames) {
         const double time = frame.frame / 24.0;
         const GltfItems items = read_gltf_items(file, time);
@@ -93,6 +95,39 @@ TEST_F(GltfAnimation, HasThePosesOfBlender) {
     // Without a time the nodes are as they are written: as in frame 5, or before they move.
     expect_near(read_gltf_items(file).cameras.at(0).file_from_camera.offset(), {0.1, 1.3, 0.2},
                 1e-6);
+}
+
+/// The times of these frames as a file has them.
+std::vector<double> times_of(const std::vector<int>& frames, double rate) {
+    std::vector<double> times;
+    for (const int frame : frames) times.push_back(double{static_cast<float>(frame / rate)});
+    return times;
+}
+
+TEST(GltfFrameRate, IsThatOfItsKeys) {
+    std::vector<int> all;
+    for (int frame = 0; frame <= 20000; ++frame) all.push_back(frame);
+    for (const double rate : {12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 24000 / 1001.0, 30000 / 1001.0}) {
+        ASSERT_TRUE(frame_rate_of(times_of(all, rate))) << rate;
+        EXPECT_NEAR(*frame_rate_of(times_of(all, rate)), rate, 1e-9);
+    }
+    // Few keys, but not at round times.
+    EXPECT_EQ(frame_rate_of(times_of({0, 7, 24}, 24)), 24);
+    EXPECT_EQ(frame_rate_of(times_of({1, 2}, 25)), 25);
+    // They suit many rates, or none.
+    EXPECT_EQ(frame_rate_of({0, 0.5, 2}), std::nullopt);
+    EXPECT_EQ(frame_rate_of({0, 1}), std::nullopt);
+    EXPECT_EQ(frame_rate_of({0}), std::nullopt);
+    EXPECT_EQ(frame_rate_of({}), std::nullopt);
+    EXPECT_EQ(frame_rate_of({0, 0.123, 0.777}), std::nullopt);
+}
+
+TEST(GltfFrameRate, FitsWhereKeysAreWholeFrames) {
+    EXPECT_TRUE(are_whole_frames(times_of({0, 7, 13}, 24), 24));
+    EXPECT_TRUE(are_whole_frames(times_of({0, 7, 13}, 24), 48));
+    EXPECT_FALSE(are_whole_frames(times_of({0, 7, 13}, 24), 25));
+    EXPECT_FALSE(are_whole_frames(times_of({0, 7, 13}, 24), 12));
+    EXPECT_TRUE(are_whole_frames({0, 0.5, 2}, 24));
 }
 
 TEST_F(GltfAnimation, InterpolatesLinearly) {

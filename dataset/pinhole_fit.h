@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "camera/camera.h"
+#include "core/geometry/surfaces.h"
+#include "core/scene/scene_desc.h"
+#include "dataset/definition.h"
+
+namespace uw {
+
+/// A position in the image of a camera, and the point that it sees there.
+struct SeenPixel {
+    ImagePoint pixel;
+    Point3 point;  // camera frame [m]
+};
+
+/// How far a model of a camera places points from where the camera sees them [pixels]. A point that
+/// the model does not image at all counts as one that is off by the image's diagonal.
+struct ModelError {
+    double median = 0, rms = 0, worst = 0;
+
+    friend bool operator==(const ModelError&, const ModelError&) = default;
+};
+
+/// `model` has no port; its pose is not used. Precondition: `seen` is not empty.
+ModelError model_error(const CameraDesc& model, std::span<const SeenPixel> seen);
+
+/// The camera without a port, at the same place, that images these points closest to where `camera`
+/// sees them through its own (least squares): COLMAP's OPENCV_FISHEYE of a fisheye lens, else
+/// OPENCV, whose k3 is fitted as well if the lens has more than two radial coefficients. Throws
+/// InputError if the points do not determine it.
+CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen);
+
+/// A camera with a port as a model without one has it, for the surfaces that a draw's views see.
+struct PinholeFit {
+    double nearest = 0, median = 0, farthest = 0;  // surfaces, without 5 % at either end [m]
+    ModelError in_air;                             // of the camera's own lens
+    ModelError fitted;
+    IntrinsicsDesc intrinsics;  // fitted
+    DistortionDesc distortion;
+
+    friend bool operator==(const PinholeFit&, const PinholeFit&) = default;
+};
+
+/// The fits of a draw's cameras, in the order of the set; none for a camera without a port, and for
+/// one that sees no surface.
+using PinholeFits = std::vector<std::optional<PinholeFit>>;
+
+/// Fits every camera that has a port to what it sees in up to 16 of its views, evenly over the
+/// image and past the surfaces of the draw's first frame. `scene` is the draw's, as it was read.
+PinholeFits fit_pinholes(const DatasetDefinition& definition, std::size_t draw,
+                         const SceneDesc& scene, const Surfaces& surfaces);
+
+/// The file of a draw's fits, relative to the set's folder.
+std::string pinhole_file(const DatasetDefinition& definition, std::size_t draw);
+std::string pinhole_text(const PinholeFits& fits);
+/// Throws IoError, and InputError for anything but pinhole_text's of as many cameras.
+PinholeFits read_pinholes(const std::filesystem::path& file, std::size_t cameras);
+
+/// A camera as formats without ports describe it: fitted, if `is_fitted` and there is a fit, or
+/// else with its lens in air.
+CameraDesc without_port(CameraDesc camera, const std::optional<PinholeFit>& fit, bool is_fitted);
+
+/// "28.5 px in the median, 31.3 px RMS, 66.2 px at most".
+std::string error_text(const ModelError& error);
+
+/// One line about the cameras of these fits in `formats`, which know no port, for a run's messages:
+/// how far they are off as they are in air, and fitted. Empty where that does not matter.
+std::string pinhole_message(const std::string& formats, bool is_fitted, const PinholeFits& fits);
+
+}  // namespace uw
