@@ -27,7 +27,7 @@ Report report_on_grid(const VolumeReport& volume, const Medium& medium) {
         volume.file.filename().string(), volume.grid, h.x, h.y, h.z,
         volume.statistics.active_voxels, static_cast<double>(volume.bytes) / 1e6));
     const Placement& p = volume.placement;
-    const char* const up = p.up == UpAxis::z ? "z" : "y";
+    const char* const up = name_of_up(p.up);
     const char* const centering = p.centering == Centering::cell ? "cell" : "node";
     report.say(fmt::format("centering {}{}, up {}{}", centering,
                            p.automatic_centering ? " (automatic)" : "", up,

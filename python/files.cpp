@@ -83,7 +83,7 @@ py::dict inspect(const std::filesystem::path& file) {
     py::dict dict;
     dict["creator"] = inspection.header.creator;
     dict["centering"] = inspection.placement.centering == Centering::cell ? "cell" : "node";
-    dict["up"] = inspection.placement.up == UpAxis::z ? "z" : "y";
+    dict["up"] = name_of_up(inspection.placement.up);
     dict["grids"] = grids;
     return dict;
 }

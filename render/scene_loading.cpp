@@ -19,6 +19,7 @@
 #include "core/scene/scene_desc.h"
 #include "core/scene/variations.h"
 #include "core/scene/yaml_document.h"
+#include "media/volumes/fluid_domain.h"
 #include "render/image_scene.h"
 
 namespace uw {
@@ -75,8 +76,25 @@ void set_in_motion(SceneDesc& scene) {
     }
 }
 
+// Warns of caches of another frame rate than the scene's, beside which all else would drift.
+void compare_frame_rates(SceneDesc& scene) {
+    if (!has_motion(scene) || scene.render.times != RenderDesc::Times::fps) return;
+    for (const VolumeDesc& volume : scene.volumes) {
+        if (!volume.is_sequence) continue;
+        const std::vector<int> frames = frames_found(volume.file);
+        if (frames.empty()) continue;
+        const auto rate = fluid_frame_rate(file_of_frame(volume.file, frames.front()));
+        if (rate && *rate != scene.render.fps)
+            scene.warnings.push_back(fmt::format(
+                "{}: '{}' was baked at {:.4g} frames a second (with Time Scale 1), but what moves "
+                "beside it has render.fps: {:g}; set that to {:.4g}",
+                volume.where, volume.file.string(), *rate, scene.render.fps, *rate));
+    }
+}
+
 SceneDesc complete(SceneDesc scene) {
     set_in_motion(scene);
+    compare_frame_rates(scene);
     if (scene.cameras.empty()) {
         calibrate(scene.camera, scene);
         return scene;

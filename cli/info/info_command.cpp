@@ -39,15 +39,17 @@ struct InfoArguments {
     std::vector<std::string> overrides;  // --set key.path=value, of a scene
     std::optional<int> frame;            // --frame, of a sequence; else the first that exists
     bool json = false;
-    bool scene = false;  // --scene: print a whole scene instead, of a VDB file
-    fs::path picture;    // --picture: a thumbnail of that scene; empty: none
-    fs::path svg;        // --svg: the camera's path over a scene; empty: none
+    UpAxis up = UpAxis::automatic;  // --up, of a VDB file
+    bool scene = false;             // --scene: print a whole scene instead, of a VDB file
+    fs::path picture;               // --picture: a thumbnail of that scene; empty: none
+    fs::path svg;                   // --svg: the camera's path over a scene; empty: none
 };
 
 const char* const k_info_examples = R"(Examples:
   uwvdb info smoke.vdb
   uwvdb info cache/fluid_data_####.vdb --frame 30
   uwvdb info smoke.vdb --scene --picture smoke.png > scene.yaml
+  uwvdb info smoke.vdb --up z --scene > scene.yaml
   uwvdb info plume.yaml --set 'volumes[0].grids.density.large=50'
   uwvdb info plume.yaml --json
   uwvdb info dive.yaml --svg path.svg
@@ -66,6 +68,15 @@ Options info_options(InfoArguments& a) {
     options.integer("--frame", "N", a.frame, 0, 999'999'999,
                     "which frame of a sequence, or of a scene that moves; default: the first that "
                     "holds something");
+    options.parsed(
+        "--up", "x|y|z",
+        [&a](const std::string& text) {
+            if (text != "x" && text != "y" && text != "z")
+                throw UsageError(
+                    fmt::format("--up: '{}' is no axis; use x, y or z", printable(text, 300)));
+            a.up = text == "x" ? UpAxis::x : text == "y" ? UpAxis::y : UpAxis::z;
+        },
+        "for a volume: which of the file's axes points up; default: as the file tells");
     options.flag("--scene", a.scene,
                  "for a volume: print a whole scene that shows it, ready to render, and nothing "
                  "else");
@@ -143,7 +154,7 @@ SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>
 
 /// The advice on the sequence that `subject` names, and which of its frames to inspect.
 VdbAdvice advise_on_frames(const InfoArguments& a, const fs::path& name, SequenceReport& sequence) {
-    const FrameSurvey frames = survey_frames(a.subject, sequence.found);
+    const FrameSurvey frames = survey_frames(a.subject, sequence.found, a.up);
     sequence.empty = frames.empty;
     sequence.largest = largest_values(frames);
     for (const SampledFrame& frame : frames.sampled) sequence.sampled.push_back(frame.frame);
@@ -172,7 +183,7 @@ VdbSurvey survey_vdb(const InfoArguments& a) {
         refuse_frame(a.subject);
     }
     require_file(file);
-    survey.inspection = inspect_vdb(file, printable(file.filename().string(), 300));
+    survey.inspection = inspect_vdb(file, printable(file.filename().string(), 300), a.up);
     if (!is_sequence || survey.advice.map.empty()) {
         survey.advice = advise_on_vdb(survey.inspection, name);
         if (is_sequence)
@@ -263,6 +274,8 @@ std::string info_on_scene(const InfoArguments& a) {
     if (a.scene || !a.picture.empty())
         throw UsageError(fmt::format("{}: is for volumes; a scene is rendered with 'uwvdb render'",
                                      a.scene ? "--scene" : "--picture"));
+    if (a.up != UpAxis::automatic)
+        throw UsageError("--up: is for volumes; a scene says it itself, as volumes[].up");
     const SceneDesc all = load_scene(a.subject, a.overrides);
     if (!a.svg.empty() && !has_motion(all))
         throw UsageError("--svg: draws the path of a camera, but nothing in this scene moves");

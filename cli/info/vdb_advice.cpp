@@ -15,7 +15,8 @@
 #include "core/base/input_files.h"
 #include "core/base/text.h"
 #include "core/light/medium.h"
-#include "media/volumes/adaptive_domain.h"
+#include "core/scene/render_desc.h"
+#include "media/volumes/fluid_domain.h"
 #include "media/volumes/grid_field.h"
 #include "media/volumes/load_volumes.h"
 #include "media/volumes/vdb_header.h"
@@ -67,7 +68,20 @@ bool can_be_mapped(const GridInspection& grid) {
            !is_level_set_in_disguise(grid);
 }
 
-/// The likeliest concentration of those that can be mapped; nullptr if there is none.
+/// Whether it is a level set whose inside can be taken as fog. The surface of a liquid is none:
+/// what lies within is water.
+bool is_fillable(const GridInspection& grid) {
+    const std::string name = lower_case(grid.summary.base_name);
+    const bool is_liquid =
+        name.starts_with("phi") || contains_any(name, {"liquid", "fluid", "flip"});
+    const bool is_one = grid.summary.grid_class == "level set" || is_level_set_in_disguise(grid);
+    return is_one && !is_liquid && unusable_because(grid.summary, LevelSets::fog).empty() &&
+           grid.unread.empty() && grid.values && grid.values->negative > 0 &&
+           grid.values->background_value > 0 && std::isfinite(grid.values->background_value);
+}
+
+/// The likeliest concentration of those that can be mapped, or without one a level set that can be
+/// filled; nullptr if there is none.
 const GridInspection* likeliest_grid(const VdbInspection& inspection) {
     int best = 0;
     const GridInspection* chosen = nullptr;
@@ -78,7 +92,9 @@ const GridInspection* likeliest_grid(const VdbInspection& inspection) {
         best = likelihood;
         chosen = &grid;
     }
-    return chosen;
+    if (chosen != nullptr) return chosen;
+    const auto level_set = std::ranges::find_if(inspection.grids, is_fillable);
+    return level_set == inspection.grids.end() ? nullptr : &*level_set;
 }
 
 /// Decides `advice.map`, and sets `advice.bounds` to what these grids hold.
@@ -95,6 +111,18 @@ void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
                       "or .ply) and name that under geometry; for dye, sediment or bubbles in the "
                       "liquid export a fog volume.",
                       list(liquid)));
+        return;
+    }
+    if (is_fillable(*chosen)) {
+        advice.map = {chosen->summary.name};
+        advice.level_sets = LevelSets::fog;
+        advice.bounds = chosen->world_bounds;
+        advice.lines.push_back(fmt::format(
+            "Map {} as fog: it is a level set (distances to a surface), and level_set: fog fills "
+            "its inside with the value 1, which fades towards the surface within its narrow band. "
+            "If it is the surface of a solid, export that as a mesh (.glb, .obj or .ply) and name "
+            "it under geometry.",
+            list(advice.map)));
         return;
     }
     for (const GridInspection& grid : inspection.grids)
@@ -135,8 +163,9 @@ void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
     if (!grid.unusable.empty()) say(grid.unusable);
     if (grid.unusable.empty() && is_level_set_in_disguise(grid))
         say("is a level set, though its class does not say so (its inside is negative, and its "
-            "background above 0 or its name that of distances), not a concentration; export a fog "
-            "volume");
+            "background above 0 or its name that of distances), not a concentration; give its "
+            "volume "
+            "level_set: fog, which fills its inside, or export a fog volume");
     if (grid.unusable.empty() && !grid.unread.empty()) say("cannot be read: " + grid.unread);
     if (grid.active_voxels == 0) say("is empty: it has no active voxels");
     if (!grid.values || grid.values->active == 0 || !grid.unusable.empty()) return;
@@ -161,8 +190,11 @@ constexpr std::size_t k_most_faults = 3;
 /// Whether a grid of the file may hold a concentration, as far as its header tells.
 bool may_hold_something(const VdbHeader& header) {
     return std::ranges::any_of(header.grids, [](const GridSummary& grid) {
-        return unusable_because(grid).empty() && concentration_likelihood(grid.base_name) > 0 &&
-               grid.active_voxels.value_or(1) > 0;
+        const bool is_level_set =
+            grid.grid_class == "level set" && unusable_because(grid, LevelSets::fog).empty();
+        const bool may_be_mapped =
+            unusable_because(grid).empty() && concentration_likelihood(grid.base_name) > 0;
+        return (is_level_set || may_be_mapped) && grid.active_voxels.value_or(1) > 0;
     });
 }
 
@@ -195,57 +227,144 @@ bool fills_its_domain(const GridInspection& grid) {
     return true;
 }
 
-void say_adaptive_domain(const VdbInspection& inspection, VdbAdvice& advice) {
-    if (const auto domain = find_adaptive_domain(inspection.header)) {
+std::string sides_text(const Vector3& sides) {
+    return fmt::format("{:.4g} x {:.4g} x {:.4g} m", sides.x, sides.y, sides.z);
+}
+
+/// The size of Blender's voxels, which its files state as cubes.
+void say_domain(const VdbInspection& inspection, VdbAdvice& advice) {
+    const auto domain = find_fluid_domain(inspection.header);
+    if (domain && domain->is_adaptive) {
         advice.lines.push_back("The voxel size is wrong: " + domain->description() + ".");
         if (domain->voxel) return;
         const double step = std::pow(10, std::floor(std::log10(domain->largest_voxel())) - 3);
         advice.voxel_size = std::floor(domain->largest_voxel() / step + 1e-6) * step;
         return;
     }
-    for (const GridInspection& grid : inspection.grids)
-        if (grid.summary.name == advice.map.front() && fills_its_domain(grid) &&
-            !read_fluid_config(inspection.header.file))
-            advice.lines.emplace_back(
-                "It fills its domain. If 'Adaptive Domain' (Physics > Fluid > Settings) was on in "
-                "Blender, the file's voxels are too large: give voxel_size, the domain's longest "
-                "side divided by its Resolution Divisions.");
+    const auto mapped = std::ranges::find_if(inspection.grids, [&](const GridInspection& grid) {
+        return grid.summary.name == advice.map.front();
+    });
+    if (!mapped->summary.base_resolution || !mapped->summary.voxel_edge) return;
+    const std::array<std::int32_t, 3>& count = *mapped->summary.base_resolution;
+    const double edge = *mapped->summary.voxel_edge;
+    if (domain && domain->voxel) {
+        constexpr double k_rounding = 1e-5;
+        const Vector3& h = *domain->voxel;
+        if (glm::length(h - edge) > k_rounding * edge)
+            advice.lines.push_back(fmt::format(
+                "The file states voxels of {:.4g} m, but the domain's sides are no whole number of "
+                "them: {} is taken from the cache's folder config, as Blender stretches them.",
+                edge, sides_text(h)));
+        return;
+    }
+    if (fills_its_domain(*mapped) && !read_fluid_config(inspection.header.file))
+        advice.lines.emplace_back(
+            "It fills its domain. If 'Adaptive Domain' (Physics > Fluid > Settings) was on in "
+            "Blender, the file's voxels are too large: give voxel_size, the domain's longest "
+            "side divided by its Resolution Divisions.");
+    advice.lines.push_back(fmt::format(
+        "Blender stretches voxels to fill the domain, which the file does not hold: unless its "
+        "Dimensions are {} (Blender's x, y, z), keep the cache's folder config beside data, or "
+        "give transform.scale: [X/{:.6g}, Z/{:.6g}, Y/{:.6g}] of Dimensions X, Y and Z.",
+        sides_text(edge * Vector3(count[0], count[1], count[2])), edge * count[0], edge * count[2],
+        edge * count[1]));
+}
+
+/// Where Blender has the domain, in the scene's axes; empty if that is not known.
+std::optional<Affine> place_in_blender(const VdbInspection& inspection) {
+    if (inspection.placement.up != UpAxis::z) return std::nullopt;
+    const auto domain = find_fluid_domain(inspection.header);
+    if (!domain || !domain->blender_from_domain) return std::nullopt;
+    const Affine upright = upright_from_file(UpAxis::z);
+    return upright * *domain->blender_from_domain * upright.inverse();
 }
 
 /// Which way is up and where values lie, by the program that wrote the file.
 void say_axes(const VdbInspection& inspection, VdbAdvice& advice) {
     const VdbHeader& header = inspection.header;
+    const std::string up =
+        inspection.placement.automatic_up
+            ? ""
+            : fmt::format(" But --up says that it is {}.", name_of_up(inspection.placement.up));
     if (header.from_blender_fluid()) {
-        advice.lines.emplace_back(
+        advice.lines.push_back(fmt::format(
             "Up is z, values sit in the middle of cells: a cache of Blender's fluid solver, "
-            "recognised by its grids. Index (0, 0, 0) is the domain's corner; the file does not "
-            "record where that is: translate it there, (x, y, z) in Blender is [x, z, -y] here.");
-        say_adaptive_domain(inspection, advice);
+            "recognised by its grids. Index (0, 0, 0) is the domain's corner{}.{}",
+            place_in_blender(inspection)
+                ? ""
+                : "; the file does not record where that is: translate it there, (x, y, z) in "
+                  "Blender is [x, z, -y] here",
+            up));
+        say_domain(inspection, advice);
         return;
     }
     if (header.from_embergen()) {
         advice.lines.push_back(fmt::format(
             "Up is z, values sit at nodes (index i at i times the voxel): written by EmberGen, "
-            "recognised by its metadata or its grid 'flames'.{}",
+            "recognised by its metadata or its grid 'flames'.{}{}",
             lacks(inspection, "density")
                 ? " It has no density: tick that channel in the export node, if the smoke is meant."
-                : ""));
+                : "",
+            up));
         return;
     }
     const bool houdini = header.from_houdini();
+    const char* const hint =
+        houdini      ? ""
+        : up.empty() ? " If it lies on its side, ask again with --up z, or write up: z; if half a "
+                       "voxel off, centering: cell."
+                     : " If half a voxel off, write centering: cell.";
     advice.lines.push_back(fmt::format(
-        "Up is y, values sit at nodes (index i at i times the voxel): {}.{}",
+        "Up is y, values sit at nodes (index i at i times the voxel): {}.{}{}",
         houdini ? fmt::format("written by Houdini, as its creator '{}' says", header.creator)
                 : "nothing in the file says otherwise",
-        houdini ? ""
-                : " If it lies on its side, write up: z; if half a voxel off, centering: cell."));
+        up, hint));
 }
 
-/// Decides `translate`.
-void say_place(VdbAdvice& advice) {
-    const Vector3 centre = advice.scale * from_origin(advice.bounds.center());
+/// The place that a volume has by the file's transform and what is advised.
+Affine placing(const VdbAdvice& advice) {
+    return Affine::translation(advice.translate) * Affine::rotation_xyz_degrees(advice.rotate) *
+           Affine::scale(Vector3(advice.scale));
+}
+
+double rounded(double value, double step) {
+    return std::round(value / step) * step;
+}
+
+/// The angles of Affine::rotation_xyz_degrees that make this rotation.
+Vector3 angles_of(const Matrix3& rotation) {
+    const auto at = [&](int row, int column) { return rotation[column][row]; };
+    const double y = std::asin(std::clamp(-at(2, 0), -1.0, 1.0));
+    constexpr double k_upright = 1e-6;  // x and z turn about the same axis
+    if (std::cos(y) < k_upright) return Vector3(std::atan2(-at(1, 2), at(1, 1)), y, 0) / k_degree;
+    return Vector3(std::atan2(at(2, 1), at(2, 2)), y, std::atan2(at(1, 0), at(0, 0))) / k_degree;
+}
+
+/// Decides `rotate` and `translate`. `has_size`: the file's transform means something.
+void say_place(const VdbInspection& inspection, bool has_size, VdbAdvice& advice) {
+    const double side = advice.scale * longest_side(advice.bounds);
+    if (const auto place = place_in_blender(inspection)) {
+        constexpr double k_metres = 1e-6, k_degrees = 1e-4;  // of the file's floats
+        const Vector3 angles = angles_of(place->linear());
+        for (int axis = 0; axis < 3; ++axis) {
+            advice.rotate[axis] = rounded(angles[axis], k_degrees) + 0.0;
+            advice.translate[axis] = rounded(advice.scale * place->offset()[axis], k_metres) + 0.0;
+        }
+        const Vector3& t = place->offset();
+        advice.lines.push_back(fmt::format(
+            "Its domain had its corner at ({:.4g}, {:.4g}, {:.4g}) in Blender{}, as the cache's "
+            "folder config says: the block puts it there, beside what the same scene exports as "
+            ".glb.",
+            t.x, -t.z, t.y, advice.rotate == Vector3(0) ? "" : " and was turned"));
+    } else if (!has_size && advice.bounds.min.y < 0) {
+        const double step = std::pow(10, std::floor(std::log10(side)) - 3);
+        advice.translate.y = std::ceil(-advice.scale * advice.bounds.min.y / step) * step;
+        advice.lines.emplace_back(
+            "Without a size its place means nothing, either: the block puts it onto y = 0.");
+    }
+    const Vector3 centre = from_origin(placing(advice) * advice.bounds.center());
     if (!(glm::length(centre) > k_far) || !std::isfinite(glm::length(centre))) return;
-    advice.translate = -glm::round(centre);
+    advice.translate -= glm::round(centre);
     advice.lines.push_back(fmt::format(
         "It lies {:.3g} m from the origin, as if in the coordinates of a map: the block brings it "
         "to the origin; give cameras, lamps and surfaces the same translation.",
@@ -256,10 +375,10 @@ std::string size_of(const VdbAdvice& advice) {
     return fmt::format("{:.3g} m", longest_side(advice.bounds));
 }
 
-/// Decides `scale`.
-void say_size(const VdbInspection& inspection, VdbAdvice& advice) {
+/// Decides `scale`; whether the file has a size at all.
+bool say_size(const VdbInspection& inspection, VdbAdvice& advice) {
     const double side = longest_side(advice.bounds);
-    if (!(side > 0) || !std::isfinite(side)) return;
+    if (!(side > 0) || !std::isfinite(side)) return true;
     bool unit_voxels = false;
     for (const GridInspection& grid : inspection.grids)
         if (grid.summary.name == advice.map.front())
@@ -292,6 +411,7 @@ void say_size(const VdbInspection& inspection, VdbAdvice& advice) {
         advice.lines.push_back(
             fmt::format("Units are plausible: {} along its longest side.", size_of(advice)));
     }
+    return !unit_voxels;
 }
 
 /// How to blur it by its motion, if the file has velocities.
@@ -321,6 +441,18 @@ void say_motion(const VdbInspection& inspection, VdbAdvice& advice) {
                         : " Its unit is taken to be m/s."));
 }
 
+/// Decides `fps`.
+void say_frame_rate(const VdbInspection& inspection, VdbAdvice& advice) {
+    const std::optional<double> rate = fluid_frame_rate(inspection.header.file);
+    if (!rate || *rate == RenderDesc().fps) return;
+    advice.fps = rate;
+    advice.lines.push_back(
+        fmt::format("It was baked at {:.4g} frames a second (with Time Scale 1), as the cache's "
+                    "folder config says, and scenes without render.fps have {:g}: the scene that "
+                    "--scene prints has that key.",
+                    *rate, RenderDesc().fps));
+}
+
 }  // namespace
 
 std::string lower_case(std::string text) {
@@ -344,7 +476,8 @@ int concentration_likelihood(const std::string& name) {
     return 2;
 }
 
-FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vector<int>& frames) {
+FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vector<int>& frames,
+                          UpAxis up) {
     FrameSurvey survey;
     const auto guarded = [&](int frame, const auto& look) {
         const std::filesystem::path file = file_of_frame(pattern, frame);
@@ -364,7 +497,7 @@ FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vecto
     for (std::size_t n = 0; n < count; ++n) {
         const int frame = candidates[count == 1 ? 0 : n * (candidates.size() - 1) / (count - 1)];
         guarded(frame, [&](const std::filesystem::path& file, const std::string& name) {
-            SampledFrame sampled{frame, inspect_vdb(file, name)};
+            SampledFrame sampled{frame, inspect_vdb(file, name, up)};
             if (likeliest_grid(sampled.inspection) != nullptr)
                 survey.sampled.push_back(std::move(sampled));
             else
@@ -377,8 +510,10 @@ FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vecto
 
 std::vector<double> largest_values(const FrameSurvey& survey) {
     std::vector<double> values;
-    for (const SampledFrame& frame : survey.sampled)
-        values.push_back(likeliest_grid(frame.inspection)->values->max);
+    for (const SampledFrame& frame : survey.sampled) {
+        const GridInspection& grid = *likeliest_grid(frame.inspection);
+        values.push_back(is_fillable(grid) ? 1 : grid.values->max);
+    }
     return values;
 }
 
@@ -394,14 +529,12 @@ double round_to_two_digits(double value) {
     return std::round(value / power) * power;
 }
 
-Affine placing(const VdbAdvice& advice) {
-    return Affine::translation(advice.translate) * Affine::scale(Vector3(advice.scale));
-}
-
 VolumeDesc describe(const VdbInspection& inspection, const VdbAdvice& advice) {
     VolumeDesc desc;
     desc.file = inspection.header.file;
     desc.where = desc.file.filename().string();
+    desc.up = inspection.placement.up;
+    desc.level_sets = advice.level_sets;
     desc.world_from_upright = placing(advice);
     desc.voxel_size = advice.voxel_size;
     for (const std::string& name : advice.map) {
@@ -556,19 +689,20 @@ Bounds held_by(const VdbInspection& inspection, const VdbAdvice& advice) {
             // A frame that lacks one of the grids: its active voxels will do.
         }
     }
-    const auto domain = find_adaptive_domain(inspection.header);
-    const std::optional<double> voxel =
-        advice.voxel_size || !domain ? advice.voxel_size : domain->voxel;
+    const auto domain = find_fluid_domain(inspection.header);
+    const VolumeDesc desc = describe(inspection, advice);
     const Affine upright = upright_from_file(inspection.placement.up);
     Bounds bounds;
     for (const GridInspection& grid : inspection.grids) {
         if (std::ranges::count(advice.map, grid.summary.name) == 0) continue;
         if (grid.world_bounds.empty()) continue;
-        const double edge = grid.voxel_size.x;
-        const double factor = voxel ? *voxel / edge : 1;
-        const Vector3 moved = domain ? upright.apply_to_vector(edge * domain->first) : Vector3(0);
+        Affine mended;
+        if (desc.voxel_size || domain) {
+            const Affine stated = Affine::scale(grid.voxel_size);
+            mended = upright * with_voxel_size(stated, desc, domain) * (upright * stated).inverse();
+        }
         for (const Point3& corner : {grid.world_bounds.min, grid.world_bounds.max})
-            bounds.extend(at_origin_plus(factor * (from_origin(corner) + moved)));
+            bounds.extend(mended * corner);
     }
     return bounds;
 }
@@ -576,6 +710,7 @@ Bounds held_by(const VdbInspection& inspection, const VdbAdvice& advice) {
 /// How much the likeliest grid holds: the sum of its values.
 double content_of(const VdbInspection& inspection) {
     const GridInspection* const grid = likeliest_grid(inspection);
+    if (is_fillable(*grid)) return static_cast<double>(grid->values->negative);
     return grid->values->mean * static_cast<double>(grid->values->finite);
 }
 
@@ -588,15 +723,19 @@ void write_block(const VdbInspection& inspection, const std::filesystem::path& f
         yaml += fmt::format("      {}: {{small: {:g}, large: {:g}}}    # ppm per unit\n",
                             quoted(name), advice.small_ppm, advice.large_ppm);
     const Placement& p = inspection.placement;
+    if (advice.level_sets == LevelSets::fog) yaml += "    level_set: fog\n";
     yaml += fmt::format("    centering: {}\n    up: {}\n",
-                        p.centering == Centering::cell ? "cell" : "node",
-                        p.up == UpAxis::z ? "z" : "y");
+                        p.centering == Centering::cell ? "cell" : "node", name_of_up(p.up));
     if (advice.voxel_size)
         yaml +=
             fmt::format("    voxel_size: {:g}    # at most: see the advice\n", *advice.voxel_size);
     const Vector3& t = advice.translate;
-    yaml += fmt::format("    transform: {{scale: {:g}, translate: [{:.15g}, {:.15g}, {:.15g}]}}\n",
-                        advice.scale, t.x, t.y, t.z);
+    const Vector3& r = advice.rotate;
+    const std::string rotate =
+        r == Vector3(0) ? "" : fmt::format("rotate: [{:.8g}, {:.8g}, {:.8g}], ", r.x, r.y, r.z);
+    yaml +=
+        fmt::format("    transform: {{scale: {:g}, {}translate: [{:.12g}, {:.12g}, {:.12g}]}}\n",
+                    advice.scale, rotate, t.x, t.y, t.z);
 }
 
 void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice& advice) {
@@ -607,10 +746,15 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
         "#   uwvdb render scene.yaml{1}\n",
         name, is_sequence ? " --frames FIRST-LAST" : "");
     advice.scene += proposal_yaml(advice.view.proposal) + advice.volumes;
-    if (const auto& left_out = advice.view.left_out; left_out && left_out->matters())
+    const auto& left_out = advice.view.left_out;
+    const bool is_multiple = left_out && left_out->matters();
+    if (!is_multiple && !advice.fps) return;
+    advice.scene += "render:\n";
+    if (is_multiple)
         advice.scene += fmt::format(
-            "render: {{scattering: multiple}}    # single leaves out about {:.0f} % of the light\n",
+            "  scattering: multiple    # single leaves out about {:.0f} % of the light\n",
             100 * left_out->share);
+    if (advice.fps) advice.scene += fmt::format("  fps: {:.6g}\n", *advice.fps);
 }
 
 /// A scene's sea floor is often at y = 0, and hides what is below.
@@ -632,7 +776,9 @@ VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
     VdbAdvice advice;
     say_what_to_map(inspection, advice);
     say_what_to_leave(inspection, advice);
-    for (const GridInspection& grid : inspection.grids) say_what_is_wrong(grid, advice);
+    for (const GridInspection& grid : inspection.grids)
+        if (advice.level_sets == LevelSets::refused || grid.summary.name != advice.map.front())
+            say_what_is_wrong(grid, advice);
     if (advice.map.empty()) return advice;
     say_axes(inspection, advice);
     Bounds others;
@@ -640,9 +786,10 @@ VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
         others.extend(held_by(frame.inspection, advice));
     advice.bounds = held_by(inspection, advice);
     advice.bounds.extend(others);
-    say_size(inspection, advice);
-    say_place(advice);
+    const bool has_size = say_size(inspection, advice);
+    say_place(inspection, has_size, advice);
     say_motion(inspection, advice);
+    if (!frames.sampled.empty()) say_frame_rate(inspection, advice);
     choose_concentrations(inspection, others, advice);
     say_what_is_below(advice);
     write_block(inspection, file, advice);

@@ -15,9 +15,14 @@ namespace uw {
 struct VdbAdvice {
     std::vector<std::string> lines;  // one sentence or two each
     std::vector<std::string> map;    // the grids to map, as scenes address them; empty: none is fit
+    LevelSets level_sets = LevelSets::refused;  // fog where these are level sets
     std::optional<double> voxel_size;  // to give, where the file's is known to be wrong [m]
     double scale = 1;                  // to apply, 1 where the file's size is plausible
-    Vector3 translate{0};  // to apply: 0, or what brings a faraway volume to the origin [m]
+    Vector3 rotate{0};  // to apply: 0, or what the domain was turned by in Blender [degrees]
+    /// To apply: 0, or where Blender has the domain, or what brings a faraway volume to the origin,
+    /// or one without a size onto y = 0 [m].
+    Vector3 translate{0};
+    std::optional<double> fps;            // frames a second of a sequence, where its files tell
     double small_ppm = 0, large_ppm = 0;  // per unit of grid value
     std::vector<double> bands_nm;
     /// How opaque the mapped grids alone are with these concentrations, per band: through their
@@ -51,10 +56,13 @@ struct FrameSurvey {
     std::vector<std::string> faults;    // of frames that cannot be read, one line each
 };
 
-/// Reads the headers of all `frames` that exist of the sequence, and all of a few of them.
-FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vector<int>& frames);
+/// Reads the headers of all `frames` that exist of the sequence, and all of a few of them. `up`: as
+/// for inspect_vdb.
+FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vector<int>& frames,
+                          UpAxis up = UpAxis::automatic);
 
-/// The largest value of the grid likeliest to be a concentration, per sampled frame.
+/// The largest value of the grid likeliest to be a concentration, per sampled frame; 1, that of the
+/// fog, for a level set.
 std::vector<double> largest_values(const FrameSurvey& survey);
 
 /// Chooses `small_ppm` and `large_ppm` of the grids in `advice.map`, at `advice.scale`, such that

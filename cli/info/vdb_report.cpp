@@ -134,13 +134,16 @@ Report report_on_advice(const VdbSurvey& survey) {
     for (const std::string& line : advice.lines) report.say("- " + line);
     report.set({{"lines", advice.lines},
                 {"map", advice.map},
-                {"up", p.up == UpAxis::z ? "z" : "y"},
+                {"up", name_of_up(p.up)},
                 {"centering", p.centering == Centering::cell ? "cell" : "node"},
                 {"volumes", text_or_null(advice.volumes)}});
     if (advice.map.empty()) return report;
     const SceneProposal& view = advice.view.proposal;
     report.set({{"voxel_size", advice.voxel_size ? Json(*advice.voxel_size) : Json(nullptr)},
                 {"scale", advice.scale},
+                {"level_set", advice.level_sets == LevelSets::fog ? Json("fog") : Json(nullptr)},
+                {"rotate", vector_json(advice.rotate)},
+                {"fps", advice.fps ? Json(*advice.fps) : Json(nullptr)},
                 {"translate", vector_json(advice.translate)},
                 {"small_ppm", advice.small_ppm},
                 {"large_ppm", advice.large_ppm},

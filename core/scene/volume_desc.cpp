@@ -114,9 +114,10 @@ VolumeDesc read_array(ConfigMap& map, const ConfigValue& name, const SceneContex
 }
 
 VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(
-        value, {"file", "array", "grids", "centering", "up", "voxel_size", "transform", "velocity"},
-        "write {file: plume.vdb, grids: {density: {small: 2, large: 10}}}");
+    ConfigMap map(value,
+                  {"file", "array", "grids", "centering", "up", "level_set", "voxel_size",
+                   "transform", "velocity"},
+                  "write {file: plume.vdb, grids: {density: {small: 2, large: 10}}}");
     if (const auto array = map.find("array")) return read_array(map, *array, context);
     VolumeDesc volume;
     volume.where = value.location();
@@ -129,9 +130,14 @@ VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
         volume.centering = entry->choice(k_choices);
     }
     if (const auto entry = map.find("up")) {
-        constexpr std::array<std::pair<std::string_view, UpAxis>, 2> k_choices{
-            {{"y", UpAxis::y}, {"z", UpAxis::z}}};
+        constexpr std::array<std::pair<std::string_view, UpAxis>, 3> k_choices{
+            {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}}};
         volume.up = entry->choice(k_choices);
+    }
+    if (const auto entry = map.find("level_set")) {
+        constexpr std::array<std::pair<std::string_view, LevelSets>, 1> k_choices{
+            {{"fog", LevelSets::fog}}};
+        volume.level_sets = entry->choice(k_choices);
     }
     if (const auto entry = map.find("voxel_size"))
         volume.voxel_size = entry->positive("give the edge of a voxel in metres");

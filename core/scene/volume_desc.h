@@ -51,7 +51,11 @@ struct MotionDesc {
 enum class Centering { automatic, cell, node };
 
 /// Which of a file's axes points up; automatic as for Centering.
-enum class UpAxis { automatic, y, z };
+enum class UpAxis { automatic, x, y, z };
+
+/// What becomes of level sets, whose values are distances to a surface: they are refused, or their
+/// inside is taken as fog of value 1, which fades to 0 towards the surface within the narrow band.
+enum class LevelSets { refused, fog };
 
 /// A VDB or NanoVDB file whose grids add to the water, or a grid that is in memory already.
 struct VolumeDesc {
@@ -61,6 +65,7 @@ struct VolumeDesc {
     std::vector<GridMappingDesc> grids;
     Centering centering = Centering::automatic;
     UpAxis up = UpAxis::automatic;
+    LevelSets level_sets = LevelSets::refused;
     std::optional<double> voxel_size;  ///< the edge of a voxel [m], instead of the file's
     Affine world_from_upright;         ///< `transform`, applied after `up` has been rotated to y
     std::optional<MotionDesc> motion;

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/scene_limits.h"
-#include "media/volumes/adaptive_domain.h"
+#include "media/volumes/fluid_domain.h"
 #include "media/volumes/grid_field.h"
 #include "media/volumes/vdb_file.h"
 #include "media/volumes/vdb_header.h"
@@ -111,16 +111,17 @@ LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<G
     }
     const VdbHeader header = read_vdb_header(desc.file, desc.where);
     const Placement placement = decide_placement(header, desc);
-    const std::optional<AdaptiveDomain> domain = find_adaptive_domain(header);
-    if (domain && !domain->voxel && !desc.voxel_size)
+    const std::optional<FluidDomain> domain = find_fluid_domain(header);
+    if (domain && domain->is_adaptive && !domain->voxel && !desc.voxel_size)
         volume.warnings.push_back(
             fmt::format("{}: '{}': {}", desc.where, desc.file.string(), domain->description()));
     for (std::size_t g = 0; g < desc.grids.size(); ++g) {
         const GridMappingDesc& mapping = desc.grids[g];
-        LoadedGrid loaded = desc.motion && desc.motion->shutter > 0
-                                ? load_moving_grid(header, mapping.grid, mapping.where,
-                                                   *desc.motion, placement.centering)
-                                : load_grid(header, mapping.grid, mapping.where, slab_bytes);
+        LoadedGrid loaded =
+            desc.motion && desc.motion->shutter > 0
+                ? load_moving_grid(header, mapping.grid, mapping.where, *desc.motion,
+                                   placement.centering, desc.level_sets)
+                : load_grid(header, mapping.grid, mapping.where, slab_bytes, desc.level_sets);
         volume.warnings.insert(volume.warnings.end(), loaded.warnings.begin(),
                                loaded.warnings.end());
         loaded.file_from_index = with_voxel_size(loaded.file_from_index, desc, domain);
@@ -170,12 +171,13 @@ std::string describe(const Affine& file_from_index) {
 void VolumeSequenceCheck::take(const VolumeDesc& frame) {
     const VdbHeader header = read_vdb_header(frame.file, frame.where);
     // Frames of an adaptive domain may lie at different places: each is moved to its own.
-    std::optional<AdaptiveDomain> domain = find_adaptive_domain(header);
+    std::optional<FluidDomain> domain = find_fluid_domain(header);
     if (domain) domain->first = Vector3(0);
     std::vector<Affine> transforms;
     for (const GridMappingDesc& mapping : frame.grids)
         transforms.push_back(with_voxel_size(
-            read_file_from_index(header, mapping.grid, mapping.where), frame, domain));
+            read_file_from_index(header, mapping.grid, mapping.where, frame.level_sets), frame,
+            domain));
     if (transforms_.empty()) {
         first_ = frame;
         transforms_ = std::move(transforms);
@@ -183,7 +185,7 @@ void VolumeSequenceCheck::take(const VolumeDesc& frame) {
     }
     for (std::size_t g = 0; g < transforms.size(); ++g) {
         if (same_place(transforms_.at(g), transforms[g])) continue;
-        if (domain)
+        if (domain && domain->is_adaptive)
             throw InputError(fmt::format("{}: '{}': {}", frame.grids[g].where, frame.file.string(),
                                          domain->description()));
         throw InputError(

@@ -228,7 +228,9 @@ void check_loaded(const VdbHeader& header, const GridSummary& grid, const std::s
     if (classless && loaded.statistics.background > 0 && negative > 0)
         throw InputError(fmt::format(
             "{}is a level set, though its class is '{}' (background {:g}, {} negative voxels), not "
-            "a concentration; export a fog volume; the file has {}",
+            "a concentration; give its volume level_set: fog, which fills its inside, or export a "
+            "fog "
+            "volume; the file has {}",
             prefix, grid.grid_class, loaded.statistics.background, negative,
             header.describe_grids()));
     if (is_flat(loaded.file_from_index.linear()))
@@ -246,10 +248,16 @@ Placement decide_placement(const VdbHeader& header, const VolumeDesc& desc) {
     return placement;
 }
 
+const char* name_of_up(UpAxis up) {
+    return up == UpAxis::x ? "x" : up == UpAxis::z ? "z" : "y";
+}
+
 Affine upright_from_file(UpAxis up) {
     // Column by column: x stays, the file's y becomes -z, its z becomes y.
     const Affine upright_from_z_up(Matrix3(1, 0, 0, 0, 0, -1, 0, 1, 0), Vector3(0.0));
-    return up == UpAxis::z ? upright_from_z_up : Affine();
+    // The file's x becomes y, its y becomes z, its z becomes x.
+    const Affine upright_from_x_up(Matrix3(0, 1, 0, 0, 0, 1, 1, 0, 0), Vector3(0.0));
+    return up == UpAxis::z ? upright_from_z_up : up == UpAxis::x ? upright_from_x_up : Affine();
 }
 
 Affine world_from_index(const LoadedGrid& grid, const Placement& placement,

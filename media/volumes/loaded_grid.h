@@ -127,13 +127,16 @@ void check_loaded(const VdbHeader& header, const GridSummary& grid, const std::s
 /// How a file's grids are placed, with `automatic` resolved.
 struct Placement {
     Centering centering = Centering::node;  // cell: value (i, j, k) sits at index i + 1/2; node: i
-    UpAxis up = UpAxis::y;                  // z: the file's (x, y, z) is the scene's (x, z, -y)
+    UpAxis up = UpAxis::y;  // z: the file's (x, y, z) is the scene's (x, z, -y); x: (z, x, y)
     bool automatic_centering = false, automatic_up = false;  // decided from the file, not the scene
 };
 
 /// Automatic means cell and z for caches of Blender's fluid solver, node and z for what EmberGen
 /// exports, node and y for all others.
 Placement decide_placement(const VdbHeader& header, const VolumeDesc& desc);
+
+/// How scenes call an axis: "x", "y" or "z".
+const char* name_of_up(UpAxis up);
 
 /// Rotates the file's up axis to y.
 Affine upright_from_file(UpAxis up);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
+#include <openvdb/tools/LevelSetUtil.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,26 +22,52 @@
 namespace uw {
 
 Affine read_file_from_index(const VdbHeader& header, const std::string& name,
-                            const SourceLocation& where) {
+                            const SourceLocation& where, LevelSets level_sets) {
     initialize_openvdb();
-    const GridSummary& grid = select_grid(header, name, where);
+    const GridSummary& grid = select_grid(header, name, where, level_sets);
     return read_guarded(describe_grid_place(header, grid, where),
                         [&] { return to_affine(*read_transform(header, grid, where)); });
 }
 
+namespace {
+
+constexpr std::size_t k_whole = std::numeric_limits<std::size_t>::max();  // slab
+
+/// What `slab` holds as concentrations, which is all of the grid where level sets become fog.
+openvdb::FloatGrid::Ptr concentrations_of(const openvdb::GridBase::Ptr& slab,
+                                          const GridSummary& grid, const std::string& prefix,
+                                          LevelSets level_sets, double& background) {
+    background = background_of(*slab);
+    openvdb::FloatGrid::Ptr values = to_float(slab);
+    if (level_sets == LevelSets::refused) return values;
+    const bool can_be_one = grid.grid_class == "level set" || grid.grid_class == "unknown";
+    if (!can_be_one || !(background > 0) || !std::isfinite(background))
+        throw InputError(fmt::format(
+            "{}is no level set (its class is '{}', its background {:g}), so that level_set: fog "
+            "cannot apply; leave that key out, or give the grid a volume of its own",
+            prefix, grid.grid_class, background));
+    openvdb::tools::sdfToFogVolume(*values, static_cast<float>(background));
+    background = 0;
+    return values;
+}
+
+}  // namespace
+
 LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,
-                     std::size_t slab_bytes) {
+                     std::size_t slab_bytes, LevelSets level_sets) {
     initialize_openvdb();
-    const GridSummary& grid = select_grid(header, name, where);
+    const GridSummary& grid = select_grid(header, name, where, level_sets);
     const std::string prefix = describe_grid_place(header, grid, where);
     LoadedGrid loaded;
     loaded.name = grid.name;
     GridIntake intake;
     read_guarded(prefix, [&] {
-        read_slabs(header, grid, slab_bytes, where, [&](const openvdb::GridBase::Ptr& slab) {
+        const std::size_t bytes = level_sets == LevelSets::fog ? k_whole : slab_bytes;
+        read_slabs(header, grid, bytes, where, [&](const openvdb::GridBase::Ptr& slab) {
             loaded.file_from_index = to_affine(slab->transform());
-            loaded.statistics.background = background_of(*slab);
-            intake.add(take_slab(to_float(slab), loaded.bricks));
+            intake.add(take_slab(
+                concentrations_of(slab, grid, prefix, level_sets, loaded.statistics.background),
+                loaded.bricks));
         });
     });
     loaded.statistics = intake.statistics(loaded.statistics.background);
@@ -132,14 +159,14 @@ std::vector<openvdb::Coord> blocks_in_reach(const openvdb::FloatGrid& density,
 
 /// Reads the whole density, sanitized, with its uniform regions expanded to voxels.
 openvdb::FloatGrid::Ptr read_density(const VdbHeader& header, const GridSummary& grid,
-                                     const SourceLocation& where, LoadedGrid& loaded) {
+                                     const SourceLocation& where, LevelSets level_sets,
+                                     LoadedGrid& loaded) {
     openvdb::FloatGrid::Ptr density;
-    read_slabs(header, grid, std::numeric_limits<std::size_t>::max(), where,
-               [&](const openvdb::GridBase::Ptr& slab) {
-                   loaded.file_from_index = to_affine(slab->transform());
-                   loaded.statistics.background = background_of(*slab);
-                   density = to_float(slab);
-               });
+    const std::string prefix = describe_grid_place(header, grid, where);
+    read_slabs(header, grid, k_whole, where, [&](const openvdb::GridBase::Ptr& slab) {
+        loaded.file_from_index = to_affine(slab->transform());
+        density = concentrations_of(slab, grid, prefix, level_sets, loaded.statistics.background);
+    });
     loaded.statistics = sanitize(density->tree()).statistics(loaded.statistics.background);
     constexpr std::uint64_t k_bytes_per_voxel = 2 * sizeof(float);  // the grid and its average
     if (density->baseTree().activeVoxelCount() > available_memory_bytes() / k_bytes_per_voxel)
@@ -179,14 +206,15 @@ openvdb::FloatGrid::Ptr average(const openvdb::FloatGrid& density, const Velocit
 
 LoadedGrid load_moving_grid(const VdbHeader& header, const std::string& name,
                             const SourceLocation& where, const MotionDesc& motion,
-                            Centering centering) {
+                            Centering centering, LevelSets level_sets) {
     initialize_openvdb();
-    const GridSummary& grid = select_grid(header, name, where);
+    const GridSummary& grid = select_grid(header, name, where, level_sets);
     const std::string prefix = describe_grid_place(header, grid, where);
     LoadedGrid loaded;
     loaded.name = grid.name;
     read_guarded(prefix, [&] {
-        const openvdb::FloatGrid::Ptr density = read_density(header, grid, where, loaded);
+        const openvdb::FloatGrid::Ptr density =
+            read_density(header, grid, where, level_sets, loaded);
         check_loaded(header, grid, prefix, loaded);
         const VelocityField velocity(motion, centering);
         const openvdb::Vec3d way = furthest_way(velocity, loaded, motion);

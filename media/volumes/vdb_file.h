@@ -14,13 +14,15 @@ inline constexpr std::size_t k_default_slab_bytes = std::size_t{256} << 20;
 /// Reads one grid of `header.file`. Voxels are processed in slabs of at most about `slab_bytes` of
 /// 32-bit values (but no less than an eighth of the grid); the result is 16-bit. Throws InputError
 /// starting with `where` if it cannot be used (see select_grid), is an undeclared level set, or
-/// cannot be decoded.
+/// cannot be decoded. With LevelSets::fog, a level set is read whole and its inside taken as fog,
+/// as openvdb::tools::sdfToFogVolume does; other grids are then refused.
 LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const SourceLocation& where,
-                     std::size_t slab_bytes = k_default_slab_bytes);
+                     std::size_t slab_bytes = k_default_slab_bytes,
+                     LevelSets level_sets = LevelSets::refused);
 
 /// Only the transform of a grid (LoadedGrid::file_from_index). Throws as load_grid.
 Affine read_file_from_index(const VdbHeader& header, const std::string& name,
-                            const SourceLocation& where);
+                            const SourceLocation& where, LevelSets level_sets = LevelSets::refused);
 
 /// Reads one grid as load_grid does, averaged over the exposure time: every voxel's value is the
 /// mean of those advected there from -shutter/2 to +shutter/2 ("Eulerian Motion Blur", Kim and Ko
@@ -30,6 +32,6 @@ Affine read_file_from_index(const VdbHeader& header, const std::string& name,
 /// the grid by more than 128 voxels.
 LoadedGrid load_moving_grid(const VdbHeader& header, const std::string& name,
                             const SourceLocation& where, const MotionDesc& motion,
-                            Centering centering);
+                            Centering centering, LevelSets level_sets = LevelSets::refused);
 
 }  // namespace uw

@@ -416,7 +416,7 @@ std::string did_you_mean(const VdbHeader& header, const std::string& name) {
 
 }  // namespace
 
-std::string unusable_because(const GridSummary& grid) {
+std::string unusable_because(const GridSummary& grid, LevelSets level_sets) {
     if (grid.value_type.starts_with("ptdataidx") || grid.value_type.starts_with("ptidx"))
         return "holds points, not a concentration; rasterise them to a fog volume first";
     if (grid.value_type.starts_with("vec"))
@@ -426,15 +426,16 @@ std::string unusable_because(const GridSummary& grid) {
         return fmt::format(
             "has values of type {}; concentrations are float or double{}", grid.value_type,
             grid.tree_type.empty() ? ", or in NanoVDB also fp4, fp8, fp16 and fpN" : "");
-    if (grid.grid_class == "level set")
-        return "is a level set (distances to a surface), not a concentration; export a fog volume";
+    if (grid.grid_class == "level set" && level_sets == LevelSets::refused)
+        return "is a level set (distances to a surface), not a concentration; give its volume "
+               "level_set: fog, which fills its inside, or export a fog volume";
     if (grid.map_type == "NonlinearFrustumMap")
         return "has a frustum (camera-shaped) transform; resample it to an affine one";
     return "";
 }
 
 const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
-                               const SourceLocation& where) {
+                               const SourceLocation& where, LevelSets level_sets) {
     const auto refuse = [&](const std::string& why) {
         throw InputError(fmt::format("{}: {} ('{}' has {})", where, why, header.file.string(),
                                      header.describe_grids()));
@@ -449,7 +450,7 @@ const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
     if (namesakes > 1)
         refuse(fmt::format("{} grids are called '{}'; write '{}' for the first", namesakes, name,
                            found->name));
-    const std::string why = unusable_because(*found);
+    const std::string why = unusable_because(*found, level_sets);
     if (!why.empty()) refuse(fmt::format("grid '{}' {}", found->name, why));
     return *found;
 }

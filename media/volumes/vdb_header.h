@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/scene/volume_desc.h"
 
 namespace uw {
 
@@ -118,13 +119,14 @@ VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocatio
 
 /// Why the grid's values cannot be concentrations, to follow "grid 'x' "; "" if its header gives no
 /// such reason.
-std::string unusable_because(const GridSummary& grid);
+std::string unusable_because(const GridSummary& grid, LevelSets level_sets = LevelSets::refused);
 
 /// The grid that a scene calls `name`, if it can be used as concentrations. Throws InputError,
 /// starting with `where`, for a name that is missing or shared by several grids, and for level
-/// sets, points, vectors, other types, and transforms that are not affine; the message lists the
-/// file's grids.
+/// sets that are not to become fog, points, vectors, other types, and transforms that are not
+/// affine; the message lists the file's grids.
 const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
-                               const SourceLocation& where);
+                               const SourceLocation& where,
+                               LevelSets level_sets = LevelSets::refused);
 
 }  // namespace uw

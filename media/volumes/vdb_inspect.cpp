@@ -210,12 +210,15 @@ std::optional<IndexBox> stated_box(const GridSummary& grid) {
 
 }  // namespace
 
-VdbInspection inspect_vdb(const std::filesystem::path& file, const SourceLocation& where) {
+VdbInspection inspect_vdb(const std::filesystem::path& file, const SourceLocation& where,
+                          UpAxis up) {
     initialize_openvdb();
     VdbInspection inspection;
     inspection.header = read_vdb_header(file, where);
     const VdbHeader& header = inspection.header;
-    inspection.placement = decide_placement(header, {});
+    VolumeDesc placed;
+    placed.up = up;
+    inspection.placement = decide_placement(header, placed);
     const std::string place = fmt::format("{}: '{}' ", where, file.string());
     std::string damage;
     bool any = header.grids.empty();

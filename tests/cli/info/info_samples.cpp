@@ -66,7 +66,7 @@ const std::vector<Advice> k_samples{
      1,
      {"3 grids are called 'density'"}},
     {"arnold_pointgrid.vdb", {}, "y", "node", 1, {"Nothing to map", "holds points"}},
-    {"openvdb_sphere_houdini.vdb", {}, "y", "node", 1, {"Nothing to map", "is a level set"}},
+    {"openvdb_sphere_houdini.vdb", {"ls_sphere"}, "y", "node", 1, {"Map 'ls_sphere' as fog"}},
     {"oiio_sphereCd.vdb", {}, "y", "node", 1, {"Nothing to map", "holds vectors"}}};
 
 /// The folder of the samples, or where there is none, that of the project's own plume.

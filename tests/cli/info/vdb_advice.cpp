@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "tests/support/temp_dir.h"
+#include "tests/support/vdb/fluid_configs.h"
 #include "tests/support/vdb/vdb_fixtures.h"
 
 namespace uw {
@@ -185,6 +188,54 @@ TEST_F(VdbAdviceTest, KnowsEveryHoudini) {
             says(advise_on_vdb(inspect_vdb(dir_ / "h.vdb", "here"), "h.vdb"), "written by Houdini"))
             << creator;
     }
+}
+
+TEST_F(VdbAdviceTest, LevelSetsAreProposedAsFog) {
+    test::write_level_set(dir_ / "s.vdb", true);
+    const VdbAdvice advice = advise_on_vdb(inspect_vdb(dir_ / "s.vdb", "here"), "s.vdb");
+    EXPECT_EQ(advice.map, GridNames{"surface"});
+    EXPECT_TRUE(says(advice, "Map 'surface' as fog: it is a level set"));
+    EXPECT_NE(advice.volumes.find("\n    level_set: fog\n"), std::string::npos);
+    EXPECT_NEAR(advice.bounds.max.x, 1, 0.11);  // the fog, not the band outside it
+    EXPECT_GT(advice.view.draft.contrast, k_hardly_seen);
+}
+
+TEST_F(VdbAdviceTest, TheAxisThatIsUpCanBeSaid) {
+    test::VdbFixture tall = cube("density");
+    tall.boxes = {{{0, 0, 0}, {9, 9, 39}, 1}};
+    test::write_fixture(dir_ / "t.vdb", {tall});
+    const VdbAdvice lying = advise_on_vdb(inspect_vdb(dir_ / "t.vdb", "here"), "t.vdb");
+    EXPECT_NEAR(lying.bounds.max.z - lying.bounds.min.z, 2, 1e-6);
+    EXPECT_TRUE(says(lying, "ask again with --up z"));
+    const VdbAdvice upright =
+        advise_on_vdb(inspect_vdb(dir_ / "t.vdb", "here", UpAxis::z), "t.vdb");
+    EXPECT_NEAR(upright.bounds.max.y - upright.bounds.min.y, 2, 1e-6);
+    EXPECT_NE(upright.volumes.find("    up: z\n"), std::string::npos);
+    EXPECT_TRUE(says(upright, "But --up says that it is z."));
+    EXPECT_GT(upright.view.proposal.eye.z, upright.bounds.max.z);  // the camera follows
+}
+
+// The object was turned by 30 degrees about Blender's z; its corner is its middle less half its
+// sides.
+TEST_F(VdbAdviceTest, TheDomainLiesWhereBlenderHasIt) {
+    std::filesystem::create_directories(dir_ / "data");
+    std::filesystem::create_directories(dir_ / "config");
+    std::ofstream(dir_ / "config/config_0012.uni", std::ios::binary)
+        << test::blender_stretched_config();
+    test::VdbFixture smoke = cube("density", 1.7 / 48);
+    smoke.boxes = {{{0, 0, 0}, {39, 33, 47}, 1}};  // all of the domain
+    smoke.blender_metadata = true;
+    smoke.base_resolution = {40, 34, 48};
+    const std::filesystem::path file = dir_ / "data/fluid_data_0012.vdb";
+    test::write_fixture(file, {smoke}, "");
+    const VdbAdvice advice = advise_on_vdb(inspect_vdb(file, "here"), "b.vdb");
+    EXPECT_TRUE(says(advice, "are no whole number of them: 0.035 x 0.03529 x 0.03542 m"));
+    EXPECT_LT(glm::length(advice.rotate - Vector3(0, 30, 0)), 1e-3);
+    EXPECT_LT(distance(advice.bounds.center(), Point3{0.3, 1.1, 0.5}), 1e-4);
+    EXPECT_NE(advice.volumes.find("rotate: [0, 30, 0], translate: ["), std::string::npos);
+    std::filesystem::remove(dir_ / "config/config_0012.uni");
+    const VdbAdvice unknown = advise_on_vdb(inspect_vdb(file, "here"), "b.vdb");
+    EXPECT_TRUE(says(unknown, "unless its Dimensions are 1.417 x 1.204 x 1.7 m"));
 }
 
 TEST_F(VdbAdviceTest, AFullDomainMayBeAnAdaptiveOne) {

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "media/volumes/adaptive_domain.h"
+#include "media/volumes/fluid_domain.h"
 
 #include <gtest/gtest.h>
 
@@ -39,8 +39,8 @@ class AdaptiveDomainTest : public testing::Test {
         desc.grids[0].where = desc.where;
         return desc;
     }
-    std::optional<AdaptiveDomain> find(const VolumeDesc& frame) const {
-        return find_adaptive_domain(read_vdb_header(frame.file, frame.where));
+    std::optional<FluidDomain> find(const VolumeDesc& frame) const {
+        return find_fluid_domain(read_vdb_header(frame.file, frame.where));
     }
     static LoadedVolume load(const VolumeDesc& desc) {
         return load_volume(desc, {{GridLoad{0, 1.0}}});
@@ -100,17 +100,17 @@ TEST_F(AdaptiveDomainTest, TheCachesConfigurationSetsItRight) {
     VolumeDesc desc = write("data/fluid_data_0002.vdb", {19, 19, 19}, {{5, 5, 6}, {14, 14, 14}, 1});
     const auto domain = find(desc);
     ASSERT_TRUE(domain && domain->voxel);
-    EXPECT_NEAR(*domain->voxel, 0.05, 1e-9);
+    EXPECT_LT(glm::length(*domain->voxel - 0.05), 1e-7);
     const LoadedVolume volume = load(desc);
     EXPECT_TRUE(volume.warnings.empty());
     const Bounds& bounds = volume.reports[0].bounds;
-    EXPECT_NEAR(volume.reports[0].metres_per_voxel.x, 0.05, 1e-9);
+    EXPECT_NEAR(volume.reports[0].metres_per_voxel.x, 0.05, 1e-7);
     // Blender's x, y are the scene's x, -z; relative to the domain's corner. Symmetric in the
     // voxels' steps about the source, which has moved by half of one within the frame.
     EXPECT_NEAR(bounds.center().x - 0.9, 0.6, 0.026);
     EXPECT_NEAR(-bounds.center().z - 1.1, 0.0, 0.026);
-    EXPECT_NEAR(bounds.min.x, 25 * 0.05, 1e-9);
-    EXPECT_NEAR(bounds.max.x, 35 * 0.05, 1e-9);
+    EXPECT_NEAR(bounds.min.x, 25 * 0.05, 1e-6);
+    EXPECT_NEAR(bounds.max.x, 35 * 0.05, 1e-6);
     // Another frame, cut elsewhere, goes with it; and what the scene says comes first.
     VolumeSequenceCheck check;
     check.take(desc);
@@ -119,6 +119,37 @@ TEST_F(AdaptiveDomainTest, TheCachesConfigurationSetsItRight) {
     EXPECT_NEAR(load(desc).reports[0].bounds.min.x, 2.5, 1e-9);
     // A configuration of other grids does not count.
     EXPECT_FALSE(find(write("data/fluid_data_0002.vdb", {20, 19, 19})));
+}
+
+// Blender draws the grid stretched to the domain's box of 1.4 x 1.2 x 1.7 m.
+TEST_F(AdaptiveDomainTest, VoxelsAreStretchedToTheDomainsBox) {
+    std::filesystem::create_directories(dir_ / "data");
+    std::filesystem::create_directories(dir_ / "config");
+    std::ofstream(dir_ / "config/config_0012.uni", std::ios::binary)
+        << test::blender_stretched_config();
+    test::VdbFixture fixture;
+    fixture.boxes = {{{0, 0, 0}, {39, 33, 47}, 1}};
+    fixture.blender_metadata = true;
+    for (const int finer : {1, 2}) {  // as noise is
+        fixture.base_resolution = {40 * finer, 34 * finer, 48 * finer};
+        fixture.boxes = {{{0, 0, 0}, {40 * finer - 1, 34 * finer - 1, 48 * finer - 1}, 1}};
+        fixture.file_from_index = Affine::scale(Vector3(1.7 / 48 / finer));
+        test::write_fixture(dir_ / "data/fluid_data_0012.vdb", {fixture}, "");
+        VolumeDesc desc;
+        desc.file = dir_ / "data/fluid_data_0012.vdb";
+        desc.where = test::k_where;
+        desc.grids.resize(1);
+        desc.grids[0].grid = "density";
+        const LoadedVolume volume = load(desc);
+        EXPECT_TRUE(volume.warnings.empty());
+        const Bounds& bounds = volume.reports[0].bounds;
+        EXPECT_LT(distance(bounds.min, Point3{0, 0, -1.2}), 1e-6);
+        EXPECT_LT(distance(bounds.max, Point3{1.4, 1.7, 0}), 1e-6);
+        // Those of a file of another size are not this file's.
+        fixture.file_from_index = Affine::scale(Vector3(1.0 / 48 / finer));
+        test::write_fixture(desc.file, {fixture}, "");
+        EXPECT_NEAR(load(desc).reports[0].metres_per_voxel.y, 1.0 / 48 / finer, 1e-9);
+    }
 }
 
 TEST_F(AdaptiveDomainTest, AVoxelSizeIsForCubes) {

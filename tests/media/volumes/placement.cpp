@@ -41,6 +41,9 @@ TEST(Placement, ZUpIsTurnedToYUpWithoutMirroring) {
     const Affine upright = upright_from_file(UpAxis::z);
     EXPECT_EQ(upright * (Point3{1, 2, 3}), (Point3{1, 3, -2}));
     EXPECT_EQ(upright.determinant(), 1);
+    const Affine from_x = upright_from_file(UpAxis::x);
+    EXPECT_EQ(from_x * Point3(1, 2, 3), Point3(3, 1, 2));
+    EXPECT_EQ(from_x.determinant(), 1);
     EXPECT_EQ(upright_from_file(UpAxis::y), Affine());
 }
 

@@ -9,6 +9,8 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "media/volumes/load_volumes.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_loading.h"
 
@@ -49,6 +51,32 @@ TEST(VdbFile, RefusesLevelSetsWithOrWithoutTheirClass) {
     const std::string message = refusal(dir / "unknown.vdb", "surface");
     expect_contains(message, "is a level set, though its class is 'unknown'");
     expect_contains(message, "surface (float, unknown)");
+}
+
+// A sphere of radius 1 m whose narrow band is 0.3 m deep: the fog rises over these to 1.
+TEST(VdbFile, LevelSetsBecomeFogOnRequest) {
+    const TempDir dir;
+    for (const bool with_class : {true, false}) {
+        test::write_level_set(dir / "a.vdb", with_class);
+        VolumeDesc desc;
+        desc.file = dir / "a.vdb";
+        desc.where = k_where;
+        desc.level_sets = LevelSets::fog;
+        desc.grids.resize(1);
+        desc.grids[0].grid = "surface";
+        const LoadedVolume volume = load_volume(desc, {{GridLoad{0, 1.0}}});
+        EXPECT_TRUE(volume.warnings.empty());
+        EXPECT_EQ(volume.reports[0].statistics.max, 1);
+        for (const double column : volume.reports[0].column) EXPECT_NEAR(column, 1.7, 2e-3);
+        VolumeSequenceCheck check;
+        EXPECT_NO_THROW(check.take(desc));
+    }
+    test::write_fixture(dir / "fog.vdb", {single_voxel("density")});
+    const VdbHeader header = read_vdb_header(dir / "fog.vdb", k_where);
+    expect_contains(test::message_of<InputError>([&] {
+                        load_grid(header, "density", k_where, k_default_slab_bytes, LevelSets::fog);
+                    }),
+                    "is no level set (its class is 'fog volume', its background 0)");
 }
 
 TEST(VdbFile, ReadingStops) {

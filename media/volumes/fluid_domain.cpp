@@ -1,9 +1,10 @@
-#include "media/volumes/adaptive_domain.h"
+#include "media/volumes/fluid_domain.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstring>
@@ -21,7 +22,10 @@ namespace {
 // The file is a gzip of 50 or 51 values of four bytes, little-endian: active fields, resolution
 // (3), dx, dt, p0 (3), p1 (3), dp0 (3), shift (3), object shift (3), object matrix (16), domain's
 // resolution (3), first (3) and last + 1 (3) voxel of the grids in it, colour (3), time, version.
-constexpr std::size_t k_values = 50, k_resolution = 1, k_domain = 37, k_first = 40, k_end = 43;
+constexpr std::size_t k_values = 50, k_resolution = 1, k_low = 6, k_high = 9, k_matrix = 21,
+                      k_domain = 37, k_first = 40, k_end = 43, k_time = 49;
+
+using ConfigValues = std::array<std::int32_t, k_values>;
 
 std::filesystem::path config_of(const std::filesystem::path& data_file) {
     const std::string stem = data_file.stem().string();
@@ -31,7 +35,7 @@ std::filesystem::path config_of(const std::filesystem::path& data_file) {
     return data_file.parent_path() / ".." / "config" / ("config_" + stem.substr(begin) + ".uni");
 }
 
-bool read_gzip(const std::filesystem::path& file, std::array<std::int32_t, k_values>& values) {
+bool read_gzip(const std::filesystem::path& file, ConfigValues& values) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) return false;
     remember_input(file);
@@ -43,10 +47,46 @@ bool read_gzip(const std::filesystem::path& file, std::array<std::int32_t, k_val
     return is_whole;
 }
 
+Vector3 reals_at(const ConfigValues& values, std::size_t first) {
+    Vector3 v;
+    for (int axis = 0; axis < 3; ++axis)
+        v[axis] = static_cast<double>(
+            std::bit_cast<float>(values[first + static_cast<std::size_t>(axis)]));
+    return v;
+}
+
+/// Takes the domain's box over, which is given in the object's own axes and with its matrix.
+void read_box(const ConfigValues& values, FluidConfig& config) {
+    const Vector3 low = reals_at(values, k_low), high = reals_at(values, k_high);
+    Matrix3 axes;  // of the domain in Blender's world, unit
+    Vector3 sides;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vector3 column =
+            reals_at(values, k_matrix + 4 * static_cast<std::size_t>(axis));  // of four rows
+        const double length = glm::length(column);
+        sides[axis] = length * (high[axis] - low[axis]);
+        if (!(sides[axis] > 0) || !std::isfinite(sides[axis])) return;
+        axes[axis] = column / length;
+    }
+    config.sides = sides;
+    const Affine blender_from_object(
+        Matrix3(sides.x / (high.x - low.x) * axes[0], sides.y / (high.y - low.y) * axes[1],
+                sides.z / (high.z - low.z) * axes[2]),
+        reals_at(values, k_matrix + 12));
+    constexpr double k_rounding = 1e-5;  // of the file's floats
+    const bool is_rotation = std::abs(glm::dot(axes[0], axes[1])) < k_rounding &&
+                             std::abs(glm::dot(axes[1], axes[2])) < k_rounding &&
+                             std::abs(glm::dot(axes[2], axes[0])) < k_rounding &&
+                             glm::determinant(axes) > 0;
+    if (is_rotation)
+        config.blender_from_domain =
+            Affine(axes, from_origin(blender_from_object * at_origin_plus(low)));
+}
+
 }  // namespace
 
 std::optional<FluidConfig> read_fluid_config(const std::filesystem::path& data_file) {
-    std::array<std::int32_t, k_values> values{};
+    ConfigValues values{};
     if (!read_gzip(config_of(data_file), values)) return std::nullopt;
     FluidConfig config;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -58,6 +98,8 @@ std::optional<FluidConfig> read_fluid_config(const std::filesystem::path& data_f
             first + count != values[k_end + axis])
             return std::nullopt;
     }
+    read_box(values, config);
+    config.time = static_cast<double>(std::bit_cast<float>(values[k_time]));
     return config;
 }
 
@@ -99,31 +141,65 @@ std::vector<std::filesystem::path> neighbours_of(const std::filesystem::path& fi
 
 /// What the cache's configuration says of a grid, whose voxels may be finer by a whole factor (as
 /// those of noise are); empty if it is about other grids.
-std::optional<AdaptiveDomain> domain_of(const FluidConfig& config, const GridSummary& grid) {
-    AdaptiveDomain domain;
+std::optional<FluidDomain> domain_of(const FluidConfig& config, const GridSummary& grid) {
+    FluidDomain domain;
     const std::int32_t finer = (*grid.base_resolution)[0] / config.resolution[0];
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    Vector3 voxels;  // of the domain
+    for (std::size_t axis = 0; axis < 3; ++axis) {
         if (finer < 1 || (*grid.base_resolution)[axis] != finer * config.resolution[axis])
             return std::nullopt;
+        voxels[static_cast<int>(axis)] = static_cast<double>(finer) * config.domain[axis];
+    }
+    domain.is_adaptive = config.resolution != config.domain;
     domain.longest_side = *grid.voxel_edge * std::ranges::max(*grid.base_resolution);
+    if (!(domain.longest_side > 0) || !std::isfinite(domain.longest_side)) return std::nullopt;
     domain.most_voxels = finer * std::ranges::max(config.domain);
-    domain.voxel = domain.largest_voxel();
+    domain.voxel = Vector3(domain.largest_voxel());
     domain.first =
         static_cast<double>(finer) * Vector3(config.first[0], config.first[1], config.first[2]);
+    // The box counts only if it is that of this file.
+    constexpr double k_rounding = 1e-3;
+    const double side = std::max({config.sides.x, config.sides.y, config.sides.z});
+    if (std::abs(side - domain.longest_side) <= k_rounding * domain.longest_side) {
+        domain.voxel = config.sides / voxels;
+        domain.blender_from_domain = config.blender_from_domain;
+    }
     return domain;
 }
 
 }  // namespace
 
-std::string AdaptiveDomain::description() const {
+std::optional<double> fluid_frame_rate(const std::filesystem::path& data_file) {
+    constexpr double k_solver_seconds = 0.4;  // its step at 25 frames a second is 0.1
+    std::optional<double> last_time;
+    int last_frame = 0;
+    const std::filesystem::path sequence = sequence_of(data_file);
+    if (sequence.empty() || !read_fluid_config(data_file)) return std::nullopt;
+    for (const int frame : frames_found(sequence)) {
+        const auto config = read_fluid_config(file_of_frame(sequence, frame));
+        if (!config) continue;
+        if (last_time && config->time > *last_time) {
+            const double rate =
+                (frame - last_frame) / (k_solver_seconds * (config->time - *last_time));
+            constexpr double k_rounding = 1e-3;  // of the file's floats
+            const double whole = std::round(rate);
+            return std::abs(rate - whole) < k_rounding * rate ? whole : rate;
+        }
+        last_time = config->time;
+        last_frame = frame;
+    }
+    return std::nullopt;
+}
+
+std::string FluidDomain::description() const {
     constexpr const char* k_cause =
         "it was baked with Blender's 'Adaptive Domain' (Physics > Fluid > Settings), whose files "
         "hold a wrong voxel size, other in every frame";
     if (voxel)
         return fmt::format(
-            "{}: {:.4g} m and the place of each frame in the domain are taken from the cache's "
-            "folder config",
-            k_cause, *voxel);
+            "{}: {:.4g} x {:.4g} x {:.4g} m and the place of each frame in the domain are taken "
+            "from the cache's folder config",
+            k_cause, voxel->x, voxel->y, voxel->z);
     return fmt::format(
         "{0}: keep the cache's folder config beside data, or give the volume voxel_size: {1:.4g} "
         "m, the domain's longest side, divided by its Resolution Divisions (at least {2}, so "
@@ -132,15 +208,16 @@ std::string AdaptiveDomain::description() const {
         k_cause, longest_side, most_voxels, largest_voxel());
 }
 
-std::optional<AdaptiveDomain> find_adaptive_domain(const VdbHeader& header) {
+std::optional<FluidDomain> find_fluid_domain(const VdbHeader& header) {
     if (!header.from_blender_fluid()) return std::nullopt;
     const GridSummary* const grid = grid_with_resolution(header);
     if (grid == nullptr) return std::nullopt;
     if (const auto config = read_fluid_config(header.file)) {
-        if (config->resolution == config->domain) return std::nullopt;
         if (const auto known = domain_of(*config, *grid)) return known;
+        if (config->resolution == config->domain) return std::nullopt;
     }
-    AdaptiveDomain domain;
+    FluidDomain domain;
+    domain.is_adaptive = true;
     domain.most_voxels = std::ranges::max(*grid->base_resolution);
     domain.longest_side = *grid->voxel_edge * domain.most_voxels;
     bool differs = false;
@@ -162,21 +239,25 @@ std::optional<AdaptiveDomain> find_adaptive_domain(const VdbHeader& header) {
 }
 
 Affine with_voxel_size(const Affine& file_from_index, const VolumeDesc& desc,
-                       const std::optional<AdaptiveDomain>& domain) {
-    std::optional<double> voxel = desc.voxel_size;
-    if (!voxel && domain) voxel = domain->voxel;
-    if (!voxel) return file_from_index;
+                       const std::optional<FluidDomain>& domain) {
     const Matrix3& m = file_from_index.linear();
     const Vector3 edges(glm::length(m[0]), glm::length(m[1]), glm::length(m[2]));
-    constexpr double k_rounding = 1e-4;
-    for (int axis = 1; axis < 3; ++axis)
-        if (!(std::abs(edges[axis] - edges[0]) <= k_rounding * edges[0]))
-            throw InputError(fmt::format(
-                "{}: voxel_size: is for voxels that are cubes; those of '{}' have edges of {:g}, "
-                "{:g} and {:g} m: use transform.scale",
-                desc.where, desc.file.string(), edges.x, edges.y, edges.z));
+    std::optional<Vector3> voxel;
+    if (desc.voxel_size) {
+        constexpr double k_rounding = 1e-4;
+        for (int axis = 1; axis < 3; ++axis)
+            if (!(std::abs(edges[axis] - edges[0]) <= k_rounding * edges[0]))
+                throw InputError(fmt::format(
+                    "{}: voxel_size: is for voxels that are cubes; those of '{}' have edges of "
+                    "{:g}, {:g} and {:g} m: use transform.scale",
+                    desc.where, desc.file.string(), edges.x, edges.y, edges.z));
+        voxel = Vector3(*desc.voxel_size);
+    } else if (domain) {
+        voxel = domain->voxel;
+    }
+    if (!voxel) return file_from_index;
     const Affine place = Affine::translation(domain ? domain->first : Vector3(0));
-    return Affine::scale(Vector3(*voxel / edges[0])) * file_from_index * place;
+    return Affine::scale(*voxel / edges) * file_from_index * place;
 }
 
 }  // namespace uw
