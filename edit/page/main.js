@@ -1,6 +1,7 @@
 // Puts the page together: the scene as the server has it, what this window shows of it, and the views.
 
-import { byId, h } from "./base/dom.js";
+import { byId, h, setText } from "./base/dom.js";
+import { hasPlace } from "./base/lamps.js";
 import { Observable } from "./base/observable.js";
 import { NumbersFeed } from "./numbers/numbers_feed.js";
 import { NumbersPanel, patchPixels } from "./numbers/numbers_panel.js";
@@ -36,7 +37,15 @@ const fail = (message) =>
     banners.show("fault", `The page does not work: ${message}`, { kind: "error" });
 addEventListener("error", (event) => event.message && fail(event.message));
 addEventListener("unhandledrejection", (event) => fail(event.reason?.message ?? event.reason));
-const refuse = (error) => status.refuse(error.message);
+const CONFLICT = 409;
+// The line at the bottom is missed by who looks at the lamp that another window has moved.
+const refuse = (error) => {
+    status.refuse(error.message);
+    if (error.status === CONFLICT) {
+        banners.show("conflict", `Not done: ${error.message}.`,
+            { buttons: [{ label: "Hide", action: () => banners.show("conflict", null) }] });
+    }
+};
 const editing = new Editing(scene, refuse,
     (isBusy) => { document.body.dataset.edits = isBusy ? "sent" : "answered"; });
 const files = new FileActions(scene, editing, status);
@@ -75,6 +84,7 @@ const actions = {
     save: () => files.save(),
     saveAs: () => files.saveAs(),
     reload: () => files.reload(),
+    show: (what) => editing.run("show", what),
     undo: () => scene.value.can_undo && undo("undo", "undo_label"),
     redo: () => scene.value.can_redo && undo("redo", "redo_label"),
     chooseExposure: () => picture.chooseExposure(),
@@ -86,7 +96,7 @@ const actions = {
     exportNumbers: () => exportNumbers(scene.value, settings.value),
     exportPicture: () => exportPicture(scene.value, settings.value),
     exportShown: () => exportShown(scene.value, settings.value, picture.canvas),
-    suggest: () => (list.chosen?.editable ? suggest.open(list.chosen)
+    suggest: () => (list.chosen?.editable && hasPlace(list.chosen) ? suggest.open(list.chosen)
         : status.refuse("choose a lamp that may be moved")),
     help: showKeys,
     nextLamp: () => {
@@ -117,22 +127,39 @@ const showForms = () => {
 };
 scene.observe(showForms);
 settings.observe(showForms);
-const showState = ({ error, changed_on_disk: changed, scene: name }) => {
+const showState = ({ error, changed_on_disk: changed, deleted_on_disk: deleted, scene: name }) => {
     const last = scene.value ? " The last good state is shown." : "";
     banners.show("error", error && `${error.message} – the page goes on when this is mended.${last}`,
         { kind: "error" });
     banners.show("changed", changed && !error ? `${name} has changed on disk since it was read.` : null,
         { buttons: [{ label: "Load it", action: () => files.reload() }] });
+    banners.show("deleted", deleted ? `${name} was deleted, or has another name now. Saving writes ` +
+        "it again." : null, { buttons: [{ label: "Save", action: () => files.save() }] });
+};
+const lightNote = h("span", { class: "light-note-text" });
+const allLight = h("button", { type: "button",
+    title: "Sets render.scattering to multiple, which takes longer", onclick: () => editing.edit("render all light",
+    [{ op: "set", path: "render.scattering", value: "multiple" }]) }, "All light");
+const lightBox = h("div", { class: "light-note", role: "note", hidden: true }, lightNote, allLight);
+byId("snap-tools").append(lightBox);
+const showLightNote = ({ light_note: note }) => {
+    setText(lightNote, note ? `Note: ${note}.` : "");
+    lightNote.title = note ?? "";
+    lightBox.hidden = !note;
 };
 let shownRevision = null;
 scene.observe((state) => {
     // What was said before is about another scene.
-    if (shownRevision !== null && shownRevision !== state.revision) status.say("");
+    if (shownRevision !== null && shownRevision !== state.revision) status.sayNothing();
     shownRevision = state.revision;
     showState(state);
+    showLightNote(state);
+    byId("not-shown").replaceChildren(...state.not_shown.map((text) => h("li", {}, text)));
+    byId("not-shown").hidden = state.not_shown.length === 0;
     byId("warnings").replaceChildren(...state.warnings.map((text) => h("li", {}, text)));
     byId("warnings-box").hidden = state.warnings.length === 0;
 });
 
-const sceneFeed = new SceneFeed(scene, outlines, editing, showState);
+const sceneFeed = new SceneFeed(scene, outlines, editing, showState,
+    ({ undo_label: what }) => status.say(`Changed elsewhere${what ? `: ${what}` : ""}`));
 connect({ sceneFeed, imageFeed, status, banners, suggest, refuse });

@@ -369,6 +369,7 @@ void EditServer::Page::answer(const Request& request, Response& response) {
         {"/api/edit", [&](const Json& body) { return then_state([&] { session_.edit(body); }); }},
         {"/api/undo", [&](const Json&) { return then_state([&] { session_.undo(); }); }},
         {"/api/redo", [&](const Json&) { return then_state([&] { session_.redo(); }); }},
+        {"/api/show", [&](const Json& body) { return then_state([&] { session_.show(body); }); }},
         {"/api/reload", [&](const Json&) { return then_state([&] { session_.reload(); }); }},
         {"/api/save", [&](const Json& body) { return then_state([&] { session_.save(body); }); }},
         {"/api/save_as",

@@ -149,14 +149,15 @@ EditSession::~EditSession() {
 void EditSession::open() {
     try {
         SceneDocument fresh(file_);
-        auto scene = make_edited_scene(fresh.scene().text(), fresh.scene().tree(), file_, off_,
-                                       revision_ + 1);
+        // What was shown of the file's last version need not be in this one.
+        if (document_ && document_->disk_state() != DiskState::same) choice_.frame.reset();
+        auto scene = read(fresh);
         if (document_)
             document_->reload();
         else
             document_.emplace(std::move(fresh));
         error_.clear();
-        is_changed_on_disk_ = false;
+        disk_ = DiskState::same;
         all_touched_ = revision_ + 1;
         take(std::move(scene));
     } catch (const std::exception& error) {
@@ -168,11 +169,10 @@ void EditSession::open() {
 void EditSession::file_changed() {
     const std::lock_guard lock(mutex_);
     if (!document_) return open();
-    const bool is_changed = document_->disk_state() != DiskState::same;
-    if (!is_changed && !is_changed_on_disk_ && error_.empty()) return;
-    is_changed_on_disk_ = is_changed;
-    if (!is_changed) error_.clear();
-    if (is_changed && !document_->is_unsaved()) return open();
+    const DiskState before = std::exchange(disk_, document_->disk_state());
+    if (disk_ == DiskState::same && before == DiskState::same && error_.empty()) return;
+    if (disk_ != DiskState::changed) error_.clear();
+    if (disk_ == DiskState::changed && !document_->is_unsaved()) return open();
     announce();
 }
 
@@ -181,15 +181,21 @@ void EditSession::take(std::shared_ptr<const EditedScene> scene) {
     scene_ = std::move(scene);
     revision_ = scene_->revision;
     picture_error_.clear();
+    light_note_.clear();
     pictures_.show(scene_);
     announce();
+}
+
+// The scene of the document's text as it is; its revision is the next one.
+std::shared_ptr<const EditedScene> EditSession::read(const SceneDocument& document) const {
+    const SceneText& scene = document.scene();
+    return make_edited_scene(scene.text(), scene.tree(), file_, off_, revision_ + 1, choice_);
 }
 
 // Reads the scene again after undo or redo has changed the document's text.
 void EditSession::read_document() {
     all_touched_ = revision_ + 1;
-    take(make_edited_scene(document().scene().text(), document().scene().tree(), file_, off_,
-                           revision_ + 1));
+    take(read(document()));
 }
 
 const SceneDocument& EditSession::document() const {
@@ -223,13 +229,15 @@ Json EditSession::state() const {
         {"scene", file_.filename().string()},
         {"folder", std::filesystem::absolute(folder_of(file_)).lexically_normal().string()},
         {"unsaved", document_ && document_->is_unsaved()},
-        {"changed_on_disk", is_changed_on_disk_},
+        {"changed_on_disk", disk_ == DiskState::changed},
+        {"deleted_on_disk", disk_ == DiskState::missing},
         {"can_undo", document_ && document_->history().can_undo()},
         {"can_redo", document_ && document_->history().can_redo()},
         {"undo_label", document_ ? label(document_->history().undo_label()) : nullptr},
         {"redo_label", document_ ? label(document_->history().redo_label()) : nullptr},
         {"error", error_json()}};
     if (!scene_) return state;
+    state["light_note"] = label(light_note_);
     state.update(scene_json(*scene_, document_->scene().tree(), has_shapes_ ? &shapes_ : nullptr));
     state["outlines"] = {{"key", outlines_key_}, {"count", shapes_.outlines.size()}};
     return state;
@@ -296,6 +304,33 @@ void EditSession::redo() {
     read_document();
 }
 
+void EditSession::show(const Json& request) {
+    const std::lock_guard lock(mutex_);
+    document();  // refuses while nothing is shown
+    const ImageChoice before = choice_;
+    if (request.contains("camera")) {
+        const std::string name = text_member(request, "camera");
+        const auto& cameras = scene_->scene.whole().cameras;
+        const auto found = std::ranges::find(cameras, name, &RigCameraDesc::name);
+        if (found == cameras.end())
+            throw UsageError(fmt::format("camera: the rig has no '{}'", printable(name)));
+        choice_.camera = static_cast<std::size_t>(found - cameras.begin());
+    }
+    if (request.contains("frame")) {
+        const double frame = number_member(request, "frame");
+        const std::optional<FrameRange> frames = frames_of(scene_->scene.whole());
+        if (!frames || !(frame >= frames->first && frame <= frames->last))
+            throw UsageError("frame: the scene has no such one");
+        choice_.frame = static_cast<int>(frame);
+    }
+    try {
+        take(read(*document_));
+    } catch (...) {
+        choice_ = before;
+        throw;
+    }
+}
+
 void EditSession::reload() {
     const std::lock_guard lock(mutex_);
     open();
@@ -304,14 +339,15 @@ void EditSession::reload() {
 void EditSession::save(const Json& request) {
     const std::lock_guard lock(mutex_);
     const bool overwrites = flag_member(request, "overwrite", false);
-    is_changed_on_disk_ = document().is_unsaved() && document_->disk_state() != DiskState::same;
-    if (is_changed_on_disk_ && !overwrites)
+    document();  // refuses to save what could not be read
+    disk_ = document_->disk_state();
+    if (disk_ == DiskState::changed && document_->is_unsaved() && !overwrites)
         throw ConflictError(fmt::format(
             "{}: changed on disk since it was read; reload it, overwrite it, or save as another",
             file_.filename().string()));
     document_->save(overwrites ? Overwrite::yes : Overwrite::no);
     document_->end_group();
-    is_changed_on_disk_ = false;
+    disk_ = DiskState::same;
     error_.clear();
     announce();
 }
@@ -333,7 +369,7 @@ void EditSession::save_as(const Json& request) {
     document_->save_as(file, overwrites ? Overwrite::yes : Overwrite::no);
     document_->end_group();
     file_ = file;
-    is_changed_on_disk_ = false;
+    disk_ = DiskState::same;
     error_.clear();
     read_document();
 }
@@ -361,6 +397,13 @@ PictureCallbacks EditSession::picture_callbacks() {
         picture_error_ = message;
         events_.publish("error", Json{{"message", message}}.dump(-1, ' ', false,
                                                                  Json::error_handler_t::replace));
+        announce();
+    };
+    callbacks.light_left_out = [this](const EditedScene& scene, const std::string& note) {
+        const std::lock_guard lock(mutex_);
+        // Of an older scene it is known no more.
+        if (scene.revision != revision_ || note == light_note_) return;
+        light_note_ = note;
         announce();
     };
     callbacks.assembled = [this](const Renderer& renderer) { take_shapes(renderer); };

@@ -105,6 +105,8 @@ class EditSession {
     void edit(const Json& request);
     void undo();
     void redo();
+    /// {"camera": "right", "frame": 12}, either alone: what is shown of a rig, or of what moves.
+    void show(const Json& request);
     /// Takes the scene from its file again.
     void reload();
     /// {"overwrite": false}
@@ -126,6 +128,7 @@ class EditSession {
     void open();
     void file_changed();
     void take(std::shared_ptr<const EditedScene> scene);
+    std::shared_ptr<const EditedScene> read(const SceneDocument& document) const;
     void read_document();
     void check_conflicts(std::int64_t revision, const std::string& group,
                          const std::vector<std::string>& touched) const;
@@ -140,10 +143,12 @@ class EditSession {
     std::optional<SceneDocument> document_;  // none: the file could not be read yet
     std::shared_ptr<const EditedScene> scene_;
     std::vector<std::string> off_;  // names of lamps
+    ImageChoice choice_;            // what is shown
     std::string error_;             // why the file on disk cannot be read; empty: it can
     std::string picture_error_;     // why its picture cannot be rendered
     std::int64_t revision_ = 0;
-    bool is_changed_on_disk_ = false;
+    DiskState disk_ = DiskState::same;  // of the file, when it was looked at last
+    std::string light_note_;  // what the scene's light lacks (left_out_note); empty: little
 
     // Who changed what last, by path.
     struct Touch {

@@ -101,21 +101,33 @@ std::array<double, 3> EditedScene::colour_scale(const Spectrum& brightness) cons
 std::shared_ptr<const EditedScene> make_edited_scene(std::string_view text, const ConfigNode& tree,
                                                      const std::filesystem::path& file,
                                                      const std::vector<std::string>& off,
-                                                     std::int64_t revision) {
-    auto edited = std::make_shared<EditedScene>(load_scene_text(text, file));
+                                                     std::int64_t revision, ImageChoice choice) {
+    SceneDesc whole = load_scene_text(text, file);
+    if (choice.camera >= whole.cameras.size()) choice.camera = 0;
+    auto edited = std::make_shared<EditedScene>(ImageScene(std::move(whole), choice));
     edited->revision = revision;
     const SceneDesc& desc = edited->scene.desc();
     edited->warnings = desc.warnings;
     edited->camera = std::make_shared<Camera>(desc.camera);
     edited->has_plain_colour =
         is_plain(make_band_colour(desc.render.colour, desc.water.bands_nm), edited->bands());
-    edited->surrounding = hash_without(tree, std::array<std::string_view, 1>{"lamps"});
+    edited->surrounding =
+        fmt::format("{} {} {}", hash_without(tree, std::array<std::string_view, 1>{"lamps"}),
+                    choice.camera, choice.frame.value_or(-1));
     const ConfigNode* entries = tree.find("lamps");
     for (std::size_t i = 0; i < desc.lamps.size(); ++i) {
         edited->lamps.push_back(make_edited_lamp(*edited, entries, i));
         edited->lamps.back().on = std::ranges::find(off, desc.lamps[i].name) == off.end();
     }
     return edited;
+}
+
+ImageScene lit_scene(const EditedScene& edited) {
+    return edited.scene.with([&](SceneDesc& desc) {
+        std::vector<LampDesc>& lamps = desc.lamps;
+        for (std::size_t i = lamps.size(); i-- > 0;)
+            if (!edited.lamps[i].on) lamps.erase(lamps.begin() + static_cast<std::ptrdiff_t>(i));
+    });
 }
 
 namespace {
@@ -224,7 +236,8 @@ void SceneChanges::check_texts(const std::set<std::string>& before) const {
 }
 
 void SceneChanges::read_again() {
-    scene_ = make_edited_scene(text_.text(), text_.tree(), file_, off_, scene_->revision);
+    scene_ = make_edited_scene(text_.text(), text_.tree(), file_, off_, scene_->revision,
+                               scene_->scene.choice());
 }
 
 std::size_t SceneChanges::lamp_of(const Json& change) const {
@@ -240,11 +253,15 @@ std::string SceneChanges::entry_of(std::size_t lamp) const {
         throw UsageError(
             fmt::format("'{}' comes from a glTF file, which is not written here; change it there",
                         this->lamp(lamp).name));
-    if (this->lamp(lamp).sun)
-        throw UsageError(
-            fmt::format("'{}' is a sun, which has no place; change it in the scene file",
-                        this->lamp(lamp).name));
     return fmt::format("lamps[{}]", *entry);
+}
+
+// The entry of a lamp that can be moved.
+std::string SceneChanges::placed_entry_of(std::size_t lamp) const {
+    if (this->lamp(lamp).sun)
+        throw UsageError(fmt::format("'{}' is a sun, which has no place; set its direction",
+                                     this->lamp(lamp).name));
+    return entry_of(lamp);
 }
 
 std::string SceneChanges::free_name(const std::string& like) const {
@@ -264,7 +281,7 @@ void SceneChanges::set_vector(const std::string& path, const Vector3& value) {
 void SceneChanges::place(std::size_t index, const Point3& world) {
     const Affine frame_from_world =
         lamp(index).world_from_frame(scene_->scene.desc().camera.world_from_camera).inverse();
-    set_vector(entry_of(index) + ".position", from_origin(frame_from_world * world));
+    set_vector(placed_entry_of(index) + ".position", from_origin(frame_from_world * world));
 }
 
 void SceneChanges::set(const Json& change) {
@@ -307,6 +324,7 @@ void SceneChanges::duplicate_lamp(const Json& change) {
 
 void SceneChanges::mirror_lamp(const Json& change) {
     std::size_t index = lamp_of(change);
+    placed_entry_of(index);  // refuses a sun
     const LampDesc mirrored =
         mirrored_lamp(lamp(index), scene_->scene.desc().camera.world_from_camera);
     if (flag_member(change, "copy", false)) {
@@ -348,6 +366,7 @@ void SceneChanges::move_lamp(const Json& change) {
 
 void SceneChanges::aim_lamp(const Json& change) {
     const std::size_t index = lamp_of(change);
+    const std::string entry = placed_entry_of(index);
     touched_.insert("lamps." + lamp(index).name + ".direction");
     const CameraDesc& camera = scene_->scene.desc().camera;
     const PlacedLamp placed = placed_lamp(lamp(index), camera);
@@ -360,8 +379,7 @@ void SceneChanges::aim_lamp(const Json& change) {
     }
     const Affine frame_from_world =
         lamp(index).world_from_frame(camera.world_from_camera).inverse();
-    set_vector(entry_of(index) + ".direction",
-               glm::normalize(frame_from_world.apply_to_vector(direction)));
+    set_vector(entry + ".direction", glm::normalize(frame_from_world.apply_to_vector(direction)));
 }
 
 void SceneChanges::turn_lamp_on(const Json& change) {

@@ -55,12 +55,17 @@ struct EditedScene {
     std::array<double, 3> colour_scale(const Spectrum& brightness) const;
 };
 
-/// Reads a scene from the text of its file, as parsed; `off` are the names of lamps that are off.
-/// Throws as load_scene_text, ImageScene and make_lamp.
+/// Reads a scene from the text of its file, as parsed; `off` are the names of lamps that are off,
+/// `choice` is what is shown of it: the first camera of a rig that has no such one. Throws as
+/// load_scene_text, ImageScene and make_lamp.
 std::shared_ptr<const EditedScene> make_edited_scene(std::string_view text, const ConfigNode& tree,
                                                      const std::filesystem::path& file,
                                                      const std::vector<std::string>& off,
-                                                     std::int64_t revision);
+                                                     std::int64_t revision,
+                                                     ImageChoice choice = {});
+
+/// The scene without the lamps that are off.
+ImageScene lit_scene(const EditedScene& edited);
 
 /// Throws UsageError if `after` is read from a file outside of the scene's folder, after symbolic
 /// links, from which `before` is not: also one that a mesh names.
@@ -88,6 +93,7 @@ class SceneChanges {
     const LampDesc& lamp(std::size_t index) const { return scene_->scene.desc().lamps[index]; }
     std::size_t lamp_of(const Json& change) const;
     std::string entry_of(std::size_t lamp) const;
+    std::string placed_entry_of(std::size_t lamp) const;
     std::string free_name(const std::string& like) const;
     void set_vector(const std::string& path, const Vector3& value);
     void place(std::size_t lamp, const Point3& world);

@@ -143,14 +143,15 @@ class PlaneWriter {
 }  // namespace
 
 std::string_view name_of(PictureQuality quality) {
-    constexpr std::array<std::string_view, 4> k_names{"small", "draft", "full-draft", "final"};
+    constexpr std::array<std::string_view, k_picture_qualities> k_names{"first", "small", "draft",
+                                                                        "full-draft", "final"};
     return k_names[static_cast<std::size_t>(quality)];
 }
 
 std::pair<int, int> picture_size(PictureQuality quality, int width, int height) {
     const double pixels = static_cast<double>(width) * height;
     double scale = std::min(1.0, std::sqrt(k_most_pixels / pixels));
-    if (quality == PictureQuality::small)
+    if (quality <= PictureQuality::small)
         scale = std::min(scale, std::sqrt(k_small_pixels / pixels));
     if (quality == PictureQuality::draft)
         scale = std::min({scale, k_draft_width / width, k_draft_height / height});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -14,10 +15,13 @@
 
 namespace uw {
 
-/// The steps in which a picture gets better.
-enum class PictureQuality { small, draft, full_draft, final };
+/// The steps in which a picture gets better. The first is there only where a scene is rendered with
+/// all light, before any other picture of it: the light that is scattered once, which is known in a
+/// tenth of the time.
+enum class PictureQuality { first, small, draft, full_draft, final };
+inline constexpr std::size_t k_picture_qualities = 5;
 
-/// "small", "draft", "full-draft", "final".
+/// "first", "small", "draft", "full-draft", "final".
 std::string_view name_of(PictureQuality quality);
 
 /// The size of a step's picture [pixels] of a scene of `width` x `height`.

@@ -10,13 +10,15 @@
 #include "core/base/parallel.h"
 #include "core/light/integrator_table.h"
 #include "edit/session/picture.h"
+#include "render/light_left_out.h"
 
 namespace uw {
 
 namespace {
 
-constexpr std::array k_steps{PictureQuality::small, PictureQuality::draft,
-                             PictureQuality::full_draft, PictureQuality::final};
+constexpr std::array<PictureQuality, k_picture_qualities> k_steps{
+    PictureQuality::first, PictureQuality::small, PictureQuality::draft, PictureQuality::full_draft,
+    PictureQuality::final};
 // The key of what no lamp lights; no lamp has it.
 constexpr const char* k_unlit = "unlit";
 
@@ -29,6 +31,10 @@ void light_up(LampDesc& lamp, const Spectrum& brightness, std::size_t bands) {
     lamp.intensity.reset();
     if (!std::visit([](const auto& profile) { return profile.k_is_absolute; }, lamp.profile))
         lamp.intensity = PerBand(bands, 1);
+}
+
+bool has_all_light(const EditedScene& scene) {
+    return scattering_of(scene.scene.desc().render) == RenderDesc::Scattering::multiple;
 }
 
 std::string layers_of(const ImageScene& scene, bool is_lit) {
@@ -53,6 +59,10 @@ ImageScene scene_of_part(const EditedScene& edited, PictureQuality quality,
         }
         const auto [width, height] = picture_size(quality, desc.camera.width, desc.camera.height);
         resize_image(desc.camera, width, height);
+        if (quality == PictureQuality::first) {
+            desc.render.integrator = RenderDesc::Integrator::volume;
+            desc.render.scattering = RenderDesc::Scattering::single;
+        }
         if (quality != PictureQuality::final) {
             desc.render.quality = RenderDesc::Quality::draft;
             desc.render.samples = integrator_kind(desc.render.integrator).draft_samples;
@@ -139,17 +149,23 @@ void PictureRenderer::render_all(const std::shared_ptr<const EditedScene>& scene
     std::size_t step = k_steps.size();
     while (step > 0 && !is_known(*scene, k_steps[step - 1])) --step;
     if (step > 0) publish(scene, k_steps[step - 1]);
-    const CameraDesc& camera = scene->scene.desc().camera;
+    if (step == k_steps.size()) estimate_light_left_out(*scene);
     for (; step < k_steps.size() && !has_next(); ++step) {
         const PictureQuality quality = k_steps[step];
-        // A small image needs no smaller ones before it.
-        if (step + 2 < k_steps.size() &&
-            picture_size(quality, camera.width, camera.height) ==
-                picture_size(k_steps[step + 1], camera.width, camera.height))
-            continue;
+        if (!is_step(*scene, quality)) continue;
+        // It takes a few hundredths of the time of the picture that is left.
+        if (quality == PictureQuality::final) estimate_light_left_out(*scene);
         make(scene, quality);
         publish(scene, quality);
     }
+}
+
+// All lamps matter to it, as bright as they are: it is asked anew where no picture is.
+void PictureRenderer::estimate_light_left_out(const EditedScene& scene) {
+    renderer_.set_scene(lit_scene(scene));
+    const StopScope scope(is_outdated_);
+    const auto left_out = renderer_.light_left_out();
+    callbacks_.light_left_out(scene, left_out_note(renderer_.assembled(), left_out).value_or(""));
 }
 
 // Keeps what the scene's pictures are made of, and no more: memory stays the same however long a
@@ -183,13 +199,41 @@ bool PictureRenderer::is_known(const EditedScene& scene, PictureQuality quality)
            });
 }
 
+// Whether a picture of this quality is worth its time on the way to the final one.
+bool PictureRenderer::is_step(const EditedScene& scene, PictureQuality quality) const {
+    const auto size_of = [&](PictureQuality other) {
+        const CameraDesc& camera = scene.scene.desc().camera;
+        return picture_size(other, camera.width, camera.height);
+    };
+    // A small image needs no smaller ones before it.
+    const auto is_as_large_as = [&](PictureQuality next) {
+        return size_of(quality) == size_of(next);
+    };
+    switch (quality) {
+        case PictureQuality::first: {
+            const auto shown = picture();
+            return has_all_light(scene) &&
+                   (!shown || shown->scene->surrounding != scene.surrounding);
+        }
+        case PictureQuality::small:
+            return !is_as_large_as(PictureQuality::draft);
+        case PictureQuality::draft:
+            // All light takes nearly as long at this size as at the full one.
+            return !has_all_light(scene) && !is_as_large_as(PictureQuality::full_draft);
+        case PictureQuality::full_draft:
+        case PictureQuality::final:
+            break;
+    }
+    return true;
+}
+
 PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, PictureQuality quality,
                                                 std::optional<std::size_t> lamp) {
     renderer_.set_scene(scene_of_part(scene, quality, lamp));
     const std::string layers = layers_of(renderer_.scene(), lamp.has_value());
     LayerPlan plan = layer_plan(renderer_.scene(), layers);
     {
-        const StopScope scope(quality == PictureQuality::small ? is_stopping_ : is_outdated_);
+        const StopScope scope(quality <= PictureQuality::small ? is_stopping_ : is_outdated_);
         renderer_.render({.layers = layers});
     }
     const Spectrum brightness =
@@ -217,6 +261,8 @@ void PictureRenderer::make(const std::shared_ptr<const EditedScene>& scene,
         if (lamp && find(quality, scene->lamps[*lamp].key)) continue;
         known_[static_cast<std::size_t>(quality)].push_back(render(*scene, quality, lamp));
     }
+    if (quality == PictureQuality::small)
+        known_[static_cast<std::size_t>(PictureQuality::first)].clear();
     if (quality == PictureQuality::final)
         known_[static_cast<std::size_t>(PictureQuality::full_draft)].clear();
 }

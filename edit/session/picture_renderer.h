@@ -22,14 +22,17 @@ struct PictureCallbacks {
     std::function<void(const std::string& message)> failed;
     /// Called after the first picture of a scene whose surroundings are new.
     std::function<void(const Renderer& renderer)> assembled;
+    /// Called before the final picture of a scene: what its light lacks (left_out_note); empty
+    /// where that is little, or nothing.
+    std::function<void(const EditedScene& scene, const std::string& note)> light_left_out;
 };
 
 /// Renders pictures of the scene as it is edited, in a thread of its own: from small to final, and
 /// of each lamp by itself, so that lamps which have not changed are not rendered again, and a
 /// change of brightness or name renders nothing.
 ///
-/// A change ends what is being rendered at once, except the small picture: while a lamp is dragged,
-/// each of those is finished, or none ever would be.
+/// A change ends what is being rendered at once, except the smallest pictures: while a lamp is
+/// dragged, each of those is finished, or none ever would be.
 class PictureRenderer {
   public:
     explicit PictureRenderer(PictureCallbacks callbacks);
@@ -48,7 +51,6 @@ class PictureRenderer {
 
   private:
     using Layers = std::shared_ptr<const LightLayers>;
-    static constexpr std::size_t k_qualities = 4;
 
     void run();
     bool has_next() const;
@@ -56,10 +58,12 @@ class PictureRenderer {
     void forget(const EditedScene& scene);
     Layers find(PictureQuality quality, const std::string& key) const;
     bool is_known(const EditedScene& scene, PictureQuality quality) const;
+    bool is_step(const EditedScene& scene, PictureQuality quality) const;
     Layers render(const EditedScene& scene, PictureQuality quality,
                   std::optional<std::size_t> lamp);
     void make(const std::shared_ptr<const EditedScene>& scene, PictureQuality quality);
     void publish(const std::shared_ptr<const EditedScene>& scene, PictureQuality quality);
+    void estimate_light_left_out(const EditedScene& scene);
 
     PictureCallbacks callbacks_;
     mutable std::mutex mutex_;
@@ -75,7 +79,7 @@ class PictureRenderer {
     Renderer renderer_;
     std::string surrounding_;  // of what is known
     bool is_announced_ = false;
-    std::vector<Layers> known_[k_qualities];
+    std::vector<Layers> known_[k_picture_qualities];
     std::int64_t last_number_ = 0;
     std::atomic<std::size_t> part_ = 0, parts_ = 1;  // of the picture being rendered
 

@@ -147,15 +147,6 @@ Json suggestion_json(const Suggestion& found) {
 // Unless a window chooses one, the part has this share of the image's shorter side.
 constexpr double k_patch_share = 0.2;
 
-// The scene without the lamps that are off.
-ImageScene lit_scene(const EditedScene& edited) {
-    return edited.scene.with([&](SceneDesc& desc) {
-        std::vector<LampDesc>& lamps = desc.lamps;
-        for (std::size_t i = lamps.size(); i-- > 0;)
-            if (!edited.lamps[i].on) lamps.erase(lamps.begin() + static_cast<std::ptrdiff_t>(i));
-    });
-}
-
 // The part of the full image, or of a picture of it, that is meant.
 PixelWindow scaled(const PixelWindow& part, const SceneDesc& desc, const Picture& picture) {
     const double x = static_cast<double>(picture.width) / desc.camera.width;

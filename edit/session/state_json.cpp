@@ -23,6 +23,7 @@
 #include "core/base/text.h"
 #include "core/geometry/mesh_reader.h"
 #include "core/image/layers.h"
+#include "edit/session/picture.h"
 #include "edit/session/view_geometry.h"
 #include "media/water/water_types.h"
 #include "render/scene_rendering.h"
@@ -285,10 +286,20 @@ Json brightness_json(const LampDesc& lamp, const ConfigNode* entry) {
 }
 
 // Why the editor does not change a lamp; empty if it does.
-std::string reason_to_lock(const LampDesc& lamp, const ConfigNode* entry) {
-    if (!entry) return "it comes from a glTF file, which is not written here";
-    if (lamp.sun) return "it is a sun, which has no place; change it in the scene file";
-    return "";
+std::string reason_to_lock(const ConfigNode* entry) {
+    return entry ? "" : "it comes from a glTF file, which is not written here";
+}
+
+// The luminous surface of a lamp that is not a point, by its keys in scene files.
+Json extent_json(const std::optional<LampExtentDesc>& extent) {
+    if (!extent) return nullptr;
+    if (extent->shape == LampExtentDesc::Shape::disk)
+        return {{"type", "disk"}, {"radius", extent->radius}, {"samples", extent->samples}};
+    return {{"type", "rectangle"},
+            {"width", extent->width},
+            {"height", extent->height},
+            {"rotate", extent->rotate},
+            {"samples", extent->samples}};
 }
 
 std::string_view frame_of(const SceneDesc& desc, const LampDesc& lamp, const ConfigNode* entry) {
@@ -315,7 +326,7 @@ Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& t
     for (const ImagePoint& point : beam_outline(*edited.camera, lamp, placed))
         cone.push_back(pixel_json(point));
     const auto half_angle = beam_half_angle(lamp.profile);
-    const std::string why_not = reason_to_lock(lamp, entry);
+    const std::string why_not = reason_to_lock(entry);
     return {{"index", index},
             {"name", lamp.name},
             {"path", entry ? Json(fmt::format("lamps[{}]", *known.entry)) : Json(nullptr)},
@@ -329,6 +340,7 @@ Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& t
             {"world_direction", vector_json(placed.direction)},
             {"profile", lamp.sun ? Json{{"type", "sun"}}
                                  : std::visit(ProfileJson{desc.file.parent_path()}, lamp.profile)},
+            {"extent", extent_json(lamp.extent)},
             {"half_angle", half_angle ? Json(*half_angle) : Json(nullptr)},
             {"brightness", brightness_json(lamp, entry)},
             {"band_intensity", list_json(known.brightness.first(edited.bands()))},
@@ -447,6 +459,39 @@ Json light_layers_json(const ImageScene& scene) {
     return layers;
 }
 
+// The frame that is shown and those that there are; null if nothing moves.
+Json moment_json(const ImageScene& scene) {
+    const std::optional<FrameRange> frames = frames_of(scene.whole());
+    if (!frames || !scene.time()) return nullptr;
+    const auto& frame = scene.choice().frame;
+    return {{"first", frames->first},
+            {"last", frames->last},
+            {"frame", frame ? Json(*frame) : Json(nullptr)},
+            {"time", *scene.time()}};
+}
+
+// What `uwvdb render` shows of the scene and the editor's picture does not: one sentence each.
+Json not_shown_json(const EditedScene& edited) {
+    const SceneDesc &desc = edited.scene.desc(), &whole = edited.scene.whole();
+    Json sentences = Json::array();
+    if (desc.camera.sensor)
+        sentences.push_back(
+            "The picture is the light before the camera's sensor: its noise and "
+            "development are not shown.");
+    if (has_motion(whole) && edited.scene.time())
+        sentences.push_back("How things move is changed in the scene file.");
+    const auto [width, height] =
+        picture_size(PictureQuality::final, desc.camera.width, desc.camera.height);
+    if (width < desc.camera.width)
+        sentences.push_back(fmt::format("The picture has {} x {} of the image's {} x {} pixels.",
+                                        width, height, desc.camera.width, desc.camera.height));
+    if (desc.water.forward_scatter.K > 0 && desc.lamps.size() > 1)
+        sentences.push_back(
+            "Forward scatter blurs each lamp's light by its own way through the "
+            "water; render takes the mean of all lamps' ways.");
+    return sentences;
+}
+
 Json ies_files_json(const SceneDesc& desc) {
     namespace fs = std::filesystem;
     std::vector<std::string> names;
@@ -480,6 +525,8 @@ Json scene_json(const EditedScene& edited, const ConfigNode& tree, const SceneSh
     const SceneDesc& desc = edited.scene.desc();
     Json lamps = Json::array();
     for (std::size_t i = 0; i < desc.lamps.size(); ++i) lamps.push_back(lamp_json(edited, i, tree));
+    Json cameras = Json::array();
+    for (const auto& camera : edited.scene.whole().cameras) cameras.push_back(camera.name);
     return {{"image",
              {{"width", desc.camera.width},
               {"height", desc.camera.height},
@@ -487,8 +534,11 @@ Json scene_json(const EditedScene& edited, const ConfigNode& tree, const SceneSh
               {"bands_are_rgb", edited.has_plain_colour}}},
             {"warnings", edited.warnings},
             {"light", light_layers_json(edited.scene)},
+            {"not_shown", not_shown_json(edited)},
             {"camera", camera_json(edited, tree)},
             {"rig", !desc.cameras.empty()},
+            {"cameras", std::move(cameras)},
+            {"moment", moment_json(edited.scene)},
             {"lamps", std::move(lamps)},
             {"ies_files", ies_files_json(desc)},
             {"spectra", lamp_spectrum_names_json()},

@@ -41,6 +41,9 @@ export function svg(tag, attributes = {}, ...children) {
     return fill(document.createElementNS(SVG, tag), attributes, children);
 }
 
+/** How much larger things are drawn than on a small screen: the root's font size (style/theme.css). */
+export const sizeFactor = () => parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
+
 export const byId = (id) => document.getElementById(id);
 
 let lastId = 0;

@@ -18,8 +18,9 @@ const IMAGE = "image";
 
 const ROWS = [
     { of: PATCH, label: "Contrast", read: (n) => n.contrast, show: plain,
-        meaning: "Michelson, (bright − dark) / (bright + dark) of the total light in the patch: " +
-            "bright is the mean between its percentiles 75 and 95, dark that between 5 and 25" },
+        meaning: "Michelson, (bright − dark) / (bright + dark) of the total light in tiles of the patch: " +
+            "bright is the mean of the quarter of the pixels whose surface reflects most, dark of " +
+            "that which reflects least; without a pattern, of the brightest and darkest quarters" },
     { of: PATCH, label: "… without water", read: (n) => n.clean_contrast, show: plain,
         meaning: "the same contrast of the clean picture: the most that any rig could keep" },
     { of: PATCH, label: "Signal to backscatter", read: (n) => n.signal_to_backscatter, show: ratio,
@@ -128,9 +129,11 @@ export class NumbersPanel {
         const [x0, y0, x1, y1] = patchPixels(this.#now).map(Math.round);
         const kinds = { pixels: "chosen", checkerboard: "most patterned", image: "whole picture" };
         setText(this.#patchNote, `${kinds[patch.kind]}: ${x1 - x0} × ${y1 - y0} at ${x0}, ${y0}`);
-        setText(this.#note, `Measured in the ${quality} picture.`);
+        setText(this.#note, quality === "first" ? "Measured in light that is scattered once; all " +
+            "light follows." : `Measured in the ${quality} picture.`);
         if (!curves) return;
         this.#plots.replaceChildren(h("h3", {}, "How far the rig sees"),
+            h("p", { class: "hint" }, "Of light that is scattered once, whatever the picture shows."),
             ...CURVES.map(({ key, title, unit, logarithmic }) => linePlot({
                 title, xLabel: "distance of the target [m]", yLabel: unit, logarithmic,
                 curves: [

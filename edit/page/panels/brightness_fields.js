@@ -10,6 +10,8 @@ const KINDS = {
     power: { label: "power, all directions", unit: "W", low: 1, high: 1e5 },
     lumens: { label: "luminous flux", unit: "lm", low: 10, high: 1e6 },
     profile: { label: "that of the IES file" },
+    irradiance: { label: "irradiance at the surface", unit: "W/m²", low: 0.01, high: 1e4 },
+    lux: { label: "illuminance at the surface", unit: "lx", low: 1, high: 1e6 },
 };
 
 const listOf = (value) => (Array.isArray(value) ? value : [value]);
@@ -26,9 +28,7 @@ export function brightnessFields(scene, lamp, editing, picture) {
     const parts = [
         bound(selectField({ label: "Given as", key: "brightness.kind",
             options: Object.entries(KINDS)
-                .filter(([name]) => name === kind || (name === "lumens" && spectrum !== null) ||
-                    (name === "profile" && lamp.profile.type === "ies") ||
-                    name === "intensity" || name === "power")
+                .filter(([name]) => name === kind || suits(name, lamp))
                 .map(([value, { label }]) => ({ value, label })),
             commit: (value, refuse) => recast(editing, lamp, change, value, spectrum, refuse) }),
         ({ lamp: now }) => now.brightness.kind, locked),
@@ -36,12 +36,20 @@ export function brightnessFields(scene, lamp, editing, picture) {
             options: [{ value: null, label: "per band" },
                 ...spectrumOptions(scene.spectra, spectrum)],
             commit: (text, refuse) => recast(editing, lamp, change,
-                text === null && kind === "lumens" ? "intensity" : kind, JSON.parse(text), refuse) }),
+                text === null ? { lumens: "intensity", lux: "irradiance" }[kind] ?? kind : kind,
+                JSON.parse(text), refuse) }),
         ({ lamp: now }) => now.brightness.spectrum && JSON.stringify(now.brightness.spectrum), locked),
     ];
     if (kind === "profile") return parts;
     return [...parts, ...valueParts(scene, lamp, picture,
         (value, refuse) => change({ [kind]: value }, newGroup("brightness"), refuse), locked)];
+}
+
+/** Whether a lamp's brightness may be given so. */
+function suits(kind, { profile: { type }, brightness: { spectrum } }) {
+    if (kind === "lumens" || kind === "lux") return spectrum !== null && (kind === "lux") === (type === "sun");
+    if (kind === "profile") return type === "ies";
+    return (kind === "irradiance") === (type === "sun");
 }
 
 /** Sets keys of the lamp: brightnessChange(...)({power: 5}, group, refuse). */

@@ -22,6 +22,10 @@ const KEY_LABELS = {
     beam: "Beam", edge: "Edge", fwhm: "Full width at half", rotate: "Rotate", tilt: "Tilt",
 };
 
+const EXTENT_STEPS = { radius: 0.01, width: 0.01, height: 0.01, rotate: 1, samples: 1 };
+
+const hint = (text) => ({ element: h("p", { class: "hint" }, text), update: () => {} });
+
 export class LampForm {
     #form;
     #settings;
@@ -41,15 +45,14 @@ export class LampForm {
     }
 
     #signature({ scene, lamp }) {
-        return lamp && [lamp.name, lamp.name, lamp.profile.type, lamp.why_not, lamp.brightness.kind,
+        return lamp && [lamp.name, lamp.name, lamp.profile.type, lamp.why_not, lamp.brightness.kind, lamp.extent?.type ?? null,
             lamp.brightness.spectrum, Array.isArray(lamp.brightness.value), scene.ies_files,
             scene.image.bands, scene.rig];
     }
 
     #build({ scene, lamp }) {
         if (!lamp) {
-            const element = h("p", { class: "hint" }, "No lamp is chosen. Add one, or choose one above.");
-            return [{ element, update: () => {} }];
+            return [hint("No lamp is chosen. Add one, or choose one above.")];
         }
         const locked = ({ lamp: now }) => !now.editable;
         const path = (key) => `lamps.${lamp.name}.${key}`;
@@ -61,10 +64,17 @@ export class LampForm {
         if (lamp.why_not) {
             parts.push({ element: h("p", { class: "hint locked" }, lamp.why_not), update: () => {} });
         }
-        if (!hasPlace(lamp)) return parts;
+        parts.push(field(textField({ label: "Name", key: "name", commit:
+            (value, refuse) => this.#rename(lamp.name, value, refuse) }), (now) => now.name));
+        const direction = field(numbersField({ label: "Direction", key: "direction",
+            names: ["x", "y", "z"], step: 0.01, commit: set("direction", "direction") }),
+        (now) => now.direction);
+        const brightness = brightnessFields(scene, lamp, this.#editing, this.#picture);
+        if (!hasPlace(lamp)) {
+            return [...parts, direction, "Brightness", ...brightness, hint("The angle of the sun's " +
+                "disc and the water's surface are changed in the scene file.")];
+        }
         parts.push(
-            field(textField({ label: "Name", key: "name", commit:
-                (value, refuse) => this.#rename(lamp.name, value, refuse) }), (now) => now.name),
             field(selectField({ label: "Frame", key: "frame",
                 options: ["camera", ...(scene.rig ? ["rig"] : []), "world",
                     ...(lamp.frame === "trajectory" ? ["trajectory"] : [])]
@@ -72,10 +82,9 @@ export class LampForm {
                 commit: (frame, refuse) => this.#setFrame(lamp, frame, refuse) }), (now) => now.frame),
             field(numbersField({ label: "Position", unit: "m", key: "position", names: ["x", "y", "z"],
                 step: 0.01, commit: set("position", "position") }), (now) => now.position),
-            field(numbersField({ label: "Direction", key: "direction", names: ["x", "y", "z"],
-                step: 0.01, commit: set("direction", "direction") }), (now) => now.direction),
+            direction, ...this.#extentParts(lamp, field, set),
             "Profile", ...this.#profileParts(scene, lamp, field, set),
-            "Brightness", ...brightnessFields(scene, lamp, this.#editing, this.#picture));
+            "Brightness", ...brightness);
         return parts;
     }
 
@@ -100,6 +109,18 @@ export class LampForm {
             { op: "move_lamp", lamp: name, world: at },
             { op: "aim_lamp", lamp: name, world: add(at, direction) },
         ], { group, onRefusal });
+    }
+
+    /** The size of a lamp that is not a point. */
+    #extentParts({ extent }, field, set) {
+        if (extent === null) return [];
+        const number = (label, unit, key) => field(numberField({ label, unit, key, step: EXTENT_STEPS[key],
+            commit: set(label.toLowerCase(), key) }), (now) => now.extent?.[key] ?? 0);
+        return [`Luminous ${extent.type}`,
+            ...(extent.type === "disk" ? [number("Radius", "m", "radius")]
+                : [number("Width", "m", "width"), number("Height", "m", "height"),
+                    number("Rotate", "°", "rotate")]),
+            number("Points", null, "samples")];
     }
 
     #profileParts(scene, lamp, field, set) {

@@ -1,6 +1,7 @@
 // The list of lamps: choose, switch on and off, solo, and the tools that add and take away.
 
 import { h, setAttributes, setText } from "../base/dom.js";
+import { hasPlace } from "../base/lamps.js";
 import { lampColour } from "./lamp_colours.js";
 
 /** Half a metre to the left of the camera, shining ahead. */
@@ -57,7 +58,7 @@ export class LampList {
     }
 
     add() {
-        const like = this.chosen?.editable ? { like: this.chosen.name } : {};
+        const like = this.chosen?.editable && hasPlace(this.chosen) ? { like: this.chosen.name } : {};
         return this.#make("add lamp", { op: "add_lamp", ...like, lamp: NEW_LAMP });
     }
 
@@ -68,7 +69,7 @@ export class LampList {
 
     mirror() {
         const lamp = this.chosen;
-        return lamp && this.#make(`mirror ${lamp.name}`,
+        return lamp && hasPlace(lamp) && this.#make(`mirror ${lamp.name}`,
             { op: "mirror_lamp", lamp: lamp.name, copy: true });
     }
 
@@ -139,7 +140,7 @@ export class LampList {
         });
         const { chosen } = this;
         this.#tools.duplicate.disabled = !chosen;
-        this.#tools.mirror.disabled = !chosen;
+        this.#tools.mirror.disabled = !chosen || !hasPlace(chosen);
         this.#tools.remove.disabled = !chosen?.editable;
     }
 
@@ -153,7 +154,7 @@ export class LampList {
         setAttributes(row.option, { "aria-selected": String(chosen), tabindex: chosen ? 0 : -1 });
         setText(row.name, lamp.name);
         setText(row.detail, `${lamp.profile.type}, ${lamp.frame}${lamp.editable ? "" : " · locked"}`);
-        setAttributes(row.on, { "aria-checked": String(lamp.on), disabled: !lamp.editable,
+        setAttributes(row.on, { "aria-checked": String(lamp.on),
             "aria-label": `Lamp ${lamp.name} on`, title: lamp.on ? "Switch off (O)" : "Switch on (O)" });
         setAttributes(row.solo, { "aria-pressed": String(solo === lamp.name),
             "aria-label": `Only lamp ${lamp.name}`, title: "See this lamp's light alone (S)" });

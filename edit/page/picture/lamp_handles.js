@@ -1,7 +1,7 @@
 // The lamps' handles over the picture: a disc where the lamp is seen, or an arrow at the image's rim
 // in its direction; a diamond on its axis; the outline of its beam.
 
-import { setAttributes, setText, svg } from "../base/dom.js";
+import { setAttributes, setText, sizeFactor, svg } from "../base/dom.js";
 import { arrowStep, onDrag } from "../base/dragging.js";
 import { hasPlace } from "../base/lamps.js";
 import { lampColour } from "../panels/lamp_colours.js";
@@ -68,7 +68,7 @@ export class LampHandles {
     /** Where a handle is shown [CSS pixels]; at the rim if its point is outside the picture. */
     #at(lamp, kind, { width, height }) {
         const { pixel, inside, rim } = kind === "axis" ? lamp.axis_handle : lamp.handle;
-        const inset = RIM_INSET / this.#scale;
+        const inset = (RIM_INSET * sizeFactor()) / this.#scale;
         const clamp = (value, size) => Math.min(Math.max(value, inset), size - inset);
         const [u, v] = pixel && inside ? pixel : [clamp(rim[0], width), clamp(rim[1], height)];
         return [u * this.#scale, v * this.#scale];
@@ -76,6 +76,7 @@ export class LampHandles {
 
     #place(handle, lamp, index, selected, image) {
         const scale = this.#scale;
+        const size = sizeFactor();
         const [width, height] = [image.width * scale, image.height * scale];
         const inside = lamp.handle.pixel && lamp.handle.inside;
         const shown = (kind) => (this.#dragged?.name === lamp.name && this.#dragged.kind === kind
@@ -92,13 +93,13 @@ export class LampHandles {
                 `${lamp.editable ? "" : " locked"}${inside ? "" : " at-rim"}`,
         });
         setAttributes(handle.disc, {
-            transform: `translate(${at[0]} ${at[1]})`,
+            transform: `translate(${at[0]} ${at[1]}) scale(${size})`,
             "aria-label": `Lamp ${lamp.name}${inside ? "" : ", outside the picture"}: ` +
                 "arrow keys move it in the image plane, Page Up and Page Down in depth",
         });
         setAttributes(handle.disc.lastChild, { transform: `rotate(${angle})` });
         setAttributes(handle.axis, {
-            transform: `translate(${axisAt[0]} ${axisAt[1]})`, visibility: turns,
+            transform: `translate(${axisAt[0]} ${axisAt[1]}) scale(${size})`, visibility: turns,
             "aria-label": `Axis of lamp ${lamp.name}: arrow keys turn it`,
         });
         setAttributes(handle.line,
@@ -107,9 +108,10 @@ export class LampHandles {
             d: lamp.cone.length < 2 ? "" : `M${lamp.cone.map(([u, v]) =>
                 `${(u * scale).toFixed(1)},${(v * scale).toFixed(1)}`).join("L")}Z`,
         });
-        const right = at[0] > width - 80;
+        const right = at[0] > width - 80 * size;
         setAttributes(handle.label, {
-            x: at[0] + (right ? -13 : 13), y: at[1] < 24 ? at[1] + 22 : at[1] - 9,
+            x: at[0] + (right ? -13 : 13) * size,
+            y: at[1] + (at[1] < 24 * size ? 22 : -9) * size,
             "text-anchor": right ? "end" : "start",
         });
         setText(handle.label, lamp.name);

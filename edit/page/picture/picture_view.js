@@ -27,6 +27,7 @@ export class PictureView {
     #planes;
     #snapshot = null; // {image, planes, gains, revision}
     #factors = {}; // of brightness sliders that are being moved, by lamp name
+    #stopsOfFirst = null; // the exposure that was chosen for a picture of quality "first"
     #drawSoon;
 
     /** `actions` as those of LampHandles, but for redraw. */
@@ -66,6 +67,11 @@ export class PictureView {
     }
 
     setImage(image) {
+        // Of the first picture of all light most is still missing: another exposure suits the next.
+        if (image.quality !== "first" && this.#stopsOfFirst !== null) {
+            if (this.#settings.value.stops === this.#stopsOfFirst) this.#settings.update({ stops: null });
+            this.#stopsOfFirst = null;
+        }
         this.#image = image;
         this.#planes.upload(image);
         this.#drawSoon();
@@ -157,6 +163,7 @@ export class PictureView {
         if (!this.#image) return;
         if (stops === null) {
             this.chooseExposure();
+            if (this.#image.quality === "first") this.#stopsOfFirst = this.#settings.value.stops;
             return;
         }
         const from = splits ? split.at : 0;

@@ -1,6 +1,7 @@
 // What lies behind the lamps in a plan view: grid and metres, outlines of the surfaces, bounds of the
 // volumes, the camera with its frustum in the water.
 
+import { sizeFactor } from "../base/dom.js";
 import { ticks } from "../base/numbers.js";
 import { along, normalize, subtract } from "../base/vec.js";
 
@@ -58,7 +59,7 @@ export class Backdrop {
     #eachTick(viewport, axis, visit) {
         const [width, height] = viewport.size;
         const across = axis === "right";
-        const count = Math.max((across ? width : height) / 60, 2);
+        const count = Math.max((across ? width : height) / (60 * sizeFactor()), 2);
         const [first, last] = [viewport.screenToPlan([0, height]), viewport.screenToPlan([width, 0])];
         const k = across ? 0 : 1;
         const sign = viewport.axes[axis].name.startsWith("−") ? -1 : 1;
@@ -86,10 +87,11 @@ export class Backdrop {
     #labels(viewport, colour) {
         const context = this.#context;
         const [width, height] = viewport.size;
-        context.font = `10px ${colour.font}`;
+        const size = sizeFactor();
+        context.font = `${10 * size}px ${colour.font}`;
         context.fillStyle = colour.text;
         context.strokeStyle = colour.back;
-        context.lineWidth = 3;
+        context.lineWidth = 3 * size;
         context.lineJoin = "round";
         const write = (text, x, y) => {
             context.strokeText(text, x, y);
@@ -97,16 +99,20 @@ export class Backdrop {
         };
         context.textAlign = "center";
         this.#eachTick(viewport, "right", (value, at) => {
-            if (at > 34 && at < width - 30) write(String(Object.is(value, -0) ? 0 : value), at, height - 5);
+            if (at > 34 * size && at < width - 30 * size) {
+                write(String(Object.is(value, -0) ? 0 : value), at, height - 5 * size);
+            }
         });
         context.textAlign = "left";
         this.#eachTick(viewport, "up", (value, at) => {
-            if (at > 24 && at < height - 18) write(String(Object.is(value, -0) ? 0 : value), 4, at + 3.5);
+            if (at > 24 * size && at < height - 18 * size) {
+                write(String(Object.is(value, -0) ? 0 : value), 4 * size, at + 3.5 * size);
+            }
         });
         context.textAlign = "right";
-        write(`${viewport.axes.right.name.replace("−", "")} [m]`, width - 4, height - 5);
+        write(`${viewport.axes.right.name.replace("−", "")} [m]`, width - 4 * size, height - 5 * size);
         context.textAlign = "left";
-        write(`${viewport.axes.up.name.replace("−", "")} [m]`, 4, 12);
+        write(`${viewport.axes.up.name.replace("−", "")} [m]`, 4 * size, 12 * size);
     }
 
     #segments(viewport, segments, colour) {

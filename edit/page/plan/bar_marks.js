@@ -1,6 +1,6 @@
 // The bar that lamps may be bolted to: a line between two points, whose ends are dragged.
 
-import { setAttributes, svg } from "../base/dom.js";
+import { setAttributes, sizeFactor, svg } from "../base/dom.js";
 import { arrowStep, onDrag } from "../base/dragging.js";
 import { add, scale } from "../base/vec.js";
 
@@ -60,6 +60,7 @@ export class BarMarks {
             x1: points[0][0], y1: points[0][1], x2: points[1][0], y2: points[1][1],
         });
         this.#ends.forEach(({ end }, index) =>
-            setAttributes(end, { transform: `translate(${points[index][0]} ${points[index][1]})` }));
+            setAttributes(end, { transform: `translate(${points[index][0]} ${points[index][1]}) ` +
+                `scale(${sizeFactor()})` }));
     }
 }

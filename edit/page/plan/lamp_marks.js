@@ -1,6 +1,6 @@
 // The lamps in a plan view: a disc with its beam, and a diamond on the axis that turns it.
 
-import { setAttributes, svg } from "../base/dom.js";
+import { setAttributes, sizeFactor, svg } from "../base/dom.js";
 import { arrowStep, onDrag } from "../base/dragging.js";
 import { hasPlace } from "../base/lamps.js";
 import { along, normalize } from "../base/vec.js";
@@ -67,11 +67,12 @@ export class LampMarks {
     /** The end of the axis's handle, in the world. */
     #axisEnd(lamp) {
         return along(lamp.world_position, normalize(lamp.world_direction),
-            AXIS_PIXELS / this.#viewport.zoom);
+            (AXIS_PIXELS * sizeFactor()) / this.#viewport.zoom);
     }
 
     #place(mark, lamp, index) {
         const viewport = this.#viewport;
+        const size = sizeFactor();
         const selected = lamp.name === this.#settings.value.selected;
         const at = viewport.toScreen(lamp.world_position);
         const end = viewport.toScreen(this.#axisEnd(lamp));
@@ -89,18 +90,18 @@ export class LampMarks {
                 `${x.toFixed(1)},${y.toFixed(1)}`).join("L")}Z`,
         });
         setAttributes(mark.disc, {
-            transform: `translate(${at[0]} ${at[1]})`,
+            transform: `translate(${at[0]} ${at[1]}) scale(${size})`,
             "aria-label": `Lamp ${lamp.name} from the ${this.#view}: arrow keys move it`,
         });
         setAttributes(mark.axis, {
-            transform: `translate(${end[0]} ${end[1]})`, visibility: turns ? "visible" : "hidden",
+            transform: `translate(${end[0]} ${end[1]}) scale(${size})`, visibility: turns ? "visible" : "hidden",
             "aria-label": `Axis of lamp ${lamp.name} from the ${this.#view}: arrow keys turn it`,
         });
         setAttributes(mark.line, {
             x1: at[0], y1: at[1], x2: end[0], y2: end[1],
             visibility: turns ? "visible" : "hidden",
         });
-        setAttributes(mark.label, { x: at[0] + 10, y: at[1] - 8 });
+        setAttributes(mark.label, { x: at[0] + 10 * size, y: at[1] - 8 * size });
         mark.label.textContent = selected ? lamp.name : "";
     }
 

@@ -52,9 +52,9 @@ export class Editing {
         return this.#enqueue({ path: "edit", body, replaces, onRefusal });
     }
 
-    /** Undo, redo, save and so on: `post`s whose answer is the new state. */
+    /** Undo, redo, save, show and so on: `post`s whose answer is the new state. */
     run(path, body = {}, onRefusal = this.#onRefusal) {
-        return this.#enqueue({ path, body: () => body, replaces: null, onRefusal });
+        return this.#enqueue({ path, body: () => body, replaces: path === "show" ? path : null, onRefusal });
     }
 
     #enqueue(task) {

@@ -8,16 +8,21 @@ export class SceneFeed {
     #outlines;
     #editing;
     #onUnreadable;
+    #onChange;
     #fetching = false;
     #stale = false;
     #outlinesKey = null;
 
-    /** `onUnreadable(state)`: the file could not be read yet, and there is nothing to show. */
-    constructor(scene, outlines, editing, onUnreadable) {
+    /**
+     * `onUnreadable(state)`: the file could not be read yet, and there is nothing to show;
+     * `onChange(state)`: the scene was changed, and not from here.
+     */
+    constructor(scene, outlines, editing, onUnreadable, onChange) {
         this.#scene = scene;
         this.#outlines = outlines;
         this.#editing = editing;
         this.#onUnreadable = onUnreadable;
+        this.#onChange = onChange;
         scene.observe(({ outlines: { key } }) => this.#fetchOutlines(key));
     }
 
@@ -32,13 +37,19 @@ export class SceneFeed {
             try {
                 const state = await get("state");
                 if (this.#editing.isBusy) this.#stale = true;
-                else if (state.lamps) this.#scene.set(state);
+                else if (state.lamps) this.#take(state);
                 else this.#onUnreadable(state);
             } catch (error) {
                 if (!(error instanceof Refusal || error instanceof Unreachable)) throw error;
             }
         } while (this.#stale);
         this.#fetching = false;
+    }
+
+    #take(state) {
+        const before = this.#scene.value?.revision ?? null;
+        this.#scene.set(state);
+        if (before !== null && before !== state.revision) this.#onChange(state);
     }
 
     async #fetchOutlines(key) {

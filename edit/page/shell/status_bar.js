@@ -3,6 +3,7 @@
 import { h, setText } from "../base/dom.js";
 
 const REFUSAL_SECONDS = 12;
+const STAGES = { first: "light scattered once; all light follows" };
 
 export class StatusBar {
     #message;
@@ -26,6 +27,11 @@ export class StatusBar {
         setText(this.#message, text);
     }
 
+    /** Takes away what was done last; what was refused stays for its time. */
+    sayNothing() {
+        if (!this.#message.classList.contains("refused")) this.say("");
+    }
+
     /** What was refused, in the server's words. */
     refuse(text) {
         this.say(text);
@@ -41,11 +47,11 @@ export class StatusBar {
     showProgress({ stage, fraction }) {
         this.#progress.hidden = fraction >= 1;
         this.#progress.value = fraction;
-        setText(this.#stage, fraction >= 1 ? "" : `computing ${stage}`);
+        setText(this.#stage, fraction >= 1 ? "" : `computing ${STAGES[stage] ?? stage}`);
     }
 
     showImage({ width, height, quality }) {
         this.#progress.hidden = true;
-        setText(this.#stage, `${width}×${height}, ${quality}`);
+        setText(this.#stage, `${width}×${height}, ${STAGES[quality] ?? quality}`);
     }
 }

@@ -31,9 +31,12 @@ export class Toolbar {
     #settings;
     #parts;
     #lamps;
+    #cameras;
+    #frames;
+    #moment;
 
     /**
-     * `actions`: save, saveAs, reload, undo, redo, chooseExposure, keepSnapshot, dropSnapshot,
+     * `actions`: save, saveAs, reload, undo, redo, show, chooseExposure, keepSnapshot, dropSnapshot,
      * exportNumbers, exportPicture, exportShown, suggest, help.
      */
     constructor(place, scene, settings, actions) {
@@ -54,6 +57,12 @@ export class Toolbar {
                 if (value !== null) settings.update({ stops: value });
                 this.#update();
             } });
+        this.#cameras = h("select", { "aria-label": "Camera", title: "Which camera of the rig",
+            hidden: true, onchange: () => actions.show({ camera: this.#cameras.value }) });
+        this.#frames = h("input", { type: "range", step: 1, "aria-label": "Frame",
+            oninput: () => actions.show({ frame: Number(this.#frames.value) }) });
+        this.#moment = h("span", { class: "moment", hidden: true }, this.#frames,
+            h("span", { class: "unit" }));
         this.#parts = {
             name: h("span", { class: "scene-name" }),
             save: button("Save", "Save the scene (Ctrl S)", actions.save),
@@ -82,6 +91,7 @@ export class Toolbar {
             group("History", this.#parts.undo, this.#parts.redo),
             group("What is seen", h("div", { class: "segments" }, ...Object.values(looks)),
                 this.#lamps),
+            group("View", this.#cameras, this.#moment),
             group("Exposure", h("span", { class: "unit" }, "EV"), slider, stops,
                 button("Auto", "Choose the exposure anew (A)", actions.chooseExposure),
                 this.#parts.legend),
@@ -91,6 +101,25 @@ export class Toolbar {
             button("?", "Keys (F1)", actions.help)));
         scene.observe(() => this.#update());
         settings.observe(() => this.#update());
+    }
+
+    /** The cameras of a rig, the frames of what moves; of other scenes nothing. */
+    #showView({ cameras, camera, moment }) {
+        this.#cameras.hidden = cameras.length < 2;
+        this.#moment.hidden = moment === null;
+        this.#cameras.parentElement.hidden = this.#cameras.hidden && this.#moment.hidden;
+        if (this.#cameras.options.length !== cameras.length ||
+            cameras.some((name, index) => this.#cameras.options[index].value !== name)) {
+            this.#cameras.replaceChildren(...cameras.map((name) => h("option", { value: name }, name)));
+        }
+        this.#cameras.value = camera.name;
+        if (moment === null) return;
+        setAttributes(this.#frames, { min: moment.first, max: moment.last });
+        if (!this.#frames.matches(":active")) this.#frames.value = moment.frame ?? moment.first;
+        const text = moment.frame === null ? `${moment.time.toFixed(2)} s`
+            : `${moment.frame} · ${moment.time.toFixed(2)} s`;
+        setAttributes(this.#frames, { "aria-valuetext": `frame ${text}`, title: `Frame ${text}` });
+        setText(this.#moment.lastChild, text);
     }
 
     #update() {
@@ -103,7 +132,7 @@ export class Toolbar {
         setAttributes(name, { title: `${scene.folder}/${scene.scene}` +
             (scene.unsaved ? ": unsaved changes" : "") });
         document.title = `${scene.unsaved ? "• " : ""}${scene.scene} – uwvdb`;
-        save.disabled = !scene.unsaved;
+        save.disabled = !scene.unsaved && !scene.deleted_on_disk;
         undo.disabled = !scene.can_undo;
         redo.disabled = !scene.can_redo;
         setAttributes(undo, { title: `Undo${scene.can_undo ? ` ${scene.undo_label}` : ""} (Ctrl Z)` });
@@ -116,6 +145,7 @@ export class Toolbar {
                 title: element.disabled ? `Not in this scene; ${needs}`
                     : `See ${label.toLowerCase()}` });
         }
+        this.#showView(scene);
         this.#showLamps(scene.lamps, onlyLamp);
         if (!slider.matches(":active")) slider.value = stops ?? 0;
         if (document.activeElement !== typed) typed.value = (stops ?? 0).toFixed(1);

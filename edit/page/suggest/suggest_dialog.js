@@ -2,6 +2,7 @@
 // and applies the best one as one step that can be undone.
 
 import { h, setText } from "../base/dom.js";
+import { hasPlace } from "../base/lamps.js";
 import { formatNumber } from "../base/numbers.js";
 import { post } from "../server/api.js";
 import { numberField, numbersField, selectField } from "../panels/fields.js";
@@ -82,7 +83,7 @@ export class SuggestDialog {
     #build() {
         const wish = this.#wish;
         const { lamps } = this.#scene.value;
-        const editable = lamps.filter((lamp) => lamp.editable);
+        const editable = lamps.filter((lamp) => lamp.editable && hasPlace(lamp));
         const lamp = lamps.find((each) => each.name === wish.lamp);
         const parts = [];
         const add = (field, value) => {
@@ -127,6 +128,8 @@ export class SuggestDialog {
             commit: keep("objective") }), wish.objective);
         number("Least light kept", "", "least_light");
         number("Positions, at most", "", "samples");
+        parts.push(h("p", { class: "hint" }, "Computed of light that is scattered once, for a target " +
+            "alone in the scene's water."));
         this.#form.replaceChildren(...parts);
     }
 

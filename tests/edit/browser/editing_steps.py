@@ -368,6 +368,39 @@ class EditingSteps(unittest.TestCase):
         self.page.wait("document.querySelector('[data-key=\"profile.beam\"]').value === '50'")
         self.page.wait("document.querySelector('[data-banner]') === null")
 
+    def test_file_deleted(self):
+        self.editor.scene.unlink()
+        self.page.wait("document.querySelector('[data-banner=deleted]')")
+        self.page.click("[data-banner=deleted] button")
+        self.page.wait("document.querySelector('[data-banner]') === null")
+        self.assertEqual(self.editor.scene.read_text(), SCENE)
+
+    def test_refused_for_another_window(self):
+        # Another window has moved the lamp, and the news has not come here yet.
+        self.page.evaluate("""(async () => {
+            const { Editing } = await import('./page/server/editing.js');
+            const { Observable } = await import('./page/base/observable.js');
+            const state = await (await fetch('api/state')).json();
+            const other = new Editing(new Observable(state), () => {}, () => {});
+            await other.edit('move', [{ op: 'set', path: 'lamps.spot.position', value: [0, 0, 2] }]);
+            const late = new Editing(new Observable(state),
+                ({ status, message }) => { window.refusal = `${status} ${message}`; }, () => {});
+            await late.edit('move', [{ op: 'set', path: 'lamps.spot.position', value: [1, 0, 2] }]);
+        })()""")
+        self.assertRegex(self.page.evaluate("window.refusal"), "^409 .*another window")
+        self.page.complaints.clear()  # the console's own, of the answer 409
+        # And what another window did is said here.
+        self.page.wait("document.querySelector('.status-message').textContent.includes('elsewhere')")
+
+    def test_text_grows_with_the_screen(self):
+        def size():
+            return float(self.page.evaluate(
+                "getComputedStyle(document.querySelector('.lamp-name')).fontSize").rstrip("px"))
+        self.page.resize(1280, 800)
+        small = size()
+        self.page.resize(3840, 2160)
+        self.assertGreater(size(), 1.5 * small)
+
     def test_server_gone_and_back(self):
         self.editor.stop()
         self.page.wait("document.querySelector('[data-banner=server]')")

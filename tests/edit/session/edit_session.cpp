@@ -8,6 +8,8 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "render/light_left_out.h"
+#include "render/renderer.h"
 #include "render/scene_loading.h"
 #include "tests/support/edit_scene.h"
 #include "tests/support/run_program.h"
@@ -180,6 +182,16 @@ TEST_F(EditSessionTest, DoesNotOverwriteWhatOthersHaveWritten) {
     EXPECT_EQ(session_.state()["changed_on_disk"], false);
 }
 
+TEST_F(EditSessionTest, ADeletedFileIsSavedAgain) {
+    std::filesystem::remove(file_);
+    ASSERT_TRUE(eventually([&] { return session_.state()["deleted_on_disk"] == true; }));
+    EXPECT_EQ(session_.state()["changed_on_disk"], false);
+    EXPECT_TRUE(session_.state()["error"].is_null());
+    session_.save(Json::object());
+    EXPECT_EQ(text(), k_edit_scene);
+    EXPECT_EQ(session_.state()["deleted_on_disk"], false);
+}
+
 TEST_F(EditSessionTest, SavesAsAnotherFileOfTheFolderOnly) {
     for (const char* name : {"../x.yaml", "/tmp/x.yaml", "x.txt", ".x.yaml", "", "a/b.yaml"})
         EXPECT_THROW(session_.save_as({{"file", name}}), UsageError) << name;
@@ -229,6 +241,93 @@ TEST_F(EditSessionTest, BrightnessAndNamesRenderNothing) {
     EXPECT_EQ(session_.pictures().rendered(), rendered);
     EXPECT_EQ(session_.picture()->number, before->number);
     EXPECT_EQ(session_.picture()->lamps, before->lamps);
+}
+
+// The note is the one of `uwvdb render`: it is there once the picture is, and not with all light.
+TEST_F(EditSessionTest, SaysWhatSingleScatteringLeavesOut) {
+    Renderer renderer;
+    renderer.set_scene(load_scene(file_, {{"water.preset=jerlov-5C"}}));
+    const auto left_out = renderer.light_left_out();
+    const std::string note = left_out_note(renderer.assembled(), left_out).value_or("");
+    ASSERT_NE(note, "");
+    EXPECT_TRUE(session_.state()["light_note"].is_null());
+    set("water.preset", "jerlov-5C");
+    EXPECT_TRUE(eventually([&] { return session_.state()["light_note"] == note; }));
+}
+
+TEST(EditSessionLamps, ASunIsDimmedAndSwitchedOffButNotMoved) {
+    std::string scene = k_edit_scene;
+    scene.insert(scene.find("geometry:"), "  surface: {point: [0, -5, 0], normal: [0, -1, 0]}\n");
+    scene.insert(scene.find("  - name: right"),
+                 "  - {name: sun, type: sun, direction: [0, 1, 0.2], irradiance: [3, 2, 1]}\n");
+    const SceneFolder folder;
+    EditSession session(folder.write("rig.yaml", scene));
+    ASSERT_TRUE(session.state()["error"].is_null()) << session.state()["error"];
+    const auto edit = [&](const Json& change) {
+        session.edit({{"revision", session.state()["revision"]}, {"changes", {change}}});
+        return session.state()["lamps"][1];
+    };
+    EXPECT_EQ(session.state()["lamps"][1]["editable"], true);
+    const auto set = [&](const char* path, const Json& value) {
+        return edit({{"op", "set"}, {"path", path}, {"value", value}});
+    };
+    EXPECT_EQ(set("lamps.sun.irradiance", {6, 4, 2})["band_intensity"], Json({6.0, 4.0, 2.0}));
+    EXPECT_EQ(set("lamps.sun.direction", {0, 1, 0})["direction"], Json({0.0, 1.0, 0.0}));
+    EXPECT_EQ(edit({{"op", "lamp_on"}, {"lamp", "sun"}, {"on", false}})["on"], false);
+    for (const Json& change : {Json{{"op", "move_lamp"}, {"lamp", "sun"}, {"world", {0, 0, 0}}},
+                               Json{{"op", "aim_lamp"}, {"lamp", "sun"}, {"world", {0, 0, 0}}},
+                               Json{{"op", "mirror_lamp"}, {"lamp", "sun"}}})
+        EXPECT_THROW(edit(change), UsageError) << change;
+}
+
+TEST(EditSessionChoice, ShowsEachCameraOfARig) {
+    EditSession session(std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/scenes/stereo.yaml");
+    const Json before = session.state();
+    ASSERT_EQ(before["cameras"].size(), 2U);
+    EXPECT_EQ(before["camera"]["name"], before["cameras"][0]);
+    EXPECT_TRUE(before["moment"].is_null());
+    session.show({{"camera", before["cameras"][1]}});
+    const Json after = session.state();
+    EXPECT_EQ(after["camera"]["name"], before["cameras"][1]);
+    EXPECT_NE(after["camera"]["position"], before["camera"]["position"]);
+    EXPECT_EQ(after["lamps"][0]["world_position"], before["lamps"][0]["world_position"]);
+    EXPECT_EQ(after["unsaved"], false);
+    // A change stays with that camera.
+    const Json change{{"op", "lamp_on"}, {"lamp", after["lamps"][0]["name"]}, {"on", false}};
+    session.edit({{"revision", after["revision"]}, {"changes", {change}}});
+    EXPECT_EQ(session.state()["camera"], after["camera"]);
+    EXPECT_THROW(session.show({{"camera", "none"}}), UsageError);
+    EXPECT_THROW(session.show({{"frame", 1}}), UsageError);
+    EXPECT_EQ(session.state()["camera"], after["camera"]);
+}
+
+TEST(EditSessionChoice, ShowsEachFrameOfWhatMoves) {
+    EditSession session(std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/scenes/dive.yaml");
+    const Json before = session.state();
+    const int last = before["moment"]["last"];
+    ASSERT_GT(last, 0);
+    session.show({{"frame", last}});
+    const Json after = session.state();
+    EXPECT_EQ(after["moment"]["frame"], last);
+    EXPECT_GT(after["moment"]["time"], before["moment"]["time"]);
+    EXPECT_NE(after["camera"]["position"], before["camera"]["position"]);
+    EXPECT_THROW(session.show({{"frame", last + 1}}), UsageError);
+}
+
+TEST(EditSessionLamps, ALampHasASizeThatIsSet) {
+    std::string scene = k_edit_scene;
+    scene.insert(scene.find("    intensity: [10"),
+                 "    type: rectangle\n    width: 0.2\n    height: 0.1\n");
+    const SceneFolder folder;
+    EditSession session(folder.write("rig.yaml", scene));
+    ASSERT_TRUE(session.state()["error"].is_null()) << session.state()["error"];
+    session.edit({{"revision", session.state()["revision"]},
+                  {"changes", {{{"op", "set"}, {"path", "lamps.right.width"}, {"value", 0.3}}}}});
+    const Json extent = session.state()["lamps"][1]["extent"];
+    EXPECT_EQ(extent["type"], "rectangle");
+    EXPECT_EQ(extent["width"], 0.3);
+    EXPECT_EQ(extent["height"], 0.1);
+    EXPECT_TRUE(session.state()["lamps"][0]["extent"].is_null());
 }
 
 TEST_F(EditSessionTest, OnlyTheLampThatMovedIsRendered) {

@@ -6,7 +6,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "edit/session/picture_renderer.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
+#include "tests/support/edit_picture.h"
 #include "tests/support/edit_scene.h"
 #include "tests/support/meshes/mesh_fixtures.h"
 
@@ -25,68 +25,6 @@ using namespace uw::test;
 
 std::shared_ptr<const EditedScene> scene_of(const std::string& text) {
     return make_edited_scene(text, parse_yaml(text, "rig.yaml"), "rig.yaml", {}, 1);
-}
-
-std::shared_ptr<const Picture> final_picture(PictureRenderer& renderer,
-                                             const std::shared_ptr<const EditedScene>& scene) {
-    renderer.show(scene);
-    const bool is_done = eventually([&] {
-        const auto picture = renderer.picture();
-        return picture && picture->scene == scene && picture->quality == PictureQuality::final;
-    });
-    EXPECT_TRUE(is_done);
-    return renderer.picture();
-}
-
-PictureCallbacks quiet() {
-    return {[](const Picture&) {},
-            {},
-            [](const std::string& message) { ADD_FAILURE() << message; },
-            [](const Renderer&) {}};
-}
-
-/// A picture's bytes, read as docs/edit-api.md says.
-struct ReadPicture {
-    Json header;
-    std::vector<std::vector<float>> planes;
-};
-
-float float_of_half(std::uint16_t half) {
-    const int exponent = (half >> 10) & 31, mantissa = half & 1023;
-    const float magnitude = exponent == 0
-                                ? std::ldexp(static_cast<float>(mantissa), -24)
-                                : std::ldexp(static_cast<float>(1024 + mantissa), exponent - 25);
-    return (half & 0x8000) != 0 ? -magnitude : magnitude;
-}
-
-ReadPicture read(const std::string& bytes) {
-    ReadPicture picture;
-    std::uint32_t length = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-        length |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
-    picture.header = Json::parse(bytes.substr(4, length));
-    std::size_t at = 4 + length;
-    EXPECT_EQ(at % 16, 0U);
-    const std::size_t pixels =
-        picture.header["width"].get<std::size_t>() * picture.header["height"].get<std::size_t>();
-    const bool is_half = picture.header["type"] == "f16";
-    for (const Json& plane : picture.header["planes"]) {
-        std::vector<float>& values = picture.planes.emplace_back();
-        for (std::size_t i = 0; i < pixels * plane["channels"].get<std::size_t>(); ++i) {
-            if (is_half) {
-                std::uint16_t half = 0;
-                std::memcpy(&half, bytes.data() + at, 2);
-                values.push_back(float_of_half(half) * plane["factor"].get<float>());
-                at += 2;
-            } else {
-                values.emplace_back();
-                std::memcpy(&values.back(), bytes.data() + at, 4);
-                at += 4;
-            }
-        }
-    }
-    EXPECT_EQ(at, bytes.size());
-    return picture;
 }
 
 // The plane of this layer of an image that the renderer makes by itself.
@@ -107,9 +45,9 @@ std::vector<float> rendered_plane(const std::string& text, const std::string& la
 }
 
 TEST(Pictures, FinalPlanesAreThoseOfTheRenderer) {
-    PictureRenderer renderer(quiet());
+    PictureRenderer renderer(quiet_callbacks());
     const auto picture = final_picture(renderer, scene_of(k_edit_scene));
-    const ReadPicture served = read(picture_bytes(*picture, SampleType::f32));
+    const ReadPicture served = read_picture(picture_bytes(*picture, SampleType::f32));
     EXPECT_EQ(served.header["lamp_brightness"], Json::parse("[[40.0,30.0,20.0],[10.0,10.0,10.0]]"));
     int compared = 0;
     for (std::size_t p = 0; p < served.planes.size(); ++p) {
@@ -124,10 +62,10 @@ TEST(Pictures, FinalPlanesAreThoseOfTheRenderer) {
 }
 
 TEST(Pictures, HalvesAreTheSameToTheirPrecision) {
-    PictureRenderer renderer(quiet());
+    PictureRenderer renderer(quiet_callbacks());
     const auto picture = final_picture(renderer, scene_of(k_edit_scene));
-    const ReadPicture exact = read(picture_bytes(*picture, SampleType::f32));
-    const ReadPicture half = read(picture_bytes(*picture, SampleType::f16));
+    const ReadPicture exact = read_picture(picture_bytes(*picture, SampleType::f32));
+    const ReadPicture half = read_picture(picture_bytes(*picture, SampleType::f16));
     ASSERT_EQ(exact.planes.size(), half.planes.size());
     for (std::size_t p = 0; p < exact.planes.size(); ++p) {
         const float factor = half.header["planes"][p]["factor"].get<float>();
@@ -143,7 +81,7 @@ TEST(Pictures, HalvesAreTheSameToTheirPrecision) {
 // Light is additive and linear in the lamps' intensities: mixed from its parts, the picture is that
 // of the whole scene. The tolerance is that of interpolated in-scatter (1e-4 of the mean).
 void expect_mixed_from_lamps(std::string text) {
-    PictureRenderer renderer(quiet());
+    PictureRenderer renderer(quiet_callbacks());
     const auto picture = final_picture(renderer, scene_of(text));
     text.replace(text.find("[40, 30, 20]"), 12, "[5, 50, 25]");
     const auto brighter = scene_of(text);
@@ -195,7 +133,7 @@ TEST(Pictures, ShowSurfacesThatEmitLightOnce) {
 TEST(Pictures, ADarkLampIsReadyToBeTurnedUp) {
     std::string text = k_edit_scene;
     text.replace(text.find("[40, 30, 20]"), 12, "[0, 0, 0]");
-    PictureRenderer renderer(quiet());
+    PictureRenderer renderer(quiet_callbacks());
     const auto dark = scene_of(text);
     const auto picture = final_picture(renderer, dark);
     const std::size_t rendered = renderer.rendered();
@@ -214,11 +152,36 @@ TEST(Pictures, SizesKeepTheProportions) {
     EXPECT_NEAR(static_cast<double>(width) / height, 2, 1e-3);
 }
 
+// All light takes its time: before its first picture there is one of the light that is scattered
+// once, and none again when a lamp has moved.
+TEST(Pictures, BeginWithLightScatteredOnce) {
+    std::vector<std::pair<PictureQuality, bool>> made;
+    PictureCallbacks callbacks = quiet_callbacks();
+    callbacks.done = [&](const Picture& picture) {
+        made.emplace_back(picture.quality, picture.lamps[0]->plan.has(Layer::multiple));
+    };
+    std::string text = k_edit_scene;
+    text.replace(text.find("[96, 64]"), 8, "[24, 16]");
+    text.replace(text.find("{fx: 70, fy: 70, cx: 48, cy: 32}"), 32,
+                 "{fx: 18, fy: 18, cx: 12, cy: 8}");
+    text += "  scattering: multiple\n";
+    {
+        PictureRenderer renderer(callbacks);
+        final_picture(renderer, scene_of(text));
+        text.replace(text.find("[-0.5, 0, 0.6]"), 14, "[-0.4, 0, 0.6]");
+        final_picture(renderer, scene_of(text));
+    }
+    using enum PictureQuality;
+    const std::vector<std::pair<PictureQuality, bool>> expected{
+        {first, false}, {full_draft, true}, {final, true}, {full_draft, true}, {final, true}};
+    EXPECT_EQ(made, expected);
+}
+
 // While a lamp is dragged faster than its picture is rendered, there are pictures all the same, and
 // the last one is of the last place.
 TEST(Pictures, FollowADrag) {
     std::atomic<int> small = 0;
-    PictureCallbacks callbacks = quiet();
+    PictureCallbacks callbacks = quiet_callbacks();
     callbacks.done = [&](const Picture& picture) {
         if (picture.scene->scene.desc().camera.width > 96 &&
             picture.quality == PictureQuality::small)

@@ -1,0 +1,29 @@
+// ctest labels: metamorphic slow
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/support/edit_examples.h"
+
+namespace {
+
+using namespace uw;
+using namespace uw::test;
+
+// Each lamp has light paths of its own, so that their sum differs by the noise of both pictures.
+void expect_same_but_for_noise(const std::string& scene) {
+    const TwoPictures pictures = both_pictures_of(scene, 48, 27);
+    EXPECT_LT(pictures.rms_difference(), 0.06 * pictures.mean());
+    EXPECT_LT(std::abs(pictures.mean_difference()), 0.02 * pictures.mean());
+}
+
+TEST(AllLightPictures, OfTheHarbourAreThoseThatRenderGives) {
+    expect_same_but_for_noise("harbour.yaml");
+}
+
+TEST(AllLightPictures, OfSunlitWaterAreThoseThatRenderGives) {
+    expect_same_but_for_noise("sunlit.yaml");
+}
+
+}  // namespace
