@@ -126,7 +126,8 @@ class UwvdbEngine(bpy.types.RenderEngine):
 
     def _image(self, depsgraph, path, folder, written, size, notes):
         out = os.path.join(folder, "image.exr")
-        arguments = self._arguments(depsgraph, path, written, size, out)
+        # A calibration has a size of its own.
+        arguments = self._arguments(depsgraph, path, written, size, out) + ["--size", "{}x{}".format(*size)]
         settings = depsgraph.scene.uwvdb
         arguments += ["--quality", settings.quality.lower()]
         arguments += ["--layers", ",".join(passes.layers_of(depsgraph.view_layer, depsgraph.scene))]

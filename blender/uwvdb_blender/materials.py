@@ -47,6 +47,20 @@ def _source(socket):
     return None
 
 
+def _multiplied(node):
+    """The two sockets of colours that a node multiplies with full effect; None if it does something
+    else."""
+    if node.type == "MIX_RGB":
+        sockets = [node.inputs[1], node.inputs[2]]
+    elif node.type == "MIX" and node.data_type == "RGBA":
+        sockets = [socket for socket in node.inputs if socket.type == "RGBA"]
+    else:
+        return None
+    factor = node.inputs[0]
+    full = not factor.is_linked and factor.default_value == 1
+    return sockets if full and node.blend_type == "MULTIPLY" else None
+
+
 class Exporter:
     def __init__(self, glb, notes):
         self._glb, self._notes = glb, notes
@@ -159,25 +173,36 @@ class Exporter:
 
     def _set_colour(self, material, done, socket):
         pbr = done.content["pbrMetallicRoughness"]
+        factor, sources = self._product(socket)
+        pictures = [node for node in sources if self._is_image(node)]
+        paints = [node for node in sources if node.type in ("VERTEX_COLOR", "ATTRIBUTE")]
+        texture = None
+        if len(pictures) <= 1 and len(paints) <= 1 and len(pictures) + len(paints) == len(sources):
+            if pictures:
+                texture = self._texture(material, done, pictures[0], images.colour_file, "sRGB")
+            if texture is not None or not pictures:
+                pbr["baseColorFactor"] = factor + [1]
+                if texture is not None:
+                    pbr["baseColorTexture"] = texture
+                for node in paints:
+                    done.colours = (node.layer_name if node.type == "VERTEX_COLOR"
+                                    else node.attribute_name)
+                return
+        self._unlinked(material, socket)
+        pbr["baseColorFactor"] = [min(max(c, 0), 1) for c in socket.default_value[:3]] + [1]
+
+    def _product(self, socket):
+        """(colour, nodes) whose product a socket gets, through nodes that multiply with full effect."""
         found = _source(socket)
         colour = self._constant(socket, found)
         if colour is not None:
-            pbr["baseColorFactor"] = colour + [1]
-            return
-        factor, found = self._factor_and_texture(found)
-        if found is not None and found[0].type == "TEX_IMAGE" and found[0].image is not None:
-            texture = self._texture(material, done, found[0], images.colour_file, "sRGB")
-            if texture is not None:
-                pbr["baseColorTexture"] = texture
-                pbr["baseColorFactor"] = factor + [1]
-                return
-        elif found is not None and found[0].type in ("VERTEX_COLOR", "ATTRIBUTE"):
-            node = found[0]
-            done.colours = node.layer_name if node.type == "VERTEX_COLOR" else node.attribute_name
-            pbr["baseColorFactor"] = factor + [1]
-            return
-        self._unlinked(material, socket)
-        pbr["baseColorFactor"] = [min(max(c, 0), 1) for c in socket.default_value[:3]] + [1]
+            return colour, []
+        node = found[0]
+        sockets = _multiplied(node)
+        if sockets is None:
+            return [1.0, 1.0, 1.0], [node]
+        (first, nodes), (second, others) = (self._product(socket) for socket in sockets)
+        return [x * y for x, y in zip(first, second)], nodes + others
 
     @staticmethod
     def _constant(socket, found):
@@ -189,24 +214,6 @@ class Exporter:
         else:
             return None
         return [min(max(float(c), 0), 1) for c in values[:3]]
-
-    def _factor_and_texture(self, found):
-        """A texture multiplied by a colour, with full effect, is a texture with a factor."""
-        node = found[0]
-        if node.type == "MIX_RGB":
-            factor, sockets = node.inputs[0], [node.inputs[1], node.inputs[2]]
-        elif node.type == "MIX" and node.data_type == "RGBA":
-            factor, sockets = node.inputs[0], [s for s in node.inputs if s.type == "RGBA"]
-        else:
-            return [1.0, 1.0, 1.0], found
-        if node.blend_type != "MULTIPLY" or factor.is_linked or factor.default_value != 1:
-            return [1.0, 1.0, 1.0], None
-        sources = [_source(socket) for socket in sockets]
-        colours = [self._constant(*pair) for pair in zip(sockets, sources)]
-        for own, other in ((0, 1), (1, 0)):
-            if colours[own] is not None and sources[other] is not None:
-                return colours[own], sources[other]
-        return [1.0, 1.0, 1.0], None
 
     def _set_roughness(self, material, done, roughness, metallic):
         """glTF has both in one image: roughness in green, metal in blue."""
@@ -274,21 +281,18 @@ class Exporter:
     def _set_emission(self, material, done, colour, strength):
         self._unlinked(material, strength)
         value = float(strength.default_value)
-        found = _source(colour)
         if value <= 0:
             return
-        constant = self._constant(colour, found)
-        if constant is None:
-            factor, found = self._factor_and_texture(found)
+        constant, sources = self._product(colour)
+        if sources:
             texture = None
-            if found is not None and self._is_image(found[0]):
-                texture = self._texture(material, done, found[0], images.colour_file, "sRGB")
+            if len(sources) == 1 and self._is_image(sources[0]):
+                texture = self._texture(material, done, sources[0], images.colour_file, "sRGB")
             if texture is None:
                 self._unlinked(material, colour)
                 constant = list(colour.default_value[:3])
             else:
                 done.content["emissiveTexture"] = texture
-                constant = factor
         if max(constant) > 0:
             done.content["emissiveFactor"] = [min(max(float(c), 0), 1) for c in constant]
             done.content["extensions"]["KHR_materials_emissive_strength"] = {"emissiveStrength": value}

@@ -8,8 +8,9 @@ from .notes import Refusal
 # Panels of Blender for all engines, but for what uwvdb does not have.
 WITHOUT = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "WORLD_PT_preview",
            "RENDER_PT_simplify", "MATERIAL_PT_preview", "DATA_PT_light", "DATA_PT_spot", "DATA_PT_area"}
-# EEVEE's panels of a material's nodes, which are the same for all engines.
-SHARED = {"EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface"}
+# EEVEE's panels that are the same for all engines: nodes of materials, depth of field.
+SHARED = {"EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "DATA_PT_camera_dof",
+          "DATA_PT_camera_dof_aperture"}
 
 
 def _shared_panels():
@@ -168,7 +169,7 @@ class UWVDB_PT_snow(_Panel, bpy.types.Panel):
     def draw(self, context):
         settings, column = context.world.uwvdb, self.begin()
         column.active = settings.use_snow
-        for name in ("number", "least", "greatest", "exponent", "reflectance", "drift", "seed"):
+        for name in ("number", "least", "greatest", "exponent", "reflectance", "mean", "drift", "seed"):
             column.prop(settings, f"snow_{name}")
 
 

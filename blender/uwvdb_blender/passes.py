@@ -41,7 +41,15 @@ def layers_of(view_layer, scene):
         layers += ["flow", "flow_back"]
     if settings.use_lamps:
         layers.append("lamps")
+    if _sensor(scene) is not None:
+        layers.append("sensor")
     return layers
+
+
+def _sensor(scene):
+    """Settings of the camera's sensor if it has one."""
+    settings = scene.camera.data.uwvdb if scene.camera is not None else None
+    return settings if settings is not None and settings.use_sensor else None
 
 
 def needs_flow(view_layer):
@@ -85,6 +93,11 @@ def passes_of(view_layer, scene, bands, lamp_names=(), written=None):
             yield from _in_bands(f"lamp.{name}", bands)
     if len(bands) != 3:
         yield from _in_bands("total", bands)
+    sensor = _sensor(scene)
+    if sensor is not None and sensor.mosaic == "THREE":
+        yield Pass("sensor", "RGB", "COLOR", lambda image: image.get("sensor", "RGB"))
+    elif sensor is not None:
+        yield Pass("sensor", "X", "VALUE", lambda image: image.get("sensor", "V"))
 
 
 def _in_bands(layer, bands):

@@ -121,6 +121,9 @@ class UwvdbWorld(bpy.types.PropertyGroup):
     snow_drift: FloatVectorProperty(name="Drift", subtype="VELOCITY", unit="VELOCITY",
                                     description="Velocity of all particles: current and sinking")
     snow_seed: IntProperty(name="Seed", default=0, min=0)
+    snow_mean: EnumProperty(name="Mean", default="INCLUDED", items=[
+        ("INCLUDED", "Included", "The water holds the particles' mean, which is taken out of it"),
+        ("ADDED", "Added", "The water is that without snow")])
 
 
 class UwvdbCamera(bpy.types.PropertyGroup):
@@ -158,7 +161,8 @@ class UwvdbCamera(bpy.types.PropertyGroup):
                              description="The pass 'sensor': the digital numbers that a camera stores")
     exposure: FloatProperty(name="Exposure", default=0.01, min=1e-6, max=60, unit="TIME_ABSOLUTE",
                             precision=5)
-    pixel_pitch: FloatProperty(name="Pixel Pitch", default=3.45, min=0.1, max=1000, description="µm")
+    pixel_pitch: FloatProperty(name="Pixel Pitch", default=0, min=0, max=1000,
+                               description="µm; 0: that of Blender's sensor and resolution")
     mosaic: EnumProperty(name="Mosaic", default="MONO", items=[
         (name, label, "") for name, label in (
             ("MONO", "Mono"), ("RGGB", "RGGB"), ("BGGR", "BGGR"), ("GRBG", "GRBG"),

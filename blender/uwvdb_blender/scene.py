@@ -113,11 +113,11 @@ def _note_world(world, notes):
 def _add_sensor(content, settings, bands, notes):
     if not settings.use_sensor:
         return
-    sensor = {"exposure": settings.exposure, "pixel_pitch": settings.pixel_pitch * 1e-6,
-              "mosaic": settings.mosaic.lower(), "quantum_efficiency": settings.quantum_efficiency,
-              "full_well": settings.full_well, "read_noise": settings.read_noise,
-              "dark_current": settings.dark_current, "bit_depth": settings.bit_depth,
-              "seed": settings.sensor_seed}
+    sensor = {"mosaic": settings.mosaic.lower(), "seed": settings.sensor_seed}
+    sensor.update({name: getattr(settings, name) for name in (
+        "exposure", "quantum_efficiency", "full_well", "read_noise", "dark_current", "bit_depth")})
     if settings.mosaic != "MONO" and len(bands) != 3:
         raise Refusal("a sensor of colours needs three bands (Render > uwvdb > Bands), or Mono")
+    if settings.pixel_pitch > 0:
+        sensor["pixel_pitch"] = settings.pixel_pitch * 1e-6
     content["camera"]["sensor"] = sensor

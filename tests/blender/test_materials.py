@@ -111,12 +111,38 @@ def test_colour_times_texture():
     assert not any("Textured" in note for note in notes()), notes()
 
 
-def test_vertex_colours():
-    _, thing = facing_square()
+def paint(thing):
     colours = thing.data.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
     for item, colour in zip(colours.data, ((0.1, 0.8, 0.3, 1), (0.7, 0.2, 0.3, 1), (0.2, 0.3, 0.9, 1),
                                            (0.6, 0.6, 0.1, 1))):
         item.color = colour
+
+
+def test_colour_times_texture_times_vertex_colours():
+    _, thing = facing_square()
+    paint(thing)
+    made, nodes, links, node, texture = textured(thing, picture())
+    source = nodes.new("ShaderNodeVertexColor")
+    source.layer_name = "Paint"
+    factors = [texture.outputs["Color"], source.outputs["Color"]]
+    for _ in range(2):
+        mix = nodes.new("ShaderNodeMix")
+        mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
+        mix.inputs[0].default_value = 1
+        first, second = (s for s in mix.inputs if s.type == "RGBA")
+        links.new(factors.pop(), first)
+        second.default_value = (0.9, 0.8, 0.7, 1)
+        if factors:
+            links.new(factors.pop(), second)
+        factors.append(next(s for s in mix.outputs if s.type == "RGBA"))
+    links.new(factors[0], node.inputs[0])
+    compare("tinted, painted texture")
+    assert not any("Textured" in note for note in notes()), notes()
+
+
+def test_vertex_colours():
+    _, thing = facing_square()
+    paint(thing)
     made, nodes, links, node = material("Painted")
     source = nodes.new("ShaderNodeVertexColor")
     source.layer_name = "Paint"

@@ -257,4 +257,88 @@ def test_stops_within_a_second():
         assert told[-1][0] - begun < 60
 
 
+def test_every_kind_of_water_and_camera_renders():
+    """What the panels offer is what the program takes, and it matters."""
+    scene = empty_scene(24, 16)
+    box(location=(0, 3, 0), rotation=(0.3, 0.2, 0.5))
+    light("POINT", location=(1, 1, 1))
+    layer, world, camera = scene.view_layers[0].uwvdb, scene.world.uwvdb, scene.camera.data.uwvdb
+    for name in layer.__annotations__:
+        setattr(layer, name, True)
+    seen = []
 
+    def differs(what):
+        passes = render()
+        total = passes["Combined"][..., :3].mean()
+        assert total > 0 and numpy.isfinite(passes["Combined"]).all(), what
+        assert all(abs(total / other - 1) > 1e-5 for other in seen), f"{what} makes no difference"
+        seen.append(total)
+        return passes
+
+    passes = differs("no water")
+    for name in ("direct", "backscatter", "forward", "clean", "transmittance", "irradiance", "albedo",
+                 "range", "path", "lit", "lamp.Light"):
+        assert name in passes, (name, list(passes))
+    close(passes["lamp.Light"], passes["Combined"][..., :3], 1e-5, "the only light")
+    world.kind = "PRESET"
+    for item in world.bl_rna.properties["preset"].enum_items:
+        world.preset = item.identifier
+        differs(item.identifier)
+    world.use_particles = True
+    differs("own particles")
+    world.kind, world.chlorophyll = "CONSTITUENTS", 2
+    differs("constituents")
+    world.cdom = 0.2
+    differs("dissolved matter")
+    world.kind = "COEFFICIENTS"
+    passes = differs("coefficients")
+    # The transmittance is that of the length in water, at 0.5, 0.27 and 0.23 per metre.
+    length = passes["path"]
+    close(passes["transmittance"], numpy.exp(-length * [0.5, 0.27, 0.23]), 2e-2, "transmittance",
+          length[..., 0] > 0)
+    world.use_snow = True
+    differs("snow")
+    world.snow_mean = "ADDED"
+    differs("snow besides")
+    world.use_snow = False
+    scene.uwvdb.use_forward_scatter = True
+    differs("forward scatter")
+    scene.uwvdb.use_forward_scatter, scene.uwvdb.scattering = False, "MULTIPLE"
+    assert "multiple" in differs("multiple scattering")
+    scene.uwvdb.integrator, scene.uwvdb.use_error, scene.uwvdb.error = "PATH", True, 0.2
+    assert "error" in differs("path")
+    scene.uwvdb.integrator, scene.uwvdb.scattering = "VOLUME", "SINGLE"
+    scene.uwvdb.bands = "450, 500, 550, 600, 650"
+    passes = differs("five bands")
+    assert {"total.500nm", "direct.650nm"} <= set(passes), list(passes)
+    scene.uwvdb.bands = "620, 540, 450"
+    for camera.housing in ("FLAT", "DOME"):
+        differs(camera.housing)
+    camera.use_sensor = True
+    for camera.mosaic in ("MONO", "RGGB", "THREE"):
+        passes = render()
+        assert passes["sensor"].shape[-1] == (3 if camera.mosaic == "THREE" else 1)
+        assert passes["sensor"].max() > 0 and (passes["sensor"] == passes["sensor"].round()).all()
+
+
+def test_calibration():
+    """A calibration's size and rays take the place of Blender's lens."""
+    scene = empty_scene(40, 30)
+    square(size=40, location=(0, 2, 0), rotation=(math.pi / 2, 0, 0))
+    scene.view_layers[0].use_pass_position = True
+    with tempfile.TemporaryDirectory() as folder:
+        with open(f"{folder}/rig.yaml", "w") as file:
+            file.write("%YAML:1.0\nimage_width: 40\nimage_height: 30\n"
+                       "camera_matrix: !!opencv-matrix\n  rows: 3\n  cols: 3\n  dt: d\n"
+                       "  data: [50., 0., 22., 0., 50., 14., 0., 0., 1.]\n"
+                       "distortion_coefficients: !!opencv-matrix\n  rows: 1\n  cols: 5\n  dt: d\n"
+                       "  data: [0., 0., 0., 0., 0.]\n")
+        scene.camera.data.uwvdb.calibration = f"{folder}/rig.yaml"
+        position = render()["Position"]
+        scene.render.resolution_percentage = 200
+        larger = render()["Position"]
+    # OpenCV's pixels have their centres at whole numbers.
+    close(position[15, :, 0], (numpy.arange(40) - 22) / 50 * 2, 1e-5, "x")
+    assert larger.shape[:2] == (60, 80)
+    close(larger[15::30, 1::2, 0].mean(axis=0) + larger[15::30, 0::2, 0].mean(axis=0), position[15, :, 0] * 2,
+          1e-5, "x of an image twice as large")
