@@ -40,7 +40,8 @@ class Lamps:
         strength, ies = emission
         if max(strength) <= 0:
             return
-        watts = [light.energy * value for value in colours.from_rgb(strength, self._bands)]
+        energy = light.energy * 2 ** getattr(light, "exposure", 0)  # of Blender 4.4
+        watts = [energy * value for value in colours.from_rgb(strength, self._bands)]
         entry = {"name": self._name(shown.name)}
         if light.type == "SUN":
             if surface is None:
@@ -78,7 +79,9 @@ class Lamps:
                 self._note(shown, "Cycles dims an area with an IES file by the cosine once more")
             if light.type == "SPOT":
                 self._note(shown, "the cone is left out: an IES file has its own")
-            entry["profile"] = {"type": "ies", "file": file}
+            # Cycles has a luminaire's horizontal angle 0 along the object's -y.
+            turn = -90 if poses is not None else _rotation(matrix, -matrix.to_3x3().col[1])
+            entry["profile"] = {"type": "ies", "file": file, "rotate": turn}
             factor *= 4 * math.pi / IES_UNIT * reference
         entry["intensity"] = [value * factor for value in watts]
         if not getattr(light, "use_shadow", True):
@@ -115,7 +118,7 @@ class Lamps:
             return
         entry.update(type="rectangle", width=width, height=height)
         if not moves:
-            entry["rotate"] = _rotation(matrix)
+            entry["rotate"] = _rotation(matrix, matrix.to_3x3().col[0])
 
     @staticmethod
     def _spot(light, matrix):
@@ -129,6 +132,8 @@ class Lamps:
         """(linear RGB by which the watts are multiplied, (IES file, its greatest candelas) or None);
         None if the light gives none."""
         colour = [float(c) for c in light.color]
+        if getattr(light, "use_temperature", False):  # of Blender 4.5
+            colour = [c * float(t) for c, t in zip(colour, light.temperature_color)]
         if not light.use_nodes or light.node_tree is None:
             return colour, None
         output = light.node_tree.get_output_node("CYCLES") or light.node_tree.get_output_node("ALL")
@@ -175,10 +180,11 @@ class Lamps:
             except OSError as error:
                 self._note(shown, f"IES file '{path}': {error.strerror}; it shines without")
                 return None
-        greatest = greatest_candelas(text)
-        if greatest is None:
+        seen = as_cycles_sees(text)
+        if seen is None:
             self._note(shown, "its IES file cannot be read; it shines without")
             return None
+        text, greatest = seen
         name = f"luminaire{len(os.listdir(self._folder))}.ies"
         with open(os.path.join(self._folder, name), "w", encoding="latin-1") as file:
             file.write(text)
@@ -190,29 +196,39 @@ def plain_name(name):
     return re.sub(r"[^A-Za-z0-9_-]", "_", name)[:60] or "lamp"
 
 
-def _rotation(matrix):
-    """Degrees by which uwvdb turns a rectangle so that its width lies along the object's x. Unturned it
-    lies along the world's x, projected, or y if the lamp shines along x; 90 degrees are at x cross
-    direction."""
-    axes = matrix.to_3x3()
-    direction, width = -axes.col[2].normalized(), axes.col[0].normalized()
+def _rotation(matrix, axis):
+    """Degrees by which uwvdb turns a rectangle, so that its width lies along an axis, or a luminaire, so
+    that its horizontal angle 0 does. Unturned that is the world's x, projected, or y if the lamp shines
+    along x; 90 degrees are at x cross direction."""
+    direction, axis = -matrix.to_3x3().col[2].normalized(), axis.normalized()
     unturned = Vector((1, 0, 0)) - direction.x * direction
     if unturned.length < 1e-6:
         unturned = Vector((0, 1, 0)) - direction.y * direction
     unturned.normalize()
-    return math.degrees(math.atan2(width.dot(unturned.cross(direction)), width.dot(unturned)))
+    return math.degrees(math.atan2(axis.dot(unturned.cross(direction)), axis.dot(unturned)))
 
 
-def greatest_candelas(text):
-    """The greatest value of an LM-63 file with its multiplier and ballast factor, or None."""
-    _, found, rest = text.partition("TILT=")
+def as_cycles_sees(text):
+    """(LM-63 text, its greatest candelas with multiplier and ballast factor); None if it cannot be read.
+    Cycles counts horizontal angles the other way round, which matters where they go beyond 180."""
+    before, found, rest = text.partition("TILT=")
     lines = rest.splitlines()
     if not found or not lines or lines[0].strip().upper() != "NONE":
         return None
     try:
-        numbers = [float(word) for word in " ".join(lines[1:]).replace(",", " ").split()]
+        words = " ".join(lines[1:]).replace(",", " ").split()
+        numbers = [float(word) for word in words]
         vertical, horizontal = int(numbers[3]), int(numbers[4])
-        values = numbers[13 + vertical + horizontal:][:vertical * horizontal]
-        return numbers[2] * numbers[10] * max(values)
+        at = 13 + vertical
+        angles, values = numbers[at:at + horizontal], numbers[at + horizontal:]
+        rows = [values[row * vertical:(row + 1) * vertical] for row in range(horizontal)]
+        greatest = numbers[2] * numbers[10] * max(max(row) for row in rows)
+        if len(rows[-1]) != vertical:
+            return None
     except (ValueError, IndexError):
         return None
+    if angles[-1] <= 180:
+        return text, greatest
+    turned = [words[:10], words[10:13], words[13:at], [f"{360 - a:g}" for a in reversed(angles)]]
+    turned += [[f"{value:g}" for value in row] for row in reversed(rows)]
+    return f"{before}TILT=NONE\n" + "".join(" ".join(line) + "\n" for line in turned), greatest

@@ -342,3 +342,57 @@ def test_calibration():
     assert larger.shape[:2] == (60, 80)
     close(larger[15::30, 1::2, 0].mean(axis=0) + larger[15::30, 0::2, 0].mean(axis=0), position[15, :, 0] * 2,
           1e-5, "x of an image twice as large")
+
+
+def test_view_layers_and_the_compositor():
+    """Each view layer has its own objects and passes, and the compositor gets them by name."""
+    scene = empty_scene(40, 30)
+    light("POINT", location=(1, 0, 1))
+    box("Near", location=(0, 3, 0))
+    square("Wall", size=30, location=(0, 6, 0), rotation=(math.pi / 2, 0, 0))
+    group = bpy.data.collections.new("Front")
+    scene.collection.children.link(group)
+    scene.collection.objects.unlink(bpy.data.objects["Near"])
+    group.objects.link(bpy.data.objects["Near"])
+    back = scene.view_layers.new("Back")
+    back.layer_collection.children["Front"].exclude = True
+    front = scene.view_layers[0]
+    front.use_pass_z = back.use_pass_z = True
+    back.uwvdb.use_clean = True
+    scene.use_nodes = True
+    tree = scene.node_tree
+    tree.nodes.clear()
+    source, negative = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeInvert")
+    source.layer = "Back"
+    assert source.outputs["clean"].enabled and source.outputs["Depth"].enabled
+    target = tree.nodes.new("CompositorNodeComposite")
+    tree.links.new(source.outputs["clean"], negative.inputs["Color"])
+    tree.links.new(negative.outputs["Color"], target.inputs["Image"])
+    with tempfile.TemporaryDirectory() as folder:
+        settings = scene.render.image_settings
+        settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+        settings.exr_codec = "NONE"
+        scene.render.filepath = f"{folder}/image.exr"
+        bpy.ops.render.render(write_still=True)
+        channels = sys.modules["uwvdb_blender.exr"].read(scene.render.filepath).channels
+    depths = [channels[f"{layer.name}.Depth.Z"][15, 20] for layer in (front, back)]
+    assert numpy.allclose(depths, (2.5, 6), rtol=1e-5), depths
+    assert "Back.clean.R" in channels and f"{front.name}.clean.R" not in channels
+    close(channels["Composite.Combined.R"], 1 - channels["Back.clean.R"], 1e-5, "composite")
+
+
+def test_moving_lights_and_turned_panels():
+    """A panel and a luminaire that move with the shutter open are, in the mean, where they are at rest."""
+    scene = empty_scene(60, 40)
+    square("Wall", size=30, location=(0, 4, 0), rotation=(math.pi / 2, 0, 0))
+    box(location=(0.4, 3.5, 0.2), size=(0.5, 0.5, 0.5), rotation=(0.1, 0.2, 0.3))
+    lamp = light("AREA", location=(-0.6, 1.5, 0.5), rotation=(1.3, 0.1, -0.4), shape="RECTANGLE", size=0.9,
+                 size_y=0.1)
+    rested = render()["Combined"][..., 0]
+    for frame, x in ((1, -0.61), (3, -0.59)):
+        lamp.location.x = x
+        lamp.keyframe_insert("location", frame=frame)
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 0.5
+    scene.uwvdb.samples = 16
+    moving = render(frame=2)["Combined"][..., 0]
+    median_close(moving, rested, 5e-3, "moving panel", rested > 0.02 * rested.max())
