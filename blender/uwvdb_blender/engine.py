@@ -85,6 +85,8 @@ class UwvdbEngine(bpy.types.RenderEngine):
                 if made.name != "Combined":
                     self.add_pass(made.name, len(made.channel_ids), made.channel_ids,
                                   layer=depsgraph.view_layer.name)
+            if scene.uwvdb.kept_in:
+                _keep(part, scene, depsgraph.view_layer, name)
             if not bpy.app.background and preferences.wants_preview():
                 self._show_preview(depsgraph, path, part, written, size, name)
             image = self._image(depsgraph, path, part, written, size, notes)
@@ -189,6 +191,17 @@ class UwvdbEngine(bpy.types.RenderEngine):
             if values is not None and target is not None:
                 _fill(target, values)
         self.end_result(result)
+
+
+def _keep(folder, scene, view_layer, view):
+    """Copies a scene's files to where the user wants to have them."""
+    names = [f"{scene.frame_current:04d}", bpy.path.clean_name(view_layer.name)] + [view] * bool(view)
+    target = os.path.join(bpy.path.abspath(scene.uwvdb.kept_in), "_".join(names))
+    try:
+        shutil.rmtree(target, ignore_errors=True)
+        shutil.copytree(folder, target, symlinks=True)
+    except OSError as error:
+        raise Refusal(f"Render > uwvdb > Keep Scenes In: {target}: {error.strerror}") from error
 
 
 def _fill(target, rows_from_top):

@@ -84,6 +84,9 @@ class Lamps:
             entry["profile"] = {"type": "ies", "file": file, "rotate": turn}
             factor *= 4 * math.pi / IES_UNIT * reference
         entry["intensity"] = [value * factor for value in watts]
+        linking = getattr(shown, "light_linking", None)  # of Blender 4.0
+        if linking is not None and (linking.receiver_collection or linking.blocker_collection):
+            self._note(shown, "lights everything, whatever it is linked to")
         if not getattr(light, "use_shadow", True):
             self._note(shown, "casts shadows here although they are switched off")
         self.entries.append(entry)

@@ -49,12 +49,14 @@ class MeshFile:
         self._notes = notes
         self._materials = materials.Exporter(self.glb, notes)
         self._meshes = {}
+        self._override = None  # the view layer's material for everything
 
     @property
     def is_empty(self):
         return not self.pass_indices
 
     def add_all(self, depsgraph, to_metres, motion):
+        self._override = depsgraph.view_layer.material_override
         for instance in depsgraph.object_instances:
             if instance.object.type in UNKNOWN and instance.show_self:
                 self._notes.add(f"{UNKNOWN[instance.object.type]} are left out")
@@ -70,6 +72,8 @@ class MeshFile:
             if shown.is_holdout or shown.is_shadow_catcher:
                 self._notes.add(f"'{shown.name}' is a plain surface: holdouts and shadow catchers are "
                                 "not supported")
+            if not shown.visible_shadow:
+                self._notes.add(f"'{shown.name}' casts a shadow here")
             mesh = self._mesh(shown)
             if mesh is None:
                 continue
@@ -83,6 +87,8 @@ class MeshFile:
 
     def _mesh(self, shown):
         slots = tuple(slot.material for slot in shown.material_slots)
+        if self._override is not None:
+            slots = (self._override,)
         key = (shown.type, shown.data.as_pointer(),
                tuple(m.name_full if m is not None else "" for m in slots))
         if key not in self._meshes:

@@ -39,6 +39,10 @@ class UwvdbScene(bpy.types.PropertyGroup):
         name="Bands", default="620, 540, 450",
         description="Wavelengths in nm, 1 to 32. Three are red, green and blue in this order; others "
                     "are shown as their colour by CIE 1931")
+    kept_in: StringProperty(
+        name="Keep Scenes In", subtype="DIR_PATH",
+        description="A folder in which the scene files of all frames rendered stay, for uwvdb's other "
+                    "commands: FRAME_VIEWLAYER/scene.yaml")
     use_gloss: BoolProperty(
         name="Gloss and Metal", default=True,
         description="Principled's roughness, metal and specular under the lamps; otherwise all "

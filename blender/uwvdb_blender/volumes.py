@@ -60,7 +60,11 @@ def _pattern(path):
 def advice(path, source, is_cancelled=lambda: False):
     """{grid: (small, large)} in ppm per unit of a volume as large as its file says, and the names of
     all grids of numbers."""
-    found = program.info(path, source.pattern, source.path, is_cancelled)
+    try:
+        found = program.info(path, source.pattern, source.path, is_cancelled)
+    except program.Failed:
+        # Numbers without leading zeros have no pattern that their length tells.
+        found = program.info(path, source.path, source.path, is_cancelled)
     told = found["advice"]
     mapped = {name: (told["small_ppm"] * told["scale"], told["large_ppm"] * told["scale"])
               for name in told["map"]} if "small_ppm" in told else {}
@@ -110,11 +114,12 @@ class Volumes:
                 continue
             try:
                 source = source_of(shown, depsgraph.scene.frame_current)
+                if source is not None:
+                    self._add(shown, source, depsgraph.scene, to_metres @ instance.matrix_world)
             except Refusal as missing:
                 self._notes.add(f"{missing}; it is left out")
-                continue
-            if source is not None:
-                self._add(shown, source, depsgraph.scene, to_metres @ instance.matrix_world)
+        if self.entries and depsgraph.scene.render.use_motion_blur:
+            self._notes.add("volumes stand still while the shutter is open")
 
     def _add(self, shown, source, scene, matrix):
         # Under a name of its own: the file's place says nothing that Blender does not know better.

@@ -396,3 +396,29 @@ def test_moving_lights_and_turned_panels():
     scene.uwvdb.samples = 16
     moving = render(frame=2)["Combined"][..., 0]
     median_close(moving, rested, 5e-3, "moving panel", rested > 0.02 * rested.max())
+
+
+def test_scenes_are_kept_for_other_commands():
+    scene = empty_scene(40, 30)
+    light("POINT", location=(1, 0, 1))
+    box(location=(0, 3, 0))
+    with tempfile.TemporaryDirectory() as folder:
+        scene.uwvdb.kept_in = folder
+        ours = render(frame=7)["Combined"]
+        place = f"{folder}/0007_ViewLayer"
+        scene_text = json.loads(pathlib.Path(place, "scene.yaml").read_text())
+        assert scene_text["uwvdb"] == 1 and len(scene_text["lamps"]) == 1
+        uwvdb("render", "scene.yaml", "-o", "image.exr", "--compression", "none", "--precision", "float",
+              folder=place)
+        again = sys.modules["uwvdb_blender.exr"].read(f"{place}/image.exr").get("", "RGBA")
+    close(again, ours, 1e-6, "rendered again")
+
+
+def test_material_of_the_view_layer():
+    scene = empty_scene(24, 16)
+    light("POINT")
+    wall = square(size=40, location=(0, 2, 0), rotation=(math.pi / 2, 0, 0))
+    wall.data.materials.append(material("White", (0.9, 0.9, 0.9))[0])
+    scene.view_layers[0].uwvdb.use_albedo = True
+    scene.view_layers[0].material_override = material("Clay", (0.5, 0.4, 0.3))[0]
+    close(render()["albedo"][8, 12], [0.5, 0.4, 0.3], 1e-5, "albedo")
