@@ -7,7 +7,7 @@ from .notes import Refusal
 
 # Panels of Blender for all engines, but for what uwvdb does not have.
 WITHOUT = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "WORLD_PT_preview",
-           "RENDER_PT_simplify", "MATERIAL_PT_preview", "DATA_PT_light", "DATA_PT_spot", "DATA_PT_area"}
+           "RENDER_PT_gpencil", "MATERIAL_PT_preview", "DATA_PT_light", "DATA_PT_spot", "DATA_PT_area"}
 # EEVEE's panels that are the same for all engines: nodes of materials, depth of field.
 SHARED = {"EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "DATA_PT_camera_dof",
           "DATA_PT_camera_dof_aperture"}

@@ -109,7 +109,10 @@ def test_read_grids_fills_the_panel():
 
 def test_off_and_on_again():
     empty_scene()
-    assert "UWVDB" in bpy.types.RENDER_PT_output.COMPAT_ENGINES
+    for panel in (bpy.types.RENDER_PT_output, bpy.types.DATA_PT_camera_dof,
+                  bpy.types.EEVEE_MATERIAL_PT_surface):
+        assert "UWVDB" in panel.COMPAT_ENGINES, panel
+    assert "UWVDB" not in bpy.types.RENDER_PT_gpencil.COMPAT_ENGINES
     bpy.ops.preferences.addon_disable(module="uwvdb_blender")
     assert not hasattr(bpy.types.Scene, "uwvdb")
     assert "UWVDB" not in bpy.types.RENDER_PT_output.COMPAT_ENGINES

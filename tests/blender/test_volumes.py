@@ -1,4 +1,4 @@
-# ctest labels: metamorphic
+# ctest labels: metamorphic slow
 """Volume objects are where Cycles shows them: what they leave of a bright wall's light, pixel by pixel."""
 
 from plumes import *
