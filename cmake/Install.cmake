@@ -29,6 +29,18 @@ uwvdb_install_printed(uwvdb.fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completion
 get_property(uwvdb_printed GLOBAL PROPERTY UWVDB_PRINTED)
 add_custom_target(uwvdb_printed ALL DEPENDS ${uwvdb_printed})
 
+# The Blender add-on, as Blender installs it.
+file(GLOB uwvdb_blender_files CONFIGURE_DEPENDS blender/uwvdb_blender/*.py
+     blender/uwvdb_blender/*.toml)
+set(uwvdb_blender_addon ${PROJECT_BINARY_DIR}/blender/uwvdb_blender.zip)
+add_custom_command(OUTPUT ${uwvdb_blender_addon}
+    COMMAND ${PROJECT_SOURCE_DIR}/scripts/blender-addon ${uwvdb_blender_addon}
+    DEPENDS ${uwvdb_blender_files} scripts/blender-addon LICENSE
+    COMMENT "Packing the Blender add-on" VERBATIM)
+add_custom_target(uwvdb_blender_addon ALL DEPENDS ${uwvdb_blender_addon})
+install(FILES ${uwvdb_blender_addon} DESTINATION ${CMAKE_INSTALL_DATADIR}/uwvdb/blender
+        COMPONENT program)
+
 # The library: all modules but the command line's. Between minor versions, anything may change.
 get_property(uwvdb_library_modules GLOBAL PROPERTY UWVDB_MODULES)
 list(FILTER uwvdb_library_modules INCLUDE REGEX "^uwvdb_(core|media|camera|render)")

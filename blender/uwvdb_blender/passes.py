@@ -1,0 +1,135 @@
+"""Which layers of uwvdb a view layer asks for, and how they become passes of Blender."""
+
+import numpy
+
+FAR = 1e10  # Cycles' depth of what is not hit
+
+# Property of the view layer -> layer; light in bands, or one number.
+LIGHT = {"use_direct": "direct", "use_backscatter": "backscatter", "use_forward": "forward",
+         "use_multiple": "multiple", "use_clean": "clean", "use_transmittance": "transmittance",
+         "use_irradiance": "irradiance", "use_error": "error", "use_albedo": "albedo"}
+NUMBERS = {"use_range": "range", "use_path": "path", "use_lit": "lit"}
+
+
+class Pass:
+    """A pass's name in Blender, its channels, and what makes it of an image."""
+
+    def __init__(self, name, channel_ids, kind, make):
+        self.name, self.channel_ids, self.kind, self._make = name, channel_ids, kind, make
+
+    def make(self, image):
+        """Rows from the top, (height, width, channels); None if the image does not have it."""
+        return self._make(image)
+
+
+def layers_of(view_layer, scene):
+    """uwvdb's layers for the passes of a view layer."""
+    settings = view_layer.uwvdb
+    layers = ["total"] + [layer for key, layer in {**LIGHT, **NUMBERS}.items()
+                          if getattr(settings, key) and _exists(layer, scene)]
+    if view_layer.use_pass_z:
+        layers.append("depth")
+    if view_layer.use_pass_normal:
+        layers.append("normal")
+    if view_layer.use_pass_position:
+        layers.append("position")
+    if view_layer.use_pass_object_index:
+        layers.append("id")
+    if view_layer.use_pass_material_index:
+        layers.append("material")
+    if needs_flow(view_layer):
+        layers += ["flow", "flow_back"]
+    if settings.use_lamps:
+        layers.append("lamps")
+    if _sensor(scene) is not None:
+        layers.append("sensor")
+    return layers
+
+
+def _sensor(scene):
+    """Settings of the camera's sensor if it has one."""
+    settings = scene.camera.data.uwvdb if scene.camera is not None else None
+    return settings if settings is not None and settings.use_sensor else None
+
+
+def needs_flow(view_layer):
+    return view_layer.use_pass_vector
+
+
+def _exists(layer, scene):
+    settings = scene.uwvdb
+    multiple = settings.integrator == "PATH" or (settings.integrator == "VOLUME"
+                                                 and settings.scattering == "MULTIPLE")
+    return {"multiple": multiple, "error": settings.integrator == "PATH"}.get(layer, True)
+
+
+def passes_of(view_layer, scene, bands, lamp_names=(), written=None):
+    """The passes in Blender's order. Without `written` only their names and channels are of use."""
+    yield Pass("Combined", "RGBA", "COLOR", lambda image: image.get("", "RGBA"))
+    unit = written.metres_per_unit if written else 1
+    if view_layer.use_pass_z:
+        yield Pass("Depth", "Z", "VALUE", lambda image: _far(_scaled(image.get("depth", "Z"), unit)))
+    if view_layer.use_pass_position:
+        yield Pass("Position", "XYZ", "VECTOR", lambda image: _scaled(image.get("position", "XYZ"), unit))
+    if view_layer.use_pass_normal:
+        yield Pass("Normal", "XYZ", "VECTOR", lambda image: image.get("normal", "XYZ"))
+    if needs_flow(view_layer):
+        yield Pass("Vector", "XYZW", "VECTOR", _vector)
+    if view_layer.use_pass_object_index:
+        yield Pass("IndexOB", "X", "VALUE",
+                   lambda image: _looked_up(image.get("id", "V"), written.pass_indices))
+    if view_layer.use_pass_material_index:
+        yield Pass("IndexMA", "X", "VALUE",
+                   lambda image: _looked_up(image.get("material", "V"), written.material_indices))
+    settings = view_layer.uwvdb
+    for key, layer in LIGHT.items():
+        if getattr(settings, key) and _exists(layer, scene):
+            yield from _in_bands(layer, bands)
+    for key, layer in NUMBERS.items():
+        if getattr(settings, key):
+            yield Pass(layer, "X", "VALUE", lambda image, layer=layer: image.get(layer, "V"))
+    if settings.use_lamps:
+        for name in lamp_names:
+            yield from _in_bands(f"lamp.{name}", bands)
+    if len(bands) != 3:
+        yield from _in_bands("total", bands)
+    sensor = _sensor(scene)
+    if sensor is not None and sensor.mosaic == "THREE":
+        yield Pass("sensor", "RGB", "COLOR", lambda image: image.get("sensor", "RGB"))
+    elif sensor is not None:
+        yield Pass("sensor", "X", "VALUE", lambda image: image.get("sensor", "V"))
+
+
+def _in_bands(layer, bands):
+    if len(bands) == 3:
+        yield Pass(layer, "RGB", "COLOR", lambda image: image.get(layer, "RGB"))
+        return
+    for band in bands:
+        name = f"{band:g}nm".replace(".", "_")
+        yield Pass(f"{layer}.{name}", "X", "VALUE", lambda image, name=name: image.get(layer, [name]))
+
+
+def _scaled(values, metres_per_unit):
+    return None if values is None else values / numpy.float32(metres_per_unit)
+
+
+def _far(depth):
+    return None if depth is None else numpy.where(depth == 0, numpy.float32(FAR), depth)
+
+
+def _vector(image):
+    """Blender's pass has the way from here to the frame before, and that from the next to here, with y
+    upwards; uwvdb's flow leads from here to both, with y downwards."""
+    back, on = image.get("flow_back", "XY"), image.get("flow", "XY")
+    if back is None or on is None:
+        return None
+    result = numpy.stack([back[..., 0], -back[..., 1], -on[..., 0], on[..., 1]], axis=-1)
+    return numpy.nan_to_num(result, nan=0.0)
+
+
+def _looked_up(numbers, table):
+    """uwvdb counts from 1; 0 is nothing."""
+    if numbers is None:
+        return None
+    known = numpy.array([0, *table], numpy.float32)
+    return known[numbers.astype(numpy.int64)]

@@ -1,0 +1,123 @@
+"""The scene as it stands in a frame, as a scene file of uwvdb in a folder of its own. Its world is
+Blender's, z up, in metres."""
+
+import json
+import os
+
+from mathutils import Matrix
+
+from . import bands as colours
+from . import cameras, lamps, meshes, motion, volumes, water
+from .notes import Refusal
+
+SCENE_FILE = "scene.yaml"  # JSON, which is YAML, too
+MESH_FILE = "meshes.glb"
+
+
+class Written:
+    """The scene's file and what is needed to read its images."""
+
+    def __init__(self, folder, bands, mesh_file, metres_per_unit, lamp_names):
+        self.path, self.bands = os.path.join(folder, SCENE_FILE), bands
+        self.pass_indices, self.material_indices = mesh_file.pass_indices, mesh_file.material_indices
+        self.metres_per_unit, self.lamp_names = metres_per_unit, lamp_names
+
+
+class View:
+    """What one image sees: its camera and, for stereo, the eye's own matrix and shift."""
+
+    def __init__(self, camera, matrix, shift_x):
+        self.camera, self.matrix, self.shift_x = camera, matrix, shift_x
+
+
+def write(depsgraph, folder, program_path, view, size, moments, notes, is_cancelled):
+    """Writes the scene. `moments` is a Motion with what moves, or None."""
+    scene = depsgraph.scene
+    to_metres = Matrix.Scale(scene.unit_settings.scale_length, 4)
+    bands = colours.parse(scene.uwvdb.bands)
+    world_from_camera = to_metres @ view.matrix
+    content = {"uwvdb": 1}
+    camera = cameras.describe(depsgraph, view.camera, size, to_metres, world_from_camera, view.shift_x,
+                              notes)
+    _place_camera(camera, view, world_from_camera, moments)
+    content["camera"] = camera
+    content["water"] = water.describe(scene, bands, to_metres)
+
+    mesh_file = meshes.MeshFile(notes)
+    mesh_file.add_all(depsgraph, to_metres, moments)
+    if not mesh_file.is_empty:
+        mesh_file.glb.write(os.path.join(folder, MESH_FILE))
+        content["geometry"] = [{"file": MESH_FILE,
+                                "material": "pbr" if scene.uwvdb.use_gloss else "diffuse"}]
+    lights = lamps.Lamps(folder, bands, notes)
+    lights.add_all(depsgraph, to_metres, moments, content["water"].get("surface"))
+    content["lamps"] = lights.entries
+    _note_world(scene.world, notes)
+    plumes = volumes.Volumes(folder, program_path, notes, is_cancelled)
+    plumes.add_all(depsgraph, to_metres)
+    if plumes.entries:
+        content["volumes"] = plumes.entries
+    content["render"] = _render(scene, moments)
+    _add_sensor(content, view.camera.data.uwvdb, bands, notes)
+    with open(os.path.join(folder, SCENE_FILE), "w", encoding="utf-8") as file:
+        json.dump(content, file, indent=1)
+    return Written(folder, bands, mesh_file, to_metres.median_scale,
+                   [lamp["name"] for lamp in lights.entries])
+
+
+def frame_rate(scene):
+    return scene.render.fps / scene.render.fps_base
+
+
+def shutter(scene):
+    """Seconds that the shutter is open; 0 without motion blur."""
+    return scene.render.motion_blur_shutter / frame_rate(scene) if scene.render.use_motion_blur else 0
+
+
+def _place_camera(camera, view, world_from_camera, moments):
+    matrices = moments.camera_matrices(motion.CAMERA) if moments is not None else None
+    if matrices is None:
+        camera["pose"] = {"matrix": cameras.pose_rows(world_from_camera)}
+    else:
+        camera["trajectory"] = {"interpolation": "linear", "keyframes": [
+            {"time": time, "matrix": cameras.pose_rows(matrix)}
+            for time, matrix in zip(moments.times, matrices)]}
+
+
+def _render(scene, moments):
+    settings = scene.uwvdb
+    render = {"integrator": settings.integrator.lower(), "fps": frame_rate(scene)}
+    if settings.integrator == "PATH":
+        render["scattering"] = "multiple"
+    elif settings.integrator == "VOLUME":
+        render["scattering"] = settings.scattering.lower()
+    if settings.samples > 0:
+        render["samples"] = settings.samples
+    if moments is not None and shutter(scene) > 0:
+        render["shutter"] = shutter(scene)
+    return render
+
+
+def _note_world(world, notes):
+    if world is None or not world.use_nodes or world.node_tree is None:
+        has_light = world is not None and max(world.color) > 0
+    else:
+        has_light = any(node.type == "BACKGROUND" and (
+            node.inputs["Strength"].is_linked or node.inputs["Strength"].default_value > 0) and (
+            node.inputs["Color"].is_linked or max(node.inputs["Color"].default_value[:3]) > 0)
+            for node in world.node_tree.nodes)
+    if has_light:
+        notes.add("the world's background gives no light under water")
+
+
+def _add_sensor(content, settings, bands, notes):
+    if not settings.use_sensor:
+        return
+    sensor = {"mosaic": settings.mosaic.lower(), "seed": settings.sensor_seed}
+    sensor.update({name: getattr(settings, name) for name in (
+        "exposure", "quantum_efficiency", "full_well", "read_noise", "dark_current", "bit_depth")})
+    if settings.mosaic != "MONO" and len(bands) != 3:
+        raise Refusal("a sensor of colours needs three bands (Render > uwvdb > Bands), or Mono")
+    if settings.pixel_pitch > 0:
+        sensor["pixel_pitch"] = settings.pixel_pitch * 1e-6
+    content["camera"]["sensor"] = sensor

@@ -1,0 +1,164 @@
+# ctest labels: analytic
+"""Lights of Blender: their watts against closed forms, and against Cycles."""
+
+from support import *
+
+
+def floor_scene():
+    """A large floor of albedo 0.8 under a camera that looks down from 5 m, a box on it that is turned."""
+    scene = empty_scene()
+    scene.camera.location, scene.camera.rotation_euler = (0, 0, 5), (0, 0, 0)
+    white = material("White")[0]
+    floor = square(size=40)
+    cube = box(size=(0.5, 0.7, 0.6), location=(0.6, -0.3, 0.3), rotation=(0, 0, 0.4))
+    for thing in (floor, cube):
+        thing.data.materials.append(white)
+    scene.view_layers[0].use_pass_position = True
+    scene.view_layers[0].uwvdb.use_irradiance = True
+    return scene
+
+
+def places(passes):
+    """(positions on the floor, which pixels see it)."""
+    position = passes["Position"].astype(float)
+    return position, position[..., 2] < 1e-4
+
+
+def test_point_light_is_watts_over_the_sphere():
+    floor_scene()
+    light("POINT", watts=200, location=(-0.5, 0.4, 2.5), color=(1, 0.5, 0.25))
+    bpy.data.objects.remove(bpy.data.objects["Box"])
+    passes = render()
+    position, on_floor = places(passes)
+    away = numpy.array([-0.5, 0.4, 2.5]) - position
+    r = numpy.linalg.norm(away, axis=-1, keepdims=True)
+    wanted = 200 / (4 * math.pi) * away[..., 2:] / r**3 * numpy.array([1, 0.5, 0.25])
+    # The position is that of the pixel's centre, the light a mean over its samples.
+    close(passes["irradiance"], wanted, 2e-4, "irradiance", on_floor)
+    close(passes["Combined"][..., :3], wanted * 0.8 / math.pi, 2e-4, "radiance", on_floor)
+
+
+def test_sun_is_watts_per_square_metre():
+    scene = floor_scene()
+    scene.world.uwvdb.use_surface, scene.world.uwvdb.surface_height = True, 8
+    light("SUN", watts=3, rotation=(math.radians(40), 0, 0.3))
+    bpy.data.objects.remove(bpy.data.objects["Box"])
+    passes = render()
+    wanted = numpy.full_like(passes["irradiance"], 3 * math.cos(math.radians(40)))
+    close(passes["irradiance"], wanted, 1e-5, "irradiance")
+
+
+def test_area_light_is_lambertian():
+    """From far away a square of W watts gives W/pi cos(theta) W/sr as any panel does, in Blender 3 W/4."""
+    floor_scene()
+    bpy.data.objects.remove(bpy.data.objects["Box"])
+    light("AREA", watts=500, location=(0, 0, 4.5), rotation=(0.3, 0.2, 0), shape="SQUARE", size=0.02)
+    axis = -(Euler((0.3, 0.2, 0)).to_matrix().col[2])
+    passes = render()
+    position, on_floor = places(passes)
+    away = numpy.array([0, 0, 4.5]) - position
+    r = numpy.linalg.norm(away, axis=-1)
+    emitted = numpy.clip(-(away @ numpy.array(axis)) / r, 0, None)
+    found = passes["irradiance"][..., 0]
+    wanted = 500 / (math.pi if bpy.app.version >= (4, 0, 0) else 4) * emitted * away[..., 2] / r**3
+    close(found, wanted, 1e-3, "irradiance", on_floor)
+
+
+def against_cycles(what, samples=64, tolerance=2e-3):
+    ours, theirs = render(), render("CYCLES", samples=samples)
+    found, wanted = ours["Combined"][..., 0], theirs["Combined"][..., 0]
+    median_close(found, wanted, tolerance, what, wanted > 0.02 * wanted.max())
+    dark = (found > 1e-3 * wanted.max()) != (wanted > 1e-3 * wanted.max())
+    assert dark.mean() < 0.01, f"{what}: {dark.mean():.1%} of the pixels are lit by one of both alone"
+
+
+def test_point_light_against_cycles():
+    floor_scene()
+    light("POINT", watts=200, location=(-1.5, 0.7, 2.0))
+    against_cycles("point")
+
+
+def test_spot_against_cycles():
+    floor_scene()
+    light("SPOT", watts=300, location=(-1.5, 0.7, 2.5), rotation=(0.1, -0.5, 0.8), spot_size=1.1,
+          spot_blend=0.4)
+    against_cycles("spot")
+
+
+def test_spot_with_a_radius_against_cycles():
+    """Cycles turns the disk that shines towards what it lights; here it lies across the spot's axis."""
+    floor_scene()
+    light("SPOT", watts=300, location=(-1.5, 0.7, 2.5), rotation=(0.1, -0.5, 0.8), spot_size=1.1,
+          spot_blend=0.4, shadow_soft_size=0.2)
+    against_cycles("spot with a radius", 512, 4e-2)
+
+
+def test_sun_against_cycles():
+    scene = floor_scene()
+    scene.world.uwvdb.use_surface = True
+    light("SUN", watts=3, rotation=(0.6, 0.2, 0.5))
+    against_cycles("sun")
+
+
+def test_rectangle_against_cycles():
+    floor_scene()
+    light("AREA", watts=300, location=(-1.2, 0.6, 1.2), rotation=(0.2, -0.7, 0.9), shape="RECTANGLE",
+          size=1.6, size_y=0.2).scale = (1.2, 0.8, 1)
+    against_cycles("rectangle", 512, 5e-3)
+
+
+def test_disk_against_cycles():
+    floor_scene()
+    light("AREA", watts=300, location=(-1.2, 0.6, 1.5), rotation=(0.2, -0.7, 0.9), shape="DISK", size=0.6)
+    against_cycles("disk", 512, 5e-3)
+
+
+def test_emission_node_multiplies():
+    """A light's own nodes count as in Cycles."""
+    floor_scene()
+    lamp = light("POINT", watts=200, location=(-1.5, 0.7, 2.0), color=(0.5, 1, 1))
+    lamp.data.use_nodes = True
+    node = next(n for n in lamp.data.node_tree.nodes if n.type == "EMISSION")
+    node.inputs["Strength"].default_value = 2.5
+    node.inputs["Color"].default_value = (0.4, 0.6, 0.8, 1)
+    ours, theirs = render()["Combined"], render("CYCLES")["Combined"]
+    for band in range(3):
+        wanted = theirs[..., band]
+        median_close(ours[..., band], wanted, 2e-3, f"band {band}", wanted > 0.02 * wanted.max())
+
+
+def luminaire(folder):
+    """An IES file without any symmetry, in steps so fine that Cycles' cubic interpolation and a linear one
+    agree."""
+    vertical, horizontal = range(0, 91, 5), range(0, 361, 10)
+    rows = [[100 + 4 * v * (1 + math.sin(math.radians(h))) / 2 + 150 * (1 + math.cos(math.radians(h)))
+             * math.sin(math.radians(v)) for v in vertical] for h in horizontal]
+    text = ("IESNA:LM-63-1995\n[TEST] none\nTILT=NONE\n"
+            f"1 -1 1 {len(vertical)} {len(horizontal)} 1 2 0 0 0\n1 1 100\n"
+            + " ".join(map(str, vertical)) + "\n" + " ".join(map(str, horizontal)) + "\n"
+            + "\n".join(" ".join(f"{value:.2f}" for value in row) for row in rows) + "\n")
+    path = os.path.join(folder, "luminaire.ies")
+    with open(path, "w") as file:
+        file.write(text)
+    return path
+
+
+def test_ies_against_cycles():
+    with tempfile.TemporaryDirectory() as folder:
+        path = luminaire(folder)
+        for mode in ("EXTERNAL", "INTERNAL"):
+            floor_scene()
+            bpy.data.objects.remove(bpy.data.objects["Box"])
+            lamp = light("POINT", watts=3, location=(-0.2, 0.1, 1.5), rotation=(0.2, 0.1, 0.6))
+            lamp.data.use_nodes = True
+            nodes, links = lamp.data.node_tree.nodes, lamp.data.node_tree.links
+            emission = next(n for n in nodes if n.type == "EMISSION")
+            photometry = nodes.new("ShaderNodeTexIES")
+            photometry.mode = mode
+            photometry.inputs["Strength"].default_value = 1.5
+            if mode == "EXTERNAL":
+                photometry.filepath = path
+            else:
+                photometry.ies = bpy.data.texts.load(path)
+            links.new(photometry.outputs[0], emission.inputs["Strength"])
+            against_cycles(f"IES, {mode.lower()}")
