@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
@@ -118,9 +119,13 @@ constexpr double k_negligible_optical_depth = 15;
 constexpr double k_depth_tolerance = 1e-3;
 constexpr double k_draft_depth_tolerance = 0.02;
 constexpr VolumeIntegrator::Fineness k_fineness;
-constexpr VolumeIntegrator::Fineness k_draft_fineness{.knots_per_panel = 6};
+constexpr VolumeIntegrator::Fineness k_draft_fineness{.knots_per_panel = 6,
+                                                      .interpolated_half_tangent = 0};
 // A measured profile (IES) bends where its angles were taken, anywhere on a panel.
-constexpr VolumeIntegrator::Fineness k_exact_fineness{.least_relative_panel = 0.1, .pieces = 2};
+constexpr VolumeIntegrator::Fineness k_exact_fineness{
+    .least_relative_panel = 0.1,
+    .pieces = 2,
+    .interpolated_half_tangent = std::numeric_limits<double>::infinity()};
 constexpr double k_column_tolerance = 5e-4;
 constexpr double k_draft_column_tolerance = 0.01;
 
@@ -280,6 +285,7 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
         w.nodes.lamp_column.resize(w.nodes.size() *
                                    static_cast<std::size_t>(w.profile.constituent_count));
         deep_shadows_[j]->columns(w.nodes.position, w.nodes.lamp_column);
+        refine_columns(j, w.nodes, w.profile.constituent_count);
         w.nodes.look_up(w.profile);
         if (scene_.path_weight) w.nodes.weigh(scene_.path_weight);
         w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
@@ -290,6 +296,21 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
             so_far += w.radiance[i];
             result.at(i, emitters[j].index()) += so_far;
         }
+    }
+}
+
+// Seen towards the lamp, all of its light comes the same way, so that errors of interpolation do
+// not average out along the ray.
+void VolumeIntegrator::refine_columns(std::size_t lamp, ScatterNodes& nodes,
+                                      int constituents) const {
+    const auto count = static_cast<std::size_t>(constituents);
+    const Lamp& source = (*scene_.emitters)[lamp];
+    for (std::size_t i = 0; count > 0 && i < nodes.size(); ++i) {
+        if (nodes.half_tangent[i] > fineness_.interpolated_half_tangent) continue;
+        const std::span<double> column = std::span(nodes.lamp_column).subspan(i * count, count);
+        if (std::ranges::all_of(column, [](double value) { return value == 0; })) continue;
+        const Point3& x = nodes.position[i];
+        scene_.field->column(source.origin(x), x, column);
     }
 }
 
