@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
+#include "core/light/lamps_in_view.h"
 
 namespace uw {
 
@@ -236,6 +237,7 @@ struct VolumeIntegrator::Workspace {
     PanelBreaks breaks;
     std::vector<double> marks;
     std::vector<Spectrum> radiance;
+    std::vector<double> evenness;  // of the current lamp, up to each distance from the one before
     ScatterNodes nodes;
 };
 
@@ -291,9 +293,11 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
         w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
         w.radiance.assign(distances.size(), Spectrum{});
         sum_.add(w.nodes, emitters[j].axis_intensity(), w.radiance);
+        if (j == 0 || emitters[j].index() != emitters[j - 1].index())
+            find_evenness(scene_, emitters[j].index(), ray, begin, distances, w.evenness);
         Spectrum so_far;
         for (std::size_t i = 0; i < distances.size(); ++i) {
-            so_far += w.radiance[i];
+            so_far += w.evenness[i] * w.radiance[i];
             result.at(i, emitters[j].index()) += so_far;
         }
     }
