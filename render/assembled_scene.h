@@ -9,6 +9,7 @@
 #include "camera/camera.h"
 #include "core/geometry/surfaces.h"
 #include "core/light/integrator.h"
+#include "core/light/lamps_in_view.h"
 #include "core/light/slabs.h"
 #include "core/paths/scattering_tables.h"
 #include "media/volumes/load_volumes.h"
@@ -32,9 +33,10 @@ struct AssembledScene {
     std::shared_ptr<const SnowModel> snow;               // null: there is none
     std::shared_ptr<const ConcentrationField> field;
     std::shared_ptr<const Surfaces> surfaces;
-    std::vector<Lamp> lamps;     // as the description has them, each at its centre
-    std::vector<Lamp> emitters;  // the points that they consist of (LitScene::emitters)
-    std::optional<Slabs> slabs;  // none: they have not been placed (place_slabs)
+    std::vector<Lamp> lamps;                 // as the description has them, each at its centre
+    std::vector<Lamp> emitters;              // the points that they consist of (LitScene::emitters)
+    std::vector<LampSurface> lamp_surfaces;  // of those with an extent
+    std::optional<Slabs> slabs;              // none: they have not been placed (place_slabs)
     /// The samples of a part of an exposure (render/exposure.h); 0: all of it.
     int first_sample = 0, total_samples = 0;
     std::vector<VolumeReport> volume_reports;
@@ -43,7 +45,10 @@ struct AssembledScene {
     std::vector<std::string> geometry_warnings;  // those among `warnings` about surfaces
 
     const SceneDesc& desc() const { return image.desc(); }
-    LitScene lit() const { return {&water.medium, field.get(), surfaces.get(), &emitters}; }
+    LitScene lit() const {
+        return {&water.medium, field.get(), surfaces.get(),
+                &emitters,     {},          lamp_surfaces.empty() ? nullptr : &lamp_surfaces};
+    }
 };
 
 }  // namespace uw

@@ -492,7 +492,9 @@ void SnowPass::add_to(const RenderedPixel& pixel, const PixelRenderer& pixels) c
     const PixelView& view = pixel.view;
     PixelResult& result = pixel.result;
     const double end = view.has_hit ? view.path : view.distances.back();
-    result.snow = layer_->radiance(pixel.x, pixel.y, end, result.direct + result.multiple_surface,
+    // Lamps in view are dimmed by the mean of all particles.
+    const Spectrum surface = result.direct - result.lamps_in_view + result.multiple_surface;
+    result.snow = layer_->radiance(pixel.x, pixel.y, end, surface,
                                    result.backscatter + result.multiple_volume);
     const double held = layer_->held(pixel.x, pixel.y);
     if (in_ground_truth_ && held > 0) hold(held, *view.ray, pixels, result);

@@ -79,12 +79,15 @@ void report_volumes(AssembledScene& scene) {
 }
 
 void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
+    const int thinning = desc.render.quality == RenderDesc::Quality::draft ? k_draft_thinning : 1;
     for (const LampDesc& lamp : desc.lamps) {
         scene.lamps.push_back(make_lamp(lamp, desc.camera.world_from_camera,
                                         scene.water.medium.wavelengths_nm, scene.warnings));
-        append_emitters(lamp, scene.lamps.back(), scene.lamps.size() - 1,
-                        desc.render.quality == RenderDesc::Quality::draft ? k_draft_thinning : 1,
-                        desc.camera.world_from_camera, scene.emitters);
+        const std::size_t index = scene.lamps.size() - 1;
+        append_emitters(lamp, scene.lamps.back(), index, thinning, desc.camera.world_from_camera,
+                        scene.emitters);
+        append_surface(lamp, scene.lamps.back(), index, thinning, desc.camera.world_from_camera,
+                       scene.lamp_surfaces);
     }
 }
 
@@ -103,7 +106,9 @@ LightTransport transport_in(const Medium& medium, const PathWeight& path_weight,
     LitScene lit = scene.lit();
     lit.medium = &medium;
     lit.path_weight = path_weight;
-    return make_by(scene.desc().render.integrator, lit, scene, deep_shadows);
+    LightTransport transport = make_by(scene.desc().render.integrator, lit, scene, deep_shadows);
+    transport.path_weight = path_weight;
+    return transport;
 }
 
 void weigh_as_output(const SceneDesc& desc, LightTransport& transport) {

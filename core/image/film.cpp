@@ -36,6 +36,7 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
     if (bytes > static_cast<double>(available_memory_bytes())) throw no_memory();
     try {
         values_.assign(window.width() * static_cast<int>(channel_names_.size()), window.height());
+        shows_lamp_.assign(window.width(), window.height());
     } catch (const std::bad_alloc&) {
         throw no_memory();
     } catch (const std::length_error&) {
@@ -47,8 +48,10 @@ Film cropped(const Film& film, const PixelWindow& window) {
     Film part(film.width(), film.height(), window, film.channel_names());
     for (int y = window.y0; y < window.y1; ++y) {
         throw_if_stopped();
-        for (int x = window.x0; x < window.x1; ++x)
+        for (int x = window.x0; x < window.x1; ++x) {
             std::ranges::copy(film.pixel(x, y), part.pixel(x, y).begin());
+            if (film.shows_lamp(x, y)) part.mark_lamp(x, y);
+        }
     }
     return part;
 }
@@ -66,6 +69,7 @@ Film with_channels(const Film& film, const std::vector<std::string>& channel_nam
             const std::span<const float> from = film.pixel(x, y);
             const std::span<float> to = part.pixel(x, y);
             for (std::size_t i = 0; i < sources.size(); ++i) to[i] = from[sources[i]];
+            if (film.shows_lamp(x, y)) part.mark_lamp(x, y);
         }
     }
     return part;

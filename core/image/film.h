@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,10 +49,16 @@ class Film {
     std::span<const float> pixel(int x, int y) const {
         return values_.row(y - window_.y0).subspan(first_channel(x), channel_names_.size());
     }
+    /// Marks a pixel in which a lamp itself is seen: the automatic exposure leaves it out.
+    void mark_lamp(int x, int y) { shows_lamp_(x - window_.x0, y - window_.y0) = 1; }
+    bool shows_lamp(int x, int y) const { return shows_lamp_(x - window_.x0, y - window_.y0) != 0; }
     /// All values of the window: row by row, pixel by pixel, channel by channel.
     std::span<const float> values() const { return values_.values(); }
-    /// Resets all values to 0.
-    void clear() { values_.assign(values_.width(), values_.height()); }
+    /// Resets all values to 0, and no pixel is marked.
+    void clear() {
+        values_.assign(values_.width(), values_.height());
+        shows_lamp_.assign(shows_lamp_.width(), shows_lamp_.height());
+    }
 
   private:
     // The index of the first channel of column x within a row.
@@ -64,6 +71,7 @@ class Film {
     PixelWindow window_;
     std::vector<std::string> channel_names_;
     Grid2D<float> values_;  // a pixel's channels are contiguous
+    Grid2D<std::uint8_t> shows_lamp_;
 };
 
 /// The part of `film` within `window`. Throws as Film's constructor.

@@ -65,7 +65,10 @@ Grid2D<Colour> preview_of(const Film& film, double exposure, const Encode& encod
 
 }  // namespace
 
-std::optional<double> automatic_exposure(const Film& film) {
+namespace {
+
+/// The luminances of the pixels that count, with those that show a lamp or without.
+std::vector<float> luminances_of(const Film& film, bool with_lamps) {
     const PixelWindow& window = film.window();
     constexpr float k_not_counted = -std::numeric_limits<float>::infinity();
     std::vector<float> luminances(static_cast<std::size_t>(window.width()) *
@@ -76,11 +79,20 @@ std::optional<double> automatic_exposure(const Film& film) {
         for (int x = window.x0; x < window.x1; ++x) {
             const std::span<const float> pixel = film.pixel(x, y);
             const double brightness = luminance({pixel[k_red], pixel[k_green], pixel[k_blue]});
-            const bool counts = pixel[k_alpha] > 0 && std::isfinite(brightness);
+            const bool counts = pixel[k_alpha] > 0 && std::isfinite(brightness) &&
+                                (with_lamps || !film.shows_lamp(x, y));
             *out++ = counts ? static_cast<float>(brightness) : k_not_counted;
         }
     });
     std::erase(luminances, k_not_counted);
+    return luminances;
+}
+
+}  // namespace
+
+std::optional<double> automatic_exposure(const Film& film) {
+    std::vector<float> luminances = luminances_of(film, false);
+    if (luminances.empty()) luminances = luminances_of(film, true);
     if (luminances.empty()) return std::nullopt;
     const auto last = static_cast<double>(luminances.size() - 1);
     const auto middle =

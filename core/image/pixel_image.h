@@ -56,8 +56,8 @@ using Preview = Grid2D<Srgb8>;
 using Preview16 = Grid2D<Srgb16>;
 
 /// The factor that brings the brighter parts of the film to a luminance of 0.8: the 99th percentile
-/// over the pixels with a ray (alpha > 0) and finite values, or the brightest pixel if fewer than 1
-/// % are not black. Empty if all are black, which the caller should report.
+/// over the pixels with a ray (alpha > 0) and finite values that show no lamp, or the brightest
+/// pixel if fewer than 1 % are not black. Empty if all are black, which the caller should report.
 std::optional<double> automatic_exposure(const Film& film);
 
 /// R, G and B times `exposure` as sRGB. Negative values, NaN and pixels without a ray become black.

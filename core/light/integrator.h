@@ -32,6 +32,8 @@ struct PathWeight {
     }
 };
 
+struct LampSurface;
+
 /// Everything that integrators operate on; all of it must outlive them.
 struct LitScene {
     const Medium* medium = nullptr;
@@ -42,6 +44,8 @@ struct LitScene {
     const std::vector<Lamp>* emitters = nullptr;
     /// For derivatives, of integrators that have them (VolumeIntegrator).
     PathWeight path_weight{};
+    /// Of the lamps with an extent, for LampsInView; null: there are none.
+    const std::vector<LampSurface>* lamp_surfaces = nullptr;
 
     /// How many lamps the scene has.
     std::size_t lamp_count() const { return emitters->empty() ? 0 : emitters->back().index() + 1; }

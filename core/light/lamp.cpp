@@ -8,6 +8,13 @@
 
 namespace uw {
 
+double distance_aside(const Point3& point, double patch_radius, const Ray& ray) {
+    const Vector3 across = glm::cross(point - ray.origin, ray.direction);
+    const double patch = patch_radius * patch_radius, ratio = glm::dot(across, across) / patch;
+    const double left = 1 - ratio / 9;
+    return left > 0 ? 0.36 * patch * (1 - 2.1983 * ratio) * left * left : 0;
+}
+
 Lamp::Lamp(std::string name, const Point3& position, LampProfile profile,
            const Spectrum& axis_intensity)
     : name_(std::move(name)),
@@ -26,8 +33,10 @@ Lamp Lamp::emitter(std::size_t index, const Vector3& direction, double share) co
     return beam;
 }
 
-Lamp Lamp::emitter(std::size_t index, const Point3& position, double share) const {
+Lamp Lamp::emitter(std::size_t index, const Point3& position, double share,
+                   double patch_radius) const {
     Lamp point = brightened(share);
+    point.patch_radius_ = patch_radius;
     point.index_ = index;
     point.share_ = share;
     point.position_ = position;

@@ -38,6 +38,16 @@ struct Sunlight {
 /// of a point source would grow without bound [m].
 inline constexpr double k_lamp_radius = 1e-3;
 
+/// By how much the square of a point's distance from a ray is increased where its light is
+/// scattered on that ray [m^2], as if it lay aside in a fourth dimension. `patch_radius`: of the
+/// disk whose area is that of the luminous surface that the point stands for [m].
+///
+/// What a point scatters on a ray at the distance D grows as 1/D, so that each point of a lamp with
+/// an extent would be seen as a bright dot. Within 3 patch radii r the square of the distance is
+/// D^2 + 0.36 r^2 (1 - 2.1983 D^2/r^2) (1 - D^2/(9 r^2))^2, by which the integral of 1/D over all
+/// rays beside each other stays what it is.
+double distance_aside(const Point3& point, double patch_radius, const Ray& ray);
+
 /// A point-like source of light in the world: radiant intensity I(w, lambda) = intensity *
 /// profile(w) [W/sr]. A lamp of the scene, or one of the points that a lamp with an extent consists
 /// of (core/light/lamp_factory.h). Or a sun, which has no place: its light is parallel and begins
@@ -55,8 +65,10 @@ class Lamp {
     Lamp(std::string name, const Sunlight& sunlight, const Spectrum& irradiance);
 
     /// A point of this lamp, the scene's with this `index`: at `position`, with a `share` of its
-    /// light.
-    Lamp emitter(std::size_t index, const Point3& position, double share) const;
+    /// light. `patch_radius`: of the disk whose area is that of the luminous surface that the point
+    /// stands for [m]; 0: it is a lamp by itself.
+    Lamp emitter(std::size_t index, const Point3& position, double share,
+                 double patch_radius = 0) const;
 
     /// A direction of this sun, the scene's lamp with this `index`: with a `share` of its light.
     Lamp emitter(std::size_t index, const Vector3& direction, double share) const;
@@ -78,6 +90,10 @@ class Lamp {
     Point3 origin(const Point3& x) const { return sunlight_ ? sunlight_->entry(x) : position_; }
     /// By what its light is divided at a distance from its origin: R^2; 1 for a sun.
     double spread(double distance) const { return sunlight_ ? 1 : distance * distance; }
+    /// distance_aside of a point of a lamp with an extent; 0 for all others.
+    double aside(const Ray& ray) const {
+        return patch_radius_ > 0 ? distance_aside(position_, patch_radius_, ray) : 0;
+    }
     /// Whether a point at this distance from its origin lies in the sphere that represents it.
     bool holds(double distance) const { return !sunlight_ && distance < k_lamp_radius; }
     /// Radiant intensity on the axis per band [W/sr]; for an IES profile, in the brightest
@@ -115,6 +131,7 @@ class Lamp {
     std::optional<Sunlight> sunlight_;
     std::size_t index_ = 0;
     double share_ = 1;
+    double patch_radius_ = 0;
 };
 
 }  // namespace uw

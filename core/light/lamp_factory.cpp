@@ -148,7 +148,45 @@ void append_sun(const SunDesc& sun, const Lamp& lamp, std::size_t index, int thi
     }
 }
 
+// So many that they leave half a per cent of unevenness, where all directions of scattering count
+// alike.
+constexpr int k_many_points = 512;
+
+LampPoints points_of(const LampSurface& surface, int count) {
+    LampPoints points;
+    for (const PlanePoint& point : fill(surface.extent, count))
+        points.positions.push_back(surface.lamp.position() + point.x * surface.x +
+                                   point.y * surface.y);
+    points.patch_radius = std::sqrt(surface.area() / (std::numbers::pi * count));
+    return points;
+}
+
+LampSurface surface_of(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
+                       const Affine& world_from_camera) {
+    const LampPlacement placement{desc.world_from_frame(world_from_camera), desc.direction};
+    const double turn = glm::radians(desc.extent->rotate);
+    const Vector3 across = placement.across(), up = glm::cross(-placement.direction, across);
+    const auto in_world = [&](const Vector3& v) {
+        return placement.world_from_frame.apply_to_vector(v);
+    };
+    LampSurface surface{lamp.emitter(index, lamp.position(), 1),
+                        *desc.extent,
+                        in_world(std::cos(turn) * across + std::sin(turn) * up),
+                        in_world(std::cos(turn) * up - std::sin(turn) * across),
+                        {},
+                        {}};
+    const int count = std::max(1, desc.extent->samples / thinning);
+    surface.emitters = points_of(surface, count);
+    surface.many = points_of(surface, std::max(count, k_many_points));
+    return surface;
+}
+
 }  // namespace
+
+void append_surface(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
+                    const Affine& world_from_camera, std::vector<LampSurface>& surfaces) {
+    if (desc.extent) surfaces.push_back(surface_of(desc, lamp, index, thinning, world_from_camera));
+}
 
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                      const Affine& world_from_camera, std::vector<Lamp>& emitters) {
@@ -160,18 +198,10 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
         emitters.push_back(lamp.emitter(index, lamp.position(), 1));
         return;
     }
-    const LampPlacement placement{desc.world_from_frame(world_from_camera), desc.direction};
-    const double turn = glm::radians(desc.extent->rotate);
-    const Vector3 across = placement.across(), up = glm::cross(-placement.direction, across);
-    const auto in_world = [&](const Vector3& v) {
-        return placement.world_from_frame.apply_to_vector(v);
-    };
-    const Vector3 x = in_world(std::cos(turn) * across + std::sin(turn) * up);
-    const Vector3 y = in_world(std::cos(turn) * up - std::sin(turn) * across);
-    const int count = std::max(1, desc.extent->samples / thinning);
-    for (const PlanePoint& point : fill(*desc.extent, count))
-        emitters.push_back(
-            lamp.emitter(index, lamp.position() + point.x * x + point.y * y, 1.0 / count));
+    const LampPoints points = surface_of(desc, lamp, index, thinning, world_from_camera).emitters;
+    const double share = 1.0 / static_cast<double>(points.positions.size());
+    for (const Point3& position : points.positions)
+        emitters.push_back(lamp.emitter(index, position, share, points.patch_radius));
 }
 
 }  // namespace uw

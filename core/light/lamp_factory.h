@@ -7,6 +7,7 @@
 
 #include "core/base/vector_math.h"
 #include "core/light/lamp.h"
+#include "core/light/lamps_in_view.h"
 #include "core/scene/lamp_desc.h"
 
 namespace uw {
@@ -31,5 +32,10 @@ Lamp make_lamp(const LampDesc& desc, const Affine& world_from_camera,
 /// (RMS), 2.4/N at worst, for N = 32.
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                      const Affine& world_from_camera, std::vector<Lamp>& emitters);
+
+/// Appends the luminous surface of `lamp`, made of `desc`, if it has an extent. The other arguments
+/// are those of append_emitters.
+void append_surface(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
+                    const Affine& world_from_camera, std::vector<LampSurface>& surfaces);
 
 }  // namespace uw

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/image/image_quantity.h"
+#include "core/light/lamps_in_view.h"
 
 namespace uw {
 
@@ -40,6 +41,7 @@ constinit const IntegratorKind PlanesIntegrator::k_kind{
 struct PlanesIntegrator::Workspace {
     std::vector<Sample> samples;
     std::vector<Spectrum> radiance;  // per sample
+    std::vector<double> evenness;    // of the current lamp, by Sample::distance
     // For the samples that the lamp illuminates:
     std::vector<std::size_t> lit;
     std::vector<double> path;    // lamp to sample to camera [m]
@@ -73,6 +75,8 @@ void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
         throw_if_stopped();
         light_samples(ray, emitters[j], w);
         const std::size_t lamp = emitters[j].index();
+        if (j == 0 || lamp != emitters[j - 1].index())
+            find_evenness(scene_, lamp, ray, begin, distances, w.evenness);
         Spectrum whole;
         std::size_t next = 0;
         const auto finish =
@@ -83,7 +87,7 @@ void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
             const Sample& sample = w.samples[i];
             if (!sample.cut) finish(sample.distance);
             Spectrum& sum = sample.cut ? result.at(sample.distance, lamp) : whole;
-            sum += w.radiance[i];
+            sum += w.evenness[sample.distance] * w.radiance[i];
         }
         finish(distances.size());
     }
@@ -116,12 +120,13 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
     w.path.clear();
     w.weight.clear();
     w.psi.clear();
+    const double aside = lamp.aside(ray);
     for (std::size_t i = 0; i < w.samples.size(); ++i) {
         const Sample& sample = w.samples[i];
         const Point3 x = ray.at(sample.s);
         const Point3 origin = lamp.origin(x);
         const Vector3 from_lamp = x - origin;
-        const double radius = glm::length(from_lamp);
+        const double radius = std::sqrt(glm::dot(from_lamp, from_lamp) + aside);
         const double relative = lamp.holds(radius) ? 0.0 : lamp.relative_intensity(from_lamp);
         if (relative <= 0 || scene_.surfaces->occluded(origin, x)) continue;
         w.lit.push_back(i);
@@ -129,7 +134,8 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
         w.weight.push_back(relative / lamp.spread(radius) * sample.length);
         // Angle between the directions of travel, lamp to X and X to camera; atan2 is accurate near
         // pi.
-        w.psi.push_back(std::atan2(glm::length(glm::cross(ray.direction, from_lamp)),
+        const Vector3 across = glm::cross(ray.direction, from_lamp);
+        w.psi.push_back(std::atan2(std::sqrt(glm::dot(across, across) + aside),
                                    -glm::dot(ray.direction, from_lamp)));
     }
     const auto bands = static_cast<std::size_t>(medium.band_count());

@@ -15,7 +15,11 @@ LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
 
 LampPassage::LampPassage(const Ray& ray, const Lamp& lamp) : LampPassage(ray, lamp.position()) {
     const Sunlight* const sun = lamp.sunlight();
-    if (!sun) return;
+    if (!sun) {
+        if (const double aside = lamp.aside(ray); aside != 0)
+            distance = std::sqrt(distance * distance + aside);
+        return;
+    }
     parallel = true;
     begin_length = sun->length_to(ray.origin);
     slope = sun->slope(ray.direction);

@@ -12,7 +12,7 @@ namespace uw {
 /// The geometry of a camera ray passing one lamp, or through the parallel light of a sun.
 struct LampPassage {
     double foot = 0;      // distance along the ray of the point nearest to the lamp [m]; may be < 0
-    double distance = 0;  // from that point to the lamp [m]
+    double distance = 0;  // from that point to the lamp [m], with what it lies aside (Lamp::aside)
     // Members for a sun, which the ray does not pass:
     bool parallel = false;
     double begin_length = 0;  // of the way of the light to the ray's origin [m]

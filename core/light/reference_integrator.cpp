@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/light/lamps_in_view.h"
 #include "core/light/ray_panels.h"
 
 namespace uw {
@@ -62,6 +63,8 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
         double depth = 0;  // of the grid before s, in the band that sees farthest
         for (std::size_t i = 0; i < distances.size(); ++i) {
             const double end = std::min(distances[i], lit.end);
+            const double even = evenness(scene_, emitters[j].index(), ray,
+                                         {i == 0 ? 0 : distances[i - 1], distances[i]});
             while (s < end && depth < k_dark) {
                 throw_if_stopped();
                 double length = step_ * scale_at(s);
@@ -72,7 +75,7 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
                     length = std::min({length, 0.25 * voxel, k_depth_of_steps * step_ / greatest});
                 length = std::min(length, end - s);
                 depth += length * least;
-                sum += length * in_scatter_per_metre(ray, s + 0.5 * length, j);
+                sum += even * length * in_scatter_per_metre(ray, s + 0.5 * length, j);
                 s = end - s > length ? s + length : end;
             }
             result.at(i, emitters[j].index()) += sum;
@@ -98,11 +101,13 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
     const Point3 x = ray.at(s);
     const Point3 origin = lamp.origin(x);
     const Vector3 from_lamp = x - origin;
-    const double radius = glm::length(from_lamp);
+    const double aside = lamp.aside(ray);
+    const double radius = std::sqrt(glm::dot(from_lamp, from_lamp) + aside);
     const double relative = lamp.relative_intensity(from_lamp);
     if (lamp.holds(radius) || relative <= 0 || scene_.surfaces->occluded(origin, x)) return {};
     // psi is the angle between the directions of travel: w_in = from_lamp, w_out = -ray.direction.
-    const double psi = std::atan2(glm::length(glm::cross(from_lamp, ray.direction)),
+    const Vector3 across = glm::cross(from_lamp, ray.direction);
+    const double psi = std::atan2(std::sqrt(glm::dot(across, across) + aside),
                                   -glm::dot(from_lamp, ray.direction));
     const std::size_t constituents = medium.constituents.size();
     std::vector<double> from_lamp_column(constituents), to_camera_column(constituents),
@@ -160,7 +165,8 @@ class QuadratureIntegrator::RayIntegral {
         foot_ = glm::dot(to_lamp, ray.direction);
         // A ray straight through the lamp has no angle to integrate over, but one that narrowly
         // misses it does.
-        distance_ = std::max(1e-9, glm::length(to_lamp - foot_ * ray.direction));
+        const Vector3 across = to_lamp - foot_ * ray.direction;
+        distance_ = std::max(1e-9, std::sqrt(glm::dot(across, across) + lamp.aside(ray)));
     }
 
     /// In-scatter from `begin` to `end` along the ray.
@@ -265,7 +271,8 @@ void QuadratureIntegrator::in_scatter(const Ray& ray, std::span<const double> di
         Spectrum sum;
         double begin = 0;
         for (std::size_t i = 0; i < distances.size(); ++i) {
-            sum += integral(begin, distances[i]);
+            sum += evenness(scene_, emitters[j].index(), ray, {begin, distances[i]}) *
+                   integral(begin, distances[i]);
             result.at(i, emitters[j].index()) += sum;
             begin = distances[i];
         }

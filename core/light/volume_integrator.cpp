@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
+#include "core/light/lamps_in_view.h"
 
 namespace uw {
 
@@ -118,9 +120,13 @@ constexpr double k_negligible_optical_depth = 15;
 constexpr double k_depth_tolerance = 1e-3;
 constexpr double k_draft_depth_tolerance = 0.02;
 constexpr VolumeIntegrator::Fineness k_fineness;
-constexpr VolumeIntegrator::Fineness k_draft_fineness{.knots_per_panel = 6};
+constexpr VolumeIntegrator::Fineness k_draft_fineness{.knots_per_panel = 6,
+                                                      .interpolated_half_tangent = 0};
 // A measured profile (IES) bends where its angles were taken, anywhere on a panel.
-constexpr VolumeIntegrator::Fineness k_exact_fineness{.least_relative_panel = 0.1, .pieces = 2};
+constexpr VolumeIntegrator::Fineness k_exact_fineness{
+    .least_relative_panel = 0.1,
+    .pieces = 2,
+    .interpolated_half_tangent = std::numeric_limits<double>::infinity()};
 constexpr double k_column_tolerance = 5e-4;
 constexpr double k_draft_column_tolerance = 0.01;
 
@@ -231,6 +237,7 @@ struct VolumeIntegrator::Workspace {
     PanelBreaks breaks;
     std::vector<double> marks;
     std::vector<Spectrum> radiance;
+    std::vector<double> evenness;  // of the current lamp, up to each distance from the one before
     ScatterNodes nodes;
 };
 
@@ -280,16 +287,34 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
         w.nodes.lamp_column.resize(w.nodes.size() *
                                    static_cast<std::size_t>(w.profile.constituent_count));
         deep_shadows_[j]->columns(w.nodes.position, w.nodes.lamp_column);
+        refine_columns(j, w.nodes, w.profile.constituent_count);
         w.nodes.look_up(w.profile);
         if (scene_.path_weight) w.nodes.weigh(scene_.path_weight);
         w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
         w.radiance.assign(distances.size(), Spectrum{});
         sum_.add(w.nodes, emitters[j].axis_intensity(), w.radiance);
+        if (j == 0 || emitters[j].index() != emitters[j - 1].index())
+            find_evenness(scene_, emitters[j].index(), ray, begin, distances, w.evenness);
         Spectrum so_far;
         for (std::size_t i = 0; i < distances.size(); ++i) {
-            so_far += w.radiance[i];
+            so_far += w.evenness[i] * w.radiance[i];
             result.at(i, emitters[j].index()) += so_far;
         }
+    }
+}
+
+// Seen towards the lamp, all of its light comes the same way, so that errors of interpolation do
+// not average out along the ray.
+void VolumeIntegrator::refine_columns(std::size_t lamp, ScatterNodes& nodes,
+                                      int constituents) const {
+    const auto count = static_cast<std::size_t>(constituents);
+    const Lamp& source = (*scene_.emitters)[lamp];
+    for (std::size_t i = 0; count > 0 && i < nodes.size(); ++i) {
+        if (nodes.half_tangent[i] > fineness_.interpolated_half_tangent) continue;
+        const std::span<double> column = std::span(nodes.lamp_column).subspan(i * count, count);
+        if (std::ranges::all_of(column, [](double value) { return value == 0; })) continue;
+        const Point3& x = nodes.position[i];
+        scene_.field->column(source.origin(x), x, column);
     }
 }
 

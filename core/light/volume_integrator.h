@@ -81,6 +81,9 @@ class VolumeIntegrator final : public Integrator {
         // this, relative to the distance from the lamp.
         double least_relative_panel = 0.35;
         int pieces = 1;  // that every panel is cut into at least
+        // Where tan(psi / 2) is greater, columns to the lamp are interpolated between the rays of
+        // its map; up to there each is integrated.
+        double interpolated_half_tangent = 0.27;
     };
 
     /// `deep_shadows`: one per emitter of `scene`. `tolerance`: of the concentrations along a ray.
@@ -100,6 +103,8 @@ class VolumeIntegrator final : public Integrator {
     const std::vector<double>& find_breaks(const Ray& ray, std::size_t lamp,
                                            const LampPassage& passage, const Interval& interval,
                                            std::span<const double> distances, Workspace& w) const;
+    // Integrates the lamp columns of nodes that Fineness asks for.
+    void refine_columns(std::size_t lamp, ScatterNodes& nodes, int constituents) const;
     void add_panels(const Ray& ray, std::size_t lamp, const LampPassage& passage,
                     std::span<const double> distances, std::span<const double> breaks,
                     const ConcentrationProfile& profile, ScatterNodes& nodes) const;

@@ -160,7 +160,7 @@ class ForwardScattering {
     std::vector<Group> groups_;
     std::vector<std::size_t> group_of_lamp_;
     bool several_;                         // whether there is more than one group
-    std::vector<ImagePlane> direct_;       // per band, if there are several groups
+    std::vector<ImagePlane> direct_;       // per band, if it is not that of the only group
     std::vector<ImagePlane> backscatter_;  // per band, without what is added
     std::vector<ImagePlane> snow_;         // per band, if there is snow; not blurred
     std::vector<ImagePlane> added_;        // per group and band, to the backscatter
@@ -224,13 +224,14 @@ ForwardScattering::ForwardScattering(const Rendering& rendering)
     const bool first = plan.has(Layer::backscatter_first);
     const std::size_t constituents = scene_.medium->constituents.size();
     const std::size_t per_group = (first ? 4 : 3) * bands_;
-    check_memory(plane_, 12 + groups_.size() * per_group + (several_ ? 3 : 2) * bands_ +
+    check_memory(plane_, 12 + groups_.size() * per_group +
+                             (several_ || scene_.lamp_surfaces ? 3 : 2) * bands_ +
                              (has_snow ? bands_ : 0) + 2 * constituents);
     for (Group& group : groups_) {
         group.direct = planes(bands_);
         group.forward = planes(bands_);
     }
-    if (several_) direct_ = planes(bands_);
+    if (several_ || scene_.lamp_surfaces) direct_ = planes(bands_);
     backscatter_ = planes(bands_);
     if (has_snow) snow_ = planes(bands_);
     added_ = planes(groups_.size() * bands_);
@@ -247,6 +248,8 @@ void ForwardScattering::keep(const RenderedPixel& pixel) {
     if (pixel.view.ray) water_.set(i, pixel.view, in_scatter_.depth(*pixel.view.ray));
     for (std::size_t b = 0; b < bands_; ++b)
         backscatter_[b][i] = static_cast<float>(pixel.result.backscatter[b] * factor_before(i));
+    for (std::size_t b = 0; b < direct_.size(); ++b)
+        direct_[b][i] = as_light(pixel.result.direct[b] * factor_before(i));
     for (std::size_t b = 0; b < snow_.size(); ++b)
         snow_[b][i] = static_cast<float>(pixel.result.snow[b] * factor_before(i));
     if (!pixel.view.samples.empty()) keep_surfaces(i, pixel);
@@ -276,8 +279,10 @@ void ForwardScattering::keep_surfaces(std::size_t i, const RenderedPixel& pixel)
             groups_[g].forward[b][i] = as_light(sums.irradiance[g][b]);
             groups_[g].direct[b][i] = as_light(sums.direct[g][b] * factor);
         }
-        std::vector<ImagePlane>& direct = several_ ? direct_ : groups_[0].direct;
-        direct[b][i] = as_light(pixel.result.direct[b] * factor);
+        // What lamps in view scatter forwards is part of the water's light already.
+        if (!several_)
+            groups_[0].direct[b][i] =
+                as_light((pixel.result.direct[b] - pixel.result.lamps_in_view[b]) * factor);
     }
     const auto set_mean = [&](const WaterPath& sum, PathImage& image) {
         thread_local WaterPath mean;
@@ -395,7 +400,7 @@ void ForwardScattering::scatter_water(const std::function<void(std::size_t slab)
 }
 
 void ForwardScattering::write(const LayerPlan& plan, const BandColour& colour, Film& film) const {
-    const std::vector<ImagePlane>& direct = several_ ? direct_ : groups_[0].direct;
+    const std::vector<ImagePlane>& direct = direct_.empty() ? groups_[0].direct : direct_;
     for_each_row(plane_, [&](int y) {
         PixelResult pixel;
         for (int x = 0; x < plane_.width; ++x) {

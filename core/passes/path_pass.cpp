@@ -232,6 +232,7 @@ void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& s
             const SurfaceSample* const surface = found[i] != 0 ? &samples[i] : nullptr;
             trace_path(surface, rays[i], light, in_light, batch, indices[i], sum);
             if (surface != nullptr) ++in_light;
+            add_lamps_in_view(rays[i], surface != nullptr ? surface->hit.distance : k_far, sum);
         }
         sum.add_rays(rays.size());
         traced(end - first);
@@ -248,6 +249,18 @@ void PathPixels::begin(const SurfaceSample* surface, const Ray& ray, const Surfa
     }
     pixels_.transport().paths->begin(ray, surface != nullptr ? &surface->hit : nullptr,
                                      leaving.first(sum.bands()), segment);
+}
+
+/// Adds the light of lamps that the ray crosses before it meets a surface at `reach`.
+void PathPixels::add_lamps_in_view(const Ray& ray, double reach, Sum& sum) const {
+    thread_local std::vector<SeenLamp> lamps;
+    lamps.clear();
+    pixels_.lamps_in_view().append(ray, reach, lamps);
+    sum.set_part(&PixelResult::direct);
+    for (const SeenLamp& lamp : lamps)
+        sum.add({.lamp = lamp.lamp,
+                 .distance = lamp.distance,
+                 .radiance = lamp.arriving.first(sum.bands())});
 }
 
 void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
@@ -569,6 +582,7 @@ void PathPass::run(Rendering& rendering) {
                     store_pixel(result, plan, rendering.colour, film.pixel(x, y));
                 else
                     merge_paths(result, share, plan, rendering.colour, film.pixel(x, y));
+                if (result.shows_lamp()) film.mark_lamp(x, y);
                 spread.merge(x, y, result, share);
             }
         });

@@ -67,6 +67,7 @@ class PathPixels {
                          PixelResult& result) const;
     void trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,
                const TracedCallback& traced) const;
+    void add_lamps_in_view(const Ray& ray, double reach, Sum& sum) const;
     void trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
                     std::size_t in_light, const Batch& batch, int index, Sum& sum) const;
     void add_direct(const SurfaceSample& surface, const SurfaceLight& light, std::size_t in_light,

@@ -217,7 +217,7 @@ void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     // Bands are few: band by band is faster than spectrum by spectrum.
     for (std::size_t b = 0; b < bands; ++b)
         for (Spectrum* const values :
-             {&direct, &forward, &backscatter, &backscatter_first, &multiple_volume,
+             {&direct, &lamps_in_view, &forward, &backscatter, &backscatter_first, &multiple_volume,
               &multiple_surface, &snow, &error, &irradiance, &exitance, &clean, &transmittance})
             (*values)[b] = 0;
     lamps.assign(lamp_count, Spectrum{});
@@ -327,6 +327,7 @@ void ExposureMean::add(const Film& part, const RowShare& share) {
         float& so_far = shares_[static_cast<std::size_t>(y - y0)];
         so_far += weight;
         for (int x = window.x0; x < window.x1; ++x) {
+            if (part.shows_lamp(x, y)) mean_.mark_lamp(x, y);
             add_pixel(part.pixel(x, y), weight, so_far, mean_.pixel(x, y));
             if (!on_surface_.empty())
                 add_transmittance(part.pixel(x, y), weight, mean_.pixel(x, y),

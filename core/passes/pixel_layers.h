@@ -24,7 +24,8 @@ struct PixelResult {
     double alpha = 0;         // fraction of the samples whose ray enters the water
     double pixel_factor = 1;  // on radiance in images: SensorModel::pixel_factor
     Spectrum direct;
-    Spectrum forward;  // added to `direct` by forward scatter: 0 before that pass
+    Spectrum lamps_in_view;  // the part of `direct` that comes from lamps themselves
+    Spectrum forward;        // added to `direct` by forward scatter: 0 before that pass
     Spectrum backscatter;
     Spectrum backscatter_first;  // of the first slab
     /// All other light, 0 unless multiple scattering is rendered: what the water scattered last,
@@ -58,6 +59,8 @@ struct PixelResult {
     std::array<double, 2> disparity;
     double disparity_occluded = 0;
 
+    /// Whether any sample sees a lamp itself.
+    bool shows_lamp() const { return lamps_in_view != Spectrum{}; }
     /// Resets to an empty pixel, with 0 for each of `lamp_count` lamps. Storage is reused. `bands`:
     /// as many as any pixel that it has held; clearing all costs a tenth of a simple image's time.
     void reset(std::size_t lamp_count, std::size_t bands = k_max_bands);

@@ -129,6 +129,7 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
       sensor_(sensor),
       in_scatter_(*transport.integrator, rays.world_from_camera(), slabs, lamp_count(),
                   band_count(), parts),
+      lamps_in_view_(scene, transport.path_weight),
       matchers_(matchers),
       camera_from_world_(rays.world_from_camera().inverse()) {}
 
@@ -175,6 +176,7 @@ void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
     view.distances.clear();
     view.weights.clear();
     view.samples.clear();
+    view.lamps.clear();
     view.x = x + 0.5;
     view.y = y + 0.5;
     view.has_hit = false;
@@ -182,12 +184,13 @@ void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
 }
 
 // The ray of a single sample is that of the ground truth.
-void PixelRenderer::add_center(PixelView& view) {
+void PixelRenderer::add_center(PixelView& view) const {
     if (!view.ray) return;
     view.alpha = 1;
     view.distances.push_back(view.has_hit ? view.path : k_far);
     view.weights.push_back(1);
     if (view.has_hit) view.samples.push_back({*view.ray, view.hit, view.x, view.y});
+    lamps_in_view_.append(*view.ray, view.distances.back(), view.lamps);
 }
 
 void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
@@ -222,8 +225,10 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
         if (!scene_.surfaces->closest_hit(*ray, k_far, sample.hit)) {
             view.samples.pop_back();
             distances.push_back(k_far);
+            lamps_in_view_.append(*ray, k_far, view.lamps);
             continue;
         }
+        lamps_in_view_.append(*ray, sample.hit.distance, view.lamps);
         const bool at_center = view.has_hit && sample.hit.object_id == view.hit.object_id &&
                                std::abs(sample.hit.distance / view.path - 1) < k_same_surface;
         distances.push_back(at_center ? view.path : sample.hit.distance);
@@ -253,6 +258,7 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
     if (!view.samples.empty())
         for (double& transmittance : result.transmittance.first(bands))
             transmittance /= static_cast<double>(view.samples.size());
+    for (const SeenLamp& lamp : view.lamps) add_lamp(lamp, result);
     if (!view.ray) return;
     add_water(in_scatter, result);
     result.pixel_factor = pixel_factor(view);
@@ -330,6 +336,17 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
             result.direct[b] += direct;
             if (!result.lamps.empty()) result.lamps[emitter.index()][b] += direct;
         }
+    }
+}
+
+void PixelRenderer::add_lamp(const SeenLamp& lamp, PixelResult& result) const {
+    const double weight = sensor_.surface_factor(lamp.distance) / samples_.count;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(band_count()); ++b) {
+        const double arriving = weight * lamp.arriving[b];
+        result.clean[b] += weight * lamp.radiance[b];
+        result.direct[b] += arriving;
+        result.lamps_in_view[b] += arriving;
+        if (!result.lamps.empty()) result.lamps[lamp.lamp][b] += arriving;
     }
 }
 

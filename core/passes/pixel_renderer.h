@@ -11,6 +11,7 @@
 #include "core/image/image_quantity.h"
 #include "core/light/integrator.h"
 #include "core/light/integrator_kind.h"
+#include "core/light/lamps_in_view.h"
 #include "core/light/slabs.h"
 #include "core/passes/pixel_layers.h"
 #include "core/passes/pixel_view.h"
@@ -92,6 +93,7 @@ class PixelRenderer {
     const LightTransport& transport() const { return transport_; }
     const LitScene& scene() const { return scene_; }
     const PointMatchers& matchers() const { return matchers_; }
+    const LampsInView& lamps_in_view() const { return lamps_in_view_; }
 
     /// Traces the samples of pixel (x, y). Thread safe.
     void trace(int x, int y, PixelView& view) const;
@@ -115,6 +117,7 @@ class PixelRenderer {
   private:
     void add_surface(const SurfaceSample& surface, const SurfaceLight& light, std::size_t sample,
                      PixelResult& result) const;
+    void add_lamp(const SeenLamp& lamp, PixelResult& result) const;
     void add_water(std::span<const double> in_scatter, PixelResult& result) const;
     // Starts a view with the ray through the pixel's centre.
     void begin_view(int x, int y, PixelView& view) const;
@@ -122,7 +125,7 @@ class PixelRenderer {
     void finish_ground_truth(PixelView& view) const;
     void store_truth(const PixelView& view, PixelResult& result) const;
     // Makes the pixel's centre its only sample.
-    static void add_center(PixelView& view);
+    void add_center(PixelView& view) const;
     // Traces the samples, unless there is only one, which is the pixel's centre.
     void add_samples(int x, int y, PixelView& view) const;
 
@@ -132,6 +135,7 @@ class PixelRenderer {
     PixelSamples samples_;
     SensorModel sensor_;
     RayInScatter in_scatter_;
+    LampsInView lamps_in_view_;
     PointMatchers matchers_;
     Affine camera_from_world_;
 };

@@ -8,6 +8,7 @@
 #include "core/base/vector_math.h"
 #include "core/geometry/surfaces.h"
 #include "core/light/integrator.h"
+#include "core/light/lamps_in_view.h"
 #include "core/light/slabs.h"
 #include "core/light/surface_lighting.h"
 
@@ -56,6 +57,7 @@ struct PixelView {
     std::vector<double> distances, weights;
 
     std::vector<SurfaceSample> samples;  // those that hit a surface
+    std::vector<SeenLamp> lamps;         // that any sample sees, one for each of these
 
     // Ground truth at the pixel's centre:
     bool has_hit = false;

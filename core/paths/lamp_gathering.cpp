@@ -7,6 +7,7 @@
 
 #include "core/geometry/surface_reflection.h"
 #include "core/light/integrator.h"
+#include "core/light/lamps_in_view.h"
 #include "core/light/ray_panels.h"
 #include "core/paths/scattering_tables.h"
 
@@ -349,7 +350,8 @@ void LampGathering::gather_from_water(const WaterSegment& segment, const PathSta
     const std::size_t bands = optics_.bands();
     const std::span<double> radiance = w.radiance.first(bands);
     optics_.transmittances(s + place->radius, w.column, w.radiance);
-    const double factor = relative / place->density;
+    const double even = evenness(optics_.scene(), lamp.index(), segment.ray, {0, segment.length});
+    const double factor = even * relative / place->density;
     for (std::size_t b = 0; b < bands; ++b) {
         double beta = 0;
         for (std::size_t m = 0; m < phases; ++m) beta += w.point.scattering[m][b] * w.p[m];

@@ -1,13 +1,16 @@
 // ctest labels: analytic metamorphic
-// Lamps with an extent: one lamp in every layer, the light of its points, and soft shadows.
+// Lamps with an extent: one lamp in every layer, the light of its points, soft shadows, and what is
+// seen of the lamps themselves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "camera/camera.h"
 #include "core/light/surface_lighting.h"
 #include "tests/support/test_scene.h"
 
@@ -215,6 +218,164 @@ TEST(AreaLamps, AllOfItsPowerArrives) {
         const auto power = static_cast<double>(band + 1);
         // Midpoints 5 cm apart, and 64 points.
         EXPECT_NEAR(flux[band], power * share, 5e-4 * power) << band;
+    }
+}
+
+/// A lamp 3 m in front of the camera that faces it, of the radiance 10/A.
+SceneDesc lamp_in_view(const LampDesc& lamp, int width = 24, int height = 18) {
+    SceneDesc desc = pinhole_scene(width, height);
+    desc.lamps = {lamp};
+    desc.lamps[0].direction = {0, 0, -1};
+    return desc;
+}
+
+/// The ray of a pixel's centre.
+Ray center_ray(const TestScene& scene, int x, int y) {
+    return scene.assembled().camera->refracted_ray(x + 0.5, y + 0.5).value();
+}
+
+class LampInView : public testing::TestWithParam<RenderDesc::Integrator> {};
+
+// A Lambertian disk has the same radiance from wherever it is seen, I/A; water dims it by e^(-c s).
+TEST_P(LampInView, IsADiskOfItsRadiance) {
+    constexpr double k_radius = 0.6;
+    SceneDesc desc = lamp_in_view(panel(disk(k_radius, 8), {0.2, 0.1, 3}, 10));
+    desc.render.integrator = GetParam();
+    desc.render.samples = 1;
+    const TestScene scene(desc);
+    const Medium& medium = scene.assembled().water.medium;
+    int inside = 0;
+    for (int y = 0; y < 18; ++y)
+        for (int x = 0; x < 24; ++x) {
+            const PixelResult pixel = scene.pixel(x, y);
+            const Ray ray = center_ray(scene, x, y);
+            const double s = 3 / ray.direction.z;
+            const Point3 at = ray.at(s);
+            const bool hits = std::hypot(at.x - 0.2, at.y - 0.1) < k_radius;
+            inside += hits ? 1 : 0;
+            for (std::size_t band = 0; band < 3; ++band) {
+                const double truth = hits ? 10 / (pi * k_radius * k_radius) : 0;
+                const double dimmed = truth * std::exp(-medium.uniform.attenuation(band) * s);
+                EXPECT_NEAR(pixel.clean[band], truth, 1e-12 * truth) << x << " " << y;
+                EXPECT_NEAR(pixel.direct[band], dimmed, 1e-12 * truth) << x << " " << y;
+                EXPECT_EQ(pixel.lamps_in_view[band], pixel.direct[band]);
+                EXPECT_NEAR(pixel.lamps[0][band], pixel.direct[band] + pixel.backscatter[band],
+                            1e-12 * pixel.lamps[0][band]);
+            }
+        }
+    EXPECT_GT(inside, 40);
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, LampInView,
+                         testing::Values(RenderDesc::Integrator::volume,
+                                         RenderDesc::Integrator::planes,
+                                         RenderDesc::Integrator::reference));
+
+// The irradiance below the middle of a Lambertian disk, on a plane parallel to it, is pi L r^2 /
+// (r^2 + d^2): the sum over the pixels of radiance, solid angle and cosine.
+TEST(LampsInView, BringTheIrradianceOfALambertianDisk) {
+    constexpr double k_radius = 0.5, k_distance = 2;
+    SceneDesc desc = lamp_in_view(panel(disk(k_radius, 4), {0, 0, k_distance}, 10), 64, 48);
+    desc.water.absorption = {0, 0, 0};
+    desc.water.scattering->b = {0, 0, 0};
+    desc.render.samples = 16;
+    const TestScene scene(desc);
+    const Vector3 a = center_ray(scene, 0, 0).direction, b = center_ray(scene, 1, 0).direction;
+    const double pixel = b.x / b.z - a.x / a.z;  // on the plane z = 1
+    double irradiance = 0;
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const double cosine = center_ray(scene, x, y).direction.z;
+            irradiance += scene.pixel(x, y).direct[1] * std::pow(cosine, 4) * pixel * pixel;
+        }
+    const double radiance = 10 / (pi * k_radius * k_radius);
+    const double truth =
+        pi * radiance * k_radius * k_radius / (k_radius * k_radius + k_distance * k_distance);
+    EXPECT_NEAR(irradiance, truth, 3e-3 * truth);
+}
+
+TEST(LampsInView, HaveTheRadianceOfTheirProfile) {
+    // Turned away by 60 degrees, a surface that shines in all directions alike is twice as bright.
+    SceneDesc desc = pinhole_scene(3, 3);
+    desc.water.absorption = {0, 0, 0};
+    desc.water.scattering->b = {0, 0, 0};
+    desc.render.samples = 1;
+    desc.lamps = {panel({LampExtentDesc::Shape::rectangle, 2, 1, 0, 0, 4}, {0, 0, 3}, 10)};
+    desc.lamps[0].profile = IsotropicProfileDesc{};
+    desc.lamps[0].direction = {std::sqrt(0.75), 0, -0.5};
+    EXPECT_NEAR(TestScene(desc).pixel(1, 1).direct[0], 10 / (2 * 0.5), 1e-9);
+    // From behind as well, where a diffuse one is dark.
+    desc.lamps[0].direction = {std::sqrt(0.75), 0, 0.5};
+    EXPECT_NEAR(TestScene(desc).pixel(1, 1).direct[0], 10 / (2 * 0.5), 1e-9);
+    desc.lamps[0].profile = CosineProfileDesc{120};
+    EXPECT_EQ(TestScene(desc).pixel(1, 1).direct[0], 0);
+    EXPECT_FALSE(TestScene(desc).pixel(1, 1).shows_lamp());
+}
+
+TEST(LampsInView, AreHiddenBySurfacesBeforeThemAlone) {
+    SceneDesc desc = lamp_in_view(panel(disk(1, 4), {0, 0, 3}, 10));
+    desc.render.samples = 4;
+    // What is behind the lamp, or where it is fixed to, does not hide it.
+    for (const double behind : {3.5, 3.0}) {
+        desc.geometry = {plane_at_z(behind)};
+        EXPECT_GT(TestScene(desc).pixel(12, 9).lamps_in_view[1], 0) << behind;
+    }
+    // A board hides the left half; the pixels at its edge see the lamp with half of their samples.
+    desc.geometry = {box({-9, -9, 1}, {0, 9, 1.1})};
+    const TestScene scene(desc);
+    EXPECT_EQ(scene.pixel(11, 9).lamps_in_view[1], 0);
+    EXPECT_GT(scene.pixel(12, 9).lamps_in_view[1], 0);
+    desc.geometry = {box({-9, -9, 1}, {0.5 * (2.0 * std::tan(pi / 6) / 24), 9, 1.1})};
+    const TestScene half(desc);
+    EXPECT_NEAR(half.pixel(12, 9).lamps_in_view[1], 0.5 * scene.pixel(12, 9).lamps_in_view[1],
+                0.01 * scene.pixel(12, 9).lamps_in_view[1]);
+}
+
+class PointsOfALampInView : public testing::TestWithParam<int> {};
+
+// The pattern of points in the water is faint, and the fainter the more there are: as dots they
+// would be many times as bright as the water between them. Against very many of them.
+TEST_P(PointsOfALampInView, AreFaintInTheWater) {
+    for (const bool is_disk : {true, false}) {
+        const auto backscatter = [&](int samples) {
+            const LampExtentDesc extent =
+                is_disk
+                    ? disk(0.5, samples)
+                    : LampExtentDesc{LampExtentDesc::Shape::rectangle, 1.2, 0.5, 20, 0, samples};
+            const TestScene scene(lamp_in_view(panel(extent, {0, 0, 3}, 10), 36, 27));
+            std::vector<double> light;
+            for (const PixelResult& pixel : scene.image()) light.push_back(pixel.backscatter[1]);
+            return light;
+        };
+        const std::vector<double> few = backscatter(GetParam()), many = backscatter(700);
+        double worst = 0, brightest = 0;
+        for (std::size_t i = 0; i < few.size(); ++i) {
+            worst = std::max(worst, std::abs(few[i] / many[i] - 1));
+            brightest = std::max(brightest, many[i]);
+        }
+        std::cout << GetParam() << " points: worst " << 100 * worst << " %\n";
+        EXPECT_GT(brightest, 3 * many[0]);
+        EXPECT_LT(worst, GetParam() == 32 ? 0.45 : 0.2);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Numbers, PointsOfALampInView, testing::Values(32, 128));
+
+// Rays that pass the points closely, where each integrator corrects what they scatter by itself.
+TEST(LampsInView, AllIntegratorsAgreeInTheWaterAroundThem) {
+    SceneDesc desc = lamp_in_view(panel(disk(0.4, 6), {0, 0, 2}, 10), 12, 9);
+    desc.geometry = {plane_at_z(3)};
+    const std::vector<PixelResult> image = TestScene(desc).image();
+    desc.render.integrator = RenderDesc::Integrator::reference;
+    const std::vector<PixelResult> truth = TestScene(desc).image();
+    desc.render.integrator = RenderDesc::Integrator::planes;
+    desc.render.planes.count = 2000;
+    const std::vector<PixelResult> planes = TestScene(desc).image();
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        EXPECT_NEAR(image[i].backscatter[1], truth[i].backscatter[1],
+                    2e-3 * truth[i].backscatter[1]);
+        EXPECT_NEAR(planes[i].backscatter[1], truth[i].backscatter[1],
+                    2e-2 * truth[i].backscatter[1]);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "camera/camera.h"
+#include "core/base/random.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_scene.h"
 #include "tests/support/vdb/vdb_fixtures.h"
@@ -109,6 +110,54 @@ TEST(GaussianPlume, DimsWhatIsBehindItAndGlowsItself) {
     const PixelResult clear = TestScene(without).pixel(16, 12);
     EXPECT_LT(plume.transmittance[1], 0.8 * clear.transmittance[1]);
     EXPECT_GT(plume.backscatter[1], 1.2 * clear.backscatter[1]);
+}
+
+// Voxels of random density in a ball around (0, 0, 2.2), as rough as a grid can be.
+std::filesystem::path write_rough_ball(const TempDir& dir) {
+    constexpr double k_voxel = 0.05;
+    VdbFixture grid;
+    grid.min = {-10, -10, -10};
+    grid.max = {10, 10, 10};
+    grid.value = [](int i, int j, int k) {
+        const auto place = static_cast<std::uint64_t>((i + 32) * 4096 + (j + 32) * 64 + k + 32);
+        return i * i + j * j + k * k > 100 ? 0
+                                           : PathRandom(PathRandom::seed_of(1, place), 0).next();
+    };
+    grid.file_from_index = Affine::translation({0.0, 0.0, 2.2}) * Affine::scale(Vector3(k_voxel));
+    const std::filesystem::path file = dir / "ball.vdb";
+    write_fixture(file, {grid});
+    return file;
+}
+
+// All light that is scattered forwards comes from the lamp the same way: errors of the map of
+// columns do not average out along the ray.
+TEST(DensePlume, ALampInItOrBehindItIsSeenAsByTheReference) {
+    const TempDir dir;
+    const std::filesystem::path file = write_rough_ball(dir);
+    for (const double lamp_z : {2.2, 3.2})
+        for (const double scattering : {3.0, 10.0}) {
+            SceneDesc desc = pinhole_scene(16, 12);
+            desc.lamps = {isotropic_lamp({0.03, 0.02, lamp_z}, 50)};
+            VolumeDesc volume;
+            volume.file = file;
+            volume.where = "test";
+            GridMappingDesc mapping;
+            mapping.grid = "density";
+            mapping.optics.emplace();
+            mapping.optics->absorption = {0.1, 0.1, 0.1};
+            mapping.optics->scattering = PerBand(3, 2 * scattering);  // of the mean value, 1/2
+            mapping.where = "test";
+            volume.grids = {mapping};
+            desc.volumes = {volume};
+            desc.render.quality = RenderDesc::Quality::exact;
+            const std::vector<PixelResult> image = TestScene(desc).image();
+            desc.render.integrator = RenderDesc::Integrator::reference;
+            const std::vector<PixelResult> truth = TestScene(desc).image();
+            const Difference d = difference(image, truth, 1);
+            std::cout << "lamp at " << lamp_z << ", " << scattering << "/m: RMS " << 100 * d.rms
+                      << " %, worst " << 100 * d.worst << " % of the image mean\n";
+            EXPECT_LT(d.rms, 0.003) << lamp_z << " " << scattering;
+        }
 }
 
 }  // namespace

@@ -43,6 +43,19 @@ TEST(Preview, ExposureIgnoresPixelsWithoutRayOrValue) {
     EXPECT_NEAR(*exposure, 1.6, 1e-6);
 }
 
+TEST(Preview, LampsInViewDoNotDarkenThePicture) {
+    Film film = grey_row({0.5f, 0.5f, 0.5f, 900.0f, 900.0f});
+    film.mark_lamp(3, 0);
+    film.mark_lamp(4, 0);
+    EXPECT_NEAR(automatic_exposure(film).value_or(0), 1.6, 1e-6);
+    const Film part = cropped(film, {2, 0, 4, 1});
+    EXPECT_NEAR(automatic_exposure(part).value_or(0), 1.6, 1e-6);
+    // Where nothing else is seen, they are what the picture is of.
+    EXPECT_NEAR(automatic_exposure(cropped(film, {3, 0, 5, 1})).value_or(0), 0.8 / 900, 1e-9);
+    film.clear();
+    EXPECT_FALSE(film.shows_lamp(3, 0));
+}
+
 TEST(Preview, AFewBrightPixelsInTheDarkAreShown) {
     std::vector<float> values(1000, 0.0f);
     values[17] = 0.25f;
