@@ -20,6 +20,7 @@ MOTION_STEPS = 5
 PREVIEW_PART = 4  # of the image's sides
 LEAST_PREVIEWED = 200 * 150
 SECONDS_BETWEEN_LINES = 5
+LEFT_OUT = "single scattering leaves out"  # how much, differs from frame to frame
 
 _said = set()  # notes of this render, of which an animation repeats most
 
@@ -136,8 +137,12 @@ class UwvdbEngine(bpy.types.RenderEngine):
         if settings.integrator == "PATH" and settings.use_error:
             arguments += ["--error", repr(settings.error)]
         for line in program.run(arguments, folder, self.test_break, self._on_progress):
-            if line.startswith("warning:"):
-                notes.add(_own_words(line[len("warning:"):].strip(), folder))
+            kind, _, text = line.partition(": ")
+            if kind == "warning":
+                notes.add(_own_words(text.strip(), folder))
+            elif kind == "note" and not any(said.startswith(LEFT_OUT) for said in _said):
+                notes.add(text.strip().replace("render.scattering: multiple",
+                                               "Render > uwvdb > Scattering: Multiple"))
         return exr.read(out)
 
     def _arguments(self, depsgraph, path, written, size, out):

@@ -72,7 +72,7 @@ def run(arguments, folder, is_cancelled, on_progress):
         os.close(reading)
         _stop(process)
     if code != 0:
-        errors = [line for line in lines if not line.startswith("warning:")]
+        errors = [line for line in lines if not line.startswith(("warning:", "note:"))]
         raise Failed(errors[-1] if errors else f"uwvdb ended with code {code}")
     return lines
 
