@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
@@ -124,9 +123,7 @@ constexpr VolumeIntegrator::Fineness k_draft_fineness{.knots_per_panel = 6,
                                                       .interpolated_half_tangent = 0};
 // A measured profile (IES) bends where its angles were taken, anywhere on a panel.
 constexpr VolumeIntegrator::Fineness k_exact_fineness{
-    .least_relative_panel = 0.1,
-    .pieces = 2,
-    .interpolated_half_tangent = std::numeric_limits<double>::infinity()};
+    .least_relative_panel = 0.1, .pieces = 2, .interpolated_half_tangent = 1.5};
 constexpr double k_column_tolerance = 5e-4;
 constexpr double k_draft_column_tolerance = 0.01;
 
