@@ -172,7 +172,7 @@ TEST_F(Rigs, InSequences) {
     std::filesystem::remove(folder_ / "right.02.exr");
     const test::ProgramResult resumed =
         expect_runs({"render", "rig.yaml", "-o", "{camera}.##.exr", "--frames", "1-2", "--resume"});
-    EXPECT_NE(resumed.err.find("1 images left"), std::string::npos) << resumed.err;
+    EXPECT_NE(resumed.err.find("1 image left"), std::string::npos) << resumed.err;
     EXPECT_TRUE(exists("right.02.exr"));
 }
 
