@@ -85,7 +85,8 @@ def _show_progress(line, on_progress):
 
 
 def _take(line, lines, on_progress):
-    if not _show_progress(line, on_progress) and line.strip() and " % " not in line:
+    is_message = line.startswith(("warning: ", "note: ", "uwvdb: ")) or " % " not in line
+    if not _show_progress(line, on_progress) and line.strip() and is_message:
         lines.append(line.strip())
 
 

@@ -154,6 +154,19 @@ def test_what_cannot_be_shown_is_named_once():
         assert words in told, (words, told)
 
 
+def test_says_what_single_scattering_leaves_out():
+    scene = empty_scene(32, 24)
+    scene.world.uwvdb.kind, scene.world.uwvdb.preset = "PRESET", "jerlov-5C"
+    square("Wall", size=20, location=(0, 2, 0), rotation=(math.pi / 2, 0, 0))
+    light("POINT", "Lamp", 300, (0.5, 0, 0))
+    render()
+    told = [note for note in notes() if note.startswith("single scattering leaves out")]
+    assert len(told) == 1 and "Render > uwvdb > Scattering: Multiple renders it" in told[0], notes()
+    scene.uwvdb.scattering, scene.uwvdb.quality = "MULTIPLE", "DRAFT"
+    render()
+    assert not any("leaves out" in note for note in notes()), notes()
+
+
 def test_keyframes_are_those_of_each_frame():
     """An animated object, light, water and housing give what the same settings give at rest."""
     scene = empty_scene()
