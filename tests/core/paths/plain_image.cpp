@@ -9,7 +9,7 @@ namespace {
 
 TEST(PlainImage, MeansOfAllKindsOfLightAgree) {
     constexpr std::size_t k_batches = 128;
-    constexpr int k_rays = 16'000, k_plain_rays = 24'000;
+    constexpr int k_rays = 64'000, k_plain_rays = 96'000;
     const PathScene scene = s1_scene();
     const PathTracer tracer(scene.lit());
     std::vector<S1Batch> batches(k_batches);
