@@ -367,7 +367,7 @@ std::string error_text(const ModelError& error) {
 }
 
 std::string pinhole_message(const std::string& formats, bool is_fitted, const PinholeFits& fits) {
-    // Of a rig's cameras that which is off the most.
+    // The message is about the camera of the rig that is off the most.
     const PinholeFit* most = nullptr;
     for (const auto& fit : fits)
         if (fit && (most == nullptr || fit->in_air.rms > most->in_air.rms)) most = &*fit;

@@ -78,7 +78,7 @@ std::vector<ImageSight> sights_of(const Camera& camera, int side, const Surfaces
                                    (row + 0.5) / side * camera.height()};
             const auto ray = camera.refracted_ray(pixel.x, pixel.y);
             if (!ray) continue;
-            ImageSight& sight = sights.emplace_back(pixel, *ray, SurfaceHit{});
+            ImageSight& sight = sights.emplace_back(ImageSight{pixel, *ray, SurfaceHit{}});
             if (!surfaces.closest_hit(*ray, std::numeric_limits<double>::infinity(), *sight.hit))
                 sight.hit.reset();
         }

@@ -1,8 +1,6 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
-
 #include "core/image/image_formats.h"
 
 namespace {

@@ -164,8 +164,7 @@ void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
     if (grid.unusable.empty() && is_level_set_in_disguise(grid))
         say("is a level set, though its class does not say so (its inside is negative, and its "
             "background above 0 or its name that of distances), not a concentration; give its "
-            "volume "
-            "level_set: fog, which fills its inside, or export a fog volume");
+            "volume level_set: fog, which fills its inside, or export a fog volume");
     if (grid.unusable.empty() && !grid.unread.empty()) say("cannot be read: " + grid.unread);
     if (grid.active_voxels == 0) say("is empty: it has no active voxels");
     if (!grid.values || grid.values->active == 0 || !grid.unusable.empty()) return;

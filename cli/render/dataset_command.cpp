@@ -76,7 +76,7 @@ class FirstLook : public ViewClient {
     void look(const Job& job) { engine_.run(job, *this); }
 
     Exposures exposures() const { return {image_.value_or(1), clean_.value_or(1)}; }
-    /// Of each view; none of one that is rendered with all light.
+    /// What each view lacks; a view that is rendered with all light has no entry.
     const std::vector<LightLeftOut>& left_out() const { return left_out_; }
 
     WantedImage want(std::size_t /*place*/, ImageScene& scene) override {

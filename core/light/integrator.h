@@ -44,7 +44,7 @@ struct LitScene {
     const std::vector<Lamp>* emitters = nullptr;
     /// For derivatives, of integrators that have them (VolumeIntegrator).
     PathWeight path_weight{};
-    /// Of the lamps with an extent, for LampsInView; null: there are none.
+    /// The luminous surfaces of lamps with an extent; null if there are none.
     const std::vector<LampSurface>* lamp_surfaces = nullptr;
 
     /// How many lamps the scene has.

@@ -91,7 +91,7 @@ struct WaterPoint {
 /// What WaterSegments need to know of a scene. Thread safe.
 class WaterOptics {
   public:
-    /// `exact`: profiles are as fine as the field knows, or coarse ones, faster and right on
+    /// Profiles are as fine as the field's own if `exact`; coarse ones are faster, and right on
     /// average.
     WaterOptics(const LitScene& scene, bool exact);
 

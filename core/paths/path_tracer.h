@@ -22,8 +22,7 @@ class PathTracer {
   public:
     /// `deep_shadows`: where paths take optical depths between lamps and points from, one per
     /// emitter: its columns and no others; then those along the paths are coarse, too. Empty: all
-    /// columns are exact. `scattering`: of the scene's
-    /// medium; null: made anew.
+    /// columns are exact. `scattering`: of the scene's medium; null: made anew.
     explicit PathTracer(const LitScene& scene,
                         const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows = {},
                         std::shared_ptr<const ScatteringTables> scattering = nullptr);

@@ -401,7 +401,7 @@ PictureCallbacks EditSession::picture_callbacks() {
     };
     callbacks.light_left_out = [this](const EditedScene& scene, const std::string& note) {
         const std::lock_guard lock(mutex_);
-        // Of an older scene it is known no more.
+        // The scene may have changed while its light was estimated.
         if (scene.revision != revision_ || note == light_note_) return;
         light_note_ = note;
         announce();

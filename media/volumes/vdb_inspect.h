@@ -52,9 +52,9 @@ struct VdbInspection {
 };
 
 /// Inspects every grid of a file, one at a time, and keeps no voxels. `up`: of the file, automatic
-/// as in a scene that does not specify it. For a grid that cannot be
-/// read, or whose values are not numbers, `unread` states why. Throws as read_vdb_header, and
-/// InputError if voxels are damaged and no grid at all can be read.
+/// as in a scene that does not specify it. For a grid that cannot be read, or whose values are not
+/// numbers, `unread` states why. Throws as read_vdb_header, and InputError if voxels are damaged
+/// and no grid at all can be read.
 VdbInspection inspect_vdb(const std::filesystem::path& file, const SourceLocation& where,
                           UpAxis up = UpAxis::automatic);
 

@@ -39,7 +39,8 @@ std::string encoded_image(const std::string& extension, int width, int height, i
     const std::string file = (folder.path() / ("image." + extension)).string();
     OIIO::ImageSpec spec(width, height, channels, bits == 16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8);
     spec.attribute("oiio:UnassociatedAlpha", 1);
-    spec.attribute("Compression", "jpeg:100");
+    // TIFF knows JPEG, too, but is to be exact.
+    if (extension == "jpg") spec.attribute("Compression", "jpeg:100");
     const std::vector<std::uint8_t> bytes(values.begin(), values.end());
     const std::vector<std::uint16_t> words(values.begin(), values.end());
     const auto output = OIIO::ImageOutput::create(file);

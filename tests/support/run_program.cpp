@@ -38,7 +38,7 @@ int open_for_writing(const std::filesystem::path& file) {
 
 Program::Program(const std::vector<std::string>& arguments, const ProgramOptions& options)
     : deadline_(now() + options.timeout_seconds) {
-    std::vector<std::string> words{UWVDB_PROGRAM};
+    std::vector<std::string> words{options.program.string()};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());

@@ -17,10 +17,11 @@ struct ProgramResult {
 
 struct ProgramOptions {
     std::filesystem::path folder = ".";  // where it runs
-    int terminal_columns = 0;            // above 0: stderr is a terminal of that width
-    bool streams_full = false;           // stdout and stderr are /dev/full: no write succeeds
-    bool streams_closed = false;         // started without stdin, stdout and stderr
-    double timeout_seconds = 300;        // then it is killed, and the test fails
+    std::filesystem::path program = UWVDB_PROGRAM;
+    int terminal_columns = 0;      // above 0: stderr is a terminal of that width
+    bool streams_full = false;     // stdout and stderr are /dev/full: no write succeeds
+    bool streams_closed = false;   // started without stdin, stdout and stderr
+    double timeout_seconds = 300;  // then it is killed, and the test fails
 };
 
 /// A running process of the uwvdb that was built with the tests.

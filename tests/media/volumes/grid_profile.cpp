@@ -86,7 +86,8 @@ struct ColumnErrors {
     double knots = 0;                // relative to those of fine profiles
 };
 
-/// Of coarse profiles along rays in all directions from points in `box` where there is something.
+/// The errors of coarse profiles along rays in all directions from points in `box` where there is
+/// something.
 ColumnErrors coarse_columns(const ConcentrationField& field, const Bounds& box) {
     constexpr int k_rays = 20'000;
     std::mt19937 random(7);
