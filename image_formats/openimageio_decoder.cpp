@@ -55,6 +55,7 @@ extern "C" void uwvdb_decode_image_1(std::span<const std::byte> encoded, const c
     // The callback takes no const object.
     if (!input->read_image(0, 0, 0, channels, OIIO::TypeFloat, pixels, OIIO::AutoStride,
                            OIIO::AutoStride, OIIO::AutoStride, &asks_to_stop,
-                           const_cast<uw::ImageReceiver*>(&receiver)))
+                           const_cast<uw::ImageReceiver*>(&receiver)) ||
+        input->has_error())  // a TIFF that ends early is read "well"
         fault = first_line(input->geterror());
 }
