@@ -424,23 +424,31 @@ double samples_needed(double error, const PathAccuracy& so_far) {
     return k_margin * so_far.samples * ratio * ratio;
 }
 
-/// What is known of the total of every pixel: the variance of its estimate, by band, and its mean
-/// over the bands.
+// Two tell an error.
+int samples_of_pixel(int in_the_mean, double worth) {
+    return std::max(2, static_cast<int>(std::lround(in_the_mean * worth)));
+}
+
+/// What is known of the total of every pixel: the variance of its estimate, by band, its mean over
+/// the bands, and how many paths it is the mean over.
 class Spread {
   public:
     Spread(const PixelWindow& window, std::size_t bands) : window_(window), bands_(bands) {
         const double bytes =
-            4.0 * static_cast<double>(bands_ + 1) * window.width() * window.height();
+            4.0 * static_cast<double>(bands_ + 3) * window.width() * window.height();
         require_memory(bytes,
                        fmt::format("camera.resolution: the standard error of {} x {} pixels needs",
                                    window.width(), window.height()),
                        "render it in parts, with --crop, or make it smaller, with --size");
-        values_.assign(window.width() * static_cast<int>(bands_ + 1), window.height());
+        values_.assign(window.width() * static_cast<int>(bands_ + 2), window.height());
     }
 
-    /// Includes a pixel's further paths, with their share of all.
-    void merge(int x, int y, const PixelResult& result, double share) {
+    /// Includes a pixel's further paths. Returns their share of all of its paths.
+    double merge(int x, int y, const PixelResult& result, int samples) {
         const std::span<float> own = pixel(x, y);
+        float& count = own[bands_ + 1];
+        count += static_cast<float>(samples);
+        const double share = samples / static_cast<double>(count);
         double light = 0;
         for (std::size_t b = 0; b < bands_; ++b) {
             const double before = (1 - share) * (1 - share) * static_cast<double>(own[b]);
@@ -452,6 +460,58 @@ class Spread {
         const double mean = result.pixel_factor * light / static_cast<double>(bands_);
         own[bands_] =
             static_cast<float>((1 - share) * static_cast<double>(own[bands_]) + share * mean);
+        return share;
+    }
+
+    /// Paths per pixel, in the mean.
+    int samples() const {
+        double sum = 0;
+        for (int y = window_.y0; y < window_.y1; ++y)
+            for (int x = window_.x0; x < window_.x1; ++x)
+                sum += static_cast<double>(pixel(x, y)[bands_ + 1]);
+        return static_cast<int>(std::lround(sum / window_.width() / window_.height()));
+    }
+
+    /// How many paths each pixel is worth, relative to the mean over all: as many as leave the
+    /// image the least error, in proportion to the deviation of a single path. That is guessed from
+    /// the pixels around it and never from its own paths: a pixel which happens to be too dark has
+    /// found no bright path and seems to need few more, so that its own choice would make it darker
+    /// than it is.
+    Grid2D<float> worths() const {
+        constexpr int k_reach = 3;
+        constexpr double k_least_worth = 0.25, k_most_worth = 8;
+        Grid2D<float> worths;
+        worths.assign(window_.width(), window_.height());
+        const auto deviation = [&](int x, int y) {
+            double variance = 0;
+            for (const float of_band : pixel(x, y).first(bands_))
+                variance += static_cast<double>(of_band);
+            return std::sqrt(variance);
+        };
+        double mean = 0;
+        for (int y = window_.y0; y < window_.y1; ++y)
+            for (int x = window_.x0; x < window_.x1; ++x) mean += deviation(x, y);
+        mean /= static_cast<double>(worths.size());
+        parallel_for(static_cast<std::size_t>(window_.height()), [&](std::size_t row) {
+            const int y = window_.y0 + static_cast<int>(row);
+            for (int x = window_.x0; x < window_.x1; ++x) {
+                double sum = 0;
+                int count = 0;
+                for (int v = std::max(y - k_reach, window_.y0);
+                     v < std::min(y + k_reach + 1, window_.y1); ++v) {
+                    for (int u = std::max(x - k_reach, window_.x0);
+                         u < std::min(x + k_reach + 1, window_.x1); ++u) {
+                        if (u == x && v == y) continue;
+                        sum += deviation(u, v);
+                        ++count;
+                    }
+                }
+                const double worth = count > 0 && mean > 0 ? sum / count / mean : 1;
+                worths(x - window_.x0, y - window_.y0) =
+                    static_cast<float>(std::clamp(worth, k_least_worth, k_most_worth));
+            }
+        });
+        return worths;
     }
 
     /// The standard error of the whole image, relative to its mean.
@@ -478,13 +538,13 @@ class Spread {
 
   private:
     std::size_t first(int x) const {
-        return static_cast<std::size_t>(x - window_.x0) * (bands_ + 1);
+        return static_cast<std::size_t>(x - window_.x0) * (bands_ + 2);
     }
     std::span<float> pixel(int x, int y) {
-        return values_.row(y - window_.y0).subspan(first(x), bands_ + 1);
+        return values_.row(y - window_.y0).subspan(first(x), bands_ + 2);
     }
     std::span<const float> pixel(int x, int y) const {
-        return values_.row(y - window_.y0).subspan(first(x), bands_ + 1);
+        return values_.row(y - window_.y0).subspan(first(x), bands_ + 2);
     }
 
     PixelWindow window_;
@@ -563,9 +623,9 @@ void PathPass::run(Rendering& rendering) {
     const auto tasks = static_cast<std::size_t>(runs) * static_cast<std::size_t>(window.height());
     PathAccuracy accuracy;
     PathRound round;
+    Grid2D<float> worths;  // of the pixels, once the first round has told them
     for (; (round.samples = samples_of_next_round(goal, accuracy)) > 0; ++round.number) {
         const int samples = accuracy.samples + round.samples;
-        const double share = static_cast<double>(round.samples) / samples;
         double in_all = samples;
         if (goal.error)
             in_all = std::clamp(round.number == 0 ? k_guess : samples_needed(*goal.error, accuracy),
@@ -576,18 +636,25 @@ void PathPass::run(Rendering& rendering) {
             const int y = window.y0 + static_cast<int>(task) / runs;
             const int begin = window.x0 + static_cast<int>(task) % runs * k_run;
             for (int x = begin; x < std::min(begin + k_run, window.x1); ++x) {
+                PathRound of_pixel = round;
+                if (round.number > 0)
+                    of_pixel.samples = samples_of_pixel(
+                        round.samples, static_cast<double>(worths(x - window.x0, y - window.y0)));
                 pixels.render(
-                    x, y, round, [&](int paths) { so_far.add(paths); }, result);
+                    x, y, of_pixel, [&](int paths) { so_far.add(paths); }, result);
+                const double share = spread.merge(x, y, result, of_pixel.samples);
                 if (round.number == 0)
                     store_pixel(result, plan, rendering.colour, film.pixel(x, y));
                 else
                     merge_paths(result, share, plan, rendering.colour, film.pixel(x, y));
                 if (result.shows_lamp()) film.mark_lamp(x, y);
-                spread.merge(x, y, result, share);
             }
         });
-        accuracy.samples = samples;
+        accuracy.samples = spread.samples();
         if (samples > 1) accuracy.error = spread.error();
+        // By the first round alone: by later ones, which are of different sizes, a pixel's paths
+        // would depend on its own after all.
+        if (goal.error && round.number == 0) worths = spread.worths();
         rendering.reached.paths = accuracy;
     }
     if (plan.has(Layer::error))

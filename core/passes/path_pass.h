@@ -90,18 +90,19 @@ struct PathRequest {
 
 /// When an image of light paths is done.
 struct PathGoal {
-    int samples = 16;               // paths per pixel
+    int samples = 16;               // paths per pixel, in the mean
     std::optional<double> error{};  // instead: PathRequest::error
 };
 
-/// The number of paths per pixel to trace next for an image that has reached `so_far`; 0: it is
-/// done. For an error that must not be exceeded, the number follows from the error so far, and is
-/// at most twice that of the paths so far.
+/// The mean number of paths per pixel to trace next for an image that has reached `so_far`; 0: it
+/// is done. For an error that must not be exceeded, the number follows from the error so far, and
+/// is at most twice that of the paths so far.
 int samples_of_next_round(const PathGoal& goal, const PathAccuracy& so_far);
 
 /// Renders every pixel of the film's window by light paths, round after round, on all permitted
 /// threads. The result does not depend on their number, and pixels do not depend on the window
-/// unless it is an error that is to be reached. After each round, while no pixel is being rendered,
+/// unless it is an error that is to be reached: then pixels with more noise around them get more of
+/// the paths. After each round, while no pixel is being rendered,
 /// it sets ImageProgress::paths.
 class PathPass final : public Pass {
   public:
