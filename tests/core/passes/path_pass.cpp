@@ -163,6 +163,43 @@ TEST_F(PathFilms, GoOnUntilTheErrorIsSmall) {
     EXPECT_GT(rounds.size(), 2U);
 }
 
+TEST_F(PathFilms, SpendPathsWhereTheErrorIs) {
+    desc_.camera.width = 24;
+    desc_.camera.height = 18;
+    const RenderOptions by_error{.layers = "error", .paths = {.error = 0.03}};
+    const Film film = render(by_error);
+    const PathAccuracy reached = report_.paths;
+    {
+        const ThreadLimit one(1);
+        EXPECT_TRUE(std::ranges::equal(render(by_error).values(), film.values()));
+    }
+    desc_.render.samples = reached.samples;
+    const Film even = render({.layers = "error"});
+    EXPECT_LT(*reached.error, *report_.paths.error);
+    // Both have the same mean: four times what is stated of their difference.
+    double sum = 0, difference = 0, variance = 0;
+    for (int y = 0; y < film.height(); ++y) {
+        for (int x = 0; x < film.width(); ++x) {
+            for (std::size_t b = 0; b < 3; ++b) {
+                const auto of = [&](const Film& each) {
+                    return static_cast<double>(each.pixel(x, y)[b]);
+                };
+                sum += of(even);
+                difference += of(film) - of(even);
+            }
+            // Bands share their paths.
+            double deviation = 0, deviation_even = 0;
+            for (std::size_t b = 0; b < 3; ++b) {
+                deviation += at(film, Layer::error, x, y, b);
+                deviation_even += at(even, Layer::error, x, y, b);
+            }
+            variance += deviation * deviation + deviation_even * deviation_even;
+        }
+    }
+    EXPECT_GT(sum, 0);
+    EXPECT_LT(std::abs(difference), 4 * std::sqrt(variance));
+}
+
 TEST_F(PathFilms, SayWhatTheyReachedIfTheErrorIsTooSmall) {
     render({.window = PixelWindow{2, 3, 3, 4}, .paths = {.error = 1e-6}});
     EXPECT_EQ(report_.paths.samples, 65536);
