@@ -171,12 +171,23 @@ Report report_on_coefficients(const std::string& heading, const WaterTable& wate
     Columns columns = coefficient_columns(table);
     for (const Column& column : columns) report.set({{column.key, list_json(column.values)}});
     Json parts = Json::array();
-    for (const ScatteringPart& part : table.parts)
+    for (const ScatteringPart& part : table.parts) {
+        // One value, or one for each wavelength.
+        const auto moment = [&](double MeasuredPhase::*value) {
+            if (part.phases.size() == 1) return Json(part.phases.front().*value);
+            Json list = Json::array();
+            for (const MeasuredPhase& phase : part.phases)
+                list.push_back(phase.phase ? Json(phase.*value) : Json(nullptr));
+            return list;
+        };
+        const MeasuredPhase& phase = *std::ranges::find_if(
+            part.phases, [](const MeasuredPhase& other) { return other.phase != nullptr; });
         parts.push_back({{"name", part.name},
-                         {"phase_function", part.phase->description()},
+                         {"phase_function", phase.phase->description()},
                          {"b", part.b},
-                         {"bb_over_b", part.backscatter_fraction},
-                         {"mean_cosine", part.mean_cosine}});
+                         {"bb_over_b", moment(&MeasuredPhase::backscatter_fraction)},
+                         {"mean_cosine", moment(&MeasuredPhase::mean_cosine)}});
+    }
     report.set({{"components", std::move(parts)}});
     if (is_uniform) {
         columns.push_back(attenuation_length_column(table));
@@ -362,14 +373,19 @@ std::pair<double, double> plotted_range(const WaterSurvey& survey) {
 }
 
 FineCurves fine_curves(const WaterSurvey& survey) {
-    FineCurves fine{{}, !survey.water.absorption, !survey.water.scattering};
+    // Species take too long for that many wavelengths.
+    const bool has_species = !survey.water.amounts.empty();
+    FineCurves fine{
+        {}, !survey.water.absorption && !has_species, !survey.water.scattering && !has_species};
     WaterDesc water = survey.water;
     water.absorption.reset();
     water.scattering.reset();
+    water.amounts.clear();
     std::vector<VolumeDesc> volumes = survey.volumes;
     for (VolumeDesc& volume : volumes)
-        std::erase_if(volume.grids,
-                      [](const GridMappingDesc& grid) { return grid.optics.has_value(); });
+        std::erase_if(volume.grids, [](const GridMappingDesc& grid) {
+            return grid.optics.has_value() || !grid.amounts.empty();
+        });
     const WavelengthRange known = pure_water_absorption_range();
     const double first = std::max(known.first_nm, plotted_range(survey).first);
     const double last = std::min(known.last_nm, plotted_range(survey).second);

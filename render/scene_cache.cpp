@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "media/volumes/grid_field.h"
+#include "media/water/species.h"
 #include "render/marine_snow.h"
 
 namespace uw {
@@ -18,6 +19,8 @@ std::vector<std::filesystem::path> files_of_water(const SceneDesc& scene) {
             files.push_back(table->file);
     };
     if (scene.water.scattering) add(scene.water.scattering->phase);
+    for (const SpeciesDesc& species : scene.water.species)
+        for (std::filesystem::path& file : files_of(species)) files.push_back(std::move(file));
     for (const VolumeDesc& volume : scene.volumes)
         for (const GridMappingDesc& grid : volume.grids)
             if (grid.optics && grid.optics->phase) add(*grid.optics->phase);

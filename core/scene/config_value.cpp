@@ -190,9 +190,9 @@ std::size_t ConfigValue::word_index(std::span<const std::string_view> words) con
     fail(fmt::format("unknown value '{}'; {}", printable(found), suggestion(found, words)));
 }
 
-ConfigMap::ConfigMap(ConfigValue value, std::initializer_list<std::string_view> allowed,
+ConfigMap::ConfigMap(ConfigValue value, std::vector<std::string_view> allowed,
                      std::string_view mend)
-    : value_(std::move(value)), allowed_(allowed) {
+    : value_(std::move(value)), allowed_(std::move(allowed)) {
     const ConfigNode& node = value_.node();
     if (node.kind == ConfigNode::Kind::null) {
         value_.fail(fmt::format("has no value; {}, or remove the key", mend));

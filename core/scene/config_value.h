@@ -83,7 +83,10 @@ class ConfigMap {
     /// `allowed` are all keys that this map may have; `mend` shows what it should look like. Throws
     /// InputError if `value` is not a map or has another key.
     ConfigMap(ConfigValue value, std::initializer_list<std::string_view> allowed,
-              std::string_view mend);
+              std::string_view mend)
+        : ConfigMap(std::move(value), std::vector<std::string_view>(allowed), mend) {}
+    /// The same, for keys that the scene names itself, which must outlive the map.
+    ConfigMap(ConfigValue value, std::vector<std::string_view> allowed, std::string_view mend);
 
     const ConfigValue& value() const { return value_; }
     bool has(std::string_view key) const { return value_.node().find(key) != nullptr; }

@@ -28,6 +28,7 @@ struct WaterSurfaceDesc {
 
 struct LoadedGrid;    // media/volumes/loaded_grid.h
 struct TriangleMesh;  // core/geometry/mesh.h
+struct SpeciesDesc;   // core/scene/species_desc.h
 
 /// What a scene refers to by names instead of reading it from files: grids of volumes as `array`,
 /// meshes of geometry as `mesh`.
@@ -49,7 +50,9 @@ struct SceneContext {
     };
     std::optional<RigFrames> rig{};
     std::optional<TrajectoryDesc> rig_trajectory{};  // likewise
-    const SceneArrays* arrays = nullptr;             // null: the scene has files alone
+    /// Of water, which is read before the volumes; null: none.
+    const std::vector<SpeciesDesc>* species = nullptr;
+    const SceneArrays* arrays = nullptr;  // null: the scene has files alone
 
     /// Adds the warning "<location>: <what>".
     void warn(const ConfigValue& value, const std::string& what) const {

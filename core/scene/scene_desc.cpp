@@ -248,6 +248,7 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     desc.render.planes.where = scene.location() + ": render.planes";
     desc.render.scattering_where = scene.location() + ": render.scattering";
     if (const auto entry = map.find("water")) desc.water = read_water(*entry, context);
+    context.species = &desc.water.species;
     read_camera_or_rig(map, context, desc);
     if (const auto entry = map.find("volumes")) desc.volumes = read_volumes(*entry, context);
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);

@@ -210,6 +210,9 @@ void check(const VolumeDesc& volume) {
         constexpr auto k_mend = "values are in ppm, coefficients in 1/m per unit";
         mapping.at_most(k_largest_per_unit, "concentration", {grid.small_ppm, grid.large_ppm},
                         k_mend);
+        for (const SpeciesAmount& amount : grid.amounts)
+            if (amount.unit != SpeciesAmount::Unit::number)
+                mapping.at_most(k_largest_per_unit, "concentration", {amount.amount}, k_mend);
         if (!grid.optics) continue;
         mapping.all_at_most(k_largest_per_unit, "absorption", grid.optics->absorption, k_mend);
         mapping.all_at_most(k_largest_per_unit, "scattering", grid.optics->scattering, k_mend);

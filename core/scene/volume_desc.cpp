@@ -1,6 +1,10 @@
 #include "core/scene/volume_desc.h"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
+#include <string_view>
+#include <utility>
 
 #include "core/base/text.h"
 #include "core/scene/config_value.h"
@@ -23,7 +27,11 @@ bool all_zero(const PerBand& values) {
 
 GridMappingDesc read_mapping(const ConfigValue& value, const std::string& grid,
                              const SceneContext& context) {
-    ConfigMap map(value, {"small", "large", "absorption", "scattering", "phase"},
+    static const std::vector<SpeciesDesc> k_none;
+    const std::vector<SpeciesDesc>& species = context.species ? *context.species : k_none;
+    std::vector<std::string_view> keys{"small", "large", "absorption", "scattering", "phase"};
+    std::ranges::copy(names_of(species), std::back_inserter(keys));
+    ConfigMap map(value, std::move(keys),
                   "write {small: 2, large: 10} in ppm per unit of grid value");
     GridMappingDesc mapping;
     mapping.grid = grid;
@@ -46,17 +54,20 @@ GridMappingDesc read_mapping(const ConfigValue& value, const std::string& grid,
         mapping.optics = std::move(optics);
         return mapping;
     }
-    if (!map.has("small") && !map.has("large")) {
+    mapping.amounts = read_amounts(map, species);
+    if (!map.has("small") && !map.has("large") && mapping.amounts.empty()) {
         value.fail(
             "does not say what the grid means; give small and large in ppm per unit of grid value, "
-            "or absorption and scattering in 1/m");
+            "one of water.species, or absorption and scattering in 1/m");
     }
     constexpr auto k_mend = "give ppm per unit of grid value";
     if (const auto entry = map.find("small")) mapping.small_ppm = entry->non_negative(k_mend);
     if (const auto entry = map.find("large")) mapping.large_ppm = entry->non_negative(k_mend);
     map.finish("a grid given in ppm");
-    if (mapping.small_ppm == 0 && mapping.large_ppm == 0) {
-        context.warn(value, "small and large are 0: this grid will not be seen");
+    const bool has_species = std::ranges::any_of(
+        mapping.amounts, [](const SpeciesAmount& amount) { return amount.amount > 0; });
+    if (mapping.small_ppm == 0 && mapping.large_ppm == 0 && !has_species) {
+        context.warn(value, "all concentrations are 0: this grid will not be seen");
     }
     return mapping;
 }

@@ -21,6 +21,7 @@ struct LoadedGrid;  // media/volumes/loaded_grid.h
 struct GridMappingDesc {
     std::string grid;                     ///< name in the file; name[i] if several share it
     double small_ppm = 0, large_ppm = 0;  ///< particles per unit of grid value [ppm]
+    std::vector<SpeciesAmount> amounts;   ///< of the water's species, likewise
     /// Coefficients per unit of grid value.
     struct Optics {
         PerBand absorption, scattering;  ///< [1/m], >= 0

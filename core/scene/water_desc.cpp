@@ -107,7 +107,10 @@ std::string read_preset(const ConfigValue& value) {
 
 void read_particles(const ConfigValue& value, WaterDesc& water) {
     constexpr auto k_ppm = "give a concentration in ppm by volume";
-    ConfigMap map(value, {"small", "large", "absorption"}, "write {small: 0.03, large: 0.05}");
+    std::vector<std::string_view> keys{"small", "large", "absorption"};
+    std::ranges::copy(names_of(water.species), std::back_inserter(keys));
+    ConfigMap map(value, std::move(keys), "write {small: 0.03, large: 0.05}");
+    water.amounts = read_amounts(map, water.species);
     if (const auto entry = map.find("small")) {
         water.small_ppm = entry->within(0, k_most_ppm, k_ppm);
     }
@@ -119,9 +122,9 @@ void read_particles(const ConfigValue& value, WaterDesc& water) {
             {{"none", false}, {"mineral", true}}};
         water.mineral_absorption = entry->choice(k_choices);
     }
-    if (water.scattering && (water.small_ppm || water.large_ppm)) {
+    if (water.scattering && (water.small_ppm || water.large_ppm || !water.amounts.empty())) {
         value.fail(
-            "'scattering' takes the place of background particles; remove small and large, "
+            "'scattering' takes the place of background particles; remove their concentrations, "
             "or remove 'scattering'");
     }
 }
@@ -191,44 +194,6 @@ WaterSurfaceDesc read_surface(const ConfigValue& value) {
 constexpr double k_least_diameter = 1e-6, k_greatest_diameter = 0.1;
 constexpr int k_most_particles = 20'000'000;
 
-/// A diameter in metres: a number, or one with its unit.
-double read_diameter(const ConfigValue& value) {
-    constexpr auto k_mend = "give a length with its unit, such as 0.2 mm";
-    constexpr std::array<std::pair<std::string_view, double>, 6> k_units{
-        {{"um", 1e-6}, {"µm", 1e-6}, {"μm", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}}};
-    double metres = 0;
-    bool is_length = false;
-    if (value.node().kind == ConfigNode::Kind::scalar) {
-        const std::string_view text = value.node().scalar;
-        if (parse_number(text, metres) == NumberText::number) is_length = true;
-        for (const auto& [unit, factor] : k_units) {
-            if (is_length || !text.ends_with(unit)) continue;
-            std::string_view number = text.substr(0, text.size() - unit.size());
-            while (number.ends_with(' ')) number.remove_suffix(1);
-            is_length = parse_number(number, metres) == NumberText::number;
-            metres *= factor;
-        }
-    }
-    if (!is_length)
-        value.fail(
-            fmt::format("expected a diameter, found {}; {}", value.node().description(), k_mend));
-    // Rounding of the units.
-    constexpr double k_slack = 1e-9;
-    if (!(metres >= k_least_diameter * (1 - k_slack)) ||
-        !(metres <= k_greatest_diameter * (1 + k_slack)))
-        value.fail(fmt::format("must be from 1 um to 10 cm, found {:g} m; {}", metres, k_mend));
-    return metres;
-}
-
-void read_diameters(const ConfigValue& value, SnowDesc& snow) {
-    const auto ends =
-        value.list_of(2, "give the least and the greatest diameter, such as [0.2 mm, 5 mm]");
-    snow.least = read_diameter(ends[0]);
-    snow.greatest = read_diameter(ends[1]);
-    if (!(snow.least < snow.greatest))
-        value.fail("the first must be less than the second; write the least diameter first");
-}
-
 SnowDesc read_snow(const ConfigValue& value, const SceneContext& context) {
     constexpr auto k_example = "write {number: 2000, diameter: [0.2 mm, 5 mm]}";
     ConfigMap map(value,
@@ -238,7 +203,8 @@ SnowDesc read_snow(const ConfigValue& value, const SceneContext& context) {
     SnowDesc snow;
     snow.where = value.location();
     snow.number = map.require("number", k_example).positive("give the particles per m^3");
-    read_diameters(map.require("diameter", k_example), snow);
+    read_diameters(map.require("diameter", k_example), k_least_diameter, k_greatest_diameter,
+                   snow.least, snow.greatest);
     if (const auto entry = map.find("exponent"))
         snow.exponent = entry->within(0, 10, "give Junge's exponent, of numbers per diameter: 4");
     snow.reflectance.assign(context.band_count, 0.4);
@@ -272,10 +238,11 @@ SnowDesc read_snow(const ConfigValue& value, const SceneContext& context) {
 }  // namespace
 
 WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
-    ConfigMap map(value,
-                  {"bands", "preset", "salinity", "temperature", "absorption", "cdom",
-                   "chlorophyll", "particles", "scattering", "forward_scatter", "surface", "snow"},
-                  "write {bands: [620, 540, 450]}");
+    ConfigMap map(
+        value,
+        {"bands", "preset", "salinity", "temperature", "absorption", "cdom", "chlorophyll",
+         "species", "particles", "scattering", "forward_scatter", "surface", "snow"},
+        "write {bands: [620, 540, 450]}");
     WaterDesc water;
     water.where = value.location();
     if (const auto entry = map.find("bands")) water.bands_nm = read_bands(*entry);
@@ -295,6 +262,7 @@ WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
     if (const auto entry = map.find("scattering")) {
         water.scattering = read_scattering(*entry, context);
     }
+    if (const auto entry = map.find("species")) water.species = read_species(*entry, context);
     if (const auto entry = map.find("particles")) read_particles(*entry, water);
     if (const auto entry = map.find("forward_scatter"))
         water.forward_scatter = read_forward_scatter(*entry);

@@ -11,6 +11,7 @@
 #include "core/base/vector_math.h"
 #include "core/scene/config_value.h"
 #include "core/scene/scene_context.h"
+#include "core/scene/species_desc.h"
 
 namespace uw {
 
@@ -118,6 +119,8 @@ struct WaterDesc {
     double chlorophyll = 0;             ///< [mg/m^3]
     /// Background particles [ppm by volume]; if omitted, the preset's, or none.
     std::optional<double> small_ppm, large_ppm;
+    std::vector<SpeciesDesc> species;          ///< that concentrations can name besides these
+    std::vector<SpeciesAmount> amounts;        ///< background concentrations of them
     bool mineral_absorption = false;           ///< particles absorb as mineral sediment does
     std::optional<ScatteringDesc> scattering;  ///< instead of that of molecules and particles
     ForwardScatterDesc forward_scatter;

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "media/water/phase_functions.h"
+#include "media/water/species.h"
 #include "media/water/water_types.h"
 
 namespace uw {
@@ -29,8 +30,15 @@ constexpr ParticleKind k_large_particles{
     "large", k_large_particle_density, kopelevich_large_scattering,
     [] { return std::shared_ptr<const PhaseFunction>(std::make_shared<KopelevichLarge>()); }};
 
+/// A species in one band, where its phase function is its own.
+struct SpeciesInBand {
+    std::size_t species, band;
+
+    friend bool operator==(const SpeciesInBand&, const SpeciesInBand&) = default;
+};
+
 /// The source of a phase function of the medium: equal sources share one.
-using PhaseSource = std::variant<PhaseFunctionDesc, const ParticleKind*>;
+using PhaseSource = std::variant<PhaseFunctionDesc, const ParticleKind*, SpeciesInBand>;
 
 /// Assembles the model step by step: the uniform water first, since grids may refer to it.
 class Builder {
@@ -51,7 +59,10 @@ class Builder {
     static Spectrum& scattering(OpticalCoefficients& x, std::size_t phase);
 
     void add_uniform_particles(const ParticleKind& kind, double ppm, double absorbing_ppm);
+    void add_species(std::size_t species, double ppm, OpticalCoefficients& x);
     int particle_constituent(const ParticleKind& kind);
+    int species_constituent(std::size_t species);
+    int known_particles(const std::string& name) const;
     int optics_constituent(const GridMappingDesc& grid);
     void scatter_like_water(const GridMappingDesc& grid, OpticalCoefficients& x) const;
     std::string unique_name(const std::string& wanted) const;
@@ -181,27 +192,58 @@ void Builder::add_uniform() {
                           std::max(0.0, model.small_ppm - small_counted));
     add_uniform_particles(k_large_particles, model.large_ppm,
                           std::max(0.0, model.large_ppm - large_counted));
+    for (const SpeciesAmount& amount : water_.amounts)
+        add_species(amount.species, parts_per_million(water_.species[amount.species], amount),
+                    uniform);
+}
+
+void Builder::add_species(std::size_t species, double ppm, OpticalCoefficients& x) {
+    if (ppm == 0) return;
+    for (std::size_t i = 0; i < band_count_; ++i) {
+        const double wavelength = water_.bands_nm[i];
+        const SpeciesOptics optics =
+            species_optics(water_.species[species], wavelength,
+                           water_refractive_index(wavelength, water_.temperature, water_.salinity));
+        const std::size_t phase =
+            phase_index_of(SpeciesInBand{species, i}, [&] { return optics.phase; });
+        scattering(x, phase)[i] += ppm * optics.scattering;
+        x.absorption[i] += ppm * optics.absorption;
+    }
+}
+
+int Builder::known_particles(const std::string& name) const {
+    const std::vector<Constituent>& all = model.medium.constituents;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Constituent& other) {
+        return other.unit == "ppm" && other.name == name;
+    });
+    return found == all.end() ? -1 : static_cast<int>(found - all.begin());
+}
+
+int Builder::species_constituent(std::size_t species) {
+    const std::string& name = water_.species[species].name;
+    if (const int known = known_particles(name); known >= 0) return known;
+    Constituent particles{name, "ppm", {}};
+    add_species(species, 1, particles.per_unit);
+    model.medium.constituents.push_back(std::move(particles));
+    return model.medium.constituent_count() - 1;
 }
 
 int Builder::particle_constituent(const ParticleKind& kind) {
-    std::vector<Constituent>& all = model.medium.constituents;
-    const auto found = std::find_if(all.begin(), all.end(), [&](const Constituent& other) {
-        return other.unit == "ppm" && other.name == kind.name;
-    });
-    if (found != all.end()) return static_cast<int>(found - all.begin());
+    if (const int known = known_particles(kind.name); known >= 0) return known;
     Constituent particles{kind.name, "ppm", {}};
     Spectrum& b = scattering(particles.per_unit, phase_index(kind));
     for (std::size_t i = 0; i < band_count_; ++i) {
         b[i] = kind.scattering(water_.bands_nm[i]);
         particles.per_unit.absorption[i] = mineral_absorption(kind, i);
     }
-    all.push_back(std::move(particles));
-    return static_cast<int>(all.size()) - 1;
+    model.medium.constituents.push_back(std::move(particles));
+    return model.medium.constituent_count() - 1;
 }
 
 std::string Builder::unique_name(const std::string& wanted) const {
     const auto taken = [&](const std::string& name) {
         return name == k_small_particles.name || name == k_large_particles.name ||
+               std::ranges::count(names_of(water_.species), name) > 0 ||
                std::any_of(model.medium.constituents.begin(), model.medium.constituents.end(),
                            [&](const Constituent& other) { return other.name == name; });
     };
@@ -257,6 +299,9 @@ void Builder::add_grid(const GridMappingDesc& grid, std::vector<GridLoad>& loads
         loads.push_back({particle_constituent(k_small_particles), grid.small_ppm});
     if (grid.large_ppm != 0)
         loads.push_back({particle_constituent(k_large_particles), grid.large_ppm});
+    for (const SpeciesAmount& amount : grid.amounts)
+        if (const double ppm = parts_per_million(water_.species[amount.species], amount); ppm != 0)
+            loads.push_back({species_constituent(amount.species), ppm});
 }
 
 void Builder::drop_unused_phases() {

@@ -27,10 +27,11 @@ struct WaterModel {
 /// Kopelevich particles, at the preset's concentrations unless the scene gives them. Particles
 /// absorb only with `mineral_absorption`; the absorption of a preset's own particles is already
 /// included in its measured absorption and is not added again.
-/// Grids: particles add to the constituents "small" and "large" [ppm]; each distinct set of optical
-/// coefficients is a constituent [per unit of grid value] named after its first grid. Coefficients
-/// without a phase function scatter like the uniform water in each band, molecules included.
-/// Unused phase functions and constituents are omitted.
+/// Species (Lorenz-Mie) have a phase function per band, and come with the absorption of their own
+/// index. Grids: particles add to the constituents "small", "large" and those named as species
+/// [ppm]; each distinct set of optical coefficients is a constituent [per unit of grid value] named
+/// after its first grid. Coefficients without a phase function scatter like the uniform water in
+/// each band, molecules included. Unused phase functions and constituents are omitted.
 ///
 /// Throws InputError starting with the location in the scene file: unknown preset, a band outside
 /// pure water's table (300 to 900 nm) without explicit absorption, coefficients without a phase

@@ -1,6 +1,7 @@
 #include "media/water/water_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 
 #include "core/base/numerics.h"
 #include "media/water/phase_functions.h"
+#include "media/water/species.h"
 #include "media/water/water_model.h"
 #include "media/water/water_types.h"
 
@@ -47,26 +49,39 @@ std::string part_name(const PhaseFunction& phase) {
     return phase.description();
 }
 
+MeasuredPhase measured(const std::shared_ptr<const PhaseFunction>& phase) {
+    return {phase, backscatter_fraction(*phase), mean_cosine(*phase)};
+}
+
 /// Appends the first `count` bands of `x` to `table`.
 void append(const OpticalCoefficients& x, const Medium& medium, CoefficientTable& table) {
-    const auto count = static_cast<std::ptrdiff_t>(medium.band_count());
+    const auto count = static_cast<std::size_t>(medium.band_count());
     const std::size_t known = table.absorption.size();
     table.absorption.insert(table.absorption.end(), x.absorption.begin(),
-                            x.absorption.begin() + count);
+                            x.absorption.begin() + medium.band_count());
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
         const Spectrum& b = x.scattering[m];
         if (std::all_of(b.begin(), b.end(), [](double value) { return value == 0; })) continue;
         const std::shared_ptr<const PhaseFunction>& phase = medium.phase_functions[m];
         const std::string name = part_name(*phase);
-        auto part = std::find_if(table.parts.begin(), table.parts.end(),
-                                 [&](const ScatteringPart& other) { return other.name == name; });
-        // Within one medium phase functions differ, even if their descriptions do not.
-        if (part == table.parts.end() || part->b.size() > known) {
-            table.parts.push_back({name, phase, std::vector<double>(known, 0.0),
-                                   backscatter_fraction(*phase), mean_cosine(*phase)});
+        const bool is_by_band = dynamic_cast<const SpeciesPhase*>(phase.get()) != nullptr;
+        auto part =
+            std::find_if(table.parts.begin(), table.parts.end(), [&](const ScatteringPart& other) {
+                // Within one medium the phase functions of two parts differ, even if their
+                // descriptions do not.
+                return other.name == name && (is_by_band || other.b.size() <= known);
+            });
+        if (part == table.parts.end()) {
+            table.parts.push_back({name, {}, std::vector<double>(known, 0.0)});
             part = table.parts.end() - 1;
+            if (!is_by_band) part->phases = {measured(phase)};
         }
-        part->b.insert(part->b.end(), b.begin(), b.begin() + count);
+        part->b.resize(known + count);
+        if (is_by_band) part->phases.resize(known + count);
+        for (std::size_t i = 0; i < count; ++i) {
+            part->b[known + i] += b[i];
+            if (is_by_band && b[i] > 0) part->phases[known + i] = measured(phase);
+        }
     }
 }
 
@@ -99,7 +114,7 @@ double CoefficientTable::attenuation(std::size_t i) const {
 
 double CoefficientTable::backscattering(std::size_t i) const {
     double b = 0;
-    for (const ScatteringPart& part : parts) b += part.b[i] * part.backscatter_fraction;
+    for (const ScatteringPart& part : parts) b += part.b[i] * part.at(i).backscatter_fraction;
     return b;
 }
 
@@ -109,7 +124,7 @@ double CoefficientTable::backscatter_fraction(std::size_t i) const {
 
 double CoefficientTable::mean_cosine(std::size_t i) const {
     double sum = 0;
-    for (const ScatteringPart& part : parts) sum += part.b[i] * part.mean_cosine;
+    for (const ScatteringPart& part : parts) sum += part.b[i] * part.at(i).mean_cosine;
     return ratio(sum, scattering(i));
 }
 
@@ -118,7 +133,8 @@ double CoefficientTable::albedo(std::size_t i) const {
 }
 
 double CoefficientTable::vsf(std::size_t i, std::size_t part, double psi) const {
-    return parts[part].b[i] * parts[part].phase->evaluate(psi);
+    const double b = parts[part].b[i];
+    return b > 0 ? b * parts[part].at(i).phase->evaluate(psi) : 0;
 }
 
 double CoefficientTable::vsf(std::size_t i, double psi) const {
@@ -203,6 +219,10 @@ std::string scattering_source(const WaterDesc& water, double small_ppm, double l
     std::string text =
         fmt::format("scattering: water's molecules, Einstein-Smoluchowski (Morel 1974), {:g} PSU",
                     water.salinity);
+    for (const SpeciesAmount& amount : water.amounts)
+        text += fmt::format("; {:.4g} ppm {}, Lorenz-Mie",
+                            parts_per_million(water.species[amount.species], amount),
+                            water.species[amount.species].name);
     if (small_ppm + large_ppm == 0) return text;
     text += fmt::format(
         "; Kopelevich's particles (1983; Mobley 1994), {:.4g} ppm small, "
@@ -214,12 +234,23 @@ std::string scattering_source(const WaterDesc& water, double small_ppm, double l
     return text;
 }
 
-std::string grid_source(const VolumeDesc& volume, const GridMappingDesc& grid) {
+std::string grid_source(const WaterDesc& water, const VolumeDesc& volume,
+                        const GridMappingDesc& grid) {
     const std::string place =
         fmt::format("grid '{}' of {}: 1 unit is ", grid.grid, volume.file.filename().string());
-    if (!grid.optics)
-        return place +
-               fmt::format("{:g} ppm small, {:g} ppm large", grid.small_ppm, grid.large_ppm);
+    if (!grid.optics) {
+        std::vector<std::string> parts;
+        if (grid.amounts.empty() || grid.small_ppm > 0)
+            parts.push_back(fmt::format("{:g} ppm small", grid.small_ppm));
+        if (grid.amounts.empty() || grid.large_ppm > 0)
+            parts.push_back(fmt::format("{:g} ppm large", grid.large_ppm));
+        for (const SpeciesAmount& amount : grid.amounts) {
+            const SpeciesDesc& species = water.species[amount.species];
+            parts.push_back(
+                fmt::format("{:.4g} ppm {}", parts_per_million(species, amount), species.name));
+        }
+        return place + fmt::format("{}", fmt::join(parts, ", "));
+    }
     return place + (grid.optics->phase ? "coefficients as given, with a phase function"
                                        : "coefficients as given, with the water's phase function");
 }
@@ -232,7 +263,8 @@ std::vector<std::string> water_sources(const WaterDesc& water,
     std::vector<std::string> lines{absorption_source(water, small_ppm, large_ppm),
                                    scattering_source(water, small_ppm, large_ppm)};
     for (const VolumeDesc& volume : volumes)
-        for (const GridMappingDesc& grid : volume.grids) lines.push_back(grid_source(volume, grid));
+        for (const GridMappingDesc& grid : volume.grids)
+            lines.push_back(grid_source(water, volume, grid));
     return lines;
 }
 

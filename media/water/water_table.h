@@ -11,13 +11,22 @@
 
 namespace uw {
 
-/// One additive component of scattering: b at each wavelength, with one phase function.
-struct ScatteringPart {
-    std::string name;  // "water", "small", "large"; else the phase function's description
+/// A phase function with its moments.
+struct MeasuredPhase {
     std::shared_ptr<const PhaseFunction> phase;
-    std::vector<double> b;            // per wavelength, in the unit of its CoefficientTable
-    double backscatter_fraction = 0;  // of this part alone: 2 pi int p sin(psi), 90 to 180 degrees
+    double backscatter_fraction = 0;  // 2 pi int p sin(psi), 90 to 180 degrees
     double mean_cosine = 0;           // 2 pi int p cos(psi) sin(psi)
+};
+
+/// One additive component of scattering: b at each wavelength. Particles of a species have a phase
+/// function for each wavelength, the others one for all.
+struct ScatteringPart {
+    std::string
+        name;  // "water", "small", "large", a species; else the phase function's description
+    std::vector<MeasuredPhase> phases;  // one, or one per wavelength
+    std::vector<double> b;              // per wavelength, in the unit of its CoefficientTable
+
+    const MeasuredPhase& at(std::size_t i) const { return phases[phases.size() > 1 ? i : 0]; }
 };
 
 /// Spectral coefficients of the uniform water [1/m], or of a constituent that grids add [1/m per

@@ -196,7 +196,7 @@ TEST_F(SceneObjectErrors, whatIsOddButPossibleIsAWarning) {
     ASSERT_EQ(scene.warnings.size(), 3U);
     EXPECT_NE(scene.warnings[0].find("camera.port.distance: 20 m is very large"),
               std::string::npos);
-    EXPECT_NE(scene.warnings[1].find("volumes[0].grids.d: small and large are 0"),
+    EXPECT_NE(scene.warnings[1].find("volumes[0].grids.d: all concentrations are 0"),
               std::string::npos);
     EXPECT_NE(scene.warnings[2].find("lamps[0].intensity: is 0 in every band"), std::string::npos);
 }

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/scene/config_value.h"
+#include "core/scene/scene_context.h"
+
+namespace uw {
+
+/// How the diameters of a species' particles are distributed. f(D) dD is the number of particles
+/// with diameters in dD, up to a factor.
+struct SizesDesc {
+    enum class Type : std::uint8_t {
+        junge,      // f = D^-exponent
+        lognormal,  // ln D normal about ln median with deviation ln sigma
+        gamma,      // f = D^exponent e^(-exponent D / mode)
+        table       // volume per class of a particle sizer, in a file
+    };
+    Type type = Type::junge;
+    double least = 0, greatest = 0;  ///< diameters [m]; of a table: 0, its own
+    double exponent = 4;
+    double median = 0, sigma = 2;  ///< by number [m], > 1
+    double mode = 0;               ///< the most frequent diameter [m]
+    std::filesystem::path file;    ///< CSV with columns diameter_um,volume
+
+    friend bool operator==(const SizesDesc&, const SizesDesc&) = default;
+};
+
+/// A refractive index relative to the water's, n + i k.
+struct ParticleIndexDesc {
+    double n = 1, k = 0;
+    std::filesystem::path file;  ///< instead: CSV with columns wavelength_nm,n,k
+
+    friend bool operator==(const ParticleIndexDesc&, const ParticleIndexDesc&) = default;
+};
+
+/// Particles whose optical properties follow from their sizes and their refractive index
+/// (Lorenz-Mie, for spheres of the same volume).
+struct SpeciesDesc {
+    std::string name;
+    SizesDesc sizes;
+    ParticleIndexDesc index;
+    std::optional<double> density;  ///< [g/cm^3]
+    struct Coat {
+        double thickness = 0;  ///< [m], part of the diameter
+        ParticleIndexDesc index;
+
+        friend bool operator==(const Coat&, const Coat&) = default;
+    };
+    std::optional<Coat> coat;
+    SourceLocation where;
+
+    friend bool operator==(const SpeciesDesc&, const SpeciesDesc&) = default;
+};
+
+/// How much of a species there is, or comes with a unit of a grid's value.
+struct SpeciesAmount {
+    enum class Unit : std::uint8_t {
+        ppm,    // by volume
+        grams,  // [g/m^3]
+        number  // [1/m^3]
+    };
+    std::size_t species = 0;  ///< index into WaterDesc::species
+    double amount = 0;        ///< >= 0
+    Unit unit = Unit::ppm;
+
+    friend bool operator==(const SpeciesAmount&, const SpeciesAmount&) = default;
+};
+
+/// A diameter or thickness [m] from `least` to `greatest`: a number of metres, or one with a unit,
+/// "0.2 mm".
+double read_diameter(const ConfigValue& value, double least, double greatest);
+
+/// Its ends, "[0.2 mm, 5 mm]", the first less than the second.
+void read_diameters(const ConfigValue& value, double least, double greatest, double& first,
+                    double& last);
+
+/// `species` of the water: a map of names. Throws InputError also for names that mean something
+/// else where concentrations are given.
+std::vector<SpeciesDesc> read_species(const ConfigValue& value, const SceneContext& context);
+
+/// Its names.
+std::vector<std::string_view> names_of(const std::vector<SpeciesDesc>& species);
+
+/// Takes what `map` gives of `species`, as "NAME: 2", "NAME: 3 g/m3" or "NAME: 1e6 /m3".
+std::vector<SpeciesAmount> read_amounts(ConfigMap& map, const std::vector<SpeciesDesc>& species);
+
+}  // namespace uw

@@ -1,0 +1,171 @@
+// ctest labels: unit analytic
+#include "media/water/species.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/scene/scene_desc.h"
+#include "media/water/mie.h"
+#include "media/water/water_model.h"
+#include "media/water/water_table.h"
+#include "media/water/water_types.h"
+#include "tests/support/message_of.h"
+#include "tests/support/phase_function_laws.h"
+
+namespace uw {
+namespace {
+
+using namespace uw::test;
+
+SpeciesDesc junge(double n, double least_um, double greatest_um, double exponent = 4) {
+    SpeciesDesc species;
+    species.name = "test";
+    species.where = "scene.yaml:1:1: water.species.test";
+    species.sizes.exponent = exponent;
+    species.sizes.least = least_um * 1e-6;
+    species.sizes.greatest = greatest_um * 1e-6;
+    species.index.n = n;
+    return species;
+}
+
+// The integral over sizes by Simpson's rule in the diameter itself, with the formula for b* written
+// out: 1 ppm is 1e-6 of the volume.
+TEST(Species, ScatteringIsTheIntegralOverSizes) {
+    const SpeciesDesc species = junge(1.15, 0.4, 4);
+    const double wavelength = 550, n_water = 1.34;
+    double volume = 0, area = 0;
+    constexpr int k_steps = 20000;
+    for (int i = 0; i <= k_steps; ++i) {
+        const double d = 0.4e-6 + (4e-6 - 0.4e-6) * i / k_steps;
+        const double weight = (i == 0 || i == k_steps ? 1 : i % 2 == 1 ? 4 : 2) * std::pow(d, -4);
+        const MieScattering mie(
+            {std::numbers::pi * d * n_water / (wavelength * 1e-9), {1.15, 0}, {}});
+        volume += weight * std::numbers::pi / 6 * d * d * d;
+        area += weight * std::numbers::pi / 4 * d * d * mie.scattering_efficiency();
+    }
+    const SpeciesOptics optics = species_optics(species, wavelength, n_water);
+    // The tolerance that species_optics states.
+    EXPECT_NEAR(optics.scattering / (1e-6 * area / volume), 1, 1e-4);
+    EXPECT_NEAR(optics.absorption / optics.scattering, 0, 1e-9);
+}
+
+TEST(Species, TablesHoldTheForwardPeak) {
+    // Silt, bubbles, and a coat: the table's integral is b.
+    SpeciesDesc bubbles = junge(0.746, 20, 90);
+    SpeciesDesc coated = bubbles;
+    coated.coat = SpeciesDesc::Coat{0.1e-6, {1.2, 0, {}}};
+    for (const SpeciesDesc& species : {junge(1.152, 4, 63), bubbles, coated}) {
+        const SpeciesOptics optics = species_optics(species, 540, 1.34);
+        const auto* phase = dynamic_cast<const SpeciesPhase*>(optics.phase.get());
+        ASSERT_NE(phase, nullptr);
+        // The table is that of amplitudes at angles, b comes from the coefficients of the series;
+        // docs/water.md promises 1e-4 to its two digits.
+        EXPECT_NEAR(1e-6 * phase->table_integral() / optics.scattering, 1, 1.5e-4);
+        expect_phase_function_laws(*optics.phase);
+    }
+}
+
+// Far from all ends, b* of Junge's distribution of exponent 4 scales: sizes and wavelength doubled
+// give half of it, and the same phase function.
+TEST(Species, DependsOnSizesByTheWavelength) {
+    const SpeciesOptics one = species_optics(junge(1.1, 0.5, 20), 400, 1.34);
+    const SpeciesOptics two = species_optics(junge(1.1, 1, 40), 800, 1.34);
+    EXPECT_NEAR(two.scattering / one.scattering, 0.5, 1e-9);
+    for (const double psi : {1e-4, 0.01, 0.1, 1.0, 3.0})
+        EXPECT_NEAR(two.phase->evaluate(psi) / one.phase->evaluate(psi), 1, 1e-9) << psi;
+}
+
+// Kopelevich's small particles are minerals of index 1.15 and at most 1 um, his large ones organic,
+// of 1.03 and 1 to 25 um (Mobley 1994, section 3.8). He does not print the sizes' distribution, but
+// his b* must lie between those of the ends of each class.
+TEST(Species, OfHisIndicesAndSizesEncloseKopelevichsParticles) {
+    const auto b = [](double n, double diameter_um) {
+        return species_optics(junge(n, 0.97 * diameter_um, 1.03 * diameter_um), 550, 1.34)
+            .scattering;
+    };
+    EXPECT_LT(b(1.15, 0.2), kopelevich_small_scattering(550));
+    EXPECT_GT(b(1.15, 1), kopelevich_small_scattering(550));
+    EXPECT_GT(b(1.03, 5), kopelevich_large_scattering(550));
+    EXPECT_LT(b(1.03, 25), kopelevich_large_scattering(550));
+}
+
+TEST(Species, AmountsAreConcentrations) {
+    SpeciesDesc species = junge(1.15, 10, 10.2);
+    species.density = 2.5;
+    const auto ppm = [&](double amount, SpeciesAmount::Unit unit) {
+        return parts_per_million(species, {0, amount, unit});
+    };
+    EXPECT_DOUBLE_EQ(ppm(3, SpeciesAmount::Unit::ppm), 3);
+    EXPECT_DOUBLE_EQ(ppm(5, SpeciesAmount::Unit::grams), 2);
+    // A million spheres of about 10.1 um in diameter.
+    EXPECT_NEAR(ppm(1e6, SpeciesAmount::Unit::number),
+                1e12 * std::numbers::pi / 6 * std::pow(10.1e-6, 3), 1e-3 * 5.4e-4);
+}
+
+// Quan and Fry 1995, as tabulated from its coefficients for 35 PSU at 10 deg C.
+TEST(WaterRefractiveIndex, IsQuanAndFrys) {
+    EXPECT_NEAR(water_refractive_index(400, 10, 35), 1.35085, 5.1e-6);
+    EXPECT_NEAR(water_refractive_index(550, 10, 35), 1.34167, 5.1e-6);
+    EXPECT_NEAR(water_refractive_index(700, 10, 35), 1.33735, 5.1e-6);
+    EXPECT_NEAR(water_refractive_index(550, 20, 0), 1.33434, 5.1e-6);
+}
+
+WaterDesc water(const std::string& text) {
+    return read_water_overrides({"water=" + text});
+}
+
+TEST(Species, AddToTheWaterInEachBand) {
+    const WaterDesc desc = water(
+        "{species: {silt: {library: clay}, haze: {size: {type: lognormal, median: 0.6 um, sigma: "
+        "1.5}, index: {n: 1.1, k: 0.01}}}, particles: {silt: 5.3 g/m3, haze: 0.2}}");
+    const WaterModel model = build_water_model(desc, {});
+    const WaterModel plain = build_water_model(water("{}"), {});
+    // Molecules, and two species in three bands.
+    EXPECT_EQ(model.medium.phase_count(), 7);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double wavelength = desc.bands_nm[i];
+        const double n = water_refractive_index(wavelength, 20, 35);
+        const SpeciesOptics silt = species_optics(desc.species[0], wavelength, n);
+        const SpeciesOptics haze = species_optics(desc.species[1], wavelength, n);
+        EXPECT_NEAR(
+            model.medium.uniform.total_scattering()[i] - plain.medium.uniform.total_scattering()[i],
+            2 * silt.scattering + 0.2 * haze.scattering, 1e-12);
+        EXPECT_NEAR(model.medium.uniform.absorption[i] - plain.medium.uniform.absorption[i],
+                    0.2 * haze.absorption, 1e-12);
+        EXPECT_GT(haze.absorption, 0);
+    }
+    const WaterTable table = tabulate_water(desc, {});
+    ASSERT_EQ(table.uniform.parts.size(), 3U);
+    EXPECT_EQ(table.uniform.parts[1].name, "silt");
+    EXPECT_NEAR(table.uniform.scattering(2), model.medium.uniform.total_scattering()[2], 1e-12);
+    EXPECT_NEAR(
+        table.uniform.vsf(0, 0.3),
+        model.medium.uniform.scattering[0][0] * model.medium.phase_functions[0]->evaluate(0.3) +
+            table.uniform.vsf(0, 1, 0.3) + table.uniform.vsf(0, 2, 0.3),
+        1e-12);
+}
+
+TEST(Species, ErrorsSayWhatIsWrong) {
+    const auto error = [](const std::string& text) {
+        return message_of<InputError>([&] { (void)water(text); });
+    };
+    EXPECT_NE(error("{species: {mud: {library: clai}}}").find("did you mean 'clay'"),
+              std::string::npos);
+    EXPECT_NE(error("{species: {mud: {index: 1.1}}}").find("size"), std::string::npos);
+    EXPECT_NE(error("{species: {small: {library: clay}}}").find("a meaning of its own"),
+              std::string::npos);
+    EXPECT_NE(error("{species: {a: {size: {type: junge, diameter: [1 um, 2 um]}, index: 1.1}}, "
+                    "particles: {a: 3 g/m3}}")
+                  .find("no density"),
+              std::string::npos);
+    EXPECT_NE(error("{species: {a: {library: clay}}, particles: {a: 3 kg}}")
+                  .find("expected a concentration"),
+              std::string::npos);
+    EXPECT_NE(error("{species: {a: {library: clay}}, particles: {b: 3}}").find("unknown key"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace uw
