@@ -1,8 +1,11 @@
 #include "core/light/lamps_in_view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "core/light/ray_panels.h"
 
 namespace uw {
 
@@ -16,20 +19,14 @@ constexpr double k_edge_on = 1e-3;
 // Farther from a point than so many radii of its patch, its light on a ray is its own.
 constexpr double k_patches_aside = 3;
 
-// The mean over the points of the integral of 1/R^2 along a stretch of a ray [1/m].
-double integrated_light(const LampPoints& points, const Ray& ray, const Interval& stretch) {
-    double sum = 0;
-    for (const Point3& position : points.positions) {
-        const Vector3 to_point = position - ray.origin;
-        const double foot = glm::dot(to_point, ray.direction);
-        const Vector3 across = to_point - foot * ray.direction;
-        const double distance = std::sqrt(glm::dot(across, across) +
-                                          distance_aside(position, points.patch_radius, ray));
-        sum += (std::atan((stretch.end - foot) / distance) -
-                std::atan((stretch.begin - foot) / distance)) /
-               distance;
-    }
-    return sum / static_cast<double>(points.positions.size());
+// From psi = 1e-6, below which no integral has begun, to pi - 1e-4.
+constexpr double k_least_octave = -21, k_most_octave = 14;
+constexpr int k_knots_per_octave = 32;
+constexpr auto k_knots =
+    static_cast<std::size_t>(k_most_octave - k_least_octave) * k_knots_per_octave + 1;
+
+double half_tangent_at(double knot) {
+    return std::exp2(k_least_octave + knot / k_knots_per_octave);
 }
 
 }  // namespace
@@ -40,29 +37,101 @@ double LampSurface::area() const {
     return extent.width * extent.height;
 }
 
-double LampSurface::evenness(const Ray& ray, const Interval& stretch) const {
+bool LampSurface::is_passed_by(const Ray& ray) const {
     const Vector3 across = glm::cross(lamp.position() - ray.origin, ray.direction);
     const double half = extent.shape == LampExtentDesc::Shape::disk
                             ? extent.radius
                             : 0.5 * std::hypot(extent.width, extent.height);
     const double near = half + k_patches_aside * emitters.patch_radius;
-    if (glm::dot(across, across) > near * near) return 1;
-    const double of_emitters = integrated_light(emitters, ray, stretch);
-    return of_emitters > 0 ? integrated_light(many, ray, stretch) / of_emitters : 1;
+    return glm::dot(across, across) <= near * near;
 }
 
-double evenness(const LitScene& scene, std::size_t lamp, const Ray& ray, const Interval& stretch) {
-    if (scene.lamp_surfaces)
-        for (const LampSurface& surface : *scene.lamp_surfaces)
-            if (surface.lamp.index() == lamp) return surface.evenness(ray, stretch);
-    return 1;
+PhaseIntegrals::PhaseIntegrals(const Medium& medium)
+    : phases_(medium.phase_functions.size()), integrals_(k_knots * phases_) {
+    for (std::size_t m = 0; m < phases_; ++m) {
+        const PhaseFunction& phase = *medium.phase_functions[m];
+        const auto angle = [](double knot) { return 2 * std::atan(half_tangent_at(knot)); };
+        double sum = 0;
+        for (std::size_t knot = 1; knot < k_knots; ++knot) {
+            const auto at = static_cast<double>(knot);
+            const double begin = angle(at - 1), end = angle(at);
+            sum += (end - begin) / 6 *
+                   (phase.evaluate(begin) + 4 * phase.evaluate(0.5 * (begin + end)) +
+                    phase.evaluate(end));
+            integrals_[knot * phases_ + m] = sum;
+        }
+    }
 }
 
-void find_evenness(const LitScene& scene, std::size_t lamp, const Ray& ray, double begin,
-                   std::span<const double> distances, std::vector<double>& result) {
+void PhaseIntegrals::add(double half_tangent, double factor, std::span<double> sums) const {
+    const double octave = std::log2(std::max(half_tangent, 0x1p-21));
+    const double place = std::min((octave - k_least_octave) * k_knots_per_octave,
+                                  static_cast<double>(k_knots) - 1.001);
+    const auto knot = static_cast<std::size_t>(place);
+    const double t = place - static_cast<double>(knot);
+    const double* const begin = &integrals_[knot * phases_];
+    for (std::size_t m = 0; m < phases_; ++m)
+        sums[m] += factor * (begin[m] + t * (begin[m + phases_] - begin[m]));
+}
+
+LampEvenness::LampEvenness(const LitScene& scene) : scene_(scene) {
+    if (scene.lamp_surfaces) integrals_.emplace(*scene.medium);
+}
+
+void LampEvenness::integrate(const LampPoints& points, const Ray& ray, const Interval& stretch,
+                             std::span<double> scattered) const {
+    std::ranges::fill(scattered, 0.0);
+    for (const Point3& position : points.positions) {
+        LampPassage passage(ray, position);
+        passage.distance = std::sqrt(passage.distance * passage.distance +
+                                     distance_aside(position, points.patch_radius, ray));
+        const double factor = 1 / (passage.distance * static_cast<double>(points.positions.size()));
+        const auto add = [&](double s, double sign) {
+            integrals_->add(passage.half_tangent(s, passage.radius(s)), sign * factor, scattered);
+        };
+        add(stretch.end, 1);
+        add(stretch.begin, -1);
+    }
+}
+
+Spectrum LampEvenness::one() const {
+    return per_band(scene_.medium->wavelengths_nm.size(), [](std::size_t) { return 1.0; });
+}
+
+Spectrum LampEvenness::of(std::size_t lamp, const Ray& ray, const Interval& stretch) const {
+    if (!integrals_) return one();
+    const auto surface = std::ranges::find_if(
+        *scene_.lamp_surfaces, [&](const LampSurface& s) { return s.lamp.index() == lamp; });
+    if (surface == scene_.lamp_surfaces->end() || !surface->is_passed_by(ray)) return one();
+    thread_local std::vector<double> of_emitters, of_many, concentration;
+    of_emitters.resize(integrals_->phase_count());
+    of_many.resize(integrals_->phase_count());
+    integrate(surface->emitters, ray, stretch, of_emitters);
+    integrate(surface->many, ray, stretch, of_many);
+    const Medium& medium = *scene_.medium;
+    concentration.assign(medium.constituents.size(), 0.0);
+    const LampPassage passage(ray, surface->lamp.position());
+    if (!concentration.empty())
+        scene_.field->sample(ray.at(std::clamp(passage.foot, stretch.begin, stretch.end)),
+                             concentration);
+    return per_band(medium.wavelengths_nm.size(), [&](std::size_t band) {
+        double truth = 0, found = 0;
+        for (std::size_t m = 0; m < of_many.size(); ++m) {
+            double b = medium.uniform.scattering[m][band];
+            for (std::size_t k = 0; k < concentration.size(); ++k)
+                b += concentration[k] * medium.constituents[k].per_unit.scattering[m][band];
+            truth += b * of_many[m];
+            found += b * of_emitters[m];
+        }
+        return truth > 0 && found > 0 ? truth / found : 1.0;
+    });
+}
+
+void LampEvenness::find(std::size_t lamp, const Ray& ray, double begin,
+                        std::span<const double> distances, std::vector<Spectrum>& result) const {
     result.clear();
     for (const double distance : distances) {
-        result.push_back(evenness(scene, lamp, ray, {begin, distance}));
+        result.push_back(of(lamp, ray, {begin, distance}));
         begin = distance;
     }
 }

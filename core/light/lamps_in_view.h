@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,12 +28,10 @@ struct LampSurface {
     LampPoints emitters;  // as in LitScene::emitters
     LampPoints many;      // so many that they are as good as the surface
 
-    /// The light that the surface scatters on this stretch of a ray in proportion to that of its
-    /// emitters, if all directions of scattering count alike: an integral of 1/R^2. 1 but for rays
-    /// that pass the surface closely.
-    double evenness(const Ray& ray, const Interval& stretch) const;
-
     double area() const;  // [m^2]
+    /// Whether the light of the emitters that is scattered on `ray` may differ from that of the
+    /// surface: only where the ray passes it closely.
+    bool is_passed_by(const Ray& ray) const;
     /// Where `ray` crosses the surface [m]; infinite if it does not.
     double crossing(const Ray& ray) const;
     /// Its radiance towards the origin of a ray that crosses it, for 1 W/sr on the axis [1/m^2]:
@@ -40,12 +39,50 @@ struct LampSurface {
     double radiance_towards(const Ray& ray) const;
 };
 
-/// LampSurface::evenness of the scene's lamp with this index; 1 for a lamp without an extent.
-double evenness(const LitScene& scene, std::size_t lamp, const Ray& ray, const Interval& stretch);
+/// The integral of each phase function p of a medium over the scattering angle, int_0^psi p dpsi:
+/// as ds / R^2 = dpsi / D on a ray at the distance D from a point, it is what the point scatters
+/// there, if nothing else changes along the ray (physics section 5). Tabulated over tan(psi / 2).
+class PhaseIntegrals {
+  public:
+    explicit PhaseIntegrals(const Medium& medium);
 
-/// Finds the same for each stretch of a ray between `begin` and the ascending `distances`.
-void find_evenness(const LitScene& scene, std::size_t lamp, const Ray& ray, double begin,
-                   std::span<const double> distances, std::vector<double>& result);
+    std::size_t phase_count() const { return phases_; }
+    /// Adds `factor` times the integrals up to psi to `sums`, one per phase function;
+    /// `half_tangent` is tan(psi / 2) >= 0.
+    void add(double half_tangent, double factor, std::span<double> sums) const;
+
+  private:
+    std::size_t phases_;
+    std::vector<double> integrals_;  // [knot * phases + m]
+};
+
+/// By what the light that the emitters of a lamp with an extent scatter on a ray is corrected, so
+/// that it is that of the lamp's surface, without a pattern of points. Thread safe.
+class LampEvenness {
+  public:
+    /// What `scene` refers to must outlive this object.
+    explicit LampEvenness(const LitScene& scene);
+
+    /// The light that the surface of the lamp with this index scatters on a stretch of a ray, in
+    /// proportion to that of its emitters, per band: 1 for a lamp without an extent, and but for
+    /// rays that pass the surface closely. Shadows, profiles and attenuation are left out; the
+    /// water is that where the ray is nearest to the lamp.
+    Spectrum of(std::size_t lamp, const Ray& ray, const Interval& stretch) const;
+
+    /// Finds the same for each stretch of a ray between `begin` and the ascending `distances`.
+    void find(std::size_t lamp, const Ray& ray, double begin, std::span<const double> distances,
+              std::vector<Spectrum>& result) const;
+
+  private:
+    // The mean over the points of the integral of each phase function over R^2 along a stretch
+    // [1/(m sr)].
+    void integrate(const LampPoints& points, const Ray& ray, const Interval& stretch,
+                   std::span<double> scattered) const;
+    Spectrum one() const;
+
+    LitScene scene_;
+    std::optional<PhaseIntegrals> integrals_;  // none: no lamp of the scene has an extent
+};
 
 /// A lamp whose luminous surface a ray crosses.
 struct SeenLamp {

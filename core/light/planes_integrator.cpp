@@ -8,7 +8,6 @@
 
 #include "core/base/error.h"
 #include "core/image/image_quantity.h"
-#include "core/light/lamps_in_view.h"
 
 namespace uw {
 
@@ -41,7 +40,7 @@ constinit const IntegratorKind PlanesIntegrator::k_kind{
 struct PlanesIntegrator::Workspace {
     std::vector<Sample> samples;
     std::vector<Spectrum> radiance;  // per sample
-    std::vector<double> evenness;    // of the current lamp, by Sample::distance
+    std::vector<Spectrum> evenness;  // of the current lamp, by Sample::distance
     // For the samples that the lamp illuminates:
     std::vector<std::size_t> lit;
     std::vector<double> path;    // lamp to sample to camera [m]
@@ -54,6 +53,7 @@ struct PlanesIntegrator::Workspace {
 PlanesIntegrator::PlanesIntegrator(const LitScene& scene, const Affine& world_from_camera,
                                    const Slabs& slabs)
     : scene_(scene),
+      evenness_(scene),
       camera_from_world_(world_from_camera.inverse()),
       slabs_(slabs),
       attenuation_(*scene.medium) {
@@ -76,7 +76,7 @@ void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
         light_samples(ray, emitters[j], w);
         const std::size_t lamp = emitters[j].index();
         if (j == 0 || lamp != emitters[j - 1].index())
-            find_evenness(scene_, lamp, ray, begin, distances, w.evenness);
+            evenness_.find(lamp, ray, begin, distances, w.evenness);
         Spectrum whole;
         std::size_t next = 0;
         const auto finish =

@@ -5,6 +5,7 @@
 #include "core/base/vector_math.h"
 #include "core/light/integrator.h"
 #include "core/light/integrator_kind.h"
+#include "core/light/lamps_in_view.h"
 #include "core/light/medium.h"
 
 namespace uw {
@@ -51,6 +52,7 @@ class PlanesIntegrator final : public Integrator {
     void light_samples(const Ray& ray, const Lamp& lamp, Workspace& w) const;
 
     LitScene scene_;
+    LampEvenness evenness_;
     Affine camera_from_world_;
     Slabs slabs_;
     AttenuationTable attenuation_;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/light/lamps_in_view.h"
 #include "core/light/ray_panels.h"
 
 namespace uw {
@@ -31,7 +30,7 @@ LightTransport make_reference(const IntegratorInputs& inputs) {
 constinit const IntegratorKind ReferenceIntegrator::k_kind{.make = make_reference};
 
 ReferenceIntegrator::ReferenceIntegrator(const LitScene& scene, double step)
-    : scene_(scene), attenuation_(*scene.medium), step_(step) {}
+    : scene_(scene), evenness_(scene), attenuation_(*scene.medium), step_(step) {}
 
 void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
                                      InScatter& result) const {
@@ -63,8 +62,8 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
         double depth = 0;  // of the grid before s, in the band that sees farthest
         for (std::size_t i = 0; i < distances.size(); ++i) {
             const double end = std::min(distances[i], lit.end);
-            const double even = evenness(scene_, emitters[j].index(), ray,
-                                         {i == 0 ? 0 : distances[i - 1], distances[i]});
+            const Spectrum even = evenness_.of(emitters[j].index(), ray,
+                                               {i == 0 ? 0 : distances[i - 1], distances[i]});
             while (s < end && depth < k_dark) {
                 throw_if_stopped();
                 double length = step_ * scale_at(s);
@@ -75,7 +74,7 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
                     length = std::min({length, 0.25 * voxel, k_depth_of_steps * step_ / greatest});
                 length = std::min(length, end - s);
                 depth += length * least;
-                sum += even * length * in_scatter_per_metre(ray, s + 0.5 * length, j);
+                sum += length * even * in_scatter_per_metre(ray, s + 0.5 * length, j);
                 s = end - s > length ? s + length : end;
             }
             result.at(i, emitters[j].index()) += sum;
@@ -257,7 +256,7 @@ class QuadratureIntegrator::RayIntegral {
 };
 
 QuadratureIntegrator::QuadratureIntegrator(const LitScene& scene, double tolerance)
-    : scene_(scene), attenuation_(*scene.medium), tolerance_(tolerance) {
+    : scene_(scene), evenness_(scene), attenuation_(*scene.medium), tolerance_(tolerance) {
     check_uniform(scene);
 }
 
@@ -271,7 +270,7 @@ void QuadratureIntegrator::in_scatter(const Ray& ray, std::span<const double> di
         Spectrum sum;
         double begin = 0;
         for (std::size_t i = 0; i < distances.size(); ++i) {
-            sum += evenness(scene_, emitters[j].index(), ray, {begin, distances[i]}) *
+            sum += evenness_.of(emitters[j].index(), ray, {begin, distances[i]}) *
                    integral(begin, distances[i]);
             result.at(i, emitters[j].index()) += sum;
             begin = distances[i];

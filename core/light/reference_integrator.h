@@ -4,6 +4,7 @@
 
 #include "core/light/integrator.h"
 #include "core/light/integrator_kind.h"
+#include "core/light/lamps_in_view.h"
 #include "core/light/medium.h"
 #include "core/light/surface_lighting.h"
 
@@ -33,6 +34,7 @@ class ReferenceIntegrator final : public Integrator {
     Spectrum in_scatter_per_metre(const Ray& ray, double s, std::size_t lamp) const;
 
     LitScene scene_;
+    LampEvenness evenness_;
     AttenuationTable attenuation_;
     double step_;
 };
@@ -59,6 +61,7 @@ class QuadratureIntegrator final : public Integrator {
     class RayIntegral;
 
     LitScene scene_;
+    LampEvenness evenness_;
     AttenuationTable attenuation_;
     double tolerance_;
 };

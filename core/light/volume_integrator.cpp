@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
-#include "core/light/lamps_in_view.h"
 
 namespace uw {
 
@@ -234,7 +233,7 @@ struct VolumeIntegrator::Workspace {
     PanelBreaks breaks;
     std::vector<double> marks;
     std::vector<Spectrum> radiance;
-    std::vector<double> evenness;  // of the current lamp, up to each distance from the one before
+    std::vector<Spectrum> evenness;  // of the current lamp, up to each distance from the one before
     ScatterNodes nodes;
 };
 
@@ -242,6 +241,7 @@ VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
                                    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                                    const DepthTolerance& tolerance, const Fineness& fineness)
     : scene_(scene),
+      evenness_(scene),
       tolerance_(tolerance),
       fineness_(fineness),
       deep_shadows_(std::move(deep_shadows)),
@@ -291,7 +291,7 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
         w.radiance.assign(distances.size(), Spectrum{});
         sum_.add(w.nodes, emitters[j].axis_intensity(), w.radiance);
         if (j == 0 || emitters[j].index() != emitters[j - 1].index())
-            find_evenness(scene_, emitters[j].index(), ray, begin, distances, w.evenness);
+            evenness_.find(emitters[j].index(), ray, begin, distances, w.evenness);
         Spectrum so_far;
         for (std::size_t i = 0; i < distances.size(); ++i) {
             so_far += w.evenness[i] * w.radiance[i];

@@ -6,6 +6,7 @@
 
 #include "core/light/integrator.h"
 #include "core/light/integrator_kind.h"
+#include "core/light/lamps_in_view.h"
 #include "core/light/medium.h"
 #include "core/light/ray_panels.h"
 
@@ -110,6 +111,7 @@ class VolumeIntegrator final : public Integrator {
                     const ConcentrationProfile& profile, ScatterNodes& nodes) const;
 
     LitScene scene_;
+    LampEvenness evenness_;
     DepthTolerance tolerance_;
     Fineness fineness_;
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;

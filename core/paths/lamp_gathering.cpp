@@ -7,7 +7,6 @@
 
 #include "core/geometry/surface_reflection.h"
 #include "core/light/integrator.h"
-#include "core/light/lamps_in_view.h"
 #include "core/light/ray_panels.h"
 #include "core/paths/scattering_tables.h"
 
@@ -312,7 +311,10 @@ struct GatheringWorkspace {
 
 LampGathering::LampGathering(const WaterOptics& optics, const ScatteringTables& tables,
                              std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
-    : optics_(optics), tables_(tables), deep_shadows_(std::move(deep_shadows)) {}
+    : optics_(optics),
+      tables_(tables),
+      evenness_(optics.scene()),
+      deep_shadows_(std::move(deep_shadows)) {}
 
 void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
                                    std::span<double> column) const {
@@ -350,12 +352,12 @@ void LampGathering::gather_from_water(const WaterSegment& segment, const PathSta
     const std::size_t bands = optics_.bands();
     const std::span<double> radiance = w.radiance.first(bands);
     optics_.transmittances(s + place->radius, w.column, w.radiance);
-    const double even = evenness(optics_.scene(), lamp.index(), segment.ray, {0, segment.length});
-    const double factor = even * relative / place->density;
+    const Spectrum even = evenness_.of(lamp.index(), segment.ray, {0, segment.length});
+    const double factor = relative / place->density;
     for (std::size_t b = 0; b < bands; ++b) {
         double beta = 0;
         for (std::size_t m = 0; m < phases; ++m) beta += w.point.scattering[m][b] * w.p[m];
-        radiance[b] *= factor * beta * lamp.axis_intensity()[b] * state.throughput[b];
+        radiance[b] *= factor * even[b] * beta * lamp.axis_intensity()[b] * state.throughput[b];
     }
     PathTerm term = state.term(place->lamp, radiance);
     if (term.scatterings + term.reflections == 0) term.distance = s;  // on the camera ray

@@ -8,6 +8,7 @@
 #include "core/base/random.h"
 #include "core/base/ray.h"
 #include "core/light/integrator.h"
+#include "core/light/lamps_in_view.h"
 #include "core/paths/path_segment.h"
 #include "core/paths/scattering_tables.h"
 
@@ -39,6 +40,7 @@ class LampGathering {
   private:
     const WaterOptics& optics_;
     const ScatteringTables& tables_;
+    LampEvenness evenness_;
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;
 };
 

@@ -355,7 +355,7 @@ TEST_P(PointsOfALampInView, AreFaintInTheWater) {
         }
         std::cout << GetParam() << " points: worst " << 100 * worst << " %\n";
         EXPECT_GT(brightest, 3 * many[0]);
-        EXPECT_LT(worst, GetParam() == 32 ? 0.45 : 0.2);
+        EXPECT_LT(worst, 0.09);
     }
 }
 
