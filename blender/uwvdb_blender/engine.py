@@ -11,7 +11,7 @@ import numpy
 from mathutils import Matrix
 
 from . import bands as colours
-from . import exr, motion, passes, preferences, program, scene as scenes
+from . import exr, motion, passes, preferences, program, scene as scenes, viewport
 from .notes import Notes, Refusal
 
 # uwvdb counts frames from 0; movement is looked at a little before the frame, too.
@@ -35,9 +35,34 @@ class UwvdbEngine(bpy.types.RenderEngine):
     bl_label = "uwvdb"
     bl_use_preview = False
     bl_use_postprocess = True
-    bl_use_eevee_viewport = True
+    bl_use_eevee_viewport = True  # for the shading Material Preview
 
     _told_at = 0.0  # when progress was shown
+    _viewport = None
+    _refusal = ""
+
+    def __del__(self):
+        if self._viewport is not None:
+            self._viewport.close()
+
+    def view_update(self, context, depsgraph):
+        """A 3D view in Rendered shading begins, or the scene has changed."""
+        try:
+            if self._viewport is None:
+                self._viewport = viewport.start(self)
+            self._viewport.update(depsgraph)
+            self._refusal = ""
+        except Refusal as refusal:
+            self._refusal = str(refusal)
+
+    def view_draw(self, context, depsgraph):
+        try:
+            if self._viewport is not None and not self._refusal:
+                self._viewport.draw(self, context, depsgraph)
+        except Refusal as refusal:
+            self.update_stats("uwvdb", str(refusal))
+        if self._refusal:
+            self.update_stats("uwvdb", self._refusal)
 
     def update_render_passes(self, scene=None, renderlayer=None):
         try:

@@ -33,7 +33,7 @@ class View:
 def write(depsgraph, folder, program_path, view, size, moments, notes, is_cancelled):
     """Writes the scene. `moments` is a Motion with what moves, or None."""
     scene = depsgraph.scene
-    to_metres = Matrix.Scale(scene.unit_settings.scale_length, 4)
+    to_metres = metres_of(scene)
     bands = colours.parse(scene.uwvdb.bands)
     world_from_camera = to_metres @ view.matrix
     content = {"uwvdb": 1}
@@ -41,28 +41,45 @@ def write(depsgraph, folder, program_path, view, size, moments, notes, is_cancel
                               notes)
     _place_camera(camera, view, world_from_camera, moments)
     content["camera"] = camera
-    content["water"] = water.describe(scene, bands, to_metres)
-
     mesh_file = meshes.MeshFile(notes)
     mesh_file.add_all(depsgraph, to_metres, moments)
     if not mesh_file.is_empty:
         mesh_file.glb.write(os.path.join(folder, MESH_FILE))
-        content["geometry"] = [{"file": MESH_FILE,
-                                "material": "pbr" if scene.uwvdb.use_gloss else "diffuse"}]
-    lights = lamps.Lamps(folder, bands, notes)
-    lights.add_all(depsgraph, to_metres, moments, content["water"].get("surface"))
-    content["lamps"] = lights.entries
-    _note_world(scene.world, notes)
-    plumes = volumes.Volumes(folder, program_path, notes, is_cancelled)
-    plumes.add_all(depsgraph, to_metres)
-    if plumes.entries:
-        content["volumes"] = plumes.entries
+        content["geometry"] = [geometry_entry(scene, MESH_FILE)]
+    plumes = volumes.Volumes(
+        folder, notes, lambda source: volumes.advice(program_path, source, is_cancelled))
+    content.update(describe_water_and_lamps(depsgraph, folder, moments, plumes, notes))
     content["render"] = _render(scene, moments)
     _add_sensor(content, view.camera.data.uwvdb, bands, notes)
     with open(os.path.join(folder, SCENE_FILE), "w", encoding="utf-8") as file:
         json.dump(content, file, indent=1)
     return Written(folder, bands, mesh_file, to_metres.median_scale,
-                   [lamp["name"] for lamp in lights.entries])
+                   [lamp["name"] for lamp in content["lamps"]])
+
+
+def metres_of(scene):
+    """The matrix that makes metres of Blender's units."""
+    return Matrix.Scale(scene.unit_settings.scale_length, 4)
+
+
+def geometry_entry(scene, mesh_file):
+    return {"file": mesh_file, "material": "pbr" if scene.uwvdb.use_gloss else "diffuse"}
+
+
+def describe_water_and_lamps(depsgraph, folder, moments, plumes, notes):
+    """The sections of the water, the lamps and the volumes. Files of lamps are written into the folder,
+    and volumes linked."""
+    scene = depsgraph.scene
+    to_metres, bands = metres_of(scene), colours.parse(scene.uwvdb.bands)
+    result = {"water": water.describe(scene, bands, to_metres)}
+    lights = lamps.Lamps(folder, bands, notes)
+    lights.add_all(depsgraph, to_metres, moments, result["water"].get("surface"))
+    result["lamps"] = lights.entries
+    _note_world(scene.world, notes)
+    plumes.add_all(depsgraph, to_metres)
+    if plumes.entries:
+        result["volumes"] = plumes.entries
+    return result
 
 
 def frame_rate(scene):
