@@ -30,6 +30,32 @@ def _forget_notes(*_):
     _said.clear()
 
 
+class Export:
+    """A render that ends once the scene is written: Blender evaluates a scene for renders in these alone."""
+
+    def __init__(self, path):
+        self._path, self.commands = path, []
+
+    def path_of(self, view):
+        """The scene's file; each eye of a stereo pair has one."""
+        stem, suffix = os.path.splitext(self._path)
+        return f"{stem}_{view}{suffix}" if view else self._path
+
+
+_export = None
+
+
+def export(path):
+    """Writes the scene of the frame, and returns the commands, by view, that render it as F12 does."""
+    global _export
+    _export = Export(path)
+    try:
+        bpy.ops.render.render()
+        return _export.commands
+    finally:
+        _export = None
+
+
 class UwvdbEngine(bpy.types.RenderEngine):
     bl_idname = "UWVDB"
     bl_label = "uwvdb"
@@ -83,6 +109,8 @@ class UwvdbEngine(bpy.types.RenderEngine):
             pass
         except Refusal as refusal:
             self.report({"ERROR"}, f"uwvdb: {_own_words(str(refusal), folder)}")
+        except OSError as error:
+            self.report({"ERROR"}, f"uwvdb: {error.filename}: cannot write: {error.strerror}")
         finally:
             shutil.rmtree(folder, ignore_errors=True)
         for text in notes.texts:
@@ -102,10 +130,15 @@ class UwvdbEngine(bpy.types.RenderEngine):
                 self.active_view_set(name)
             part = os.path.join(folder, name or "image")
             os.mkdir(part)
+            file = _export.path_of(name) if _export else os.path.join(part, scenes.SCENE_FILE)
             self.update_stats("", "uwvdb: writing the scene")
             view = self._view(depsgraph)
             moments = self._moments(depsgraph)
-            written = scenes.write(depsgraph, part, path, view, size, moments, notes, self.test_break)
+            written = scenes.write(depsgraph, file, path, view, size, moments, notes, self.test_break)
+            if _export:
+                image = os.path.splitext(written.path)[0] + ".exr"
+                _export.commands.append(self._image_arguments(depsgraph, path, written, size, image))
+                continue
             for made in passes.passes_of(depsgraph.view_layer, scene, written.bands,
                                          written.lamp_names):
                 if made.name != "Combined":
@@ -154,13 +187,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
 
     def _image(self, depsgraph, path, folder, written, size, notes):
         out = os.path.join(folder, "image.exr")
-        # A calibration has a size of its own.
-        arguments = self._arguments(depsgraph, path, written, size, out) + ["--size", "{}x{}".format(*size)]
-        settings = depsgraph.scene.uwvdb
-        arguments += ["--quality", settings.quality.lower()]
-        arguments += ["--layers", ",".join(passes.layers_of(depsgraph.view_layer, depsgraph.scene))]
-        if settings.integrator == "PATH" and settings.use_error:
-            arguments += ["--error", repr(settings.error)]
+        arguments = self._image_arguments(depsgraph, path, written, size, out)
         for line in program.run(arguments, folder, self.test_break, self._on_progress):
             kind, _, text = line.partition(": ")
             if kind == "warning":
@@ -169,6 +196,16 @@ class UwvdbEngine(bpy.types.RenderEngine):
                 notes.add(text.strip().replace("render.scattering: multiple",
                                                "Render > uwvdb > Scattering: Multiple"))
         return exr.read(out)
+
+    def _image_arguments(self, depsgraph, path, written, size, out):
+        # A calibration has a size of its own.
+        arguments = self._arguments(depsgraph, path, written, size, out) + ["--size", "{}x{}".format(*size)]
+        settings = depsgraph.scene.uwvdb
+        arguments += ["--quality", settings.quality.lower()]
+        arguments += ["--layers", ",".join(passes.layers_of(depsgraph.view_layer, depsgraph.scene))]
+        if settings.integrator == "PATH" and settings.use_error:
+            arguments += ["--error", repr(settings.error)]
+        return arguments
 
     def _arguments(self, depsgraph, path, written, size, out):
         arguments = [path, "render", written.path, "-o", out, "--frames", str(_number(depsgraph.scene)),

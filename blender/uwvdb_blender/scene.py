@@ -11,14 +11,13 @@ from . import cameras, lamps, meshes, motion, volumes, water
 from .notes import Refusal
 
 SCENE_FILE = "scene.yaml"  # JSON, which is YAML, too
-MESH_FILE = "meshes.glb"
 
 
 class Written:
     """The scene's file and what is needed to read its images."""
 
-    def __init__(self, folder, bands, mesh_file, metres_per_unit, lamp_names):
-        self.path, self.bands = os.path.join(folder, SCENE_FILE), bands
+    def __init__(self, path, bands, mesh_file, metres_per_unit, lamp_names):
+        self.path, self.bands = path, bands
         self.pass_indices, self.material_indices = mesh_file.pass_indices, mesh_file.material_indices
         self.metres_per_unit, self.lamp_names = metres_per_unit, lamp_names
 
@@ -30,9 +29,11 @@ class View:
         self.camera, self.matrix, self.shift_x = camera, matrix, shift_x
 
 
-def write(depsgraph, folder, program_path, view, size, moments, notes, is_cancelled):
-    """Writes the scene. `moments` is a Motion with what moves, or None."""
+def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelled):
+    """Writes the scene, and what belongs to it into the same folder. `moments` is a Motion with what
+    moves, or None."""
     scene = depsgraph.scene
+    folder, name = os.path.split(path)
     to_metres = metres_of(scene)
     bands = colours.parse(scene.uwvdb.bands)
     world_from_camera = to_metres @ view.matrix
@@ -44,16 +45,17 @@ def write(depsgraph, folder, program_path, view, size, moments, notes, is_cancel
     mesh_file = meshes.MeshFile(notes)
     mesh_file.add_all(depsgraph, to_metres, moments)
     if not mesh_file.is_empty:
-        mesh_file.glb.write(os.path.join(folder, MESH_FILE))
-        content["geometry"] = [geometry_entry(scene, MESH_FILE)]
+        glb_name = f"{os.path.splitext(name)[0]}-meshes.glb"
+        mesh_file.glb.write(os.path.join(folder, glb_name))
+        content["geometry"] = [geometry_entry(scene, glb_name)]
     plumes = volumes.Volumes(
         folder, notes, lambda source: volumes.advice(program_path, source, is_cancelled))
     content.update(describe_water_and_lamps(depsgraph, folder, moments, plumes, notes))
     content["render"] = _render(scene, moments)
     _add_sensor(content, view.camera.data.uwvdb, bands, notes)
-    with open(os.path.join(folder, SCENE_FILE), "w", encoding="utf-8") as file:
+    with open(path, "w", encoding="utf-8") as file:
         json.dump(content, file, indent=1)
-    return Written(folder, bands, mesh_file, to_metres.median_scale,
+    return Written(path, bands, mesh_file, to_metres.median_scale,
                    [lamp["name"] for lamp in content["lamps"]])
 
 
