@@ -1,7 +1,6 @@
 """The render engine: writes the scene, runs uwvdb, and hands its layers to Blender."""
 
 import os
-import re
 import shutil
 import tempfile
 import time
@@ -108,7 +107,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
         except program.Stopped:
             pass
         except Refusal as refusal:
-            self.report({"ERROR"}, f"uwvdb: {_own_words(str(refusal), folder)}")
+            self.report({"ERROR"}, f"uwvdb: {scenes.own_words(str(refusal), folder)}")
         except OSError as error:
             self.report({"ERROR"}, f"uwvdb: {error.filename}: cannot write: {error.strerror}")
         finally:
@@ -191,7 +190,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
         for line in program.run(arguments, folder, self.test_break, self._on_progress):
             kind, _, text = line.partition(": ")
             if kind == "warning":
-                notes.add(_own_words(text.strip(), folder))
+                notes.add(scenes.own_words(text.strip(), folder))
             elif kind == "note" and not any(said.startswith(LEFT_OUT) for said in _said):
                 notes.add(text.strip().replace("render.scattering: multiple",
                                                "Render > uwvdb > Scattering: Multiple"))
@@ -278,13 +277,6 @@ def _fill(target, rows_from_top):
         target.rect.foreach_set(values.reshape(-1))
     except TypeError:  # Blender 3 wants as many items as pixels
         target.rect.foreach_set(values.reshape(-1, target.channels))
-
-
-def _own_words(message, folder):
-    """A message without places in files that the user does not see."""
-    message = message.removeprefix("uwvdb: ")
-    return re.sub(rf"{re.escape(folder + os.sep)}[^ ]*?{re.escape(scenes.SCENE_FILE)}:\d+:\d+: ", "",
-                  message).replace(folder + os.sep, "")
 
 
 def _number(scene):

@@ -3,6 +3,7 @@ Blender's, z up, in metres."""
 
 import json
 import os
+import re
 
 from mathutils import Matrix
 
@@ -82,6 +83,13 @@ def describe_water_and_lamps(depsgraph, folder, moments, plumes, notes):
     if plumes.entries:
         result["volumes"] = plumes.entries
     return result
+
+
+def own_words(message, folder):
+    """A message without places in files that the user does not see."""
+    message = message.removeprefix("uwvdb: ")
+    return re.sub(rf"{re.escape(folder + os.sep)}[^ ]*?{re.escape(SCENE_FILE)}:\d+:\d+: ", "",
+                  message).replace(folder + os.sep, "")
 
 
 def frame_rate(scene):

@@ -1,6 +1,7 @@
 """One `uwvdb edit` that stays, and the pictures that it renders of a scene which is written anew again and
 again: docs/edit-api.md. Nothing here waits on Blender's main thread, and nothing here needs Blender."""
 
+import atexit
 import contextlib
 import http.client
 import json
@@ -10,14 +11,28 @@ import subprocess
 import tempfile
 import threading
 import urllib.parse
+import weakref
 
 import numpy
 
-from .scene import SCENE_FILE
+from .scene import SCENE_FILE, own_words
 
 TOTAL = ("direct", "forward", "backscatter", "multiple", "snow")
 SECONDS_TO_ANSWER = 60
 SECONDS_TO_STOP = 2
+
+
+_open = weakref.WeakSet()
+
+
+@atexit.register
+def _close_all():
+    """Blender frees its views after Python has ended."""
+    sessions = list(_open)
+    for session in sessions:
+        session.close()
+    for session in sessions:
+        session.wait_until_closed()
 
 
 class Picture:
@@ -42,6 +57,7 @@ class Session:
         self._mixing = threading.Lock()
         self._thread = threading.Thread(target=self._work, daemon=True)
         self._thread.start()
+        _open.add(self)
 
     def show(self, content, meshes=None):
         """Shows a scene from now on. `meshes` is (name of its file, gltf.Glb), written unless it is there."""
@@ -60,7 +76,7 @@ class Session:
         self._thread.join()
 
     def _tell(self, message):
-        self.message = message
+        self.message = own_words(message, self.folder)
         self.version += 1
 
     def _work(self):
@@ -113,6 +129,8 @@ class Session:
             raise OSError(self._process.stderr.read().strip() or "uwvdb edit ended")
         # What it may say later has somewhere to go.
         threading.Thread(target=self._process.stderr.read, daemon=True).start()
+        with self._mixing:  # what another process has sent counts its revisions for itself
+            self._state = self._sent = None
         self._address = urllib.parse.urlsplit(address)
         threading.Thread(target=self._follow, args=(self._address,), daemon=True).start()
 
@@ -139,6 +157,8 @@ class Session:
                         self._fetch()
                     elif kind == b"error":
                         self._hear(json.loads(self._ask("GET", "api/state")))
+        if not self._is_closed:
+            self._tell("the program uwvdb has ended; with the next change it is started again")
 
     def _hear(self, state):
         """Takes the state of the server; a change of brightness alone mixes the picture anew."""

@@ -215,7 +215,8 @@ def test_an_error_is_told_and_goes_when_it_is_mended():
         while not shown.session.message:
             assert time.monotonic() < end
             time.sleep(0.01)
-        assert "diameter" in shown.session.message and "\n" not in shown.session.message
+        print(f"    {shown.session.message}")
+        assert shown.session.message.startswith("water.snow") and "\n" not in shown.session.message
         scene.world.uwvdb.snow_least = 1
         shown.update()
         shown.ask(View((0, -3, 0.4)))
@@ -223,3 +224,24 @@ def test_an_error_is_told_and_goes_when_it_is_mended():
             assert time.monotonic() < end
             time.sleep(0.01)
         assert not shown.session.message
+
+
+def test_a_program_that_ends_is_started_again():
+    pond()
+    with Shown() as shown:
+        shown.update()
+        shown.ask(View((0, -3, 0.4)))
+        before = shown.final()
+        shown.session._process.kill()
+        end = time.monotonic() + SECONDS_TO_WAIT
+        while "has ended" not in shown.session.message:
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        shown.session._process.wait()
+        bpy.data.objects["Left"].location.x = 0.5
+        shown.update()
+        shown.ask(View((0, -3, 0.4)))
+        while shown.session.message:
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        assert (shown.final() != before).any()
