@@ -66,6 +66,7 @@ class UWVDB_PT_render(RenderPanel, bpy.types.Panel):
         column.prop(settings, "bands")
         column.prop(settings, "use_gloss")
         column.prop(settings, "threads")
+        column.prop(context.scene.render, "preview_pixel_size", text="Viewport Pixels")
         column.prop(settings, "kept_in")
 
 
