@@ -11,9 +11,9 @@ bl_info = {
     "category": "Render",
 }
 
-from . import engine, panels, preferences, properties
+from . import engine, exporting, panels, preferences, properties
 
-MODULES = (preferences, properties, engine, panels)
+MODULES = (preferences, properties, engine, exporting, panels)
 
 
 def register():

@@ -3,9 +3,11 @@
 import math
 
 import bpy
+from mathutils import Matrix
 
 from .notes import Refusal
 
+PARALLEL = 1000  # heights of an orthographic view that its rays come from: 0.1 % from parallel
 HOUSING_NUMBERS = ("thickness", "n_air", "n_glass", "n_water")
 
 
@@ -99,3 +101,28 @@ def _lens(data, to_metres, world_from_camera, notes):
         notes.add("the aperture is a circle: its blades and ratio are left out")
     return {"f_number": dof.aperture_fstop, "focal_length": data.lens / 1000,
             "focus_distance": max(distance, data.lens / 1000 * 1.001)}
+
+
+def of_view(window_matrix, view_matrix, size, to_metres):
+    """The scene's `camera` for a perspective or orthographic 3D view that has these matrices. uwvdb has no
+    orthographic camera: the view is from so far away that its rays are parallel, and the water begins
+    where Blender has the view's eye, behind a flat port of water's index."""
+    width, height = size
+    world_from_camera = to_metres @ view_matrix.inverted()
+    if window_matrix[3][3] == 0:
+        fx, fy = window_matrix[0][0] * width / 2, window_matrix[1][1] * height / 2
+        return {"resolution": [width, height],
+                "intrinsics": {"fx": fx, "fy": fy, "cx": width / 2 * (1 - window_matrix[0][2]),
+                               "cy": height / 2 * (1 + window_matrix[1][2])},
+                "pose": {"matrix": pose_rows(world_from_camera)}}
+    scale = to_metres.median_scale
+    distance = PARALLEL * 2 / window_matrix[1][1] * scale  # in heights of what is seen
+    world_from_camera = world_from_camera @ Matrix.Translation((0, 0, distance / scale))
+    # Pixels per metre, times the distance at which the plane of the eye is seen.
+    fx = window_matrix[0][0] * width / 2 / scale * distance
+    fy = window_matrix[1][1] * height / 2 / scale * distance
+    return {"resolution": [width, height],
+            "intrinsics": {"fx": fx, "fy": fy, "cx": width / 2 * (1 + window_matrix[0][3]),
+                           "cy": height / 2 * (1 - window_matrix[1][3])},
+            "port": {"type": "flat", "distance": distance, "n_air": 1.0, "n_glass": 1.0, "n_water": 1.0},
+            "pose": {"matrix": pose_rows(world_from_camera)}}

@@ -1,7 +1,6 @@
 """The render engine: writes the scene, runs uwvdb, and hands its layers to Blender."""
 
 import os
-import re
 import shutil
 import tempfile
 import time
@@ -11,7 +10,7 @@ import numpy
 from mathutils import Matrix
 
 from . import bands as colours
-from . import exr, motion, passes, preferences, program, scene as scenes
+from . import exr, motion, passes, preferences, program, scene as scenes, viewport
 from .notes import Notes, Refusal
 
 # uwvdb counts frames from 0; movement is looked at a little before the frame, too.
@@ -30,14 +29,65 @@ def _forget_notes(*_):
     _said.clear()
 
 
+class Export:
+    """A render that ends once the scene is written: Blender evaluates a scene for renders in these alone."""
+
+    def __init__(self, path):
+        self._path, self.commands = path, []
+
+    def path_of(self, view):
+        """The scene's file; each eye of a stereo pair has one."""
+        stem, suffix = os.path.splitext(self._path)
+        return f"{stem}_{view}{suffix}" if view else self._path
+
+
+_export = None
+
+
+def export(path):
+    """Writes the scene of the frame, and returns the commands, by view, that render it as F12 does."""
+    global _export
+    _export = Export(path)
+    try:
+        bpy.ops.render.render()
+        return _export.commands
+    finally:
+        _export = None
+
+
 class UwvdbEngine(bpy.types.RenderEngine):
     bl_idname = "UWVDB"
     bl_label = "uwvdb"
     bl_use_preview = False
     bl_use_postprocess = True
-    bl_use_eevee_viewport = True
+    bl_use_eevee_viewport = True  # for the shading Material Preview
 
     _told_at = 0.0  # when progress was shown
+    _viewport = None
+    _refusal = ""
+
+    def __del__(self):
+        if self._viewport is not None:
+            self._viewport.close()
+
+    def view_update(self, context, depsgraph):
+        """A 3D view in Rendered shading begins, or the scene has changed."""
+        try:
+            if self._viewport is None:
+                self._viewport = viewport.start(self)
+            self._viewport.update(depsgraph)
+            self._refusal = ""
+        except Refusal as refusal:
+            self._refusal = str(refusal)
+
+    def view_draw(self, context, depsgraph):
+        try:
+            if self._viewport is not None and not self._refusal:
+                self._viewport.draw(self, context, depsgraph)
+        except Refusal as refusal:
+            self.update_stats("uwvdb", str(refusal))
+        if self._refusal:
+            self.update_stats("uwvdb", self._refusal)
 
     def update_render_passes(self, scene=None, renderlayer=None):
         try:
@@ -57,7 +107,9 @@ class UwvdbEngine(bpy.types.RenderEngine):
         except program.Stopped:
             pass
         except Refusal as refusal:
-            self.report({"ERROR"}, f"uwvdb: {_own_words(str(refusal), folder)}")
+            self.report({"ERROR"}, f"uwvdb: {scenes.own_words(str(refusal), folder)}")
+        except OSError as error:
+            self.report({"ERROR"}, f"uwvdb: {error.filename}: cannot write: {error.strerror}")
         finally:
             shutil.rmtree(folder, ignore_errors=True)
         for text in notes.texts:
@@ -77,10 +129,15 @@ class UwvdbEngine(bpy.types.RenderEngine):
                 self.active_view_set(name)
             part = os.path.join(folder, name or "image")
             os.mkdir(part)
+            file = _export.path_of(name) if _export else os.path.join(part, scenes.SCENE_FILE)
             self.update_stats("", "uwvdb: writing the scene")
             view = self._view(depsgraph)
             moments = self._moments(depsgraph)
-            written = scenes.write(depsgraph, part, path, view, size, moments, notes, self.test_break)
+            written = scenes.write(depsgraph, file, path, view, size, moments, notes, self.test_break)
+            if _export:
+                image = os.path.splitext(written.path)[0] + ".exr"
+                _export.commands.append(self._image_arguments(depsgraph, path, written, size, image))
+                continue
             for made in passes.passes_of(depsgraph.view_layer, scene, written.bands,
                                          written.lamp_names):
                 if made.name != "Combined":
@@ -129,6 +186,17 @@ class UwvdbEngine(bpy.types.RenderEngine):
 
     def _image(self, depsgraph, path, folder, written, size, notes):
         out = os.path.join(folder, "image.exr")
+        arguments = self._image_arguments(depsgraph, path, written, size, out)
+        for line in program.run(arguments, folder, self.test_break, self._on_progress):
+            kind, _, text = line.partition(": ")
+            if kind == "warning":
+                notes.add(scenes.own_words(text.strip(), folder))
+            elif kind == "note" and not any(said.startswith(LEFT_OUT) for said in _said):
+                notes.add(text.strip().replace("render.scattering: multiple",
+                                               "Render > uwvdb > Scattering: Multiple"))
+        return exr.read(out)
+
+    def _image_arguments(self, depsgraph, path, written, size, out):
         # A calibration has a size of its own.
         arguments = self._arguments(depsgraph, path, written, size, out) + ["--size", "{}x{}".format(*size)]
         settings = depsgraph.scene.uwvdb
@@ -136,14 +204,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
         arguments += ["--layers", ",".join(passes.layers_of(depsgraph.view_layer, depsgraph.scene))]
         if settings.integrator == "PATH" and settings.use_error:
             arguments += ["--error", repr(settings.error)]
-        for line in program.run(arguments, folder, self.test_break, self._on_progress):
-            kind, _, text = line.partition(": ")
-            if kind == "warning":
-                notes.add(_own_words(text.strip(), folder))
-            elif kind == "note" and not any(said.startswith(LEFT_OUT) for said in _said):
-                notes.add(text.strip().replace("render.scattering: multiple",
-                                               "Render > uwvdb > Scattering: Multiple"))
-        return exr.read(out)
+        return arguments
 
     def _arguments(self, depsgraph, path, written, size, out):
         arguments = [path, "render", written.path, "-o", out, "--frames", str(_number(depsgraph.scene)),
@@ -216,13 +277,6 @@ def _fill(target, rows_from_top):
         target.rect.foreach_set(values.reshape(-1))
     except TypeError:  # Blender 3 wants as many items as pixels
         target.rect.foreach_set(values.reshape(-1, target.channels))
-
-
-def _own_words(message, folder):
-    """A message without places in files that the user does not see."""
-    message = message.removeprefix("uwvdb: ")
-    return re.sub(rf"{re.escape(folder + os.sep)}[^ ]*?{re.escape(scenes.SCENE_FILE)}:\d+:\d+: ", "",
-                  message).replace(folder + os.sep, "")
 
 
 def _number(scene):

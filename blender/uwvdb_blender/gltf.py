@@ -1,6 +1,7 @@
 """Writes a binary glTF file of meshes, materials and moving nodes. Axes stay Blender's, z up: the
 scene that names the file has the same."""
 
+import copy
 import json
 import struct
 
@@ -52,8 +53,7 @@ class Glb:
 
     def add_node(self, name, mesh, matrix):
         """A mesh at rest; the matrix is given by its columns."""
-        node = self._add("nodes", {"name": name, "mesh": mesh,
-                                   "matrix": [value for column in matrix.col for value in column]})
+        node = self._add("nodes", {"name": name, "mesh": mesh, "matrix": _by_columns(matrix)})
         self._json["scenes"][0]["nodes"].append(node)
 
     def add_moving_node(self, name, mesh, times, poses):
@@ -72,6 +72,14 @@ class Glb:
             animation["channels"].append({"sampler": len(animation["samplers"]) - 1,
                                           "target": {"node": node, "path": path}})
 
+    def moved(self, matrices):
+        """The same file with its nodes, all at rest, at other places."""
+        result = copy.copy(self)
+        result._json = {**self._json, "nodes": [
+            {**node, "matrix": _by_columns(matrix)}
+            for node, matrix in zip(self._json["nodes"], matrices, strict=True)]}
+        return result
+
     def write(self, path):
         content = {key: value for key, value in self._json.items() if value != []}
         content["buffers"] = [{"byteLength": self._length}]
@@ -82,3 +90,7 @@ class Glb:
             file.write(struct.pack("<I4s", len(text), b"JSON") + text)
             file.write(struct.pack("<I4s", self._length, b"BIN\0"))
             file.writelines(self._parts)
+
+
+def _by_columns(matrix):
+    return [value for column in matrix.col for value in column]

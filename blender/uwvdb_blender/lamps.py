@@ -3,6 +3,7 @@
 import math
 import os
 import re
+import zlib
 
 import bpy
 from mathutils import Vector
@@ -188,7 +189,8 @@ class Lamps:
             self._note(shown, "its IES file cannot be read; it shines without")
             return None
         text, greatest = seen
-        name = f"luminaire{len(os.listdir(self._folder))}.ies"
+        # The same light has the same file, so that what is known of it in the viewport stays.
+        name = f"luminaire-{zlib.crc32(text.encode()):08x}.ies"
         with open(os.path.join(self._folder, name), "w", encoding="latin-1") as file:
             file.write(text)
         return name, greatest

@@ -46,6 +46,7 @@ class MeshFile:
     def __init__(self, notes):
         self.glb = gltf.Glb()
         self.pass_indices, self.material_indices = [], []
+        self.keys = []  # of the instances that became nodes, in their order
         self._notes = notes
         self._materials = materials.Exporter(self.glb, notes)
         self._meshes = {}
@@ -83,6 +84,7 @@ class MeshFile:
             else:
                 self.glb.add_moving_node(shown.name, mesh, motion.times, poses)
             self.pass_indices.append(shown.pass_index)
+            self.keys.append(key_of(instance))
         self.material_indices = self._materials.pass_indices
 
     def _mesh(self, shown):

@@ -66,6 +66,7 @@ class UWVDB_PT_render(RenderPanel, bpy.types.Panel):
         column.prop(settings, "bands")
         column.prop(settings, "use_gloss")
         column.prop(settings, "threads")
+        column.prop(context.scene.render, "preview_pixel_size", text="Viewport Pixels")
         column.prop(settings, "kept_in")
 
 
@@ -271,7 +272,8 @@ class UWVDB_OT_read_grids(bpy.types.Operator):
             if source is None:
                 raise Refusal(f"'{shown.name}' has no volume")
             path = program.find(preferences.chosen_program())
-            mapped, names = volumes.advised(path, source, volumes.size_of(shown, context.scene))
+            mapped, names = volumes.for_size(volumes.advice(path, source),
+                                               volumes.size_of(shown, context.scene))
         except Refusal as refusal:
             self.report({"ERROR"}, str(refusal))
             return {"CANCELLED"}

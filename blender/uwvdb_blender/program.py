@@ -11,6 +11,7 @@ import signal
 import struct
 import subprocess
 import termios
+import threading
 
 from .notes import Refusal
 
@@ -108,7 +109,7 @@ def info(program, pattern, path, is_cancelled):
     """`uwvdb info --json` of a volume, kept while the file of this frame does not change."""
     stamp = (program, os.stat(path).st_mtime_ns if pattern == path else 0)
     kept = _info_of.get(pattern)
-    if kept is None or kept[0] != stamp:
+    if kept is None or kept[0] != stamp or isinstance(kept[1], Failed):
         process = subprocess.Popen([program, "info", pattern, "--json"], text=True,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE)
@@ -124,3 +125,37 @@ def info(program, pattern, path, is_cancelled):
             raise Failed((errors.strip().splitlines() or ["uwvdb info failed"])[-1])
         kept = _info_of[pattern] = (stamp, json.loads(out))
     return kept[1]
+
+
+class NotYet(Refusal):
+    """What was asked for is being looked up."""
+
+
+_asked = set()
+
+
+def info_soon(program, pattern, path):
+    """The same without waiting: NotYet until it is known; then is_asking() becomes false."""
+    stamp = (program, os.stat(path).st_mtime_ns if pattern == path else 0)
+    kept = _info_of.get(pattern)
+    if kept is not None and kept[0] == stamp:
+        if isinstance(kept[1], Failed):
+            raise kept[1]
+        return kept[1]
+
+    def ask():
+        try:
+            info(program, pattern, path, lambda: False)
+        except Failed as failed:
+            _info_of[pattern] = (stamp, failed)
+        finally:
+            _asked.discard(pattern)
+
+    if pattern not in _asked:
+        _asked.add(pattern)
+        threading.Thread(target=ask, daemon=True).start()
+    raise NotYet("its grids are being looked at")
+
+
+def is_asking():
+    return bool(_asked)

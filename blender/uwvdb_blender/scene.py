@@ -3,6 +3,7 @@ Blender's, z up, in metres."""
 
 import json
 import os
+import re
 
 from mathutils import Matrix
 
@@ -11,14 +12,13 @@ from . import cameras, lamps, meshes, motion, volumes, water
 from .notes import Refusal
 
 SCENE_FILE = "scene.yaml"  # JSON, which is YAML, too
-MESH_FILE = "meshes.glb"
 
 
 class Written:
     """The scene's file and what is needed to read its images."""
 
-    def __init__(self, folder, bands, mesh_file, metres_per_unit, lamp_names):
-        self.path, self.bands = os.path.join(folder, SCENE_FILE), bands
+    def __init__(self, path, bands, mesh_file, metres_per_unit, lamp_names):
+        self.path, self.bands = path, bands
         self.pass_indices, self.material_indices = mesh_file.pass_indices, mesh_file.material_indices
         self.metres_per_unit, self.lamp_names = metres_per_unit, lamp_names
 
@@ -30,10 +30,12 @@ class View:
         self.camera, self.matrix, self.shift_x = camera, matrix, shift_x
 
 
-def write(depsgraph, folder, program_path, view, size, moments, notes, is_cancelled):
-    """Writes the scene. `moments` is a Motion with what moves, or None."""
+def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelled):
+    """Writes the scene, and what belongs to it into the same folder. `moments` is a Motion with what
+    moves, or None."""
     scene = depsgraph.scene
-    to_metres = Matrix.Scale(scene.unit_settings.scale_length, 4)
+    folder, name = os.path.split(path)
+    to_metres = metres_of(scene)
     bands = colours.parse(scene.uwvdb.bands)
     world_from_camera = to_metres @ view.matrix
     content = {"uwvdb": 1}
@@ -41,28 +43,53 @@ def write(depsgraph, folder, program_path, view, size, moments, notes, is_cancel
                               notes)
     _place_camera(camera, view, world_from_camera, moments)
     content["camera"] = camera
-    content["water"] = water.describe(scene, bands, to_metres)
-
     mesh_file = meshes.MeshFile(notes)
     mesh_file.add_all(depsgraph, to_metres, moments)
     if not mesh_file.is_empty:
-        mesh_file.glb.write(os.path.join(folder, MESH_FILE))
-        content["geometry"] = [{"file": MESH_FILE,
-                                "material": "pbr" if scene.uwvdb.use_gloss else "diffuse"}]
-    lights = lamps.Lamps(folder, bands, notes)
-    lights.add_all(depsgraph, to_metres, moments, content["water"].get("surface"))
-    content["lamps"] = lights.entries
-    _note_world(scene.world, notes)
-    plumes = volumes.Volumes(folder, program_path, notes, is_cancelled)
-    plumes.add_all(depsgraph, to_metres)
-    if plumes.entries:
-        content["volumes"] = plumes.entries
+        glb_name = f"{os.path.splitext(name)[0]}-meshes.glb"
+        mesh_file.glb.write(os.path.join(folder, glb_name))
+        content["geometry"] = [geometry_entry(scene, glb_name)]
+    plumes = volumes.Volumes(
+        folder, notes, lambda source: volumes.advice(program_path, source, is_cancelled))
+    content.update(describe_water_and_lamps(depsgraph, folder, moments, plumes, notes))
     content["render"] = _render(scene, moments)
     _add_sensor(content, view.camera.data.uwvdb, bands, notes)
-    with open(os.path.join(folder, SCENE_FILE), "w", encoding="utf-8") as file:
+    with open(path, "w", encoding="utf-8") as file:
         json.dump(content, file, indent=1)
-    return Written(folder, bands, mesh_file, to_metres.median_scale,
-                   [lamp["name"] for lamp in lights.entries])
+    return Written(path, bands, mesh_file, to_metres.median_scale,
+                   [lamp["name"] for lamp in content["lamps"]])
+
+
+def metres_of(scene):
+    """The matrix that makes metres of Blender's units."""
+    return Matrix.Scale(scene.unit_settings.scale_length, 4)
+
+
+def geometry_entry(scene, mesh_file):
+    return {"file": mesh_file, "material": "pbr" if scene.uwvdb.use_gloss else "diffuse"}
+
+
+def describe_water_and_lamps(depsgraph, folder, moments, plumes, notes):
+    """The sections of the water, the lamps and the volumes. Files of lamps are written into the folder,
+    and volumes linked."""
+    scene = depsgraph.scene
+    to_metres, bands = metres_of(scene), colours.parse(scene.uwvdb.bands)
+    result = {"water": water.describe(scene, bands, to_metres)}
+    lights = lamps.Lamps(folder, bands, notes)
+    lights.add_all(depsgraph, to_metres, moments, result["water"].get("surface"))
+    result["lamps"] = lights.entries
+    _note_world(scene.world, notes)
+    plumes.add_all(depsgraph, to_metres)
+    if plumes.entries:
+        result["volumes"] = plumes.entries
+    return result
+
+
+def own_words(message, folder):
+    """A message without places in files that the user does not see."""
+    message = message.removeprefix("uwvdb: ")
+    return re.sub(rf"{re.escape(folder + os.sep)}[^ ]*?{re.escape(SCENE_FILE)}:\d+:\d+: ", "",
+                  message).replace(folder + os.sep, "")
 
 
 def frame_rate(scene):

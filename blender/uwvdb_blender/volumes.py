@@ -1,7 +1,9 @@
 """Volume objects and caches of fluid domains, where they are in Blender."""
 
+import contextlib
 import os
 import re
+import zlib
 
 import bpy
 import numpy
@@ -60,11 +62,20 @@ def _pattern(path):
 def advice(path, source, is_cancelled=lambda: False):
     """{grid: (small, large)} in ppm per unit of a volume as large as its file says, and the names of
     all grids of numbers."""
+    return _advice(source, lambda pattern: program.info(path, pattern, source.path, is_cancelled))
+
+
+def advice_soon(path, source):
+    """The same without waiting: program.NotYet until it is known."""
+    return _advice(source, lambda pattern: program.info_soon(path, pattern, source.path))
+
+
+def _advice(source, look):
     try:
-        found = program.info(path, source.pattern, source.path, is_cancelled)
+        found = look(source.pattern)
     except program.Failed:
         # Numbers without leading zeros have no pattern that their length tells.
-        found = program.info(path, source.path, source.path, is_cancelled)
+        found = look(source.path)
     told = found["advice"]
     mapped = {name: (told["small_ppm"] * told["scale"], told["large_ppm"] * told["scale"])
               for name in told["map"]} if "small_ppm" in told else {}
@@ -78,9 +89,9 @@ def size_of(shown, scene):
     return to_metres @ shown.matrix_world if shown.type == "VOLUME" else to_metres
 
 
-def advised(path, source, matrix, is_cancelled=lambda: False):
-    """The same advice for the volume as large as it is here: what makes it smaller makes it denser."""
-    mapped, names = advice(path, source, is_cancelled)
+def for_size(told, matrix):
+    """Such advice for the volume as large as it is here: what makes it smaller makes it denser."""
+    mapped, names = told
     scale = abs(matrix.to_3x3().determinant()) ** (1 / 3) or 1.0
     return {name: (small / scale, large / scale) for name, (small, large) in mapped.items()}, names
 
@@ -102,9 +113,10 @@ def _domain_place(shown, source):
 
 
 class Volumes:
-    def __init__(self, folder, program_path, notes, is_cancelled):
-        self._folder, self._program, self._notes = folder, program_path, notes
-        self._is_cancelled = is_cancelled
+    """The section `volumes`. `advise` gives the advice for a Source."""
+
+    def __init__(self, folder, notes, advise):
+        self._folder, self._notes, self._advise = folder, notes, advise
         self.entries = []
 
     def add_all(self, depsgraph, to_metres):
@@ -123,7 +135,9 @@ class Volumes:
 
     def _add(self, shown, source, scene, matrix):
         # Under a name of its own: the file's place says nothing that Blender does not know better.
-        link = f"volume{len(self.entries)}.vdb"
+        # It differs from file to file, so that whoever reads the scene again sees that one has changed.
+        state = f"{os.path.abspath(source.path)} {os.stat(source.path).st_mtime_ns}"
+        link = f"volume{len(self.entries)}-{zlib.crc32(state.encode()):08x}.vdb"
         grids = {}
         for mapping in shown.uwvdb.grids:
             name = mapping.name
@@ -133,7 +147,7 @@ class Volumes:
         is_domain = shown.type != "VOLUME"
         of_file, extra = _domain_place(shown, source) if is_domain else (Matrix.Identity(4), {})
         if not grids:
-            mapped, _ = advised(self._program, source, size_of(shown, scene), self._is_cancelled)
+            mapped, _ = for_size(self._advise(source), size_of(shown, scene))
             grids = {name: {"small": small, "large": large}
                      for name, (small, large) in mapped.items()}
             if not grids:
@@ -146,7 +160,8 @@ class Volumes:
         grids = {n: g for n, g in grids.items() if g}
         if not grids:
             return
-        os.symlink(os.path.abspath(source.path), os.path.join(self._folder, link))
+        with contextlib.suppress(FileExistsError):
+            os.symlink(os.path.abspath(source.path), os.path.join(self._folder, link))
         self.entries.append({"file": link, "grids": grids, "centering": "cell", "up": "y", **extra,
                              "transform": self._transform(shown, matrix @ of_file)})
 

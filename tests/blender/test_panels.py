@@ -74,6 +74,7 @@ def test_every_setting_is_in_a_panel():
     for group in ("Scene", "ViewLayer", "World", "Camera", "Grid"):
         for name in getattr(properties, f"Uwvdb{group}").__annotations__:
             assert (f"Uwvdb{group}", name) in drawn, f"no panel draws Uwvdb{group}.{name}"
+    assert ("RenderSettings", "preview_pixel_size") in drawn
     for name in ("energy", "color", "angle", "spot_size", "spot_blend", "size", "shape"):
         assert any(n == name for _, n in drawn), name
 
