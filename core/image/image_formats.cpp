@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 
 #include <algorithm>
 #include <array>
@@ -69,10 +70,16 @@ struct LoadedModule {
 // installation, a build folder or a Python environment.
 LoadedModule load_module() {
     Dl_info self{};
-    if (dladdr(reinterpret_cast<const void*>(&has_ending_of_image), &self) == 0)
+    link_map* loaded = nullptr;
+    if (dladdr1(reinterpret_cast<const void*>(&has_ending_of_image), &self,
+                reinterpret_cast<void**>(&loaded), RTLD_DL_LINKMAP) == 0)
         return {nullptr, "this program does not know its own place"};
     std::error_code ignored;
-    std::filesystem::path above = std::filesystem::canonical(self.dli_fname, ignored);
+    // Only libraries have a file name here: what dladdr has for a program is the word that it was
+    // called by, which leads nowhere if it was found along PATH.
+    const bool is_library = loaded->l_name[0] != '\0';
+    std::filesystem::path above =
+        std::filesystem::canonical(is_library ? loaded->l_name : "/proc/self/exe", ignored);
     constexpr int k_most_above = 5;
     for (int i = 0; i < k_most_above && above.has_relative_path(); ++i) {
         above = above.parent_path();

@@ -49,6 +49,17 @@ TEST_F(OtherTextures, GiveTheImageOfTheSamePng) {
     }
 }
 
+TEST_F(OtherTextures, AreReadByAProgramThatIsFoundAlongPath) {
+    hang("bmp");
+    const std::filesystem::path program = UWVDB_PROGRAM;
+    const ProgramResult result =
+        run_program({"PATH=" + program.parent_path().string(), program.filename().string(),
+                     "render", "scene.yaml", "-o", "out.exr"},
+                    {.folder = folder_.path(), .program = "/usr/bin/env"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(exists("out.exr"));
+}
+
 TEST_F(OtherTextures, AreRefusedWithoutTheModuleThatReadsThem) {
     hang("tif");
     // Its own place tells a program where its modules are.

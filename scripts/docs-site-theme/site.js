@@ -1,0 +1,29 @@
+// Search without a server: the index is a script, since pages opened from a disk may fetch nothing.
+const list = document.querySelector("nav details");
+list.open = matchMedia("(min-width: 50rem)").matches;
+const entries = new Map(searchIndex.docs.map((entry) => [entry.location, entry]));
+const index = lunr(function () {
+    this.ref("location");
+    this.field("title", {boost: 10});
+    this.field("text");
+    searchIndex.docs.forEach((entry) => this.add(entry));
+});
+document.getElementById("query").addEventListener("input", (event) => {
+    const words = lunr.tokenizer(event.target.value).map(String).filter(Boolean);
+    const found = words.length === 0 ? [] : index.query((query) => {
+        for (const word of words) {
+            query.term(word, {boost: 10});
+            query.term(word, {wildcard: lunr.Query.wildcard.TRAILING});
+        }
+    });
+    document.getElementById("results").replaceChildren(...found.slice(0, 12).map(({ref}) => {
+        const link = document.createElement("a");
+        link.href = siteRoot + ref;
+        link.textContent = entries.get(ref).title;
+        const place = document.createElement("small");
+        place.textContent = ref.split("#")[0];
+        const item = document.createElement("li");
+        item.append(link, place);
+        return item;
+    }));
+});
