@@ -10,6 +10,7 @@
 #include "core/base/json.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
+#include "core/image/exr_file.h"
 #include "core/image/image_quantity.h"
 #include "core/light/integrator_table.h"
 
@@ -97,6 +98,15 @@ std::string matrix_rows(const Affine& pose) {
     return text;
 }
 
+// As make_band_colour takes the description.
+std::string rgb_space(const ColourDesc& colour, std::size_t bands) {
+    using Response = ColourDesc::Response;
+    if (colour.response == Response::camera) return "of the camera";
+    const bool shows_bands =
+        bands == 3 && colour.response != Response::cie && !colour.white && !colour.raw;
+    return shows_bands ? "bands" : std::string(k_linear_srgb);
+}
+
 void describe(const SensorDesc& sensor, ImageMetadata& m) {
     m["uwvdb/sensor_exposure_s"] = *sensor.exposure;
     m["uwvdb/sensor_mosaic"] = word_of(sensor.mosaic, k_sensor_mosaics);
@@ -121,6 +131,7 @@ ImageMetadata metadata_of(const ImageScene& image, std::optional<int> frame,
                     {"uwvdb/seed", std::string("none: deterministic")},
                     {"uwvdb/rgb_quantity", quantity},
                     {"uwvdb/units", quantity + ", irradiance and exitance W m^-2, metres"},
+                    {k_rgb_space, rgb_space(scene.render.colour, scene.water.bands_nm.size())},
                     {"uwvdb/bands_nm", band_list(scene.water.bands_nm)}};
     if (const auto scattering = scattering_of(scene.render);
         scattering == RenderDesc::Scattering::multiple)

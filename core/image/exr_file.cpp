@@ -3,12 +3,14 @@
 #include <Imath/half.h>
 #include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticities.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
@@ -175,6 +177,10 @@ constexpr std::array<std::pair<ExrCompression, Imf::Compression>, 3> k_compressi
      {ExrCompression::zips, Imf::ZIPS_COMPRESSION},
      {ExrCompression::zip, Imf::ZIP_COMPRESSION}}};
 
+/// Red, green, blue and white (D65) of IEC 61966-2-1.
+const Imf::Chromaticities k_srgb_chromaticities{
+    {0.64F, 0.33F}, {0.30F, 0.60F}, {0.15F, 0.06F}, {0.3127F, 0.3290F}};
+
 Imf::Header openexr_header(const ExrHeader& header) {
     const PixelWindow& window = header.window;
     Imf::Header result({{0, 0}, {header.width - 1, header.height - 1}},
@@ -191,6 +197,10 @@ Imf::Header openexr_header(const ExrHeader& header) {
         else
             result.insert(name, Imf::FloatAttribute(static_cast<float>(std::get<double>(value))));
     }
+    const auto space = header.metadata.find(k_rgb_space);
+    if (space != header.metadata.end() &&
+        space->second == ImageMetadata::mapped_type(std::string(k_linear_srgb)))
+        Imf::addChromaticities(result, k_srgb_chromaticities);
     return result;
 }
 

@@ -76,6 +76,11 @@ struct ExrHeader {
     ImageMetadata metadata;
 };
 
+/// The entry of the metadata that says what R, G and B are, and its value where they are linear
+/// sRGB: an EXR then states the primaries and the white in its attribute `chromaticities` as well.
+inline constexpr const char* k_rgb_space = "uwvdb/rgb_space";
+inline constexpr std::string_view k_linear_srgb = "linear sRGB";
+
 /// Writes all of an EXR with the film's pixels, on all permitted threads, of whose number its bytes
 /// are independent. The film has each channel of `header`, and its window. Throws IoError if
 /// OpenEXR refuses, and Interrupted; what cannot be written is for out.commit() to report.

@@ -185,6 +185,23 @@ TEST_F(ImageWriterTest, MetadataComesBack) {
     EXPECT_EQ(input->spec().get_float_attribute("uwvdb:seed"), 7.0f);
 }
 
+TEST_F(ImageWriterTest, ChromaticitiesAreStatedOfLinearSrgbAlone) {
+    // IEC 61966-2-1: x and y of red, green, blue and white.
+    const std::array<float, 8> srgb{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+    const auto stated_with = [&](const ImageMetadata& metadata, std::array<float, 8>& stated) {
+        write_exr(exr_, filled_film(2, 2, {0, 0, 2, 2}, {"R", "G", "B", "A"}), metadata);
+        const auto input = OIIO::ImageInput::open(exr_.string());
+        return input &&
+               input->spec().getattribute("chromaticities",
+                                          OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), stated.data());
+    };
+    std::array<float, 8> stated{};
+    ASSERT_TRUE(stated_with({{"uwvdb/rgb_space", "linear sRGB"}}, stated));
+    EXPECT_EQ(stated, srgb);
+    EXPECT_FALSE(stated_with({{"uwvdb/rgb_space", "bands"}}, stated));
+    EXPECT_FALSE(stated_with({}, stated));
+}
+
 TEST_F(ImageWriterTest, LongNamesComeBack) {
     const std::string name(100, 'n'), lamp = "lamp." + std::string(200, 'l') + ".R";
     write_exr(exr_, filled_film(2, 2, {0, 0, 2, 2}, {"R", "G", "B", "A", lamp}), {{name, "x"}});
