@@ -341,12 +341,16 @@ struct LineStyle {
 };
 
 /// The hues of the paper's figure 4: total magenta, water red, small green, large blue.
-LineStyle style_of(const std::string& part) {
+LineStyle style_of(const std::string& part, std::size_t index = 0) {
     if (part == "total") return {plot_colour::k_purple, ""};
     if (part == "water") return {plot_colour::k_red, "8 3"};
     if (part == "small") return {plot_colour::k_green, "2 2.5"};
     if (part == "large") return {plot_colour::k_blue, "9 3 2 3"};
-    return {plot_colour::k_orange, "5 2"};
+    // Others by their place, since there may be several.
+    static constexpr std::array<LineStyle, 3> k_others{{{plot_colour::k_orange, "5 2"},
+                                                        {plot_colour::k_sky, "7 2 2 2"},
+                                                        {plot_colour::k_black, "3 3"}}};
+    return k_others[index % k_others.size()];
 }
 
 /// For components without a colour of their own.
@@ -448,7 +452,7 @@ PlotPanel scattering_panel(const WaterSurvey& survey, const FineCurves& fine) {
         add_spectrum(panel, "total", style_of("total"), survey.table, uniform, fine.table, table,
                      k_b);
     for (std::size_t part = 0; part < uniform.parts.size(); ++part)
-        add_spectrum(panel, uniform.parts[part].name, style_of(uniform.parts[part].name),
+        add_spectrum(panel, uniform.parts[part].name, style_of(uniform.parts[part].name, part),
                      survey.table, uniform, fine.table, table, b_of_part(part));
     return panel;
 }
@@ -504,7 +508,7 @@ PlotPanel vsf_panel(const WaterSurvey& survey, AxisScale scale) {
         add_angular(panel, "total", style_of("total"), 3,
                     [&](double psi) { return uniform.vsf(band, psi); });
     for (std::size_t part = 0; part < uniform.parts.size(); ++part)
-        add_angular(panel, uniform.parts[part].name, style_of(uniform.parts[part].name), 1.8,
+        add_angular(panel, uniform.parts[part].name, style_of(uniform.parts[part].name, part), 1.8,
                     [&](double psi) { return uniform.vsf(band, part, psi); });
     return panel;
 }
