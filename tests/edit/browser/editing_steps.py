@@ -147,6 +147,17 @@ class EditingSteps(unittest.TestCase):
         # The browser's console names the answer with status 422.
         self.page.complaints = [c for c in self.page.complaints if "422" not in c]
 
+    def test_all_light_is_exposed_anew(self):
+        self.page.wait("!document.querySelector('.light-note').hidden")
+        shown = "[aria-label=\"Exposure in stops\"]"
+        single = float(self.page.evaluate(f"document.querySelector('{shown}').value"))
+        self.page.click(".light-note button")
+        self.page.wait("document.querySelector('.light-note').hidden")
+        self.view.settle()
+        self.page.wait(f"{self.view.DRAWN}?.quality === 'final' && "
+                       f"{self.view.DRAWN}.revision === {self.view.state('revision')}")
+        self.assertLess(float(self.page.evaluate(f"document.querySelector('{shown}').value")), single)
+
     def test_slider_without_requests(self):
         before = self.view.canvas()
         slider = '[data-key="brightness.slider"]'
