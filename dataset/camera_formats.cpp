@@ -145,7 +145,7 @@ DatasetFormat nerfstudio_format() {
                 "Behind a port intrinsics are those in air, or fitted (above), and `uwvdb_port`, "
                 "which nerfstudio does not read, describes the port. Poses are the true camera's.",
             .needs_images = true,
-            .knows_no_port = true,
+            .ports = DatasetFormat::Ports::fitted,
             .check = check_nerfstudio,
             .complete = write_transforms};
 }

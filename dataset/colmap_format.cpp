@@ -215,7 +215,7 @@ DatasetFormat colmap_format() {
                 "COLMAP's refractive fork. Poses are the true camera's.",
             .needs_points = true,
             .needs_images = true,
-            .knows_no_port = true,
+            .ports = DatasetFormat::Ports::fitted,
             .check = check_one_pose,
             .write_view =
                 [](const ViewImages& images, SetFiles& files) {

@@ -187,23 +187,27 @@ Json facts_of(const SceneDesc& first, std::span<const LightLeftOut> left_out) {
 
 namespace {
 
-/// What formats without ports make of a camera that has one; empty for one without.
+/// What formats without ports make of a camera that has one; empty for one without. `fitted_in` are
+/// those in which it is fitted; empty: none.
 std::string pinhole_lines(const Json& camera, const std::optional<PinholeFit>& fit,
-                          bool is_fitted) {
+                          const std::string& fitted_in) {
     if (!fit) return {};
     std::string text = fmt::format(
         "  - seen through its port: surfaces {:.3g} to {:.3g} m away, {:.3g} m in the median. A "
         "camera without port, as this one is in air, is off by {}",
         fit->nearest, fit->farthest, fit->median, error_text(fit->in_air));
-    if (!is_fitted)
-        return text + fmt::format("; fitted (`--pinhole-fit`) it would be off by {}\n",
-                                  error_text(fit->fitted));
+    if (fitted_in.empty())
+        return text + fmt::format(
+                          "; fitted, as `--pinhole-fit` does it for colmap, nerfstudio and euroc, "
+                          "it would be off by {}\n",
+                          error_text(fit->fitted));
     const IntrinsicsDesc& i = fit->intrinsics;
     return text + fmt::format(
-                      "; fitted, as formats without ports have it, by {}: {}, fx {:.6g}, fy "
-                      "{:.6g}, cx {:.6g}, cy {:.6g}; k {}; p {}\n",
-                      error_text(fit->fitted), camera.at("model").get<std::string>(), i.fx, i.fy,
-                      i.cx, i.cy, numbers(fit->distortion.k), numbers(fit->distortion.p));
+                      "; fitted, as {} has it, by {}: {}, fx {:.6g}, fy {:.6g}, cx {:.6g}, cy "
+                      "{:.6g}; k {}; p {}\n",
+                      fitted_in, error_text(fit->fitted), camera.at("model").get<std::string>(),
+                      i.fx, i.fy, i.cx, i.cy, numbers(fit->distortion.k),
+                      numbers(fit->distortion.p));
 }
 
 }  // namespace
@@ -235,11 +239,12 @@ std::string data_card(const DatasetFile& set, const PinholeFits& fits, std::uint
         text += fmt::format("; of those without water × {:.6g}", set.exposures.clean);
     text += "\n";
     text += "\n## Cameras\n\n";
+    const std::string fitted_in = d.pinhole_fit ? fittable_formats(d) : "";
     for (const Json& camera : set.facts.at("cameras")) {
         text += camera_lines(camera);
         const auto place = std::ranges::find(d.cameras, camera.at("name").get<std::string>());
         const auto index = static_cast<std::size_t>(place - d.cameras.begin());
-        if (index < fits.size()) text += pinhole_lines(camera, fits[index], d.pinhole_fit);
+        if (index < fits.size()) text += pinhole_lines(camera, fits[index], fitted_in);
     }
     if (!fits.empty() && d.draws.size() > 1)
         text +=

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "core/base/error.h"
@@ -61,11 +62,31 @@ bool needs_points(const DatasetDefinition& definition) {
     });
 }
 
-std::string portless_formats(const DatasetDefinition& definition) {
+namespace {
+
+/// The set's formats that do with ports what fulfils `is_meant`, in their order.
+std::string formats_whose(const DatasetDefinition& definition,
+                          const std::function<bool(DatasetFormat::Ports)>& is_meant) {
     std::string names;
     for (const std::string& name : definition.formats)
-        if (dataset_format(name).knows_no_port) names += (names.empty() ? "" : ",") + name;
+        if (is_meant(dataset_format(name).ports)) names += (names.empty() ? "" : ",") + name;
     return names;
+}
+
+}  // namespace
+
+std::string fittable_formats(const DatasetDefinition& definition) {
+    return formats_whose(definition, [](DatasetFormat::Ports ports) {
+        return ports == DatasetFormat::Ports::fitted;
+    });
+}
+
+std::string formats_in_air(const DatasetDefinition& definition) {
+    return formats_whose(definition, [&](DatasetFormat::Ports ports) {
+        if (ports == DatasetFormat::Ports::fitted) return !definition.pinhole_fit;
+        // Several cameras in KITTI's are a pair, which has no ports (check_kitti).
+        return ports == DatasetFormat::Ports::in_air && definition.cameras.size() == 1;
+    });
 }
 
 void write_view(const std::filesystem::path& folder, const std::string& sum,

@@ -66,8 +66,11 @@ struct DatasetFormat {
     std::string_view layers = {};
     bool needs_points = false;  // ViewImages::points
     bool needs_images = false;  // those of png, which is then written as well
-    /// Whether its cameras have no ports, so that --pinhole-fit may fit them.
-    bool knows_no_port = false;
+    /// What it makes of a camera behind a port: it describes the port (or has no cameras); it knows
+    /// none, and has the camera in air, or fitted with --pinhole-fit; or it has the camera in air
+    /// always, because one of its files has no place for the distortion of a fit.
+    enum class Ports { described, fitted, in_air };
+    Ports ports = Ports::described;
     /// Throws UsageError of one line for a set that it cannot express. `scene` is that of the first
     /// view, with its rig. May be null.
     void (*check)(const DatasetDefinition& definition, const SceneDesc& scene) = nullptr;
@@ -107,8 +110,12 @@ std::string layers_of(const DatasetDefinition& definition);
 /// Whether any of its formats needs ViewImages::points.
 bool needs_points(const DatasetDefinition& definition);
 
-/// The set's formats whose cameras have no ports, as --format takes them; empty if there are none.
-std::string portless_formats(const DatasetDefinition& definition);
+/// The set's formats whose cameras know no port and can be fitted by --pinhole-fit, as --format
+/// takes them; empty if there are none.
+std::string fittable_formats(const DatasetDefinition& definition);
+
+/// The set's formats that have cameras behind ports as they are in air, likewise.
+std::string formats_in_air(const DatasetDefinition& definition);
 
 /// Writes the files of a view in every format of its set, then its record. Throws IoError and
 /// InputError.

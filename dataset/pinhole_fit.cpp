@@ -366,23 +366,39 @@ std::string error_text(const ModelError& error) {
                        error.rms, error.worst);
 }
 
-std::string pinhole_message(const std::string& formats, bool is_fitted, const PinholeFits& fits) {
-    // The message is about the camera of the rig that is off the most.
+namespace {
+
+/// The camera of a rig that is off the most in air; null where that does not matter.
+const PinholeFit* most_off(const PinholeFits& fits) {
     const PinholeFit* most = nullptr;
     for (const auto& fit : fits)
         if (fit && (most == nullptr || fit->in_air.rms > most->in_air.rms)) most = &*fit;
     constexpr double k_without_a_word = 0.1;  // [pixels]
-    if (most == nullptr || most->in_air.rms < k_without_a_word) return {};
-    if (is_fitted)
-        return fmt::format(
-            "--format {} has no words for a port: the cameras there are pinholes, fitted to "
-            "surfaces {:.3g} to {:.3g} m away, and off by {} (those in air: {:.3g} px in the "
-            "median)",
-            formats, most->nearest, most->farthest, error_text(most->fitted), most->in_air.median);
+    return most == nullptr || most->in_air.rms < k_without_a_word ? nullptr : most;
+}
+
+}  // namespace
+
+std::string fitted_message(const std::string& formats, const PinholeFits& fits) {
+    const PinholeFit* most = most_off(fits);
+    if (formats.empty() || most == nullptr) return {};
+    return fmt::format(
+        "--format {} has no words for a port: the cameras there are pinholes, fitted to surfaces "
+        "{:.3g} to {:.3g} m away, and off by {} (those in air: {:.3g} px in the median)",
+        formats, most->nearest, most->farthest, error_text(most->fitted), most->in_air.median);
+}
+
+std::string in_air_message(const std::string& formats, const std::string& fittable,
+                           const PinholeFits& fits) {
+    const PinholeFit* most = most_off(fits);
+    if (formats.empty() || most == nullptr) return {};
+    const std::string whose = fittable.empty()      ? "those of colmap, nerfstudio and euroc"
+                              : fittable == formats ? "them"
+                                                    : "those of " + fittable;
     return fmt::format(
         "--format {} has no words for a port: the cameras there are those in air, and off by {}; "
-        "--pinhole-fit fits them to what is seen in the water, to {:.3g} px in the median",
-        formats, error_text(most->in_air), most->fitted.median);
+        "--pinhole-fit fits {} to what is seen in the water, to {:.3g} px in the median",
+        formats, error_text(most->in_air), whose, most->fitted.median);
 }
 
 }  // namespace uw

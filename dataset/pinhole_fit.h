@@ -70,8 +70,13 @@ CameraDesc without_port(CameraDesc camera, const std::optional<PinholeFit>& fit,
 /// "28.5 px in the median, 31.3 px RMS, 66.2 px at most".
 std::string error_text(const ModelError& error);
 
-/// One line about the cameras of these fits in `formats`, which know no port, for a run's messages:
-/// how far they are off as they are in air, and fitted. Empty where that does not matter.
-std::string pinhole_message(const std::string& formats, bool is_fitted, const PinholeFits& fits);
+/// One line about the cameras of these fits in `formats`, which know no port and have them fitted,
+/// for a run's messages: how far they are off so, and in air. Empty where that does not matter.
+std::string fitted_message(const std::string& formats, const PinholeFits& fits);
+
+/// The same for `formats` that have them as they are in air; --pinhole-fit fits, or would fit,
+/// those of `fittable`.
+std::string in_air_message(const std::string& formats, const std::string& fittable,
+                           const PinholeFits& fits);
 
 }  // namespace uw

@@ -210,7 +210,7 @@ DatasetFormat euroc_format() {
                 "`state_groundtruth_estimate0`. The body is the first camera. Velocities are "
                 "differences of the positions in the frames around; there is no IMU, and biases "
                 "are 0. Behind a port intrinsics are those in air, or fitted (above).",
-            .knows_no_port = true,
+            .ports = DatasetFormat::Ports::fitted,
             .check = check_euroc,
             .write_view = write_euroc_image,
             .complete = write_euroc_tables};

@@ -364,13 +364,15 @@ DatasetFormat kitti_format() {
             "2¹⁵)/64, third channel 1 where known), `disp_occ_0`, `disp_noc_0` (disparity = "
             "value/256, 0 where unknown), `noc` without what the other image does not see. Flow "
             "of 512 px and more and disparities of 256 px and more have no code and are left "
-            "unknown. `calib_cam_to_cam`: the cameras, of one behind a port as it is in air. "
+            "unknown. `calib_cam_to_cam`: the cameras, of one behind a port as it is in air "
+            "(above). "
             "`kitti/sequences/00/` and `kitti/poses/00.txt`: all frames as sequence 00 of the "
             "odometry benchmark, numbered from 0: `image_2`, `image_3`, `times.txt` since the "
             "first frame, poses in the axes of its left camera, and `calib.txt`, in which "
             "cameras 0 and 1 are where 2 and 3 are (where there is one camera, all four), as "
             "pinholes without distortion and port.",
         .layers = "flow,flow_occluded,disparity,disparity_occluded",
+        .ports = DatasetFormat::Ports::in_air,  // the odometry's calib.txt has no distortion
         .check = check_kitti,
         .write_view = write_kitti_images,
         .complete = [](const CompleteSequence& sequence, SetFiles& files) {

@@ -191,11 +191,12 @@ class ViewRenderer : public ViewClient {
             points_ =
                 std::make_shared<const std::vector<SurfacePoint>>(read_points(folder_ / name));
         }
-        const std::string portless = portless_formats(definition);
-        if (portless.empty() || !has_port(scene)) return;
+        const bool knows_ports =
+            fittable_formats(definition).empty() && formats_in_air(definition).empty();
+        if (knows_ports || !has_port(scene)) return;
         const PinholeFits fits = fit_pinholes(definition, draw, scene, surfaces_of(draw));
         share("pinholes", pinhole_file(definition, draw), pinhole_text(fits));
-        if (!std::exchange(has_told_of_pinholes_, true)) tell_of_pinholes(portless, fits);
+        if (!std::exchange(has_told_of_pinholes_, true)) tell_of_pinholes(fits);
     }
 
     /// Writes a file that a draw's views have in common unless it is there as it is to be.
@@ -213,12 +214,17 @@ class ViewRenderer : public ViewClient {
         return *engine_.renderer().assemble().surfaces;
     }
 
-    void tell_of_pinholes(const std::string& formats, const PinholeFits& fits) {
-        const bool is_fitted = set_.definition.pinhole_fit;
-        const std::string line = pinhole_message(formats, is_fitted, fits);
-        if (line.empty() || (is_fitted && quiet_)) return;
+    void tell_of_pinholes(const PinholeFits& fits) {
+        const DatasetDefinition& definition = set_.definition;
+        const std::string fittable = fittable_formats(definition);
+        if (definition.pinhole_fit && !quiet_) say("note", fitted_message(fittable, fits));
+        say("warning", in_air_message(formats_in_air(definition), fittable, fits));
+    }
+
+    void say(const char* kind, const std::string& line) {
+        if (line.empty()) return;
         progress_.end_line();
-        print_message(fmt::format("{}: {}\n", is_fitted ? "note" : "warning", line));
+        print_message(fmt::format("{}: {}\n", kind, line));
     }
 
     const fs::path& folder_;
@@ -273,7 +279,7 @@ void merge(const DatasetArguments& a) {
 }
 
 void check_pinhole_fit(const DatasetDefinition& definition, const SceneDesc& scene) {
-    if (portless_formats(definition).empty())
+    if (fittable_formats(definition).empty())
         throw UsageError(
             "--pinhole-fit: is for the cameras of colmap, nerfstudio and euroc; add one of them "
             "to --format");

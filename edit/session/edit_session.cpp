@@ -277,7 +277,7 @@ void EditSession::edit(const Json& request) {
                       group = optional_text_member(request, "group");
 
     SceneChanges made(document().scene(), file_, scene_, off_);
-    for (const Json& change : changes) made.apply(change);
+    made.apply(changes);
     const std::vector<std::string> touched(made.touched().begin(), made.touched().end());
     check_conflicts(revision.get<std::int64_t>(), group, touched);
     refuse_files_elsewhere(*scene_, *made.scene());

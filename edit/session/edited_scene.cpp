@@ -202,7 +202,18 @@ SceneChanges::SceneChanges(SceneText text, std::filesystem::path file,
       scene_(std::move(scene)),
       off_(std::move(off)) {}
 
-void SceneChanges::apply(const Json& change) {
+void SceneChanges::apply(const Json& changes) {
+    const auto is_set = [&](std::size_t at) {
+        return at < changes.size() && changes[at].is_object() &&
+               changes[at].value("op", Json()) == "set";
+    };
+    for (std::size_t at = 0; at < changes.size(); ++at) {
+        apply_one(changes[at]);
+        if (!is_set(at) || !is_set(at + 1)) read_again();
+    }
+}
+
+void SceneChanges::apply_one(const Json& change) {
     using Apply = void (SceneChanges::*)(const Json&);
     static constexpr std::array<std::pair<std::string_view, Apply>, 9> k_changes{
         {{"set", &SceneChanges::set},
@@ -224,7 +235,6 @@ void SceneChanges::apply(const Json& change) {
     const std::set<std::string> before = texts_of(text_.tree());
     (this->*found->second)(change);
     check_texts(before);
-    read_again();
 }
 
 // A page may not have the program open files elsewhere than where the scene is. Which keys name
@@ -288,10 +298,10 @@ void SceneChanges::set(const Json& change) {
     const std::string path = text_member(change, "path");
     const Json& value = member(change, "value");
     touched_.insert(path);
-    if (value.is_null())
-        text_.remove(path);
-    else
+    if (!value.is_null())
         text_.set(path, value.dump());
+    else if (text_.find(path) || !text_.find(path.substr(0, path.rfind('.'))))
+        text_.remove(path);  // throws if nothing is there that could have the key
 }
 
 void SceneChanges::add_lamp(const Json& change) {

@@ -78,10 +78,12 @@ class SceneChanges {
     SceneChanges(SceneText text, std::filesystem::path file,
                  std::shared_ptr<const EditedScene> scene, std::vector<std::string> off);
 
-    /// Makes one change, {"op": ...} as docs/edit-api.md says. Throws InputError and UsageError of
-    /// one line, IoError; then this is of no further use. A text that is new to the scene and, as a
-    /// file's name, leads out of its folder is refused, whatever its key, before anything is read.
-    void apply(const Json& change);
+    /// Makes these changes, each {"op": ...} as docs/edit-api.md says. Successive `set`s are read
+    /// together: a lamp cannot be given a kind and then its size. Throws InputError and UsageError
+    /// of one line, IoError; then this is of no further use. A text that is new to the scene and,
+    /// as a file's name, leads out of its folder is refused, whatever its key, before anything is
+    /// read.
+    void apply(const Json& changes);
 
     const SceneText& text() const { return text_; }
     const std::shared_ptr<const EditedScene>& scene() const { return scene_; }
@@ -90,6 +92,7 @@ class SceneChanges {
     const std::set<std::string>& touched() const { return touched_; }
 
   private:
+    void apply_one(const Json& change);
     const LampDesc& lamp(std::size_t index) const { return scene_->scene.desc().lamps[index]; }
     std::size_t lamp_of(const Json& change) const;
     std::string entry_of(std::size_t lamp) const;

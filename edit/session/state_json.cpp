@@ -302,6 +302,12 @@ Json extent_json(const std::optional<LampExtentDesc>& extent) {
             {"samples", extent->samples}};
 }
 
+// What a sun has beside a lamp, by its keys in scene files.
+Json sun_json(const std::optional<SunDesc>& sun) {
+    if (!sun) return nullptr;
+    return {{"angle", sun->angle}, {"samples", sun->samples}};
+}
+
 std::string_view frame_of(const SceneDesc& desc, const LampDesc& lamp, const ConfigNode* entry) {
     const ConfigNode* frame = entry ? entry->find("frame") : nullptr;
     if (frame && frame->scalar == "world") return "world";
@@ -341,6 +347,7 @@ Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& t
             {"profile", lamp.sun ? Json{{"type", "sun"}}
                                  : std::visit(ProfileJson{desc.file.parent_path()}, lamp.profile)},
             {"extent", extent_json(lamp.extent)},
+            {"sun", sun_json(lamp.sun)},
             {"half_angle", half_angle ? Json(*half_angle) : Json(nullptr)},
             {"brightness", brightness_json(lamp, entry)},
             {"band_intensity", list_json(known.brightness.first(edited.bands()))},

@@ -328,6 +328,32 @@ TEST_F(PinholeSets, FittedAreOffByWhatTheySay) {
         "");
 }
 
+// KITTI's tables have no distortion that could be fitted, so that its camera is that in air always.
+TEST_F(PinholeSets, OfKittiSayHowFarTheyAreOff) {
+    const std::string said =
+        said_by("kitti", {"--format", "kitti", "--set", k_flat_port, "--quiet"});
+    EXPECT_EQ(test::line_count(said), 1) << said;
+    EXPECT_TRUE(said.starts_with("warning: --format kitti has no words for a port")) << said;
+    EXPECT_NE(said.find("--pinhole-fit fits those of colmap, nerfstudio and euroc"),
+              std::string::npos)
+        << said;
+    said_by("air", {"--format", "colmap", "--set", k_flat_port, "--quiet"});
+    EXPECT_EQ(fit_of("kitti"), fit_of("air"));
+    const std::string off = fmt::format("off by {:.3g} px in the median",
+                                        fit_of("air").at("in_air").at("median_px").get<double>());
+    EXPECT_NE(said.find(off), std::string::npos) << said;
+    EXPECT_NE(read("kitti/README.md").find(off), std::string::npos);
+    // Beside a format that is fitted it is still warned of.
+    const std::string both = said_by(
+        "both", {"--format", "colmap,kitti", "--set", k_flat_port, "--pinhole-fit", "--quiet"});
+    EXPECT_EQ(test::line_count(both), 1) << both;
+    EXPECT_TRUE(both.starts_with("warning: --format kitti has no words for a port")) << both;
+    EXPECT_NE(both.find("--pinhole-fit fits those of colmap to"), std::string::npos) << both;
+    EXPECT_NE(read("both/README.md").find("fitted, as colmap has it"), std::string::npos);
+    EXPECT_EQ(read("both/kitti/sequences/00/calib.txt"),
+              read("kitti/kitti/sequences/00/calib.txt"));
+}
+
 // The set differs from that of the camera in air in nothing but the models without ports.
 TEST_F(PinholeSets, FittedHaveTheTruePoses) {
     said_by("air", {"--format", "colmap", "--set", k_flat_port});
@@ -371,6 +397,9 @@ TEST_F(PinholeSets, OfARigFitEachCameraThatHasAPort) {
 TEST_F(PinholeSets, AreRefusedWhereTheyMakeNoSense) {
     expect_failure({"dataset", "moving.yaml", "--format", "png", "--pinhole-fit"}, 2,
                    "add one of them to --format");
+    expect_failure(
+        {"dataset", "moving.yaml", "--format", "kitti", "--pinhole-fit", "--set", k_flat_port}, 2,
+        "add one of them to --format");
     expect_failure({"dataset", "moving.yaml", "--format", "colmap", "--pinhole-fit"}, 2,
                    "no camera of the scene has a port");
     expect_failure({"dataset", "moving.yaml", "-o", "open", "--quiet", "--format", "nerfstudio",

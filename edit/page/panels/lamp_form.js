@@ -24,6 +24,9 @@ const KEY_LABELS = {
 
 const EXTENT_STEPS = { radius: 0.01, width: 0.01, height: 0.01, rotate: 1, samples: 1 };
 
+/** point, rectangle, disk; of a sun whether its disc has an extent. */
+const kindOf = ({ extent, sun }) => extent?.type ?? (sun ? `sun ${sun.angle > 0}` : "point");
+
 const hint = (text) => ({ element: h("p", { class: "hint" }, text), update: () => {} });
 
 export class LampForm {
@@ -45,9 +48,9 @@ export class LampForm {
     }
 
     #signature({ scene, lamp }) {
-        return lamp && [lamp.name, lamp.name, lamp.profile.type, lamp.why_not, lamp.brightness.kind, lamp.extent?.type ?? null,
-            lamp.brightness.spectrum, Array.isArray(lamp.brightness.value), scene.ies_files,
-            scene.image.bands, scene.rig];
+        return lamp && [lamp.name, lamp.profile.type, lamp.why_not, kindOf(lamp),
+            lamp.brightness.kind, lamp.brightness.spectrum, Array.isArray(lamp.brightness.value),
+            scene.ies_files, scene.image.bands, scene.rig];
     }
 
     #build({ scene, lamp }) {
@@ -71,10 +74,13 @@ export class LampForm {
         (now) => now.direction);
         const brightness = brightnessFields(scene, lamp, this.#editing, this.#picture);
         if (!hasPlace(lamp)) {
-            return [...parts, direction, "Brightness", ...brightness, hint("The angle of the sun's " +
-                "disc and the water's surface are changed in the scene file.")];
+            return [...parts, direction, ...this.#discParts(lamp, field, set), "Brightness",
+                ...brightness, hint("The water's surface is changed in the scene file.")];
         }
         parts.push(
+            field(selectField({ label: "Kind", key: "type",
+                options: ["point", "rectangle", "disk"].map((kind) => ({ value: kind, label: kind })),
+                commit: (kind, refuse) => this.#setKind(lamp, kind, refuse) }), kindOf),
             field(selectField({ label: "Frame", key: "frame",
                 options: ["camera", ...(scene.rig ? ["rig"] : []), "world",
                     ...(lamp.frame === "trajectory" ? ["trajectory"] : [])]
@@ -95,6 +101,19 @@ export class LampForm {
         const { selected, solo, onlyLamp } = this.#settings.value;
         const now = (name) => (name === from ? to : name);
         this.#settings.update({ selected: now(selected), solo: now(solo), onlyLamp: now(onlyLamp) });
+    }
+
+    /** Another kind of lamp, about as large as it was. Keys of its old kind leave the file. */
+    #setKind({ name, extent }, kind, onRefusal) {
+        const { radius = 0.1, width = 2 * radius, height = width } = extent ?? {};
+        const keys = {
+            point: { type: null, width: null, height: null, rotate: null, radius: null, samples: null },
+            rectangle: { type: kind, width, height, radius: null },
+            disk: { type: kind, width: null, height: null, rotate: null,
+                radius: Math.min(width, height) / 2 },
+        }[kind];
+        return this.#editing.edit(`kind of ${name}`, Object.entries(keys).map(([key, value]) =>
+            ({ op: "set", path: `lamps.${name}.${key}`, value })), { onRefusal });
     }
 
     /** Another frame; the lamp stays where it is and shines as it did. */
@@ -121,6 +140,14 @@ export class LampForm {
                 : [number("Width", "m", "width"), number("Height", "m", "height"),
                     number("Rotate", "°", "rotate")]),
             number("Points", null, "samples")];
+    }
+
+    /** The disc of a sun. */
+    #discParts({ sun }, field, set) {
+        const number = (label, unit, key, step) => field(numberField({ label, unit, key, step,
+            commit: set(label.toLowerCase(), key) }), (now) => now.sun?.[key] ?? 0);
+        return ["Disc", number("Angle across", "°", "angle", 0.1),
+            ...(sun.angle > 0 ? [number("Directions", null, "samples", 1)] : [])];
     }
 
     #profileParts(scene, lamp, field, set) {

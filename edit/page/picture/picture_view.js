@@ -27,7 +27,7 @@ export class PictureView {
     #planes;
     #snapshot = null; // {image, planes, gains, revision}
     #factors = {}; // of brightness sliders that are being moved, by lamp name
-    #stopsOfFirst = null; // the exposure that was chosen for a picture of quality "first"
+    #oldStops = null; // the exposure, where another is to be chosen for the next picture of all light
     #drawSoon;
 
     /** `actions` as those of LampHandles, but for redraw. */
@@ -68,9 +68,10 @@ export class PictureView {
 
     setImage(image) {
         // Of the first picture of all light most is still missing: another exposure suits the next.
-        if (image.quality !== "first" && this.#stopsOfFirst !== null) {
-            if (this.#settings.value.stops === this.#stopsOfFirst) this.#settings.update({ stops: null });
-            this.#stopsOfFirst = null;
+        if (this.#oldStops !== null && image.quality !== "first" &&
+            image.revision === this.#scene.value.revision) {
+            if (this.#settings.value.stops === this.#oldStops) this.#settings.update({ stops: null });
+            this.#oldStops = null;
         }
         this.#image = image;
         this.#planes.upload(image);
@@ -92,6 +93,11 @@ export class PictureView {
     chooseExposure() {
         if (!this.#image) return;
         this.#settings.update({ stops: automaticStops(this.#image, this.#mix(this.#image)) });
+    }
+
+    /** Chooses the exposure anew for the next picture of all light, unless the user does before. */
+    exposeNext() {
+        this.#oldStops = this.#settings.value.stops;
     }
 
     /** Keeps the picture at hand for the split view. Exposure and layer apply to both. */
@@ -163,7 +169,7 @@ export class PictureView {
         if (!this.#image) return;
         if (stops === null) {
             this.chooseExposure();
-            if (this.#image.quality === "first") this.#stopsOfFirst = this.#settings.value.stops;
+            if (this.#image.quality === "first") this.exposeNext();
             return;
         }
         const from = splits ? split.at : 0;

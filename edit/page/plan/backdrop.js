@@ -99,7 +99,7 @@ export class Backdrop {
         };
         context.textAlign = "center";
         this.#eachTick(viewport, "right", (value, at) => {
-            if (at > 34 * size && at < width - 30 * size) {
+            if (at > 34 * size && at < width - 48 * size) {
                 write(String(Object.is(value, -0) ? 0 : value), at, height - 5 * size);
             }
         });

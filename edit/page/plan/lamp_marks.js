@@ -7,9 +7,11 @@ import { along, normalize } from "../base/vec.js";
 import { lampColour } from "../panels/lamp_colours.js";
 import { beamOutline } from "./beam.js";
 import { snapped } from "./snap.js";
+import { TITLE_PIXELS } from "./viewport.js";
 
 const BEAM_METRES = 1.5;
 const AXIS_PIXELS = 46; // from the lamp to its axis's handle, unless the axis is foreshortened
+const LABEL_PIXELS = 90; // that a name may need
 const KEY_METRES = 0.01; // per press of an arrow key, times ten with Shift
 
 const lampOf = (scene, name) => scene.lamps.find((lamp) => lamp.name === name);
@@ -101,7 +103,13 @@ export class LampMarks {
             x1: at[0], y1: at[1], x2: end[0], y2: end[1],
             visibility: turns ? "visible" : "hidden",
         });
-        setAttributes(mark.label, { x: at[0] + 10 * size, y: at[1] - 8 * size });
+        // Its name is beside it: not under the view's title, nor across its edge.
+        const isLow = at[1] < (TITLE_PIXELS + 20) * size;
+        const isLeft = at[0] > viewport.size[0] - LABEL_PIXELS * size;
+        setAttributes(mark.label, {
+            x: at[0] + (isLeft ? -10 : 10) * size, y: at[1] + (isLow ? 16 : -8) * size,
+            "text-anchor": isLeft ? "end" : "start",
+        });
         mark.label.textContent = selected ? lamp.name : "";
     }
 

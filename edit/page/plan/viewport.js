@@ -1,9 +1,14 @@
 // Where on a plan view a point of the world lies, and back; panning and zooming.
 
+import { sizeFactor } from "../base/dom.js";
 import { add, dot, scale } from "../base/vec.js";
 
 const LEAST_ZOOM = 2; // pixels per metre
 const MOST_ZOOM = 20000;
+
+/** Pixels at the top, where a view's title is, and at the bottom, where its scale is. */
+export const TITLE_PIXELS = 24;
+const SCALE_PIXELS = 18;
 
 export class Viewport {
     centre = [0, 0]; // metres, along right and up
@@ -50,13 +55,16 @@ export class Viewport {
         this.centre = [this.centre[0] + fixed[0] - moved[0], this.centre[1] + fixed[1] - moved[1]];
     }
 
-    /** Shows all of the points, with some room around them. */
+    /** Shows all of the points, with some room around them, between the title and the scale. */
     fit(points) {
         const plan = points.map((point) => this.toPlan(point));
         const low = [0, 1].map((k) => Math.min(...plan.map((each) => each[k])));
         const high = [0, 1].map((k) => Math.max(...plan.map((each) => each[k])));
         this.centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
-        const room = [0, 1].map((k) => (this.size[k] * 0.75) / Math.max(high[k] - low[k], 0.2));
+        const [above, below] = [TITLE_PIXELS, SCALE_PIXELS].map((pixels) => pixels * sizeFactor());
+        const free = [this.size[0] * 0.75, Math.max(this.size[1] - above - below, 1) * 0.9];
+        const room = [0, 1].map((k) => free[k] / Math.max(high[k] - low[k], 0.2));
         this.zoom = Math.min(Math.max(Math.min(...room), LEAST_ZOOM), MOST_ZOOM);
+        this.centre[1] += (above - below) / 2 / this.zoom;
     }
 }

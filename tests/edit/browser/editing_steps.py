@@ -147,6 +147,45 @@ class EditingSteps(unittest.TestCase):
         # The browser's console names the answer with status 422.
         self.page.complaints = [c for c in self.page.complaints if "422" not in c]
 
+    def choose(self, key, value):
+        """Chooses an entry of the form's list of that key."""
+        self.page.evaluate(f"""(() => {{
+            const list = document.querySelector('#lamp-form select[data-key="{key}"]');
+            list.value = {value!r};
+            list.dispatchEvent(new Event('change'));
+        }})()""")
+        self.view.settle()
+
+    def test_kind_and_unit(self):
+        self.choose("type", "rectangle")
+        extent = self.view.lamp("spot")["extent"]
+        self.assertEqual([extent[key] for key in ("type", "width", "height")], ["rectangle", 0.2, 0.2])
+        self.page.type_into('[data-key="width"]', "0.4")
+        self.choose("type", "disk")
+        extent = self.view.lamp("spot")["extent"]
+        self.assertEqual((extent["type"], extent["radius"]), ("disk", 0.1))
+        self.choose("type", "point")
+        self.assertIsNone(self.view.lamp("spot")["extent"])
+        # As bright as it was, in other units.
+        before = self.view.lamp("spot")
+        self.choose("brightness.kind", "power")
+        self.page.wait("document.querySelector('[data-key=\"brightness.0\"]').value !== '1'")
+        after = self.view.lamp("spot")
+        self.assertEqual(after["brightness"]["kind"], "power")
+        for was, now in zip(before["band_intensity"], after["band_intensity"]):
+            self.assertAlmostEqual(now / was, 1, places=3)
+
+    def test_all_light_is_exposed_anew(self):
+        self.page.wait("!document.querySelector('.light-note').hidden")
+        shown = "[aria-label=\"Exposure in stops\"]"
+        single = float(self.page.evaluate(f"document.querySelector('{shown}').value"))
+        self.page.click(".light-note button")
+        self.page.wait("document.querySelector('.light-note').hidden")
+        self.view.settle()
+        self.page.wait(f"{self.view.DRAWN}?.quality === 'final' && "
+                       f"{self.view.DRAWN}.revision === {self.view.state('revision')}")
+        self.assertLess(float(self.page.evaluate(f"document.querySelector('{shown}').value")), single)
+
     def test_slider_without_requests(self):
         before = self.view.canvas()
         slider = '[data-key="brightness.slider"]'

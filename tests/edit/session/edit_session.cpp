@@ -275,6 +275,11 @@ TEST(EditSessionLamps, ASunIsDimmedAndSwitchedOffButNotMoved) {
     };
     EXPECT_EQ(set("lamps.sun.irradiance", {6, 4, 2})["band_intensity"], Json({6.0, 4.0, 2.0}));
     EXPECT_EQ(set("lamps.sun.direction", {0, 1, 0})["direction"], Json({0.0, 1.0, 0.0}));
+    EXPECT_EQ(session.state()["lamps"][1]["sun"]["angle"], 0);
+    EXPECT_EQ(set("lamps.sun.angle", 0.5)["sun"]["angle"], 0.5);
+    EXPECT_THROW(set("lamps.sun.angle", 91), InputError);
+    EXPECT_EQ(session.state()["lamps"][1]["sun"]["angle"], 0.5);
+    EXPECT_TRUE(session.state()["lamps"][0]["sun"].is_null());
     EXPECT_EQ(edit({{"op", "lamp_on"}, {"lamp", "sun"}, {"on", false}})["on"], false);
     for (const Json& change : {Json{{"op", "move_lamp"}, {"lamp", "sun"}, {"world", {0, 0, 0}}},
                                Json{{"op", "aim_lamp"}, {"lamp", "sun"}, {"world", {0, 0, 0}}},
@@ -314,6 +319,39 @@ TEST(EditSessionChoice, ShowsEachFrameOfWhatMoves) {
     EXPECT_GT(after["moment"]["time"], before["moment"]["time"]);
     EXPECT_NE(after["camera"]["position"], before["camera"]["position"]);
     EXPECT_THROW(session.show({{"frame", last + 1}}), UsageError);
+}
+
+// The changes are those that the page sends. Nothing of another kind is left in the file.
+TEST_F(EditSessionTest, APointBecomesARectangleADiskAndAPointAgain) {
+    const auto become = [&](const Json& keys) {
+        Json changes = Json::array();
+        for (const auto& [key, value] : keys.items())
+            changes.push_back({{"op", "set"}, {"path", "lamps.right." + key}, {"value", value}});
+        session_.edit({{"revision", session_.state()["revision"]}, {"changes", changes}});
+        return session_.state()["lamps"][1];
+    };
+    const Json before = session_.state()["lamps"][1];
+    ASSERT_TRUE(before["extent"].is_null());
+    const Json none{{"type", nullptr},   {"width", nullptr},  {"height", nullptr},
+                    {"radius", nullptr}, {"rotate", nullptr}, {"samples", nullptr}};
+    Json keys = none;
+    keys.update({{"type", "rectangle"}, {"width", 0.2}, {"height", 0.1}, {"samples", 64}});
+    EXPECT_EQ(become(keys)["extent"], Json({{"type", "rectangle"},
+                                            {"width", 0.2},
+                                            {"height", 0.1},
+                                            {"rotate", 0.0},
+                                            {"samples", 64}}));
+    keys = none;
+    keys.update({{"type", "disk"}, {"radius", 0.1}, {"samples", 64}});
+    EXPECT_EQ(become(keys)["extent"], Json({{"type", "disk"}, {"radius", 0.1}, {"samples", 64}}));
+    const Json after = become(none);
+    EXPECT_TRUE(after["extent"].is_null());
+    EXPECT_EQ(after["profile"], before["profile"]);
+    EXPECT_EQ(after["band_intensity"], before["band_intensity"]);
+    session_.save(Json::object());
+    EXPECT_EQ(text(), k_edit_scene);
+    // Only a key may be missing, not what it is of.
+    EXPECT_THROW(set("lamps.none.type", nullptr), InputError);
 }
 
 TEST(EditSessionLamps, ALampHasASizeThatIsSet) {
