@@ -36,6 +36,8 @@ DatasetFormat exr_format() {
             .write_view = [](const ViewImages& images, SetFiles& files) {
                 ImageMetadata metadata = images.metadata;
                 add_id_names(images.surfaces->names(), metadata);
+                add_matte_manifests(images.surfaces->names(), images.film.channel_names(),
+                                    metadata);
                 files.add("exr", images.definition.file(images.view, "exr", ".exr"),
                           [&](const auto& file) { write_exr(file, images.film, metadata); });
             }};

@@ -331,6 +331,8 @@ class RendererObject : public RunClient {
                         {}});
         RenderReport& report = image_->report;
         if (!report.light_note.empty()) report.warnings.push_back(report.light_note);
+        add_matte_manifests(there.surfaces->names(), image_->film.channel_names(),
+                            image_->metadata);
         if (requests_ids(wanted_->options.layers)) {
             const SurfaceNames& names = there.surfaces->names();
             add_id_names(names, image_->metadata);

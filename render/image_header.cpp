@@ -10,6 +10,7 @@
 #include "core/base/json.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
+#include "core/image/cryptomatte.h"
 #include "core/image/exr_file.h"
 #include "core/image/image_quantity.h"
 #include "core/light/integrator_table.h"
@@ -66,6 +67,19 @@ std::filesystem::path id_table_beside(const std::filesystem::path& image) {
 void add_id_names(const SurfaceNames& names, ImageMetadata& metadata) {
     metadata["uwvdb/id_names"] = names_by_number(names.objects);
     metadata["uwvdb/material_names"] = names_by_number(names.materials);
+}
+
+void add_matte_manifests(const SurfaceNames& names, const std::vector<std::string>& channel_names,
+                         ImageMetadata& metadata) {
+    const auto add = [&](Layer layer, const NameList& list) {
+        if (std::ranges::find(channel_names, matte_channels(layer).front()) == channel_names.end())
+            return;
+        std::vector<std::string> texts;
+        for (const SurfaceName& surface : list) texts.push_back(surface.name);
+        add_matte_header(layer, texts, metadata);
+    };
+    add(Layer::crypto_object, names.objects);
+    add(Layer::crypto_material, names.materials);
 }
 
 void write_id_table(OutputFile& out, const SurfaceNames& names) {

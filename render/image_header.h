@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/output_files.h"
 #include "core/geometry/surfaces.h"
@@ -21,8 +23,13 @@ std::filesystem::path id_table_beside(const std::filesystem::path& image);
 /// `uwvdb/material_names`, JSON objects of names by number.
 void add_id_names(const SurfaceNames& names, ImageMetadata& metadata);
 
-/// Writes the same as a CSV: layer, number, name, and the entry of `geometry` it comes from. What
-/// cannot be written is for out.commit() to report.
+/// Adds the manifests of an image's mattes, if its channels have any: identifiers by name, under
+/// the keys of Cryptomatte's specification.
+void add_matte_manifests(const SurfaceNames& names, const std::vector<std::string>& channel_names,
+                         ImageMetadata& metadata);
+
+/// Writes the ids' names as a CSV: layer, number, name, and the entry of `geometry` it comes from.
+/// What cannot be written is for out.commit() to report.
 void write_id_table(OutputFile& out, const SurfaceNames& names);
 
 /// The part of an image's header that follows from the scene's description alone: images of the

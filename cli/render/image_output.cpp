@@ -81,6 +81,7 @@ void write_images(const OutputFiles& files, const FinishedImage& image, const Im
     if (with_exr) {
         ImageMetadata with_names = metadata;
         if (!files.ids.empty()) add_id_names(image.surfaces->names(), with_names);
+        add_matte_manifests(image.surfaces->names(), film.channel_names(), with_names);
         write_exr(outputs.add(files.image), film, with_names, storage.exr);
         if (!files.ids.empty()) write_id_table(outputs.add(files.ids), image.surfaces->names());
     }

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/image/cryptomatte.h"
 
 namespace uw {
 namespace {
@@ -134,7 +136,8 @@ void LayerPlan::Selection::add(std::string_view item, std::span<const std::strin
 
 void LayerPlan::Selection::add_all() {
     for (std::size_t i = 0; i < k_layer_count; ++i)
-        if (k_layers[i].content != LayerContent::match && is_possible(k_layers[i], supply))
+        if (k_layers[i].content != LayerContent::match &&
+            k_layers[i].content != LayerContent::matte && is_possible(k_layers[i], supply))
             layers[i] = true;
 }
 
@@ -184,6 +187,12 @@ void LayerPlan::add_layers(const Selection& selection, std::span<const std::stri
         const bool is_rgb = i == static_cast<std::size_t>(Layer::total) && band_count_ == 3;
         if (!selection.layers[i] || is_rgb) continue;
         first_[i] = static_cast<int>(channel_names_.size());
+        if (k_layers[i].content == LayerContent::matte) {
+            std::ranges::copy(matte_channels(k_layers[i].layer),
+                              std::back_inserter(channel_names_));
+            channel_counts_[i] = k_matte_values;
+            continue;
+        }
         const auto suffixes = suffixes_of(k_layers[i], bands, selection.supply);
         channel_counts_[i] = suffixes.size();
         add_channels(std::string(k_layers[i].name), suffixes);

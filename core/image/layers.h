@@ -38,6 +38,8 @@ enum class Layer {
     position,
     id,
     material,
+    crypto_object,
+    crypto_material,
     sensor,
     flow,
     flow_back,
@@ -55,6 +57,7 @@ enum class LayerContent {
     exact,   ///< light that no path estimates, or its error: of an exposure, not of paths
     share,   ///< a fraction, not light: a mean over an exposure
     point,   ///< ground truth of the point that a pixel's centre sees; 0 where it sees none
+    matte,   ///< what the pixel shows and how much of each: `all` leaves it out
     match,   ///< where that point is in another image: `all` leaves it out
     number,  ///< the sensor's
 };
@@ -68,6 +71,7 @@ struct LayerKind {
     LayerContent content;
     std::string_view name;  ///< in files and --layers
     /// One channel per letter; one per band if empty. A sensor with one number per pixel has `V`.
+    /// A matte has layers of four, which compositors look for by their names (cryptomatte.h).
     std::string_view suffixes{};
     /// Why an image lacks the layer, and what to write to have it; empty if every image has it,
     /// else a pass has to provide it (LayerSupply).
@@ -77,7 +81,9 @@ struct LayerKind {
     constexpr bool is_light() const {
         return content == LayerContent::light || content == LayerContent::exact;
     }
-    constexpr bool of_exposure() const { return is_light() || content == LayerContent::share; }
+    constexpr bool of_exposure() const {
+        return is_light() || content == LayerContent::share || content == LayerContent::matte;
+    }
 };
 
 namespace layer_mends {
@@ -119,6 +125,8 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::position, LayerContent::point, "position", "XYZ"},
     {Layer::id, LayerContent::point, "id", "V"},
     {Layer::material, LayerContent::point, "material", "V"},
+    {Layer::crypto_object, LayerContent::matte, "crypto_object"},
+    {Layer::crypto_material, LayerContent::matte, "crypto_material"},
     {Layer::sensor, LayerContent::number, "sensor", "RGB", layer_mends::k_sensor},
     {Layer::flow, LayerContent::match, "flow", "XY", layer_mends::k_flow},
     {Layer::flow_back, LayerContent::match, "flow_back", "XY", layer_mends::k_flow},
@@ -184,18 +192,18 @@ struct LayerSupply {
 /// decimal point is written as an underscore (`direct.540_5nm`), since readers take everything
 /// before the last point as the layer. Then the total per band is a layer of its own, `total`; with
 /// three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`, `normal.X .Y .Z`,
-/// `position.X .Y .Z`, `id.V`, `material.V`, `sensor.V` or `sensor.R .G .B`, `flow.X .Y`,
-/// `flow_back.X .Y`, `flow_occluded.V`, `disparity.X .Y`, `disparity_occluded.V`. A lamp's own
-/// light is `lamp.<name>.R` and so on; light scattered n times is `order.<n>.R`, what is scattered
-/// more often than LayerSupply::orders `order.more.R`, and by reflections likewise
-/// `reflections.<n>.R`.
+/// `position.X .Y .Z`, `id.V`, `material.V`, `CryptoObject00.R` and so on (cryptomatte.h),
+/// `sensor.V` or `sensor.R .G .B`, `flow.X .Y`, `flow_back.X .Y`, `flow_occluded.V`, `disparity.X
+/// .Y`, `disparity_occluded.V`. A lamp's own light is `lamp.<name>.R` and so on; light scattered n
+/// times is `order.<n>.R`, what is scattered more often than LayerSupply::orders `order.more.R`,
+/// and by reflections likewise `reflections.<n>.R`.
 class LayerPlan {
   public:
     /// `request` is the argument of --layers: comma-separated layers, including `lamps` for every
     /// lamp, `lamp.<name>` for one, `all`, and `default` for the image with its depth. Empty means
     /// `default`. Order and repetition do not matter. `sensor` brings `total` with it. `all` leaves
-    /// out what is not in `supply` and what is about another image. Throws UsageError for an
-    /// unknown layer or lamp, and for one that is not in `supply`; InputError if bands or lamps
+    /// out mattes, what is not in `supply` and what is about another image. Throws UsageError for
+    /// an unknown layer or lamp, and for one that is not in `supply`; InputError if bands or lamps
     /// cannot be distinguished by name or a lamp's name is not valid in a channel name.
     LayerPlan(std::string_view request, std::span<const double> bands_nm,
               std::span<const std::string> lamp_names, const LayerSupply& supply = {});

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/image/cryptomatte.h"
 #include "core/image/film.h"
 
 namespace uw {
@@ -87,6 +88,14 @@ void fill_material(const PixelResult& pixel, std::span<float> channels) {
     channels[0] = static_cast<float>(pixel.hit.material_id);
 }
 
+template <float PixelResult::SeenSurface::*id>
+void fill_mattes(const PixelResult& pixel, std::span<float> channels) {
+    thread_local std::vector<Matte> mattes;
+    mattes.clear();
+    for (const PixelResult::SeenSurface& seen : pixel.seen) add_matte(seen.*id, seen.share, mattes);
+    store_mattes(mattes, channels);
+}
+
 /// Leaves the channels alone: they are filled once the whole image is there (SensorPass).
 void leave(const PixelResult&, std::span<float>) {}
 
@@ -121,6 +130,8 @@ constexpr std::array<LayerFill, k_layer_count> k_fills{{
     {Layer::position, fill_position},
     {Layer::id, fill_id},
     {Layer::material, fill_material},
+    {Layer::crypto_object, fill_mattes<&PixelResult::SeenSurface::object>},
+    {Layer::crypto_material, fill_mattes<&PixelResult::SeenSurface::material>},
     {Layer::sensor, leave},
     {Layer::flow, fill_pair<&PixelResult::flow>},
     {Layer::flow_back, fill_pair<&PixelResult::flow_back>},
@@ -223,6 +234,7 @@ void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     lamps.assign(lamp_count, Spectrum{});
     orders.clear();
     reflections.clear();
+    seen.clear();
 }
 
 InScatterParts in_scatter_parts(const LayerPlan& plan) {
@@ -303,8 +315,8 @@ ExposureMean::ExposureMean(const LayerPlan& plan, const BandColour& colour, Film
     std::vector<bool> is_mean(mean.channel_names().size(), true);
     std::vector<float> place(is_mean.size());
     for (const LayerKind& kind : k_layers) {
-        const bool is_plain =
-            kind.of_exposure() && kind.layer != Layer::error && kind.layer != Layer::transmittance;
+        const bool is_plain = kind.of_exposure() && kind.content != LayerContent::matte &&
+                              kind.layer != Layer::error && kind.layer != Layer::transmittance;
         if (is_plain || !plan.has(kind.layer)) continue;
         const std::span<float> own = plan.channels(kind.layer, place);
         const auto first = static_cast<std::size_t>(own.data() - place.data());
@@ -342,6 +354,12 @@ void ExposureMean::add_pixel(std::span<const float> part, float share, float sha
     const float weight = share / share_so_far;
     for (const std::size_t channel : channels_)
         mean[channel] += weight * (part[channel] - mean[channel]);
+    for (const Layer matte : {Layer::crypto_object, Layer::crypto_material}) {
+        if (!plan_.has(matte)) continue;
+        const auto first = static_cast<std::size_t>(plan_.first_channel(matte));
+        mix_mattes(part.subspan(first, k_matte_values), static_cast<double>(weight),
+                   mean.subspan(first, k_matte_values));
+    }
     if (!plan_.has(Layer::error)) return;
     const auto first = static_cast<std::size_t>(plan_.first_channel(Layer::error));
     for (std::size_t b = 0; b < plan_.band_count(); ++b)

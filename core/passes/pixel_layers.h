@@ -45,6 +45,12 @@ struct PixelResult {
     /// All radiance by how often it was scattered, and by how often it was reflected, as
     /// LayerPlan::order_count; empty unless requested.
     std::vector<Spectrum> orders, reflections;
+    /// What the samples see of surfaces, by the identifiers of mattes (core/image/cryptomatte.h).
+    struct SeenSurface {
+        float object = 0, material = 0;
+        double share = 0;  // of the pixel
+    };
+    std::vector<SeenSurface> seen;
     bool has_hit = false;  // whether the centre's ray hits a surface
     SurfaceHit hit;
     double depth_z = 0;  // camera-frame z of the hit

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/geometry/surface_reflection.h"
+#include "core/image/cryptomatte.h"
 
 namespace uw {
 
@@ -90,6 +91,13 @@ void store_matches(const PointMatchers& matchers, const PixelView& view, PixelRe
 
 namespace {
 
+// The identifier behind each id, of which 0 is nothing.
+std::vector<float> matte_ids(const std::vector<SurfaceName>& names) {
+    std::vector<float> ids{0.0F};
+    for (const SurfaceName& name : names) ids.push_back(matte_id(name.name));
+    return ids;
+}
+
 // Surface samples whose distances agree to within this fraction share one integral through the
 // water: their in-scatter differs by less than 1 % of that of the last centimetres.
 constexpr double k_same_distance = 0.01;
@@ -131,6 +139,8 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
                   band_count(), parts),
       lamps_in_view_(scene, transport.path_weight),
       matchers_(matchers),
+      object_mattes_(matte_ids(scene.surfaces->names().objects)),
+      material_mattes_(matte_ids(scene.surfaces->names().materials)),
       camera_from_world_(rays.world_from_camera().inverse()) {}
 
 void PixelRenderer::trace(int x, int y, PixelView& view) const {
@@ -259,6 +269,7 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
         for (double& transmittance : result.transmittance.first(bands))
             transmittance /= static_cast<double>(view.samples.size());
     for (const SeenLamp& lamp : view.lamps) add_lamp(lamp, result);
+    add_seen(view, result);
     if (!view.ray) return;
     add_water(in_scatter, result);
     result.pixel_factor = pixel_factor(view);
@@ -337,6 +348,16 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
             if (!result.lamps.empty()) result.lamps[emitter.index()][b] += direct;
         }
     }
+}
+
+void PixelRenderer::add_seen(const PixelView& view, PixelResult& result) const {
+    const auto id_of = [](const std::vector<float>& ids, std::uint32_t number) {
+        return number < ids.size() ? ids[number] : 0.0F;
+    };
+    for (const SurfaceSample& sample : view.samples)
+        result.seen.push_back({id_of(object_mattes_, sample.hit.object_id),
+                               id_of(material_mattes_, sample.hit.material_id),
+                               1.0 / samples_.count});
 }
 
 void PixelRenderer::add_lamp(const SeenLamp& lamp, PixelResult& result) const {

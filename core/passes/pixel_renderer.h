@@ -117,6 +117,8 @@ class PixelRenderer {
   private:
     void add_surface(const SurfaceSample& surface, const SurfaceLight& light, std::size_t sample,
                      PixelResult& result) const;
+    // For mattes: notes what the samples see.
+    void add_seen(const PixelView& view, PixelResult& result) const;
     void add_lamp(const SeenLamp& lamp, PixelResult& result) const;
     void add_water(std::span<const double> in_scatter, PixelResult& result) const;
     // Starts a view with the ray through the pixel's centre.
@@ -137,6 +139,7 @@ class PixelRenderer {
     RayInScatter in_scatter_;
     LampsInView lamps_in_view_;
     PointMatchers matchers_;
+    std::vector<float> object_mattes_, material_mattes_;  // by SurfaceHit's ids
     Affine camera_from_world_;
 };
 
