@@ -71,15 +71,15 @@ void add_id_names(const SurfaceNames& names, ImageMetadata& metadata) {
 
 void add_matte_manifests(const SurfaceNames& names, const std::vector<std::string>& channel_names,
                          ImageMetadata& metadata) {
-    const auto add = [&](Layer layer, const NameList& list) {
-        if (std::ranges::find(channel_names, matte_channels(layer).front()) == channel_names.end())
+    const auto add = [&](MatteOf of, const NameList& list) {
+        if (std::ranges::find(channel_names, matte_channels(of).front()) == channel_names.end())
             return;
         std::vector<std::string> texts;
         for (const SurfaceName& surface : list) texts.push_back(surface.name);
-        add_matte_header(layer, texts, metadata);
+        add_matte_header(of, texts, metadata);
     };
-    add(Layer::crypto_object, names.objects);
-    add(Layer::crypto_material, names.materials);
+    add(MatteOf::objects, names.objects);
+    add(MatteOf::materials, names.materials);
 }
 
 void write_id_table(OutputFile& out, const SurfaceNames& names) {

@@ -13,8 +13,8 @@ namespace uw {
 
 namespace {
 
-std::string_view typename_of(Layer layer) {
-    return layer == Layer::crypto_object ? "CryptoObject" : "CryptoMaterial";
+std::string_view typename_of(MatteOf of) {
+    return of == MatteOf::objects ? "CryptoObject" : "CryptoMaterial";
 }
 
 std::uint32_t scrambled(std::uint32_t block) {
@@ -50,16 +50,16 @@ float matte_id(std::string_view name) {
     return std::bit_cast<float>(hash);
 }
 
-std::vector<std::string> matte_channels(Layer layer) {
+std::vector<std::string> matte_channels(MatteOf of) {
     std::vector<std::string> names;
     for (std::size_t rank = 0; rank < k_matte_ranks; rank += 2)
         for (const char channel : {'R', 'G', 'B', 'A'})
-            names.push_back(fmt::format("{}{:02}.{}", typename_of(layer), rank / 2, channel));
+            names.push_back(fmt::format("{}{:02}.{}", typename_of(of), rank / 2, channel));
     return names;
 }
 
-void add_matte_header(Layer layer, std::span<const std::string> names, ImageMetadata& metadata) {
-    const std::string name(typename_of(layer));
+void add_matte_header(MatteOf of, std::span<const std::string> names, ImageMetadata& metadata) {
+    const std::string name(typename_of(of));
     const std::string key =
         "cryptomatte/" + fmt::format("{:08x}", murmur_hash_3(name)).substr(0, 7) + "/";
     // A set, as Json would look through all names before it adds one.

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/image/layers.h"
 #include "core/image/pixel_image.h"
 
 namespace uw {
@@ -26,12 +25,15 @@ std::uint32_t murmur_hash_3(std::string_view text);
 /// they would be no normal number.
 float matte_id(std::string_view name);
 
-/// The channels of a matte's layer: `CryptoObject00.R` and so on. Precondition: it is a matte.
-std::vector<std::string> matte_channels(Layer layer);
+/// What the names of a matte's layer belong to.
+enum class MatteOf : std::uint8_t { objects, materials };
+
+/// The channels of a matte's layer: `CryptoObject00.R` and so on.
+std::vector<std::string> matte_channels(MatteOf of);
 
 /// Adds to an image's header what compositors read of a matte's layer, with the identifier of each
 /// of `names`.
-void add_matte_header(Layer layer, std::span<const std::string> names, ImageMetadata& metadata);
+void add_matte_header(MatteOf of, std::span<const std::string> names, ImageMetadata& metadata);
 
 /// What a pixel shows; 0 is nothing.
 struct Matte {

@@ -188,8 +188,10 @@ void LayerPlan::add_layers(const Selection& selection, std::span<const std::stri
         if (!selection.layers[i] || is_rgb) continue;
         first_[i] = static_cast<int>(channel_names_.size());
         if (k_layers[i].content == LayerContent::matte) {
-            std::ranges::copy(matte_channels(k_layers[i].layer),
-                              std::back_inserter(channel_names_));
+            std::ranges::copy(
+                matte_channels(k_layers[i].layer == Layer::crypto_object ? MatteOf::objects
+                                                                         : MatteOf::materials),
+                std::back_inserter(channel_names_));
             channel_counts_[i] = k_matte_values;
             continue;
         }
