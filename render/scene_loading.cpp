@@ -20,6 +20,7 @@
 #include "core/scene/variations.h"
 #include "core/scene/yaml_document.h"
 #include "media/volumes/fluid_domain.h"
+#include "media/water/species.h"
 #include "render/image_scene.h"
 
 namespace uw {
@@ -230,6 +231,8 @@ class InputCollection {
         for (const RigCameraDesc& entry : scene.cameras) add(entry.camera);
         add(scene.rig_trajectory);
         if (scene.water.scattering) add(scene.water.scattering->phase);
+        for (const SpeciesDesc& species : scene.water.species)
+            for (const fs::path& file : files_of(species)) add(file, "a species of the water");
         for (const VolumeDesc& volume : scene.volumes) add(volume);
         for (const GeometryDesc& geometry : scene.geometry) add(geometry);
         for (const LampDesc& lamp : scene.lamps) {

@@ -50,7 +50,7 @@ struct SceneContext {
     };
     std::optional<RigFrames> rig{};
     std::optional<TrajectoryDesc> rig_trajectory{};  // likewise
-    /// Of water, which is read before the volumes; null: none.
+    /// The species of the water, which is read before the volumes; null: there are none.
     const std::vector<SpeciesDesc>* species = nullptr;
     const SceneArrays* arrays = nullptr;  // null: the scene has files alone
 

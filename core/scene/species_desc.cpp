@@ -247,28 +247,25 @@ std::vector<SpeciesAmount> read_amounts(ConfigMap& map, const std::vector<Specie
     for (std::size_t i = 0; i < species.size(); ++i) {
         const auto entry = map.find(species[i].name);
         if (!entry) continue;
-        SpeciesAmount amount{i, 0, Unit::ppm};
-        std::optional<double> value;
-        const ConfigNode& node = entry->node();
-        for (const Choice& choice : k_units) {
-            if (value) break;
-            if (node.kind == ConfigNode::Kind::scalar && node.scalar.ends_with(choice.text))
-                amount.unit = choice.unit;
-            else if (&choice != &k_units.front())
-                continue;
-            value = number_with_unit(node, std::array{std::pair(choice.text, choice.factor)});
-        }
-        if (!value)
+        const auto read = [&](const Choice& choice) {
+            return number_with_unit(entry->node(),
+                                    std::array{std::pair(choice.text, choice.factor)});
+        };
+        // A bare number goes with the first.
+        const auto choice =
+            std::ranges::find_if(k_units, [&](const Choice& one) { return read(one).has_value(); });
+        if (choice == k_units.end())
+            entry->fail(fmt::format("expected a concentration, found {}; {}",
+                                    entry->node().description(), k_mend));
+        const SpeciesAmount amount{i, *read(*choice), choice->unit};
+        if (!(amount.amount >= 0 && amount.amount <= 1e18))
             entry->fail(
-                fmt::format("expected a concentration, found {}; {}", node.description(), k_mend));
-        if (!(*value >= 0 && *value <= 1e18))
-            entry->fail(fmt::format("must be from 0 to 1e18, found {:g}; {}", *value, k_mend));
+                fmt::format("must be from 0 to 1e18, found {:g}; {}", amount.amount, k_mend));
         if (amount.unit == Unit::grams && !species[i].density)
             entry->fail(
                 fmt::format("{} has no density, by which grams become particles; give it "
                             "one in g/cm3",
                             species[i].name));
-        amount.amount = *value;
         amounts.push_back(amount);
     }
     return amounts;

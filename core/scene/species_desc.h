@@ -73,19 +73,19 @@ struct SpeciesAmount {
     friend bool operator==(const SpeciesAmount&, const SpeciesAmount&) = default;
 };
 
-/// A diameter or thickness [m] from `least` to `greatest`: a number of metres, or one with a unit,
-/// "0.2 mm".
+/// Reads a diameter or thickness [m] from `least` to `greatest`: a number of metres, or one with a
+/// unit, "0.2 mm".
 double read_diameter(const ConfigValue& value, double least, double greatest);
 
-/// Its ends, "[0.2 mm, 5 mm]", the first less than the second.
+/// Reads the two ends of a range of diameters, "[0.2 mm, 5 mm]", the first less than the second.
 void read_diameters(const ConfigValue& value, double least, double greatest, double& first,
                     double& last);
 
-/// `species` of the water: a map of names. Throws InputError also for names that mean something
-/// else where concentrations are given.
+/// Reads `water.species`, a map of names. Throws InputError also for names that mean something else
+/// where concentrations are given.
 std::vector<SpeciesDesc> read_species(const ConfigValue& value, const SceneContext& context);
 
-/// Its names.
+/// The names of `species`, in their order.
 std::vector<std::string_view> names_of(const std::vector<SpeciesDesc>& species);
 
 /// Takes what `map` gives of `species`, as "NAME: 2", "NAME: 3 g/m3" or "NAME: 1e6 /m3".

@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Orders that matter (Wiscombe 1980).
+/// How many orders of the series matter (Wiscombe 1980).
 std::size_t order_count(double x) {
     return static_cast<std::size_t>(x + 4.05 * std::cbrt(x) + 2);
 }
@@ -34,7 +34,8 @@ std::vector<Complex> first_kind(Complex z, std::size_t orders) {
     return d;
 }
 
-/// The same of the functions of the third kind, upwards (Yang 2003, eqs. 23 and 24).
+/// The same derivatives of the functions of the third kind, which are found upwards (Yang 2003,
+/// eqs. 23 and 24).
 std::vector<Complex> third_kind(Complex z, const std::vector<Complex>& first) {
     constexpr Complex k_i{0, 1};
     std::vector<Complex> d(first.size());

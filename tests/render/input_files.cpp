@@ -18,6 +18,8 @@ cameras:
   - {name: right, calibration: {file: rig.yaml, camera: cam1}, pose: {position: [1, 0, 0], look_at: [1, 0, 1], up: [0, -1, 0]}}
 water:
   scattering: {b: 0.2, phase: {type: table, file: water.csv}}
+  species:
+    silt: {size: {type: table, file: sizes.csv}, index: {file: quartz.csv}, coat: {thickness: 0.1 um, index: {file: film.csv}}}
 volumes:
   - file: smoke_####.vdb
     velocity: {grid: v, file: wind_####.vdb}
@@ -49,8 +51,9 @@ std::string camchain() {
 class InputFiles : public testing::Test {
   protected:
     InputFiles() {
-        for (const char* name : {"water.csv", "smoke_0001.vdb", "wind_0001.vdb", "smoke.csv",
-                                 "wall.obj", "lamp.ies", "spectrum.csv", "camera.csv", "white.csv"})
+        for (const char* name :
+             {"water.csv", "smoke_0001.vdb", "wind_0001.vdb", "smoke.csv", "wall.obj", "lamp.ies",
+              "spectrum.csv", "camera.csv", "white.csv", "sizes.csv", "quartz.csv", "film.csv"})
             folder_.write(name, "");
         folder_.write("rig.yaml", camchain());
         folder_.write("sub/ship_0001.gltf",
@@ -74,12 +77,12 @@ class InputFiles : public testing::Test {
 
 TEST_F(InputFiles, AreAllThatASceneNames) {
     const SceneDesc scene = load_scene(folder_.path() / "scene.yaml", {});
-    EXPECT_EQ(
-        names_of(scene, {1}),
-        (std::multiset<std::string>{"scene.yaml", "rig.yaml", "rig.yaml", "rig.yaml", "water.csv",
-                                    "smoke_0001.vdb", "wind_0001.vdb", "smoke.csv", "wall.obj",
-                                    "sub/ship_0001.gltf", "sub/ship one.bin", "sub/hull.png",
-                                    "lamp.ies", "spectrum.csv", "camera.csv", "white.csv"}));
+    EXPECT_EQ(names_of(scene, {1}),
+              (std::multiset<std::string>{
+                  "scene.yaml", "rig.yaml", "rig.yaml", "rig.yaml", "water.csv", "smoke_0001.vdb",
+                  "wind_0001.vdb", "smoke.csv", "wall.obj", "sub/ship_0001.gltf",
+                  "sub/ship one.bin", "sub/hull.png", "lamp.ies", "spectrum.csv", "camera.csv",
+                  "white.csv", "sizes.csv", "quartz.csv", "film.csv"}));
     MeshSideFiles known;
     for (const InputFile& input : input_files(scene, {}, known)) {
         const std::string name = input.file.filename().string();

@@ -39,6 +39,8 @@ const std::vector<FilePlace> k_file_places{
     {"cameras", R"([{"name": "a", "calibration": "NAME"}])"},
     {"rig.trajectory", R"({"file": "NAME"})"},
     {"water.scattering", R"({"b": 0.1, "phase": {"type": "table", "file": "NAME"}})"},
+    {"water.species", R"({"silt": {"library": "silt", "index": {"file": "NAME"}}})"},
+    {"water.species.silt.size", R"({"type": "table", "file": "NAME"})"},
     {"volumes", R"([{"file": "NAME", "grids": {"density": {"small": 1}}}])"},
     {"volumes", R"([{"file": "x.vdb", "motion": {"file": "NAME"}}])"},
     {"volumes",

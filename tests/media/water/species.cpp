@@ -13,6 +13,7 @@
 #include "media/water/water_types.h"
 #include "tests/support/message_of.h"
 #include "tests/support/phase_function_laws.h"
+#include "tests/support/scene_folder.h"
 
 namespace uw {
 namespace {
@@ -104,6 +105,63 @@ TEST(Species, AmountsAreConcentrations) {
                 1e12 * std::numbers::pi / 6 * std::pow(10.1e-6, 3), 1e-3 * 5.4e-4);
 }
 
+// The moments of the distributions in closed form: E[D^3] of a log-normal one is median^3
+// e^(4.5 ln^2 sigma), of a gamma one (mode / exponent)^3 Gamma(exponent + 4) / Gamma(exponent + 1).
+TEST(Species, MeanVolumesAreThoseOfTheDistributions) {
+    const auto mean_volume = [](const SizesDesc& sizes) {
+        SpeciesDesc species = junge(1.1, 1, 2);
+        species.sizes = sizes;
+        return parts_per_million(species, {0, 1, SpeciesAmount::Unit::number}) * 1e-6;
+    };
+    SizesDesc lognormal;
+    lognormal.type = SizesDesc::Type::lognormal;
+    lognormal.least = 1e-7;
+    lognormal.greatest = 1e-4;
+    lognormal.median = 2e-6;
+    lognormal.sigma = 1.6;
+    const double deviation = std::log(1.6);
+    // Midpoints of 4096 intervals.
+    EXPECT_NEAR(mean_volume(lognormal) / (std::numbers::pi / 6 * std::pow(2e-6, 3) *
+                                          std::exp(4.5 * deviation * deviation)),
+                1, 1e-5);
+    SizesDesc gamma;
+    gamma.type = SizesDesc::Type::gamma;
+    gamma.least = 1e-8;
+    gamma.greatest = 1e-4;
+    gamma.exponent = 3;
+    gamma.mode = 2e-6;
+    EXPECT_NEAR(mean_volume(gamma) / (std::numbers::pi / 6 * std::pow(2e-6 / 3, 3) *
+                                      std::tgamma(7.0) / std::tgamma(4.0)),
+                1, 1e-5);
+}
+
+// Junge's distribution of exponent 4 has the same volume in each class of a sizer; indices of a
+// table are interpolated at the wavelength in vacuum.
+TEST(Species, OfTablesAreThoseOfFormulas) {
+    const SceneFolder folder;
+    folder.write("sizes.csv", "diameter_um,volume\n1,3\n2,3\n10,3\n");
+    folder.write("index.csv", "wavelength_nm,n,k\n500,1.14,0.001\n600,1.16,0.003\n");
+    SpeciesDesc tables = junge(1, 1, 2);
+    tables.sizes.type = SizesDesc::Type::table;
+    tables.sizes.file = folder.path() / "sizes.csv";
+    tables.index.file = folder.path() / "index.csv";
+    SpeciesDesc formulas = junge(1.15, 1, 10);
+    formulas.index.k = 0.002;
+    const SpeciesOptics a = species_optics(tables, 550, 1.34);
+    const SpeciesOptics b = species_optics(formulas, 550, 1.34);
+    EXPECT_NEAR(a.scattering / b.scattering, 1, 1e-9);
+    EXPECT_NEAR(a.absorption / b.absorption, 1, 1e-9);
+    EXPECT_GT(b.absorption, 0.01 * b.scattering);
+    // A file that has changed is read again.
+    folder.write("index.csv", "wavelength_nm,n,k\n500,1.14,0\n600,1.16,0\n");
+    EXPECT_LT(species_optics(tables, 550, 1.34).absorption, 1e-6 * b.absorption);
+    folder.write("sizes.csv", "diameter_um,volume\n1,-3\n2,3\n");
+    EXPECT_NE(message_of<InputError>([&] {
+                  (void)species_optics(tables, 550, 1.34);
+              }).find("scene.yaml:1:1: water.species.test: sizes.csv"),
+              std::string::npos);
+}
+
 // Quan and Fry 1995, as tabulated from its coefficients for 35 PSU at 10 deg C.
 TEST(WaterRefractiveIndex, IsQuanAndFrys) {
     EXPECT_NEAR(water_refractive_index(400, 10, 35), 1.35085, 5.1e-6);
@@ -145,6 +203,31 @@ TEST(Species, AddToTheWaterInEachBand) {
         model.medium.uniform.scattering[0][0] * model.medium.phase_functions[0]->evaluate(0.3) +
             table.uniform.vsf(0, 1, 0.3) + table.uniform.vsf(0, 2, 0.3),
         1e-12);
+}
+
+TEST(Species, OfGridsAreConstituentsPerPpm) {
+    const WaterDesc desc = water("{species: {silt: {library: clay}}, particles: {small: 0.1}}");
+    VolumeDesc volume;
+    GridMappingDesc& grid = volume.grids.emplace_back();
+    grid.grid = "density";
+    grid.amounts = {{0, 5.3, SpeciesAmount::Unit::grams}};
+    const WaterModel model = build_water_model(desc, {volume});
+    ASSERT_EQ(model.medium.constituents.size(), 1U);
+    const Constituent& silt = model.medium.constituents[0];
+    EXPECT_EQ(silt.name, "silt");
+    ASSERT_EQ(model.loads[0][0].size(), 1U);
+    EXPECT_DOUBLE_EQ(model.loads[0][0][0].per_unit, 2);  // 5.3 g/m3 of 2.65 g/cm3
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double nm = desc.bands_nm[i];
+        const SpeciesOptics optics =
+            species_optics(desc.species[0], nm, water_refractive_index(nm, 20, 35));
+        EXPECT_NEAR(silt.per_unit.total_scattering()[i], optics.scattering, 1e-12);
+        // Each band has the phase function of its own wavelength.
+        double beta = 0;
+        for (std::size_t m = 0; m < model.medium.phase_functions.size(); ++m)
+            beta += silt.per_unit.scattering[m][i] * model.medium.phase_functions[m]->evaluate(0.5);
+        EXPECT_NEAR(beta, optics.scattering * optics.phase->evaluate(0.5), 1e-12);
+    }
 }
 
 TEST(Species, ErrorsSayWhatIsWrong) {
