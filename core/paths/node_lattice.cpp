@@ -52,9 +52,7 @@ void NodeLattice::for_each(const NodeWindow& window, const ShareCallback& progre
 
 namespace {
 
-// A point that no node sees has so many times the paths of a node: no others even its noise out.
-constexpr int k_paths_of_unseen = 4;
-constexpr double k_share_of_seen = 0.7;  // of the time
+constexpr double k_share_of_seen = 0.85;  // of the time
 
 void append(const NodeLight& light, std::vector<float>& radiance) {
     radiance.insert(radiance.end(), light.diffuse.begin(), light.diffuse.end());
@@ -80,7 +78,7 @@ IndirectLight NodeLattice::light_surfaces(const NodePaths& paths, const ShareCal
     std::vector<NodeLight> lights(unseen.size());
     std::atomic<std::size_t> done = 0;
     parallel_for(unseen.size(), [&](std::size_t at) {
-        estimator_.estimate_surface(unseen[at], k_paths_of_unseen * paths.surface, lights[at]);
+        estimator_.estimate_surface(unseen[at], paths.surface, lights[at]);
         progress(k_share_of_seen + (1 - k_share_of_seen) * static_cast<double>(++done) /
                                        static_cast<double>(unseen.size()));
     });
@@ -204,9 +202,9 @@ namespace {
 // The paths of each kind at a node: more would leave less noise than there is light between the
 // nodes of a small image.
 constexpr double k_fewest_node_paths = 8, k_most_node_paths = 4096;
-// What smoothing leaves of the variance of nodes, in the example scenes: 0.03 to 0.07, in plumes
-// more.
-constexpr double k_smoothed_variance = 0.04;
+// What smoothing leaves of the variance of nodes, in the example scenes: 0.02 to 0.05, in plumes
+// more, and how much more it is of that on surfaces, where fewer nodes see the same.
+constexpr double k_smoothed_variance = 0.03, k_more_on_surfaces = 2.5;
 // The work of each node and each path that the effort names.
 constexpr double k_work_of_effort = 6;
 constexpr double k_least_cost = 0.05;
@@ -248,7 +246,7 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
         // That of either half's mean was of half the paths.
         const double variance = node.diffuse_variance * k_paths / 2 / of_its_surface;
         const double seen = light_of_diffuse(node, typical);
-        of_surface += variance * seen * seen;
+        of_surface += k_more_on_surfaces * variance * seen * seen;
     }
     for (double* of_kind : {&cost.surface, &cost.lit, &cost.water})
         *of_kind = std::max(*of_kind / count, k_least_cost);

@@ -11,7 +11,7 @@ namespace uw {
 
 namespace {
 
-// Angles of cells are rounded to so many steps of an octave.
+// Angles of cells for which levels are fitted, in between they are interpolated.
 constexpr double k_scales_of_octave = 4;
 // Weights that are left out, relative to the surface's own light.
 constexpr float k_least_weight = 1e-5F;
@@ -46,10 +46,15 @@ class SurfaceGlow::Spreading {
                     continue;
                 }
                 const auto d = static_cast<std::size_t>(cell.place);
+                const auto scale = static_cast<std::size_t>(cell.scale);
                 const float t = cell.place - static_cast<float>(d);
+                const float u = cell.scale - static_cast<float>(scale);
                 const float* weight =
-                    &weights_[(level * glow_.angles_.size() + cell.scale) * distances + d];
-                image_[i] = source[i] * (weight[0] + t * (weight[1] - weight[0]));
+                    &weights_[(level * glow_.angles_.size() + scale) * distances + d];
+                const float* next = weight + distances;
+                const float lower = weight[0] + t * (weight[1] - weight[0]);
+                const float upper = next[0] + t * (next[1] - next[0]);
+                image_[i] = source[i] * (lower + u * (upper - lower));
             }
             pyramid_.add(static_cast<int>(level), image_);
         }
@@ -206,14 +211,14 @@ void SurfaceGlow::trace(const RaySource& rays, const LitScene& scene,
         greatest = std::max(greatest, angle);
     }
     if (greatest == 0) least = greatest = 1;
-    const auto scale_of = [&](double angle) {
-        return std::lround(k_scales_of_octave * std::log2(std::max(angle / least, 1.0)));
+    const auto place_of = [&](double angle) {
+        return k_scales_of_octave * std::log2(std::max(angle / least, 1.0));
     };
-    const long last = std::min(scale_of(greatest), 255L);
-    for (long scale = 0; scale <= last; ++scale)
-        angles_.push_back(least * std::exp2(static_cast<double>(scale) / k_scales_of_octave));
+    const double last = std::min(std::floor(place_of(greatest)) + 1, 255.0);
+    for (double scale = 0; scale <= last; ++scale)
+        angles_.push_back(least * std::exp2(scale / k_scales_of_octave));
     for (std::size_t i = 0; i < cells_.size(); ++i)
-        cells_[i].scale = static_cast<std::uint8_t>(std::min(scale_of(angles[i]), last));
+        cells_[i].scale = static_cast<float>(std::min(place_of(angles[i]), last - 1e-3));
 }
 
 void SurfaceGlow::find_corners(double x, double y, std::vector<Corner>& corners) const {

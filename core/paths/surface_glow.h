@@ -49,9 +49,9 @@ class SurfaceGlow {
 
   private:
     struct Cell {
-        float distance = 0;      // of the surface [m], infinity if there is none
-        float place = 0;         // among the distances of PointSpread
-        std::uint8_t scale = 0;  // index of its angle
+        float distance = 0;  // of the surface [m], infinity if there is none
+        float place = 0;     // among the distances of PointSpread
+        float scale = 0;     // place of its angle among the angles
     };
     class Spreading;
     struct Corner {
@@ -68,7 +68,7 @@ class SurfaceGlow {
     int cells_of_pixel_ = 1;  // in each direction
     double spacing_ = 1;      // of the cells [pixels]
     Grid2D<Cell> cells_;
-    std::vector<double> angles_;  // of a cell [rad], by scale
+    std::vector<double> angles_;  // of cells [rad], ascending
     std::vector<float> source_;   // by channel and cell
     std::vector<float> light_;    // by cell and channel
     std::vector<float> node_light_;
