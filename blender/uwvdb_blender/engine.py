@@ -257,6 +257,8 @@ class UwvdbEngine(bpy.types.RenderEngine):
             if values is not None and target is not None:
                 _fill(target, values)
         self.end_result(result)
+        for field, text in passes.matte_texts(depsgraph.view_layer, image):
+            self.get_result().stamp_data_add_field(field, text)
 
 
 def _keep(folder, scene, view_layer, view):

@@ -111,6 +111,8 @@ class UWVDB_PT_passes(_Panel, bpy.types.Panel):
             column.prop(layer, name)
         column.prop(layer, "use_pass_object_index")
         column.prop(layer, "use_pass_material_index")
+        column.prop(layer, "use_pass_cryptomatte_object", text="Cryptomatte Object")
+        column.prop(layer, "use_pass_cryptomatte_material", text="Cryptomatte Material")
         column.separator()
         for name in layer.uwvdb.__annotations__:
             column.prop(layer.uwvdb, name)
