@@ -13,7 +13,8 @@ from .notes import Notes, Refusal
 from .session import Session
 
 SECONDS_BETWEEN_LOOKS = 0.02
-SECONDS_OF_READING = 0.008  # at a time; a mesh is read as a whole
+SECONDS_OF_READING = 0.008  # at a time, between two drawings of the view
+SECONDS_OF_FIRST_READING = 0.05  # the sooner there is a picture
 # Kinds of data that surfaces are made of; where objects are is compared besides.
 OF_SURFACES = ("MESH", "CURVE", "META", "FONT", "MATERIAL", "IMAGE", "NODETREE", "TEXTURE", "PARTICLE",
                "COLLECTION")
@@ -98,7 +99,8 @@ class Surroundings:
 
     def read_on(self, depsgraph):
         """Reads the next of the meshes, so few of them that Blender is not held up."""
-        if not self._unfinished.read_some(depsgraph, SECONDS_OF_READING):
+        seconds = SECONDS_OF_FIRST_READING if self._entries is None else SECONDS_OF_READING
+        if not self._unfinished.read_some(depsgraph, seconds):
             return
         made, self._unfinished = self._unfinished, None
         made.add_all(depsgraph, scenes.metres_of(depsgraph.scene), None)

@@ -114,12 +114,12 @@ def test_disk_against_cycles():
 
 
 def test_spread_against_cycles():
-    for degrees in (150, 90, 40):
+    for degrees, samples in ((150, 512), (90, 512), (40, 2048)):  # Blender 4.3 needs more for narrow ones
         for shape in ("DISK", "RECTANGLE"):
             floor_scene()
             light("AREA", watts=300, location=(-0.9, 0.6, 1.7), rotation=(0.1, -0.5, 0.9), shape=shape,
                   size=0.6, size_y=0.3, spread=math.radians(degrees))
-            against_cycles(f"{shape.lower()}, spread of {degrees} degrees", 512, 5e-3)
+            against_cycles(f"{shape.lower()}, spread of {degrees} degrees", samples, 5e-3)
 
 
 def test_spread_keeps_the_watts():
