@@ -182,6 +182,27 @@ void Options::confine() {
     option.take = [](const std::string&) { confine_inputs(); };
 }
 
+void Options::messages(bool& quiet, ProgressForm& progress) {
+    Option& silence = all_.emplace_back();
+    silence.names = "--quiet";
+    silence.help = "print nothing but warnings and errors";
+    silence.take = [&](const std::string&) {
+        quiet = true;
+        if (progress == ProgressForm::text) progress = ProgressForm::none;
+    };
+    Option& form = parsed(
+        "--progress", "FORM",
+        [&](const std::string& text) {
+            if (text != "text" && text != "json")
+                throw UsageError(
+                    fmt::format("--progress {}: expected text or json", printable(text)));
+            progress = text == "json" ? ProgressForm::json : ProgressForm::text;
+        },
+        "how progress is shown: text, or json: lines for programs, with --quiet as well");
+    form.value = Option::Value::word;
+    form.words = {"text", "json"};
+}
+
 namespace {
 
 std::string suggested_among(const std::string& word, const std::vector<std::string>& names) {

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/console.h"
+
 namespace uw {
 
 /// What the program's exit codes mean (docs/command-line.md).
@@ -99,6 +101,8 @@ class Options {
     void threads(int& variable);
     /// `--confine`: confine_inputs.
     void confine();
+    /// `--quiet` and `--progress`, by which `quiet` hides progress as text.
+    void messages(bool& quiet, ProgressForm& progress);
 
     /// All that were declared, in that order.
     const std::deque<Option>& all() const { return all_; }

@@ -13,6 +13,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 
 namespace uw {
 
@@ -62,8 +63,8 @@ void write_text(const std::filesystem::path& output, const std::string& content,
 
 namespace {
 
-constexpr double k_terminal_interval = 0.1;  // seconds between two drawings of the bar
-constexpr double k_line_interval = 5.0;      // seconds between two plain lines
+constexpr double k_short_interval = 0.1;  // seconds between two drawings of the bar, or objects
+constexpr double k_line_interval = 5.0;   // seconds between two plain lines
 constexpr int k_longest_bar = 30;
 constexpr int k_shortest_bar = 5;
 
@@ -90,12 +91,12 @@ std::string format_duration(double seconds) {
     return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
-Progress::Progress(std::string label, std::string unit, double scale, bool quiet,
+Progress::Progress(std::string label, std::string unit, double scale, ProgressForm form,
                    std::optional<double> seconds_left)
     : label_(std::move(label)),
       unit_(std::move(unit)),
       scale_(scale),
-      quiet_(quiet),
+      form_(form),
       seconds_left_(seconds_left),
       terminal_(isatty(STDERR_FILENO) != 0),
       start_(std::chrono::steady_clock::now()) {}
@@ -106,16 +107,17 @@ Progress::~Progress() {
 
 void Progress::end_line() {
     const std::lock_guard lock(mutex_);
-    if (drawn_ && terminal_) print_message("\n");
+    if (drawn_ && is_bar()) print_message("\n");
     drawn_ = false;
     last_length_ = 0;
 }
 
 void Progress::update(double fraction, const std::string& note) {
-    if (quiet_) return;
+    if (form_ == ProgressForm::none) return;
     const std::lock_guard lock(mutex_);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    const double interval = terminal_ ? k_terminal_interval : k_line_interval;
+    const bool is_often = is_bar() || form_ == ProgressForm::json;
+    const double interval = is_often ? k_short_interval : k_line_interval;
     const bool last = fraction >= 1;
     if (!last && elapsed.count() - last_drawn_ < interval) return;
     if (last && !drawn_) return;  // finished before anything was due
@@ -124,14 +126,22 @@ void Progress::update(double fraction, const std::string& note) {
 }
 
 void Progress::draw(double fraction, double seconds, const std::string& note) {
+    std::optional<double> seconds_left;
+    if (seconds_left_)
+        seconds_left = std::max(*seconds_left_ - seconds, 0.0);
+    else if (fraction > 0)
+        seconds_left = seconds * (1 - std::min(fraction, 1.0)) / fraction;
+    drawn_ = true;
+    if (form_ == ProgressForm::json) {
+        print_json(fraction, seconds_left, note);
+        return;
+    }
     const double rate = seconds > 0 ? fraction * scale_ / seconds : 0;
     std::string time;
-    if (seconds_left_)
-        time = format_duration(std::max(*seconds_left_ - seconds, 0.0)) + " left";
-    else if (fraction >= 1)
+    if (fraction >= 1 && !seconds_left_)
         time = format_duration(seconds);
-    else if (fraction > 0)
-        time = format_duration(seconds * (1 - fraction) / fraction) + " left";
+    else if (seconds_left)
+        time = format_duration(*seconds_left) + " left";
     std::string figures = fmt::format("{:3.0f} %  ", 100 * fraction);
     if (!note.empty()) figures += note + "  ";
     if (!unit_.empty()) figures += fmt::format("{} {}/s  ", format_rate(rate), unit_);
@@ -140,7 +150,15 @@ void Progress::draw(double fraction, double seconds, const std::string& note) {
         draw_bar(fraction, figures);
     else
         print_message(fmt::format("{} {}\n", label_, figures));
-    drawn_ = true;
+}
+
+void Progress::print_json(double fraction, std::optional<double> seconds_left,
+                          const std::string& note) {
+    Json line{{"stage", label_}, {"fraction", std::min(fraction, 1.0)}};
+    if (seconds_left) line["seconds_left"] = *seconds_left;
+    if (!note.empty()) line["note"] = note;
+    // Names in it may be no UTF-8.
+    print_message(line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void Progress::draw_bar(double fraction, const std::string& figures) {

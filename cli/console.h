@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -46,15 +47,21 @@ class TextFiles {
 void write_text(const std::filesystem::path& output, const std::string& content,
                 bool quiet = false);
 
-/// Progress of long work on stderr: on a terminal a bar as wide as there is room, with rate and
-/// time left; otherwise plain lines every few seconds. Short work shows nothing. Thread-safe.
+/// How progress is shown on stderr.
+enum class ProgressForm : std::uint8_t {
+    none,
+    text,  // on a terminal a bar as wide as there is room, otherwise plain lines every few seconds
+    json   // a line with an object ten times a second, for programs: docs/command-line.md
+};
+
+/// Progress of long work on stderr, with rate and time left. Short work shows nothing. Thread-safe.
 class Progress {
   public:
     /// `unit` names what is counted, e.g. "Mpx"; `scale` units make up the whole. Without a unit,
     /// no rate is shown. For work that is
     /// part of more, `seconds_left` is the time that all of it takes from now on; it is shown
     /// instead of this part's.
-    Progress(std::string label, std::string unit, double scale, bool quiet,
+    Progress(std::string label, std::string unit, double scale, ProgressForm form,
              std::optional<double> seconds_left = {});
     ~Progress();
     Progress(const Progress&) = delete;
@@ -72,11 +79,13 @@ class Progress {
   private:
     void draw(double fraction, double seconds, const std::string& note);
     void draw_bar(double fraction, const std::string& figures);
+    void print_json(double fraction, std::optional<double> seconds_left, const std::string& note);
+    bool is_bar() const { return form_ == ProgressForm::text && terminal_; }
 
     std::string label_;
     std::string unit_;
     double scale_;
-    bool quiet_;
+    ProgressForm form_;
     std::optional<double> seconds_left_;
     bool terminal_;
     bool drawn_ = false;

@@ -1,5 +1,6 @@
 """The render engine: writes the scene, runs uwvdb, and hands its layers to Blender."""
 
+import math
 import os
 import shutil
 import tempfile
@@ -19,7 +20,10 @@ MOTION_STEPS = 5
 PREVIEW_PART = 4  # of the image's sides
 LEAST_PREVIEWED = 200 * 150
 SECONDS_BETWEEN_LINES = 5
-LEFT_OUT = "single scattering leaves out"  # how much, differs from frame to frame
+# How much, differs from frame to frame; it is said of the first.
+LEFT_OUT = "single scattering leaves out"
+TOO_DARK = "the picture is dark"
+DARK = 0.1  # of white
 
 _said = set()  # notes of this render, of which an animation repeats most
 
@@ -148,6 +152,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
             if not bpy.app.background and preferences.wants_preview():
                 self._show_preview(depsgraph, path, part, written, size, name)
             image = self._image(depsgraph, path, part, written, size, notes)
+            _note_darkness(image, scene, notes)
             self._hand_over(depsgraph, written, image, name)
 
     def _view(self, depsgraph):
@@ -191,7 +196,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
             kind, _, text = line.partition(": ")
             if kind == "warning":
                 notes.add(scenes.own_words(text.strip(), folder))
-            elif kind == "note" and not any(said.startswith(LEFT_OUT) for said in _said):
+            elif kind == "note" and not _has_said(LEFT_OUT):
                 notes.add(text.strip().replace("render.scattering: multiple",
                                                "Render > uwvdb > Scattering: Multiple"))
         return exr.read(out)
@@ -219,13 +224,14 @@ class UwvdbEngine(bpy.types.RenderEngine):
             arguments += ["--crop", f"{left},{height - high},{right},{height - low}"]
         return arguments
 
-    def _on_progress(self, what, fraction, left):
+    def _on_progress(self, stage, fraction, seconds_left):
         self.update_progress(fraction)
         now = time.monotonic()
         # Without windows each of these is a line on the terminal.
         if not bpy.app.background or now - self._told_at > SECONDS_BETWEEN_LINES:
             self._told_at = now
-            self.update_stats("", f"uwvdb: {what} | {left} left")
+            left = "" if seconds_left is None else f" | {_duration(seconds_left)} left"
+            self.update_stats("", f"uwvdb: {stage}{left}")
 
     def _show_preview(self, depsgraph, path, folder, written, size, view):
         """A draft of a sixteenth of the pixels, shown until the image is there."""
@@ -257,6 +263,20 @@ class UwvdbEngine(bpy.types.RenderEngine):
             if values is not None and target is not None:
                 _fill(target, values)
         self.end_result(result)
+        for field, text in passes.matte_texts(depsgraph.view_layer, image):
+            self.get_result().stamp_data_add_field(field, text)
+
+
+def _has_said(beginning):
+    return any(text.startswith(beginning) for text in _said)
+
+
+def _note_darkness(image, scene, notes):
+    """Lamps lose most of their light under water, so that many a first picture is nearly black."""
+    bright = numpy.percentile(image.get("", "RGB").max(axis=-1), 99)
+    exposure = scene.view_settings.exposure
+    if 0 < bright * 2**exposure < DARK and not _has_said(TOO_DARK):
+        notes.add(f"{TOO_DARK}: Render > Color Management > Exposure {-math.log2(bright):.1f} shows it")
 
 
 def _keep(folder, scene, view_layer, view):
@@ -277,6 +297,13 @@ def _fill(target, rows_from_top):
         target.rect.foreach_set(values.reshape(-1))
     except TypeError:  # Blender 3 wants as many items as pixels
         target.rect.foreach_set(values.reshape(-1, target.channels))
+
+
+def _duration(seconds):
+    if seconds < 60:
+        return f"{seconds:.0f} s"
+    minutes = int(seconds // 60)
+    return f"{minutes // 60} h {minutes % 60:02} min" if minutes >= 60 else f"{minutes} min"
 
 
 def _number(scene):

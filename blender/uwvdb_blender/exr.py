@@ -9,10 +9,11 @@ TYPES = {1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
 
 
 class Image:
-    """Channels by name, each an array of rows from the top; the window's place in the whole image."""
+    """Channels by name, each an array of rows from the top; the window's place in the whole image; the
+    header's texts by name."""
 
-    def __init__(self, channels, x, y):
-        self.channels, self.x, self.y = channels, x, y
+    def __init__(self, channels, x, y, texts):
+        self.channels, self.x, self.y, self.texts = channels, x, y, texts
 
     def get(self, layer, components):
         """A layer's components as one array (rows, columns, components); None if one is missing."""
@@ -27,7 +28,7 @@ def read(path):
         data = file.read()
     if data[:4] != b"\x76\x2f\x31\x01":
         raise ValueError(f"{path}: no OpenEXR file")
-    attributes, at = _header(data)
+    attributes, texts, at = _header(data)
     if attributes["compression"] != b"\0":
         raise ValueError(f"{path}: is compressed")
     x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
@@ -38,18 +39,20 @@ def read(path):
     lines = numpy.frombuffer(data, line, count=height, offset=at + 8 * height)
     order = numpy.argsort(lines["y"], kind="stable")
     return Image({name: lines[name][order].astype(numpy.float32)
-                  for name in line.names[2:]}, x0, y0)
+                  for name in line.names[2:]}, x0, y0, texts)
 
 
 def _header(data):
-    attributes, at = {}, 8
+    attributes, texts, at = {}, {}, 8
     while data[at] != 0:
         name, at = _text(data, at)
-        _, at = _text(data, at)
+        kind, at = _text(data, at)
         size, = struct.unpack_from("<i", data, at)
         attributes[name] = data[at + 4:at + 4 + size]
+        if kind == "string":
+            texts[name] = attributes[name].decode(errors="replace")
         at += 4 + size
-    return attributes, at + 1
+    return attributes, texts, at + 1
 
 
 def _channels(data):

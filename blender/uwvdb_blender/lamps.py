@@ -15,6 +15,7 @@ from .materials import _source
 # Cycles multiplies an emission by a luminaire's candelas over this (candelas to watts at 555 nm and
 # the sphere's 4 pi, as its IES reader has them).
 IES_UNIT = 177.83
+LEAST_SPREAD = math.radians(1)  # Cycles' own in Blender 3
 
 
 class Lamps:
@@ -61,10 +62,16 @@ class Lamps:
             self._shape(shown, entry, light, matrix, poses is not None)
             # W/sr on the axis per watt; the watts of Blender 3 are not those that an area emits.
             factor = 1 / math.pi if bpy.app.version >= (4, 0, 0) else 1 / 4
-            if ies is None:
+            has_spread = light.spread < math.pi - 1e-3
+            if ies is not None and has_spread:
+                self._note(shown, "its spread is left out: its light goes where the IES file says")
+            elif has_spread:
+                text, greatest = spread_luminaire(light.spread)
+                entry["profile"] = {"type": "ies", "file": self._write_luminaire(text)}
+                factor *= greatest
+                entry["samples"] = _points_for(light.spread)
+            elif ies is None:
                 entry["profile"] = {"type": "cosine", "fwhm": 120}
-            if light.spread < math.pi - 1e-3:
-                self._note(shown, "its spread is left out")
         else:
             factor = 1 / (4 * math.pi)
             radius = light.shadow_soft_size * matrix.median_scale
@@ -189,11 +196,14 @@ class Lamps:
             self._note(shown, "its IES file cannot be read; it shines without")
             return None
         text, greatest = seen
+        return self._write_luminaire(text), greatest
+
+    def _write_luminaire(self, text):
         # The same light has the same file, so that what is known of it in the viewport stays.
         name = f"luminaire-{zlib.crc32(text.encode()):08x}.ies"
         with open(os.path.join(self._folder, name), "w", encoding="latin-1") as file:
             file.write(text)
-        return name, greatest
+        return name
 
 
 def plain_name(name):
@@ -211,6 +221,26 @@ def _rotation(matrix, axis):
         unturned = Vector((0, 1, 0)) - direction.y * direction
     unturned.normalize()
     return math.degrees(math.atan2(axis.dot(unturned.cross(direction)), axis.dot(unturned)))
+
+
+def spread_luminaire(spread):
+    """(LM-63 text, intensity on the axis over that of a diffuse area) of an area's Spread [rad]. Cycles
+    shines through a grid of slats: the radiance falls as tan(half) - tan(angle), for the same watts."""
+    half = max(spread, LEAST_SPREAD) / 2
+    # The intensity's second derivative is its negative, so that steps of a degree are off by 4e-5.
+    steps = max(math.ceil(math.degrees(half)), 16)
+    angles = [half * step / steps for step in range(steps)]
+    values = [math.cos(a) - math.sin(a) / math.tan(half) for a in angles]
+    rows = [[f"{math.degrees(a):.6f}" for a in (*angles, half)] + ["90"],
+            [f"{1e4 * value:.3f}" for value in values] + ["0", "0"]]
+    text = ("IESNA:LM-63-1995\nTILT=NONE\n"
+            f"1 -1 1 {len(rows[0])} 1 1 2 0 0 0\n1 1 1\n{' '.join(rows[0])}\n0\n{' '.join(rows[1])}\n")
+    return text, math.tan(half) / (math.tan(half) - half)
+
+
+def _points_for(spread):
+    """Points of an area: the narrower their beams, the more of them overlap into an even one."""
+    return int(min(max(64 / math.tan(max(spread, LEAST_SPREAD) / 2) ** 2, 32), 512))
 
 
 def as_cycles_sees(text):

@@ -1,6 +1,8 @@
 """Meshes of the evaluated scene, with modifiers, instances and visibility, as a binary glTF file."""
 
-import bpy
+import math
+import time
+
 import numpy
 
 from . import gltf, materials
@@ -41,23 +43,35 @@ def surfaces(depsgraph):
 
 
 class MeshFile:
-    """The file, and what its numbers of objects and materials stand for in Blender."""
+    """The file, and what its numbers of objects and materials stand for in Blender. What must be read from
+    Blender is read by read_some() and add_all(), all else is done when the file is written."""
 
-    def __init__(self, notes):
+    def __init__(self, notes, known=None):
+        """`known` is what earlier files have read of objects that did not change since, by name; what this
+        one reads is added."""
         self.glb = gltf.Glb()
         self.pass_indices, self.material_indices = [], []
         self.keys = []  # of the instances that became nodes, in their order
-        self._notes = notes
+        self._notes, self._known = notes, known
         self._materials = materials.Exporter(self.glb, notes)
-        self._meshes = {}
-        self._override = None  # the view layer's material for everything
+        self._meshes, self._begun = {}, {}
 
     @property
     def is_empty(self):
         return not self.pass_indices
 
+    def read_some(self, depsgraph, seconds):
+        """Reads meshes, or parts of one, until that time has passed; whether there are none left."""
+        end = time.monotonic() + seconds
+        try:
+            for instance in surfaces(depsgraph):
+                if instance.object.visible_camera:
+                    self._mesh(instance.object, depsgraph, end)
+        except _TimeIsUp:
+            return False
+        return True
+
     def add_all(self, depsgraph, to_metres, motion):
-        self._override = depsgraph.view_layer.material_override
         for instance in depsgraph.object_instances:
             if instance.object.type in UNKNOWN and instance.show_self:
                 self._notes.add(f"{UNKNOWN[instance.object.type]} are left out")
@@ -75,7 +89,7 @@ class MeshFile:
                                 "not supported")
             if not shown.visible_shadow:
                 self._notes.add(f"'{shown.name}' casts a shadow here")
-            mesh = self._mesh(shown)
+            mesh = self._mesh(shown, depsgraph)
             if mesh is None:
                 continue
             poses = motion.poses(key_of(instance)) if motion is not None else None
@@ -87,97 +101,254 @@ class MeshFile:
             self.keys.append(key_of(instance))
         self.material_indices = self._materials.pass_indices
 
-    def _mesh(self, shown):
-        slots = tuple(slot.material for slot in shown.material_slots)
-        if self._override is not None:
-            slots = (self._override,)
-        key = (shown.type, shown.data.as_pointer(),
-               tuple(m.name_full if m is not None else "" for m in slots))
+    @staticmethod
+    def _slots(shown, depsgraph):
+        override = depsgraph.view_layer.material_override
+        return (override,) if override is not None else tuple(s.material for s in shown.material_slots)
+
+    def _key(self, shown, depsgraph):
+        """What is the same of objects that show the same mesh."""
+        return (shown.type, shown.data.as_pointer(), shown.data.name_full,
+                tuple(m.name_full if m is not None else "" for m in self._slots(shown, depsgraph)))
+
+    def _mesh(self, shown, depsgraph, end=math.inf):
+        """Its number in the file; None if nothing of it is seen. Raises _TimeIsUp after that time, and goes
+        on from there when it is called again."""
+        key = self._key(shown, depsgraph)
         if key not in self._meshes:
-            mesh = shown.to_mesh()
-            try:
-                primitives = self._primitives(shown, mesh, slots) if mesh is not None else []
-            finally:
-                shown.to_mesh_clear()
-            self._meshes[key] = (self.glb.add_mesh(shown.data.name, primitives)
-                                 if primitives else None)
+            slots = self._slots(shown, depsgraph)
+            corners = self._begun.get(key) or self._known_corners(shown, depsgraph, len(slots))
+            with _Reading(shown, end) as reading:
+                if corners is None or not corners.is_whole and not corners.is_of(reading.mesh):
+                    corners = self._begun[key] = _Corners(reading.mesh, len(slots))
+                while not corners.is_whole:
+                    reading.go_on(corners.read_part)
+                parts = self._parts(shown, corners, slots)
+                for part in parts:
+                    if corners.lacks(part.exported):
+                        reading.go_on(lambda mesh, part=part: corners.read(mesh, part.exported))
+            for part in parts:
+                self._note_missing(shown, corners, part.exported)
+            if self._known is not None and _shows_its_own(shown, depsgraph):
+                self._known[shown.name_full] = corners
+            self._meshes[key] = self.glb.add_mesh(
+                shown.data.name, lambda glb: corners.primitives(glb, parts)) if parts else None
         return self._meshes[key]
 
-    def _primitives(self, shown, mesh, slots):
-        mesh.calc_loop_triangles()
-        triangles = len(mesh.loop_triangles)
-        if triangles == 0:
-            return []
-        corners = numpy.empty(triangles * 3, numpy.int32)
-        mesh.loop_triangles.foreach_get("loops", corners)
-        corners = corners.reshape(-1, 3)
-        which = numpy.zeros(triangles, numpy.int32)
-        mesh.loop_triangles.foreach_get("material_index", which)
-        which = numpy.clip(which, 0, max(len(slots) - 1, 0))
-        attributes = _Attributes(mesh)
-        primitives = []
-        for index in numpy.unique(which):
+    def _known_corners(self, shown, depsgraph, slots):
+        corners = self._known.get(shown.name_full) if self._known else None
+        is_usable = corners is not None and corners.slots == slots and _shows_its_own(shown, depsgraph)
+        return corners if is_usable else None
+
+    def _parts(self, shown, corners, slots):
+        """The materials of a mesh that are seen."""
+        parts = []
+        for index in corners.used_slots():
             material = slots[index] if slots else None
-            if not materials.shows_surface(material):
+            if materials.shows_surface(material):
+                parts.append(_Part(index, *self._materials.export(material)))
+            else:
                 self._notes.add(f"the volume of '{shown.name}' is left out: its material has a volume "
                                 "shader, but uwvdb takes Volume objects and fluid domains")
-                continue
-            number, exported = self._materials.export(material)
-            used, indices = numpy.unique(corners[which == index], return_inverse=True)
-            primitive = {"attributes": {}, "material": number,
-                         "indices": self.glb.add_array(indices.reshape(-1))}
-            for name, values in attributes.of(exported, used, shown, self._notes):
-                primitive["attributes"][name] = self.glb.add_array(values)
-            primitives.append(primitive)
-        return primitives
+        return parts
+
+    def _note_missing(self, shown, corners, exported):
+        for name in exported.uv_maps[:2]:
+            if corners.uv_maps[name] is None:
+                self._notes.add(f"'{shown.name}' has no UV map {name!r} for its textures")
+        if exported.colours is not None and corners.colours[exported.colours] is None:
+            self._notes.add(f"'{shown.name}' has no colour attribute '{exported.colours}' for its "
+                            "material")
 
 
-class _Attributes:
-    """What the corners of a mesh's faces have, as glTF names it."""
+def _shows_its_own(shown, depsgraph):
+    """Whether an object shows its own data, rather than those that Geometry Nodes made for an instance
+    and that have no name."""
+    return shown.original.evaluated_get(depsgraph).data == shown.data and shown.type != "META"
 
-    def __init__(self, mesh):
-        self._mesh = mesh
-        self._vertices = numpy.empty(len(mesh.loops), numpy.int32)
-        mesh.loops.foreach_get("vertex_index", self._vertices)
-        self._positions = numpy.empty((len(mesh.vertices), 3), numpy.float32)
-        mesh.vertices.foreach_get("co", self._positions.reshape(-1))
-        self._normals = numpy.empty((len(mesh.loops), 3), numpy.float32)
-        if hasattr(mesh, "corner_normals"):  # Blender 4.1
-            mesh.corner_normals.foreach_get("vector", self._normals.reshape(-1))
+
+class _Part:
+    """The triangles of one material."""
+
+    def __init__(self, slot, number, exported):
+        self.slot, self.number, self.exported = slot, number, exported
+
+
+class _TimeIsUp(Exception):
+    pass
+
+
+class _Reading:
+    """An object's mesh, made of the object when it is first asked for. It goes when the object is evaluated
+    anew, so it is not kept for longer than this."""
+
+    def __init__(self, shown, end):
+        self._shown, self._end, self._mesh, self._has_gone_on = shown, end, None, False
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self._mesh is not None:
+            self._shown.to_mesh_clear()
+
+    @property
+    def mesh(self):
+        if self._mesh is None:
+            self._mesh = self._shown.to_mesh()
+        return self._mesh
+
+    def go_on(self, read):
+        if self._has_gone_on and time.monotonic() > self._end:
+            raise _TimeIsUp()
+        self._has_gone_on = True
+        read(self.mesh)
+
+
+class _Corners:
+    """What the corners of a mesh's faces have. Blender's own data do not stay, and reading them is slow: what
+    can be told without it is not read, and they are read in parts."""
+
+    def __init__(self, mesh, slots):
+        """`slots` is how many materials the mesh has."""
+        self.slots, self._count, self._size = slots, len(mesh.loops), _size(mesh)
+        self.uv_maps, self.colours = {}, {}  # by name; None: there is none of this name
+        self._unread = [self._read_faces, self._read_vertices, self._read_normals]
+
+    @property
+    def is_whole(self):
+        return not self._unread
+
+    def is_of(self, mesh):
+        return self._size == _size(mesh)
+
+    def read_part(self, mesh):
+        self._unread[0](mesh)
+        self._unread.pop(0)
+
+    def _read_faces(self, mesh):
+        """Faces of three or four corners are divided here, where it takes no time of Blender's."""
+        self._starts = _read(mesh.polygons, "loop_start", 1, numpy.int32).reshape(-1)
+        self._totals = _read(mesh.polygons, "loop_total", 1, numpy.int32).reshape(-1)
+        self._corners = self._which = None
+        if self._count > 0 and self._totals.max() > 4:
+            mesh.calc_loop_triangles()
+            self._corners = _read(mesh.loop_triangles, "loops", 3, numpy.int32)
+        which = mesh.attributes.get("material_index")
+        if self.slots > 1 and which is not None and self._count > 0:
+            which = _read(which.data, "value", 1, numpy.int32).reshape(-1)
+            self._which = numpy.repeat(numpy.clip(which, 0, self.slots - 1), self._totals - 2)
+
+    def _read_vertices(self, mesh):
+        vertices = mesh.attributes.get(".corner_vert")  # of Blender 3.6
+        self._vertices = (_read(mesh.loops, "vertex_index", 1, numpy.int32) if vertices is None else
+                          _read(vertices.data, "value", 1, numpy.int32)).reshape(-1)
+        self._positions = _read(mesh.vertices, "co", 3, numpy.float32)
+
+    def _read_normals(self, mesh):
+        if hasattr(mesh, "normals_domain"):  # Blender 4.1
+            self._normals_of = mesh.normals_domain
+        else:
+            are_smooth = _read(mesh.polygons, "use_smooth", 1, bool)
+            self._normals_of = ("CORNER" if mesh.use_auto_smooth else "POINT" if are_smooth.all() else
+                                "CORNER" if are_smooth.any() else "FACE")
+        if self._normals_of == "POINT":
+            self._normals = _read(mesh.vertex_normals, "vector", 3, numpy.float32)
+        elif self._normals_of == "FACE":
+            self._normals = _read(mesh.polygon_normals, "vector", 3, numpy.float32)
+        elif hasattr(mesh, "corner_normals"):
+            self._normals = _read(mesh.corner_normals, "vector", 3, numpy.float32)
         else:
             mesh.calc_normals_split()
-            mesh.loops.foreach_get("normal", self._normals.reshape(-1))
+            self._normals = _read(mesh.loops, "normal", 3, numpy.float32)
 
-    def of(self, exported, used, shown, notes):
-        yield "POSITION", self._positions[self._vertices[used]]
-        yield "NORMAL", self._normals[used]
+    def used_slots(self):
+        if self._count == 0:
+            return []
+        return [0] if self._which is None else numpy.flatnonzero(numpy.bincount(self._which)).tolist()
+
+    def lacks(self, exported):
+        return (any(name not in self.uv_maps for name in exported.uv_maps[:2])
+                or exported.colours is not None and exported.colours not in self.colours)
+
+    def read(self, mesh, exported):
+        """Reads what a material needs besides."""
+        layers = mesh.uv_layers
+        for name in exported.uv_maps[:2]:
+            if name not in self.uv_maps:
+                layer = layers.get(name) if name else next((l for l in layers if l.active_render), None)
+                self.uv_maps[name] = None if layer is None else _read(layer.data, "uv", 2, numpy.float32)
+        name, known = exported.colours, mesh.color_attributes
+        if name is not None and name not in self.colours:
+            attribute = known.get(name) if name else (
+                known[known.render_color_index] if len(known) > 0 else None)
+            if attribute is None or attribute.domain not in ("POINT", "CORNER"):
+                self.colours[name] = None
+            else:
+                values = _read(attribute.data, "color", 4, numpy.float32)
+                self.colours[name] = (values, attribute.domain == "CORNER")
+
+    def primitives(self, glb, parts):
+        return [self._primitive(glb, part) for part in parts]
+
+    def _primitive(self, glb, part):
+        corners = self._triangles()
+        if self._which is None:
+            used, indices = slice(None), corners
+        else:
+            used, indices = numpy.unique(corners[self._which == part.slot], return_inverse=True)
+        attributes = {name: glb.add_array(values) for name, values in self._attributes(used, part.exported)}
+        return {"attributes": attributes, "material": part.number,
+                "indices": glb.add_array(indices.reshape(-1))}
+
+    def _triangles(self):
+        """Three corners each, in the order of the faces."""
+        if self._corners is not None:
+            return self._corners
+        are_quads = self._totals == 4
+        firsts = numpy.cumsum(self._totals - 2) - (self._totals - 2)
+        triangles = numpy.empty((int((self._totals - 2).sum()), 3), numpy.int32)
+        triangles[firsts] = self._starts[:, None] + numpy.array([0, 1, 2])
+        triangles[firsts[are_quads] + 1] = self._starts[are_quads, None] + numpy.array([0, 2, 3])
+        # The other diagonal where the first lies outside, as Blender does.
+        corner = self._positions[self._vertices[self._starts[are_quads, None] + numpy.arange(4)]]
+        first, middle, last = (corner[:, at] - corner[:, 0] for at in (1, 2, 3))
+        sides = (numpy.cross(first, middle) * numpy.cross(last, middle)).sum(axis=1)
+        flipped = numpy.flatnonzero(are_quads)[sides > 0]
+        triangles[firsts[flipped]] = self._starts[flipped, None] + numpy.array([0, 1, 3])
+        triangles[firsts[flipped] + 1] = self._starts[flipped, None] + numpy.array([1, 2, 3])
+        return triangles
+
+    def _corner_normals(self, used):
+        if self._normals_of == "POINT":
+            return self._normals[self._vertices[used]]
+        if self._normals_of == "FACE":
+            return numpy.repeat(self._normals, self._totals, axis=0)[used]
+        return self._normals[used]
+
+    def _attributes(self, used, exported):
+        """As glTF names them."""
+        vertices = self._vertices[used]
+        yield "POSITION", self._positions[vertices]
+        yield "NORMAL", self._corner_normals(used)
         for at, name in enumerate(exported.uv_maps[:2]):
-            layers = self._mesh.uv_layers
-            layer = layers.get(name) if name else next((l for l in layers if l.active_render), None)
-            values = numpy.zeros((len(self._vertices), 2), numpy.float32)
-            if layer is None:
-                notes.add(f"'{shown.name}' has no UV map {name!r} for its textures")
-            else:
-                layer.data.foreach_get("uv", values.reshape(-1))
+            values = numpy.zeros((len(vertices), 2), numpy.float32)
+            if self.uv_maps[name] is not None:
+                values[:] = self.uv_maps[name][used]
                 values[:, 1] = 1 - values[:, 1]
-            yield f"TEXCOORD_{at}", values[used]
-        if exported.colours is not None:
-            colours = self._colours(exported.colours)
-            if colours is None:
-                notes.add(f"'{shown.name}' has no colour attribute '{exported.colours}' for its "
-                          "material")
-            else:
-                yield "COLOR_0", colours[used]
+            yield f"TEXCOORD_{at}", values
+        if exported.colours is not None and self.colours[exported.colours] is not None:
+            values, are_of_corners = self.colours[exported.colours]
+            values = numpy.clip(values[used if are_of_corners else vertices], 0, 1)  # linear, as glTF's
+            values[:, 3] = 1
+            yield "COLOR_0", values
 
-    def _colours(self, name):
-        """Linear, as glTF has them."""
-        known = self._mesh.color_attributes
-        attribute = known.get(name) if name else (
-            known[known.render_color_index] if len(known) > 0 else None)
-        if attribute is None or attribute.domain not in ("POINT", "CORNER"):
-            return None
-        values = numpy.empty((len(attribute.data), 4), numpy.float32)
-        attribute.data.foreach_get("color", values.reshape(-1))
-        values = numpy.clip(values, 0, 1)
-        values[:, 3] = 1
-        return values if attribute.domain == "CORNER" else values[self._vertices]
+
+def _read(items, name, width, kind):
+    values = numpy.empty((len(items), width), kind)
+    items.foreach_get(name, values.reshape(-1))
+    return values
+
+
+def _size(mesh):
+    return len(mesh.vertices), len(mesh.loops), len(mesh.polygons)

@@ -7,16 +7,20 @@ from .notes import Refusal
 
 # Panels of Blender for all engines, but for what uwvdb does not have.
 WITHOUT = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "WORLD_PT_preview",
-           "RENDER_PT_gpencil", "MATERIAL_PT_preview", "DATA_PT_light", "DATA_PT_spot", "DATA_PT_area"}
+           "RENDER_PT_gpencil", "MATERIAL_PT_preview", "DATA_PT_preview", "DATA_PT_light", "DATA_PT_spot",
+           "DATA_PT_area"}
 # EEVEE's panels that are the same for all engines: nodes of materials, depth of field.
 SHARED = {"EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "DATA_PT_camera_dof",
           "DATA_PT_camera_dof_aperture"}
 
 
 def _shared_panels():
-    for panel in bpy.types.Panel.__subclasses__():
+    panels = bpy.types.Panel.__subclasses__()
+    # Those of the node editor have the very sets of those that they stand for.
+    left_out = [p.COMPAT_ENGINES for p in panels if p.__name__ in WITHOUT and hasattr(p, "COMPAT_ENGINES")]
+    for panel in panels:
         engines = getattr(panel, "COMPAT_ENGINES", None)
-        if engines is None or panel.__name__ in WITHOUT:
+        if engines is None or any(engines is other for other in left_out):
             continue
         if "BLENDER_RENDER" in engines or panel.__name__ in SHARED:
             yield panel
@@ -111,6 +115,8 @@ class UWVDB_PT_passes(_Panel, bpy.types.Panel):
             column.prop(layer, name)
         column.prop(layer, "use_pass_object_index")
         column.prop(layer, "use_pass_material_index")
+        column.prop(layer, "use_pass_cryptomatte_object", text="Cryptomatte Object")
+        column.prop(layer, "use_pass_cryptomatte_material", text="Cryptomatte Material")
         column.separator()
         for name in layer.uwvdb.__annotations__:
             column.prop(layer.uwvdb, name)

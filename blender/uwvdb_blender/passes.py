@@ -9,6 +9,10 @@ LIGHT = {"use_direct": "direct", "use_backscatter": "backscatter", "use_forward"
          "use_multiple": "multiple", "use_clean": "clean", "use_transmittance": "transmittance",
          "use_irradiance": "irradiance", "use_error": "error", "use_albedo": "albedo"}
 NUMBERS = {"use_range": "range", "use_path": "path", "use_lit": "lit"}
+# Property of the view layer -> layer, and what its channels and Blender's passes begin with.
+MATTES = {"use_pass_cryptomatte_object": ("crypto_object", "CryptoObject"),
+          "use_pass_cryptomatte_material": ("crypto_material", "CryptoMaterial")}
+MATTE_PASSES = 3  # of two ranks each
 
 
 class Pass:
@@ -37,6 +41,7 @@ def layers_of(view_layer, scene):
         layers.append("id")
     if view_layer.use_pass_material_index:
         layers.append("material")
+    layers += [layer for key, (layer, _) in MATTES.items() if getattr(view_layer, key)]
     if needs_flow(view_layer):
         layers += ["flow", "flow_back"]
     if settings.use_lamps:
@@ -81,6 +86,10 @@ def passes_of(view_layer, scene, bands, lamp_names=(), written=None):
     if view_layer.use_pass_material_index:
         yield Pass("IndexMA", "X", "VALUE",
                    lambda image: _looked_up(image.get("material", "V"), written.material_indices))
+    for key, (_, prefix) in MATTES.items():
+        for number in range(MATTE_PASSES if getattr(view_layer, key) else 0):
+            name = f"{prefix}{number:02}"
+            yield Pass(name, "RGBA", "COLOR", lambda image, name=name: image.get(name, "RGBA"))
     settings = view_layer.uwvdb
     for key, layer in LIGHT.items():
         if getattr(settings, key) and _exists(layer, scene):
@@ -98,6 +107,37 @@ def passes_of(view_layer, scene, bands, lamp_names=(), written=None):
         yield Pass("sensor", "RGB", "COLOR", lambda image: image.get("sensor", "RGB"))
     elif sensor is not None:
         yield Pass("sensor", "X", "VALUE", lambda image: image.get("sensor", "V"))
+
+
+def matte_texts(view_layer, image):
+    """What Blender stores with the image, so that mattes are found by names: Cryptomatte's fields, under
+    the name that a view layer's passes have in files."""
+    for key, (_, prefix) in MATTES.items():
+        if not getattr(view_layer, key):
+            continue
+        found = next(name for name, text in image.texts.items()
+                     if name.startswith("cryptomatte/") and name.endswith("/name") and text == prefix)
+        name = f"{view_layer.name}.{prefix}"
+        target = f"cryptomatte/{_murmur_hash_3(name.encode()):08x}"[:-1]
+        yield f"{target}/name", name
+        for field in ("hash", "conversion", "manifest"):
+            yield f"{target}/{field}", image.texts[found.removesuffix("name") + field]
+
+
+def _murmur_hash_3(data):
+    """MurmurHash3_x86_32 with seed 0, by which Cryptomatte names its fields."""
+    def mixed(block):
+        block = block * 0xcc9e2d51 & 0xffffffff
+        return (block << 15 | block >> 17) * 0x1b873593 & 0xffffffff
+
+    result, whole = 0, len(data) & ~3
+    for at in range(0, whole, 4):
+        result ^= mixed(int.from_bytes(data[at:at + 4], "little"))
+        result = ((result << 13 | result >> 19) * 5 + 0xe6546b64) & 0xffffffff
+    result ^= mixed(int.from_bytes(data[whole:], "little")) ^ len(data)
+    for shift, factor in ((16, 0x85ebca6b), (13, 0xc2b2ae35), (16, 1)):
+        result = (result ^ result >> shift) * factor & 0xffffffff
+    return result
 
 
 def _in_bands(layer, bands):

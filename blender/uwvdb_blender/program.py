@@ -1,21 +1,15 @@
 """Runs the program uwvdb: its place, progress, messages and end."""
 
-import fcntl
 import json
 import os
-import pty
-import re
 import select
 import shutil
 import signal
-import struct
 import subprocess
-import termios
 import threading
 
 from .notes import Refusal
 
-PROGRESS = re.compile(r"^(?P<what>.*?) (?:\[.*\] )?\s*(?P<percent>\d+) %  (?:.*  )?(?P<left>\S.*) left\s*$")
 SECONDS_TO_STOP = 0.8
 
 
@@ -39,56 +33,42 @@ class Failed(Refusal):
 
 
 def run(arguments, folder, is_cancelled, on_progress):
-    """Runs the program in a folder and returns its lines. is_cancelled() is asked, and
-    on_progress(what, fraction, time left) is told, several times a second. The program shows its
-    progress as often as that on a terminal only, so it gets one."""
-    reading, writing = pty.openpty()
-    fcntl.ioctl(writing, termios.TIOCSWINSZ, struct.pack("4H", 24, 1000, 0, 0))
+    """Runs the program in a folder and returns its messages. is_cancelled() is asked several times a
+    second; on_progress(stage, fraction, seconds left or None) is told as often."""
     try:
-        process = subprocess.Popen(arguments, cwd=folder, stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.DEVNULL, stderr=writing)
+        process = subprocess.Popen([*arguments, "--progress", "json"], cwd=folder, bufsize=0,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE)
     except OSError as error:
-        os.close(reading)
         raise Refusal(f"{arguments[0]}: {error.strerror}") from error
-    finally:
-        os.close(writing)
-    lines, rest, is_open = [], "", True
+    lines, rest, is_open = [], b"", True
     try:
         while is_open:
             if is_cancelled():
                 raise Stopped()
-            if not select.select([reading], [], [], 0.1)[0]:
+            if not select.select([process.stderr], [], [], 0.1)[0]:
                 continue
-            try:
-                data = os.read(reading, 65536)
-            except OSError:  # how Linux says that nobody writes to a terminal any more
-                data = b""
+            data = process.stderr.read(65536)
             is_open = bool(data)
-            *whole, rest = re.split(r"[\r\n]+", rest + data.decode(errors="replace"))
+            *whole, rest = (rest + data).split(b"\n")
             for line in whole:
-                _take(line, lines, on_progress)
-            _show_progress(rest, on_progress)  # the bar has no end of line until it is drawn anew
+                _take(line.decode(errors="replace").strip(), lines, on_progress)
         code = process.wait()
     finally:
-        os.close(reading)
         _stop(process)
+        process.stderr.close()
     if code != 0:
         errors = [line for line in lines if not line.startswith(("warning:", "note:"))]
         raise Failed(errors[-1] if errors else f"uwvdb ended with code {code}")
     return lines
 
 
-def _show_progress(line, on_progress):
-    found = PROGRESS.match(line)
-    if found:
-        on_progress(found["what"].strip(), int(found["percent"]) / 100, found["left"])
-    return found is not None
-
-
 def _take(line, lines, on_progress):
-    is_message = line.startswith(("warning: ", "note: ", "uwvdb: ")) or " % " not in line
-    if not _show_progress(line, on_progress) and line.strip() and is_message:
-        lines.append(line.strip())
+    if line.startswith("{"):
+        progress = json.loads(line)
+        on_progress(progress["stage"], progress["fraction"], progress.get("seconds_left"))
+    elif line:
+        lines.append(line)
 
 
 def _stop(process):

@@ -13,6 +13,8 @@ from .notes import Notes, Refusal
 from .session import Session
 
 SECONDS_BETWEEN_LOOKS = 0.02
+SECONDS_OF_READING = 0.008  # at a time, between two drawings of the view
+SECONDS_OF_FIRST_READING = 0.05  # the sooner there is a picture
 # Kinds of data that surfaces are made of; where objects are is compared besides.
 OF_SURFACES = ("MESH", "CURVE", "META", "FONT", "MATERIAL", "IMAGE", "NODETREE", "TEXTURE", "PARTICLE",
                "COLLECTION")
@@ -64,6 +66,8 @@ class Surroundings:
         self._places, self._settings, self._number = {}, None, 0
         self._entries = self._meshes = None  # of the scene's `geometry`; (name, gltf.Glb)
         self._keys = []                      # of the file's nodes, by which their places are known
+        self._unfinished = None              # the meshes.MeshFile that is being read
+        self._known = {}                     # what it read of objects that do not change
         self._mesh_notes, self._notes, self._content = Notes(), Notes(), {}
 
     @property
@@ -74,21 +78,36 @@ class Surroundings:
     def meshes(self):
         return self._meshes
 
+    @property
+    def is_reading(self):
+        return self._unfinished is not None
+
     def update(self, depsgraph):
-        """Looks at the scene again."""
+        """Looks at the scene again. If is_reading then, read_on() is to be called until it is not."""
         self._update_surfaces(depsgraph)
         self._notes = Notes()
         plumes = volumes.Volumes(self._session.folder, self._notes,
                                  lambda source: volumes.advice_soon(self._program, source))
         content = scenes.describe_water_and_lamps(depsgraph, self._session.folder, None, plumes,
                                                   self._notes)
-        if self._entries:
-            content["geometry"] = self._entries
         content["render"] = self._render(depsgraph.scene)
         self._content = content
 
     def with_camera(self, camera):
-        return {"uwvdb": 1, "camera": camera, **self._content}
+        geometry = {"geometry": self._entries} if self._entries else {}
+        return {"uwvdb": 1, "camera": camera, **self._content, **geometry}
+
+    def read_on(self, depsgraph):
+        """Reads the next of the meshes, so few of them that Blender is not held up."""
+        seconds = SECONDS_OF_FIRST_READING if self._entries is None else SECONDS_OF_READING
+        if not self._unfinished.read_some(depsgraph, seconds):
+            return
+        made, self._unfinished = self._unfinished, None
+        made.add_all(depsgraph, scenes.metres_of(depsgraph.scene), None)
+        self._keys = made.keys
+        names = {key[0] for key in made.keys}
+        self._known = {name: corners for name, corners in self._known.items() if name in names}
+        self._name_meshes(depsgraph.scene, made.glb)
 
     def _update_surfaces(self, depsgraph):
         scene = depsgraph.scene
@@ -99,12 +118,13 @@ class Surroundings:
                       or any(map(depsgraph.id_type_updated, OF_SURFACES))
                       or any(isinstance(update.id, bpy.types.Object) and update.is_updated_geometry
                              and update.id.type in meshes.SURFACES for update in depsgraph.updates))
-        if are_others:
+        for update in depsgraph.updates:
+            if isinstance(update.id, bpy.types.Object) and update.is_updated_geometry:
+                self._known.pop(update.id.name_full, None)
+        if are_others or self._unfinished is not None:
             self._mesh_notes = Notes()
-            made = meshes.MeshFile(self._mesh_notes)
-            made.add_all(depsgraph, scenes.metres_of(scene), None)
-            self._keys = made.keys
-            self._name_meshes(scene, made.glb)
+            self._unfinished = meshes.MeshFile(self._mesh_notes, self._known)
+            self.read_on(depsgraph)
         elif places != self._places and self._keys:
             to_metres = scenes.metres_of(scene)
             self._name_meshes(scene, self._meshes[1].moved([to_metres @ places[key] for key in self._keys]))
@@ -162,7 +182,9 @@ class Viewport:
         frame = frame_of(depsgraph, (region.width, region.height), view,
                          view.view_perspective == "CAMERA", notes,
                          1 if pixel_size == "AUTO" else int(pixel_size))
-        if self._is_new or frame.camera != self._shown:
+        if self._surroundings.is_reading:
+            self._surroundings.read_on(depsgraph)
+        elif self._is_new or frame.camera != self._shown:
             self._shown, self._is_new = frame.camera, False
             self._session.show(self._surroundings.with_camera(frame.camera), self._surroundings.meshes)
         picture = self._session.picture
@@ -182,6 +204,7 @@ class Viewport:
             engine.update_stats("uwvdb", self._session.message)
             return
         step = "starting" if picture is None else STEPS[picture.quality]
+        step = "reading meshes" if self._surroundings.is_reading else step
         texts = [step] * bool(step) + notes.texts + self._surroundings.notes
         engine.update_stats("uwvdb", " | ".join(texts))
 
@@ -195,7 +218,7 @@ class Viewport:
             if self._was_asking and not program.is_asking():
                 self._was_asking = False
                 engine.tag_update()
-            if self._seen != self._session.version:
+            if self._seen != self._session.version or self._surroundings.is_reading or self._is_new:
                 self._seen = self._session.version
                 engine.tag_redraw()
         except ReferenceError:  # Blender has freed it

@@ -179,7 +179,7 @@ Options dataset_options(DatasetArguments& a) {
                  "check the set in a folder whose shards are done, and complete it");
     options.threads(a.image.threads);
     options.confine();
-    options.flag("--quiet", a.image.quiet, "print nothing but warnings and errors");
+    options.messages(a.image.quiet, a.image.progress);
     return options;
 }
 

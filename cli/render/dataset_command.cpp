@@ -48,8 +48,8 @@ constexpr std::size_t k_most_drafts = 5;
 /// What has to do with views of a data set, and tells its user how far it is.
 class ViewClient : public RunClient {
   public:
-    ViewClient(std::size_t count, bool quiet)
-        : progress_("views", "views", static_cast<double>(count), quiet) {}
+    ViewClient(std::size_t count, ProgressForm form)
+        : progress_("views", "views", static_cast<double>(count), form) {}
 
     void tell(const std::string& stage, double fraction) override {
         // Nearly all the time that a view takes is this stage.
@@ -68,8 +68,8 @@ class FirstLook : public ViewClient {
   public:
     /// The exposures follow from the first `for_exposure` of the views.
     FirstLook(const DatasetDefinition& definition, std::size_t for_exposure, std::size_t views,
-              bool quiet)
-        : ViewClient(views, quiet),
+              ProgressForm progress)
+        : ViewClient(views, progress),
           with_clean_(definition.has_format("clean")),
           for_exposure_(for_exposure) {}
 
@@ -126,7 +126,7 @@ class ViewRenderer : public ViewClient {
     /// `views`: their indices in the set.
     ViewRenderer(const DatasetArguments& arguments, const DatasetFile& set,
                  const std::vector<std::size_t>& views)
-        : ViewClient(views.size(), arguments.image.quiet),
+        : ViewClient(views.size(), arguments.image.progress),
           folder_(arguments.image.output),
           set_(set),
           sum_(sum_of(set.definition)),
@@ -246,16 +246,17 @@ class ViewRenderer : public ViewClient {
 
 namespace {
 
-void complete(const fs::path& folder, const DatasetFile& set, bool check, bool quiet) {
+void complete(const fs::path& folder, const DatasetFile& set, bool check,
+              const RenderArguments& arguments) {
     begin_orderly_stop();
     try {
         const StopScope scope(stop_flag());
-        Progress progress("completing the set", "", 1, quiet);
+        Progress progress("completing the set", "", 1, arguments.progress);
         complete_dataset(folder, set, check, [&](double share) { progress.update(share); });
     } catch (const Interrupted&) {
         throw Interrupted("interrupted; the views are there, --merge completes the set");
     }
-    if (!quiet)
+    if (!arguments.quiet)
         print_message(fmt::format("{}: complete, {}\n", folder.string(),
                                   counted(set.definition.view_count(), "view")));
 }
@@ -275,7 +276,7 @@ void merge(const DatasetArguments& a) {
     if (!set)
         throw IoError(fmt::format("{}: no data set is there; give the folder of its shards",
                                   printable(a.merge.string(), 300)));
-    complete(a.merge, *set, true, a.image.quiet);
+    complete(a.merge, *set, true, a.image);
 }
 
 void check_pinhole_fit(const DatasetDefinition& definition, const SceneDesc& scene) {
@@ -350,7 +351,7 @@ class DatasetRun {
         if (!a_.image.quiet && missing.size() < range.end - range.begin)
             print_message(there_text(range.end - range.begin, missing.size()));
         render(missing);
-        if (shard.count == 1) complete(a_.image.output, set_, false, a_.image.quiet);
+        if (shard.count == 1) complete(a_.image.output, set_, false, a_.image);
     }
 
     std::vector<std::size_t> look_for_missing(ViewRange range) {
@@ -468,7 +469,7 @@ class DatasetRun {
         const std::size_t draws = std::min(definition.draws.size(), k_most_drafts);
         for (std::size_t i = 1; i < draws; ++i)
             job.images.push_back(image_of({i * (definition.draws.size() - 1) / (draws - 1), 0, 0}));
-        FirstLook first(definition, of_first, job.images.size(), a_.image.quiet);
+        FirstLook first(definition, of_first, job.images.size(), a_.image.progress);
         first.look(job);
         if (const auto& exposure = definition.exposure)
             set_.exposures = {*exposure, *exposure};

@@ -92,7 +92,7 @@ void FrameRenderer::begin_stage(const std::string& stage) {
     const auto show = [&](const char* unit, double scale) {
         progress_ = std::make_unique<Progress>(
             clock.label(measuring_.empty() ? stage : measuring_ + ": " + stage), unit, scale,
-            arguments_.quiet, clock.seconds_left());
+            arguments_.progress, clock.seconds_left());
     };
     if (!measuring_.empty()) {
         show("", 1);
@@ -166,7 +166,7 @@ void FrameRenderer::write_irradiance(OutputFile& out) {
     const AssembledScene& scene = engine_.renderer().assembled();
     const SequenceClock& clock = engine_.clock();
     Progress progress(clock.label("irradiance"), "lamps", static_cast<double>(scene.lamps.size()),
-                      arguments_.quiet, clock.seconds_left());
+                      arguments_.progress, clock.seconds_left());
     write_irradiance_vdb(out, scene, engine_.renderer().light(),
                          [&](double share) { progress.update(share); });
 }

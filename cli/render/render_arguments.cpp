@@ -168,7 +168,7 @@ Options render_options(RenderArguments& a) {
     add_part_options(options, a.parts);
     options.path("--irradiance-vdb", "FILE", a.irradiance_vdb,
                  "write each lamp's irradiance per band as grids of a VDB");
-    options.flag("--quiet", a.quiet, "print nothing but warnings and errors");
+    options.messages(a.quiet, a.progress);
     return options;
 }
 

@@ -44,6 +44,7 @@ struct RenderArguments {
     PartArguments parts;            // of the image, to measure
     std::filesystem::path irradiance_vdb;
     bool quiet = false;
+    ProgressForm progress = ProgressForm::text;
 
     /// Throws UsageError for words that do not exist.
     ExrOptions exr() const;

@@ -126,7 +126,7 @@ Options sweep_options(SweepArguments& a) {
     for (const auto& [word, meaning] : k_quality_names) quality.words.emplace_back(word);
     options.threads(a.threads);
     options.confine();
-    options.flag("--quiet", a.quiet, "print nothing but warnings and errors");
+    options.messages(a.quiet, a.progress);
     return options;
 }
 
@@ -421,7 +421,7 @@ void run_sweep(const SweepArguments& a) {
     Sweep sweep;
     {
         const StopScope scope(stop_flag());
-        Progress progress("sweep", "pictures", static_cast<double>(a.grid.count()), a.quiet);
+        Progress progress("sweep", "pictures", static_cast<double>(a.grid.count()), a.progress);
         sweep = run_pictures(a, [&](double share) { progress.update(share); });
     }
     for (const std::string& warning : sweep.warnings)

@@ -35,6 +35,7 @@ struct SweepArguments {
     std::string quality = "draft";           // --quality
     int threads = 0;
     bool quiet = false;
+    ProgressForm progress = ProgressForm::text;
 };
 
 /// What `uwvdb sweep --help` ends with.

@@ -113,6 +113,27 @@ def test_disk_against_cycles():
     against_cycles("disk", 512, 5e-3)
 
 
+def test_spread_against_cycles():
+    for degrees, samples in ((150, 512), (90, 512), (40, 2048)):  # Blender 4.3 needs more for narrow ones
+        for shape in ("DISK", "RECTANGLE"):
+            floor_scene()
+            light("AREA", watts=300, location=(-0.9, 0.6, 1.7), rotation=(0.1, -0.5, 0.9), shape=shape,
+                  size=0.6, size_y=0.3, spread=math.radians(degrees))
+            against_cycles(f"{shape.lower()}, spread of {degrees} degrees", samples, 5e-3)
+
+
+def test_spread_keeps_the_watts():
+    lamps = sys.modules["uwvdb_blender.lamps"]
+    for degrees in (179, 90, 10, 1):
+        text, axis = lamps.spread_luminaire(math.radians(degrees))
+        lines = text.splitlines()
+        angles, values = (numpy.array(lines[at].split(), float) for at in (-3, -1))
+        fine = numpy.linspace(0, math.radians(degrees / 2), 100001)
+        intensity = axis * numpy.interp(numpy.degrees(fine), angles, values) / values[0]
+        watts = 2 * math.pi * (intensity * numpy.sin(fine)).sum() * fine[1]
+        assert abs(watts / math.pi - 1) < 2e-3, (degrees, watts)
+
+
 def test_emission_node_multiplies():
     """A light's own nodes count as in Cycles."""
     floor_scene()

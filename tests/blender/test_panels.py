@@ -113,7 +113,10 @@ def test_off_and_on_again():
     for panel in (bpy.types.RENDER_PT_output, bpy.types.DATA_PT_camera_dof,
                   bpy.types.EEVEE_MATERIAL_PT_surface):
         assert "UWVDB" in panel.COMPAT_ENGINES, panel
-    assert "UWVDB" not in bpy.types.RENDER_PT_gpencil.COMPAT_ENGINES
+    left_out = [name for name in sys.modules["uwvdb_blender.panels"].WITHOUT if hasattr(bpy.types, name)]
+    assert "DATA_PT_light" in left_out and "DATA_PT_preview" in left_out
+    for name in left_out:
+        assert "UWVDB" not in getattr(bpy.types, name).COMPAT_ENGINES, name
     bpy.ops.preferences.addon_disable(module="uwvdb_blender")
     assert not hasattr(bpy.types.Scene, "uwvdb")
     assert "UWVDB" not in bpy.types.RENDER_PT_output.COMPAT_ENGINES

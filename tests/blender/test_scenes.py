@@ -240,8 +240,7 @@ def test_motion_blur_against_cycles():
 
 def test_stops_within_a_second():
     """What Esc does: the program ends, and nothing of it is left."""
-
-
+    empty_scene()
     program = sys.modules["uwvdb_blender.program"]
     with tempfile.TemporaryDirectory() as folder:
         with open(f"{folder}/long.yaml", "w") as file:
@@ -265,9 +264,25 @@ def test_stops_within_a_second():
         ended = time.monotonic() - told[-1][0]
         print(f"    progress: {told[-1][1]}; stopped after {ended:.2f} s")
         assert ended < 1 and not os.path.exists(f"{folder}/long.exr")
-        what, fraction, left = told[-1][1]
-        assert what and 0 <= fraction < 1 and re.search(r"\d+ (s|min|h)", left), told[-1]
+        stage, fraction, seconds_left = told[-1][1]
+        assert stage == "render" and 0 <= fraction < 1 and seconds_left > 0, told[-1]
         assert told[-1][0] - begun < 60
+
+
+def test_an_exposure_for_dark_pictures_is_said():
+    scene = empty_scene(48, 32)
+    square(size=20, location=(0, 3, 0), rotation=(math.pi / 2, 0, 0))
+    lamp = light("POINT", watts=0.01, location=(0, 1, 0))
+    render()
+    said = [note for note in notes() if "dark" in note]
+    assert len(said) == 1, notes()
+    print(f"    {said[0]}")
+    scene.view_settings.exposure = float(re.search(r"Exposure (\S+) shows", said[0])[1])
+    brightest = numpy.percentile(render()["Combined"][..., :3], 99) * 2**scene.view_settings.exposure
+    assert 0.9 < brightest < 1.1 and not any("dark" in note for note in notes()), (brightest, notes())
+    scene.view_settings.exposure, lamp.data.energy = 0, 100
+    render()
+    assert not any("dark" in note for note in notes())
 
 
 def test_every_kind_of_water_and_camera_renders():

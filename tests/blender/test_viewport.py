@@ -51,6 +51,8 @@ class Shown:
     def update(self):
         self.depsgraph = bpy.context.evaluated_depsgraph_get()
         self.surroundings.update(self.depsgraph)
+        while self.surroundings.is_reading:
+            self.surroundings.read_on(self.depsgraph)
 
     def ask(self, view, through_camera=False):
         notes = sys.modules["uwvdb_blender.notes"].Notes()
@@ -163,7 +165,7 @@ def test_only_what_changed_is_described_anew():
 
         bpy.data.objects["Block"].location.x = 0.8
         shown.update()
-        assert shown.surroundings.meshes[1]._parts is first[1]._parts, "the meshes themselves are new"
+        assert shown.surroundings.meshes[1].is_of_the_meshes_of(first[1]), "the meshes themselves are new"
         shown.ask(view)
         elsewhere = shown.final()
         assert shown.session._process.pid == process

@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
+#include <string>
 
+#include "cli/command.h"
+#include "core/base/json.h"
 #include "tests/support/cli_test.h"
 
 namespace uw {
@@ -40,6 +44,36 @@ TEST_F(ProgressBar, IsNotShownWhenQuiet) {
     const test::ProgramResult result = run(
         {"render", "scene.yaml", "--size", "132x76", "--integrator", "reference", "--quiet"}, 80);
     EXPECT_EQ(result.err, "");
+}
+
+TEST_F(ProgressBar, IsAlsoLinesOfJsonForPrograms) {
+    for (const int columns : {0, 80}) {  // a pipe, a terminal
+        const test::ProgramResult result =
+            run({"render", "scene.yaml", "--size", "132x76", "--quiet", "--integrator", "reference",
+                 "--progress", "json"},
+                columns);
+        EXPECT_EQ(result.exit_code, 0);
+        std::istringstream lines(result.err);
+        int count = 0;
+        double before = 0;
+        for (std::string text; std::getline(lines, text); ++count) {
+            const Json line = Json::parse(text);
+            EXPECT_EQ(line["stage"], "render") << text;
+            const double fraction = line["fraction"];
+            EXPECT_GE(fraction, before);
+            EXPECT_LE(fraction, 1);
+            EXPECT_GE(line["seconds_left"].get<double>(), 0);
+            before = fraction;
+        }
+        EXPECT_GE(count, 2);
+        EXPECT_EQ(before, 1);
+    }
+}
+
+TEST_F(ProgressBar, HasNoOtherForms) {
+    const test::ProgramResult result = run({"render", "scene.yaml", "--progress", "xml"});
+    EXPECT_EQ(result.exit_code, k_exit_usage);
+    EXPECT_EQ(result.err, "uwvdb: --progress xml: expected text or json\n");
 }
 
 TEST(Duration, IsShort) {
