@@ -98,7 +98,7 @@ Options edit_options(EditArguments& a) {
     options
         .flag("--published", a.published,
               "listen on all addresses, in a container whose port is published on 127.0.0.1 under "
-              "the same number; needs --port")
+              "the same number")
         .needs = "--port";
     options.confine();
     return options;

@@ -47,7 +47,7 @@ find_program(UWVDB_MKDOCS mkdocs)
 find_program(UWVDB_DOXYGEN doxygen)
 if(UWVDB_MKDOCS AND UWVDB_DOXYGEN)
     install(CODE "execute_process(
-        COMMAND ${PROJECT_SOURCE_DIR}/scripts/docs-site
+        COMMAND \"${PROJECT_SOURCE_DIR}/scripts/docs-site\"
                 \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/site\"
         COMMAND_ERROR_IS_FATAL ANY)" COMPONENT site EXCLUDE_FROM_ALL)
 endif()
