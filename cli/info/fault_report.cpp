@@ -87,10 +87,10 @@ std::string processor_text() {
     const bool known = sched_getaffinity(0, sizeof permitted, &permitted) == 0;
     std::string level;
 #if defined(__x86_64__)
-    level = __builtin_cpu_supports("x86-64-v4")   ? ", x86-64-v4"
-            : __builtin_cpu_supports("x86-64-v3") ? ", x86-64-v3"
-            : __builtin_cpu_supports("x86-64-v2") ? ", x86-64-v2"
-                                                  : ", x86-64-v1";
+    level = __builtin_cpu_supports("avx512f")  ? ", AVX-512"
+            : __builtin_cpu_supports("avx2")   ? ", AVX2"
+            : __builtin_cpu_supports("sse4.2") ? ", SSE4.2"
+                                               : ", without SSE4.2";
 #endif
     return fmt::format("{}, {} of {} processors{}", value_in("/proc/cpuinfo", "model name"),
                        known ? std::to_string(CPU_COUNT(&permitted)) : "?",
