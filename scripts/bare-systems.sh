@@ -1,5 +1,6 @@
 # Sourced by scripts that try things on bare systems, made by debootstrap with the mirrors and the proxy of
-# this system's apt. Ubuntu's releases need its archive keys: ubuntu-keyring.
+# this system's apt. Ubuntu's releases need its archive keys: the package ubuntu-keyring, which Debian 12
+# lacks, or what scripts/python-headers has fetched. `root` is the folder of the checkout.
 
 in_chroot() {  # folder command...
     local folder=$1
@@ -24,11 +25,13 @@ is_ubuntu() {  # release
 
 make_bare_system() {  # release folder
     local release=$1 folder=$2 mirror security
+    local keys=/usr/share/keyrings/ubuntu-archive-keyring.gpg
+    [[ -e $keys ]] || keys=$root/build/python-headers$keys
     if is_ubuntu "$release"; then
         mirror=$(mirror_of Ubuntu http://archive.ubuntu.com/ubuntu)
         # gutsy: the script for all of Ubuntu's releases since; Debian lacks those of the latest.
         debootstrap --variant=minbase --components=main,universe \
-            --keyring=/usr/share/keyrings/ubuntu-archive-keyring.gpg \
+            --keyring="$keys" \
             "$release" "$folder" "$mirror" gutsy
         printf 'deb %s %s main universe\n' "$mirror" "$release" "$mirror" "$release-updates" \
             "$mirror" "$release-security" >"$folder/etc/apt/sources.list"
