@@ -304,7 +304,8 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv,
     CLI::App program("uwvdb: physically exact images of lamp-lit water, plumes and what is in them",
                      "uwvdb");
     bool version = false;
-    program.add_flag("--version", version, "print the version and exit");
+    program.add_flag("--version", version,
+                     "print the version, and what it was built with, and exit");
     program.footer(
         "Example:\n  uwvdb render assets/scenes/plume.yaml -o plume.exr\n\n"
         "See `uwvdb render --help` and so on for more.");
@@ -327,7 +328,9 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv,
         const std::string name = chosen() == nullptr ? "" : chosen()->command->name + " ";
         throw UsageError(fmt::format("{}; see 'uwvdb {}--help'", error.what(), name));
     }
-    if (version) return printing("uwvdb " + program_version() + "\n");
+    if (version)
+        return printing(
+            fmt::format("uwvdb {}\nbuilt with {}\n", program_version(), build_libraries()));
     if (chosen() == nullptr) throw UsageError(which_command(commands));
     chosen()->take();
     return chosen()->command->run;

@@ -25,6 +25,7 @@ struct EditArguments {
     std::filesystem::path scene;
     int port = 0;
     bool no_browser = false;
+    bool published = false;
 };
 
 bool has_desktop() {
@@ -72,7 +73,8 @@ ExitCode run_edit(const EditArguments& a) {
     return_large_memory();
     hold_stop_signal();
     EditSession session(a.scene);
-    const EditServer server(session, a.port);
+    const EditServer server(session, a.port,
+                            a.published ? EditAddress::everywhere : EditAddress::this_machine);
     print_output(fmt::format("{}\n", server.address()));
     if (!a.no_browser && has_desktop()) open_browser(server.address());
     wait_for_stop_signal();
@@ -93,6 +95,11 @@ Options edit_options(EditArguments& a) {
     options.path("SCENE", "", a.scene, "the scene file").required = true;
     options.integer("--port", "N", a.port, 0, 65535, "listen there; default 0: any free port");
     options.flag("--no-browser", a.no_browser, "print the address only");
+    options
+        .flag("--published", a.published,
+              "listen on all addresses, in a container whose port is published on 127.0.0.1 under "
+              "the same number")
+        .needs = "--port";
     options.confine();
     return options;
 }

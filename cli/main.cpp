@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <string>
 #include <vector>
 
 #include "cli/calibration_command.h"
@@ -78,7 +79,13 @@ int main(int argc, char** argv) {
         return fail(uw::k_exit_io, error.what());
     } catch (const uw::Interrupted& stop) {
         return fail(uw::k_exit_interrupted, stop.what());
-    } catch (const std::exception& error) {
+    } catch (const std::bad_alloc& error) {
         return fail(uw::k_exit_internal, uw::line_of(error));
+    } catch (const std::exception& error) {
+        const std::string what = fmt::format(
+            "{}; this is a fault of the program: please report it, with what 'uwvdb info SCENE "
+            "--report' prints",
+            error.what());
+        return fail(uw::k_exit_internal, what.c_str());
     }
 }

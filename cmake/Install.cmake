@@ -41,6 +41,17 @@ add_custom_target(uwvdb_blender_addon ALL DEPENDS ${uwvdb_blender_addon})
 install(FILES ${uwvdb_blender_addon} DESTINATION ${CMAKE_INSTALL_DATADIR}/uwvdb/blender
         COMPONENT program)
 
+# The documents as a site, made when it is installed: component "site", for packages and bundles, which
+# scripts/docs-site makes where its programs are.
+find_program(UWVDB_MKDOCS mkdocs)
+find_program(UWVDB_DOXYGEN doxygen)
+if(UWVDB_MKDOCS AND UWVDB_DOXYGEN)
+    install(CODE "execute_process(
+        COMMAND \"${PROJECT_SOURCE_DIR}/scripts/docs-site\"
+                \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/site\"
+        COMMAND_ERROR_IS_FATAL ANY)" COMPONENT site EXCLUDE_FROM_ALL)
+endif()
+
 # The library: all modules but the command line's. Between minor versions, anything may change.
 get_property(uwvdb_library_modules GLOBAL PROPERTY UWVDB_MODULES)
 list(FILTER uwvdb_library_modules INCLUDE REGEX "^uwvdb_(core|media|camera|render)")

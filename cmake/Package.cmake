@@ -29,6 +29,9 @@ foreach(file changelog.Debian copyright)
     install(FILES ${PROJECT_BINARY_DIR}/debian/${file}
             DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-uwvdb
             COMPONENT debian_python EXCLUDE_FROM_ALL)
+    install(FILES ${PROJECT_BINARY_DIR}/debian/${file}
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/uwvdb-doc
+            COMPONENT debian_site EXCLUDE_FROM_ALL)
 endforeach()
 
 set(CPACK_PACKAGE_NAME uwvdb)
@@ -50,6 +53,18 @@ if(TARGET uwvdb_image_formats)
     set(CPACK_DEBIAN_IMAGE_FORMATS_DESCRIPTION
         "Lets uwvdb read textures in TIFF, OpenEXR, Radiance HDR, TGA, BMP, WebP and
 PSD, by OpenImageIO.")
+endif()
+if(UWVDB_MKDOCS AND UWVDB_DOXYGEN)
+    list(APPEND CPACK_COMPONENTS_ALL site debian_site)
+    set(CPACK_COMPONENT_SITE_GROUP site)
+    set(CPACK_COMPONENT_DEBIAN_SITE_GROUP site)
+    set(CPACK_DEBIAN_SITE_PACKAGE_NAME uwvdb-doc)
+    set(CPACK_DEBIAN_SITE_PACKAGE_SECTION doc)
+    set(CPACK_DEBIAN_SITE_PACKAGE_ARCHITECTURE all)
+    set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS uwvdb-doc)
+    set(CPACK_DEBIAN_SITE_DESCRIPTION
+        "The documents of uwvdb as a site with search, the reference of its Python
+package and of its C++ headers, and notebooks: file:///usr/share/doc/uwvdb/site/index.html")
 endif()
 if(UWVDB_BUILD_PYTHON)
     list(APPEND CPACK_COMPONENTS_ALL python debian_python)

@@ -1,10 +1,19 @@
+if(CMAKE_SCRIPT_MODE_FILE)
+    cmake_minimum_required(VERSION 3.25)
+endif()
+
 # uwvdb_public_headers(result FOLDER...): the headers below FOLDERs that a program can include with
 # no other library than GLM. Excluded are those that include another library's headers and those
 # that include an excluded one.
+#   cmake -D "PRINT=core;media" -P cmake/PublicHeaders.cmake
+# prints them, one a line.
 function(uwvdb_public_headers result)
     list(TRANSFORM ARGN APPEND "/*.h" OUTPUT_VARIABLE patterns)
     list(TRANSFORM patterns PREPEND "${PROJECT_SOURCE_DIR}/")
-    file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${patterns})
+    if(NOT CMAKE_SCRIPT_MODE_FILE)
+        set(at_each_build CONFIGURE_DEPENDS)
+    endif()
+    file(GLOB_RECURSE headers ${at_each_build} RELATIVE ${PROJECT_SOURCE_DIR} ${patterns})
     set(left_out "")
     foreach(header IN LISTS headers)
         file(STRINGS ${PROJECT_SOURCE_DIR}/${header} includes REGEX "^ *# *include ")
@@ -30,3 +39,10 @@ function(uwvdb_public_headers result)
     list(REMOVE_ITEM headers ${left_out})
     set(${result} ${headers} PARENT_SCOPE)
 endfunction()
+
+if(CMAKE_SCRIPT_MODE_FILE)
+    cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH PROJECT_SOURCE_DIR)
+    uwvdb_public_headers(headers ${PRINT})
+    list(JOIN headers "\n" headers)
+    execute_process(COMMAND ${CMAKE_COMMAND} -E echo "${headers}")
+endif()

@@ -47,6 +47,7 @@ target_compile_definitions(uwvdb_nanovdb INTERFACE NANOVDB_USE_TBB)
 # pkg-config file alone names.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+pkg_check_modules(FFTW QUIET fftw3)  # its version
 
 # Only for the module image_formats, and for tests. The exported target names an OpenCV include
 # folder that its package does not provide.

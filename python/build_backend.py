@@ -45,12 +45,12 @@ def numpy_requirement():
     return "numpy<2" if version and tuple(map(int, version.groups())) < (2, 12) else "numpy"
 
 
-def metadata(project):
-    """The version, and the text of METADATA."""
+def metadata(project, requirements=None):
+    """The version, and the text of METADATA of what needs `requirements`."""
     version = re.search(r"project\(uwvdb VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {version}",
              f"Summary: {project['description']}", f"Requires-Python: {project['requires-python']}",
-             f"Requires-Dist: {numpy_requirement()}"]
+             *(f"Requires-Dist: {one}" for one in requirements or [numpy_requirement()])]
     return version, "\n".join(lines) + "\n"
 
 

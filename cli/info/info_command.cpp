@@ -12,6 +12,7 @@
 #include "camera/camera.h"
 #include "cli/console.h"
 #include "cli/info/camera_path.h"
+#include "cli/info/fault_report.h"
 #include "cli/info/plume_view.h"
 #include "cli/info/scene_survey.h"
 #include "cli/info/survey_report.h"
@@ -43,6 +44,7 @@ struct InfoArguments {
     bool scene = false;             // --scene: print a whole scene instead, of a VDB file
     fs::path picture;               // --picture: a thumbnail of that scene; empty: none
     fs::path svg;                   // --svg: the camera's path over a scene; empty: none
+    bool report = false;            // --report: what whoever reports a fault is asked for
 };
 
 const char* const k_info_examples = R"(Examples:
@@ -53,6 +55,7 @@ const char* const k_info_examples = R"(Examples:
   uwvdb info plume.yaml --set 'volumes[0].grids.density.large=50'
   uwvdb info plume.yaml --json
   uwvdb info dive.yaml --svg path.svg
+  uwvdb info plume.yaml --report > report.txt
 
 For a VDB or NanoVDB file: every grid in metres, what is wrong with it, which to map and how, and a
 `volumes:` block to paste into a scene, or a whole scene that shows it. For a scene: water, camera,
@@ -62,8 +65,8 @@ Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read 
 
 Options info_options(InfoArguments& a) {
     Options options;
-    options.path("FILE|SCENE", "", a.subject, "a .vdb or .nvdb file, a sequence, or a scene file")
-        .required = true;
+    options.path("FILE|SCENE", "", a.subject,
+                 "a .vdb or .nvdb file, a sequence, or a scene file; --report needs none");
     options.set(a.overrides);
     options.integer("--frame", "N", a.frame, 0, 999'999'999,
                     "which frame of a sequence, or of a scene that moves; default: the first that "
@@ -86,6 +89,10 @@ Options info_options(InfoArguments& a) {
         "--svg", "OUT.svg", a.svg,
         "for a scene that moves: draw the camera's path over it, from above and by height");
     options.flag("--json", a.json, "print everything as JSON");
+    options.flag(
+        "--report", a.report,
+        "print what a report of a fault needs: versions, the machine, the scene's text, the "
+        "names of its files, and what 'info' says of it");
     options.confine();
     return options;
 }
@@ -316,6 +323,19 @@ bool is_volume_file(const fs::path& file) {
     return beginning == std::string(" BDV\0\0\0\0", 8) || beginning.starts_with("NanoVDB");
 }
 
+std::string info_text(const InfoArguments& a) {
+    return is_volume_file(a.subject) ? info_on_vdb(a) : info_on_scene(a);
+}
+
+void print_report(const InfoArguments& a) {
+    if (a.json || a.scene || !a.picture.empty() || !a.svg.empty())
+        throw UsageError(
+            "--report: is text to be read and sent; leave out --json, --scene, --picture and "
+            "--svg");
+    print_fault_report(
+        {a.subject, !is_volume_file(a.subject), a.overrides, [&a] { return info_text(a); }});
+}
+
 }  // namespace
 
 Command info_command() {
@@ -323,7 +343,13 @@ Command info_command() {
     return {"info", "show what a VDB file or a scene holds, and what to fix", k_info_examples,
             info_options(*arguments), [arguments] {
                 const InfoArguments& a = *arguments;
-                print_output(is_volume_file(a.subject) ? info_on_vdb(a) : info_on_scene(a));
+                if (a.report) {
+                    print_report(a);
+                    return k_exit_done;
+                }
+                if (a.subject.empty())
+                    throw UsageError("info: which scene or VDB file? see 'uwvdb info --help'");
+                print_output(info_text(a));
                 return k_exit_done;
             }};
 }

@@ -202,13 +202,13 @@ class Workers final : public httplib::TaskQueue {
     httplib::ThreadPool pool_{k_threads};
 };
 
-// Binds the server to 127.0.0.1; returns the port.
+// Binds the server to an address; returns the port.
 //
 // A connection keeps a thread from when it is accepted until it ends, so the kernel is told to
 // accept none before its first byte has come, and each is closed after one answer: those that say
 // nothing wait in the kernel's queue. The library would make that queue 5 long, and would let
 // other programs share the port.
-int bind_to_loopback(httplib::Server& server, int port) {
+int bind_to(httplib::Server& server, EditAddress where, int port) {
     int listening = -1;
     server.set_socket_options([&](socket_t socket) {
         listening = socket;
@@ -217,15 +217,15 @@ int bind_to_loopback(httplib::Server& server, int port) {
         setsockopt(socket, IPPROTO_TCP, TCP_DEFER_ACCEPT, &k_silent_seconds,
                    sizeof k_silent_seconds);
     });
-    const char* const host = "127.0.0.1";
+    const char* const host = where == EditAddress::everywhere ? "0.0.0.0" : "127.0.0.1";
     const int bound = port == 0                         ? server.bind_to_any_port(host)
                       : server.bind_to_port(host, port) ? port
                                                         : -1;
     if (bound < 0 || listen(listening, SOMAXCONN) != 0)
         throw IoError(
-            fmt::format("port {} of 127.0.0.1: {}; choose another with --port, or leave "
-                        "it out for a free one",
-                        port, std::strerror(errno)));
+            fmt::format("port {} of {}: {}; choose another with --port, or leave it out for a free "
+                        "one",
+                        port, host, std::strerror(errno)));
     return bound;
 }
 
@@ -233,7 +233,7 @@ int bind_to_loopback(httplib::Server& server, int port) {
 
 class EditServer::Page {
   public:
-    Page(EditSession& session, int port);
+    Page(EditSession& session, int port, EditAddress where);
     ~Page();
     Page(const Page&) = delete;
     Page& operator=(const Page&) = delete;
@@ -259,7 +259,8 @@ class EditServer::Page {
     std::thread thread_;
 };
 
-EditServer::Page::Page(EditSession& session, int port) : session_(session), measures_(session) {
+EditServer::Page::Page(EditSession& session, int port, EditAddress where)
+    : session_(session), measures_(session) {
     server_.new_task_queue = [] { return new Workers; };
     server_.set_keep_alive_max_count(1);
     server_.set_keep_alive_timeout(0);  // the first byte is there
@@ -296,7 +297,7 @@ EditServer::Page::Page(EditSession& session, int port) : session_(session), meas
         if (!response.has_header("Content-Type"))
             refuse(response, response.status, "this is not a request that the editor understands");
     });
-    port_ = bind_to_loopback(server_, port);
+    port_ = bind_to(server_, where, port);
     thread_ = std::thread([this] { server_.listen_after_bind(); });
     // A server that does not run yet cannot be stopped.
     while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -439,8 +440,8 @@ void EditServer::Page::send_image(const Request& request, Response& response) co
               "application/octet-stream");
 }
 
-EditServer::EditServer(EditSession& session, int port)
-    : page_(std::make_unique<Page>(session, port)) {}
+EditServer::EditServer(EditSession& session, int port, EditAddress where)
+    : page_(std::make_unique<Page>(session, port, where)) {}
 
 EditServer::~EditServer() = default;
 

@@ -7,6 +7,11 @@
 
 namespace uw {
 
+/// Where the editor is reached. `everywhere` is for containers, whose ports are published on the
+/// addresses of their host: requests come by the network then, but have to name 127.0.0.1 or
+/// localhost as ever.
+enum class EditAddress { this_machine, everywhere };
+
 /// Serves the page of the lamp editor, and the session behind it as docs/edit-api.md says, on
 /// 127.0.0.1. Whoever does not know the address's token, and any page of another origin, is
 /// refused. Connections that say nothing cost nothing.
@@ -14,7 +19,7 @@ class EditServer {
   public:
     /// Listens to `port`, 0 for any that is free, from now on; `session` outlives it. Throws
     /// IoError if the port is taken.
-    EditServer(EditSession& session, int port);
+    EditServer(EditSession& session, int port, EditAddress where = EditAddress::this_machine);
     ~EditServer();
     EditServer(const EditServer&) = delete;
     EditServer& operator=(const EditServer&) = delete;

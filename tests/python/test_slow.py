@@ -26,6 +26,12 @@ def test_validation(scene):
     assert not uwvdb.validate(scene, tolerance=1e-12)
 
 
+def test_notebooks_run_in_jupyter(tmp_path):
+    subprocess.run([ROOT / "scripts/notebooks", BUILD, tmp_path], check=True)
+    assert sorted(file.name for file in tmp_path.glob("*.ipynb")) == sorted(
+        file.name for file in (ROOT / "examples/notebooks").glob("*.ipynb"))
+
+
 def resident_bytes():
     return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
 

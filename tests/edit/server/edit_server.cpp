@@ -173,6 +173,23 @@ TEST_F(EditServerTest, SearchesForABetterPlace) {
     post("/api/suggest/cancel", Json::object());
 }
 
+// 127.0.0.2 is another address of this machine, as a container's is of the network.
+TEST_F(EditServerTest, ListensElsewhereOnlyIfPublished) {
+    httplib::Client unheard("127.0.0.2", server_.port());
+    EXPECT_FALSE(unheard.Get(path("/")));
+    EditSession session(file_);
+    const EditServer published(session, 0, EditAddress::everywhere);
+    httplib::Client client("127.0.0.2", published.port());
+    const std::string page = "/" + published.token() + "/";
+    const auto other = client.Get(page);  // the Host is the address that it connects to
+    ASSERT_TRUE(other);
+    EXPECT_EQ(other->status, 403);
+    const auto same = client.Get(page, {{"Host", "127.0.0.1:" + std::to_string(published.port())}});
+    ASSERT_TRUE(same);
+    EXPECT_EQ(same->status, 200);
+    EXPECT_TRUE(published.address().starts_with("http://127.0.0.1:"));
+}
+
 TEST_F(EditServerTest, APortThatIsTakenIsAnError) {
     EXPECT_THROW(EditServer(session_, server_.port()), IoError);
 }

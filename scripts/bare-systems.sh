@@ -1,0 +1,47 @@
+# Sourced by scripts that try things on bare systems, made by debootstrap with the mirrors and the proxy of
+# this system's apt. Ubuntu's releases need its archive keys: the package ubuntu-keyring, which Debian 12
+# lacks, or what scripts/python-headers has fetched. `root` is the folder of the checkout.
+
+in_chroot() {  # folder command...
+    local folder=$1
+    shift
+    chroot "$folder" env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+        PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+        ${http_proxy:+"http_proxy=$http_proxy"} ${https_proxy:+"https_proxy=$https_proxy"} \
+        ${no_proxy:+"no_proxy=$no_proxy"} "$@"
+}
+
+# The first of this system's apt mirrors with that label, or the second argument.
+mirror_of() {  # label otherwise
+    local found
+    found=$(apt-get indextargets --format '$(LABEL) $(REPO_URI)' 'Created-By: Packages' |
+        sed -n "s/^$1 //p" | head -n 1) || true
+    echo "${found:-$2}"
+}
+
+is_ubuntu() {  # release
+    [[ ! $1 =~ ^(bookworm|trixie|forky|sid|testing|stable)$ ]]
+}
+
+make_bare_system() {  # release folder
+    local release=$1 folder=$2 mirror security
+    local keys=/usr/share/keyrings/ubuntu-archive-keyring.gpg
+    [[ -e $keys ]] || keys=$root/build/python-headers$keys
+    if is_ubuntu "$release"; then
+        mirror=$(mirror_of Ubuntu http://archive.ubuntu.com/ubuntu)
+        # gutsy: the script for all of Ubuntu's releases since; Debian lacks those of the latest.
+        debootstrap --variant=minbase --components=main,universe \
+            --keyring="$keys" \
+            "$release" "$folder" "$mirror" gutsy
+        printf 'deb %s %s main universe\n' "$mirror" "$release" "$mirror" "$release-updates" \
+            "$mirror" "$release-security" >"$folder/etc/apt/sources.list"
+    else
+        mirror=$(mirror_of Debian http://deb.debian.org/debian)
+        security=$(mirror_of Debian-Security http://deb.debian.org/debian-security)
+        debootstrap --variant=minbase "$release" "$folder" "$mirror"
+        printf 'deb %s %s main\n' "$mirror" "$release" "$mirror" "$release-updates" \
+            "$security" "$release-security" >"$folder/etc/apt/sources.list"
+    fi
+    apt-config dump | grep -E '^Acquire::(https?::|Check-(Valid-Until|Date) )' \
+        >"$folder/etc/apt/apt.conf.d/90host" || true
+}
