@@ -106,7 +106,7 @@ void GlowSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& 
     for (std::size_t j = 0; j < light.emitter_count(); ++j) {
         if (!light.visible(index, j)) continue;
         const Lamp& emitter = light.emitters()[j];
-        reflection.brdf(emitter.origin(sample.hit.position), brdf);
+        brdf_for(emitter, reflection, sample, brdf);
         double* sum = &radiance[std::min(emitter.index(), groups - 1) * bands_];
         for (std::size_t b = 0; b < bands_; ++b)
             sum[b] += light.irradiance(index, j, b) * brdf[b] * to_camera[b];
