@@ -21,7 +21,7 @@ namespace uw {
 struct RenderOptions {
     std::string layers{};                       // as LayerPlan takes them; empty: the default set
     std::optional<PixelWindow> window{};        // the pixels wanted; none: the whole image
-    PathRequest paths{};                        // of integrators that trace paths
+    PathRequest paths{};                        // of its light paths
     std::int64_t frame = 0;                     // number, on which the sensor's noise depends
     const LightTransport* transport = nullptr;  // instead of the scene's; not owned
 };

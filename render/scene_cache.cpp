@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "media/volumes/grid_field.h"
+#include "media/volumes/level_set_mesh.h"
 #include "media/water/species.h"
 #include "render/marine_snow.h"
 
@@ -115,7 +116,35 @@ SceneCache::KeptSurfaces SceneCache::build(const SceneDesc& scene) {
     KeptSurfaces built{scene.geometry, scene.water.bands_nm, {}, {}};
     built.set = surfaces_of_moment(scene);
     built.files = meshes_.files();
+    for (const KeptLevelSet& kept : level_sets_) built.files.add(kept.files);
     return built;
+}
+
+// The scene's geometry with the surfaces of level sets as meshes in memory.
+std::vector<GeometryDesc> SceneCache::with_level_sets(const SceneDesc& scene,
+                                                      std::vector<std::string>& warnings) {
+    std::vector<GeometryDesc> geometry = scene.geometry;
+    std::vector<KeptLevelSet> used;
+    for (GeometryDesc& entry : geometry) {
+        if (!entry.level_set) continue;
+        const auto known = std::ranges::find_if(level_sets_, [&](const KeptLevelSet& kept) {
+            return kept.file == entry.file && kept.desc == *entry.level_set &&
+                   kept.files.are_current();
+        });
+        KeptLevelSet kept;
+        if (known != level_sets_.end()) {
+            kept = *known;
+        } else {
+            kept = {entry.file, *entry.level_set, FileStamps({entry.file}), {}, nullptr};
+            kept.mesh = mesh_level_set(entry.file, *entry.level_set, entry.where, kept.warnings);
+        }
+        warnings.insert(warnings.end(), kept.warnings.begin(), kept.warnings.end());
+        entry.mesh = kept.mesh;
+        entry.mesh_name = entry.level_set->grid;
+        used.push_back(std::move(kept));
+    }
+    level_sets_ = std::move(used);
+    return geometry;
 }
 
 const SurfaceSet& SceneCache::surfaces(const SceneDesc& scene) {
@@ -133,7 +162,8 @@ const SurfaceSet& SceneCache::surfaces_ahead(const SceneDesc& next) {
 
 SurfaceSet SceneCache::surfaces_of_moment(const SceneDesc& then) {
     SurfaceSet set;
-    set.surfaces = build_surfaces(then.geometry, then.water.bands_nm, set.warnings, meshes_);
+    set.surfaces = build_surfaces(with_level_sets(then, set.warnings), then.water.bands_nm,
+                                  set.warnings, meshes_);
     return set;
 }
 

@@ -92,12 +92,23 @@ class SceneCache {
         bool is_of(const SceneDesc& scene) const;
     };
 
+    struct KeptLevelSet {
+        std::filesystem::path file;
+        LevelSetDesc desc;
+        FileStamps files;
+        std::vector<std::string> warnings;
+        std::shared_ptr<const TriangleMesh> mesh;
+    };
+
     KeptSurfaces build(const SceneDesc& scene);
+    std::vector<GeometryDesc> with_level_sets(const SceneDesc& scene,
+                                              std::vector<std::string>& warnings);
 
     std::optional<KeptWater> water_;
     std::vector<KeptVolume> volumes_;
     std::shared_ptr<const ConcentrationField> field_;  // of `volumes_`; null: not made
     MeshStore meshes_;
+    std::vector<KeptLevelSet> level_sets_;  // of the scene built last
     std::optional<KeptSurfaces> surfaces_, ahead_;
     LightSplatter splatter_;
 };

@@ -459,7 +459,7 @@ class DirectSum {
             Spectrum brdf;
             for (std::size_t j = 0; j < emitters.size(); ++j) {
                 if (!light.visible(0, j)) continue;
-                reflection.brdf(emitters[j].origin(hit.position), brdf);
+                brdf_for(emitters[j], reflection, sample, brdf);
                 for (std::size_t b = 0; b < bands_; ++b) {
                     seen.irradiance[i][b] += light.irradiance(0, j, b);
                     seen.direct[i][b] += light.irradiance(0, j, b) * brdf[b];

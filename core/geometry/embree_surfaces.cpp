@@ -31,6 +31,18 @@ class EmbreeSurfaces final : public Surfaces {
         return material_of_mesh(objects_.placed(hit.geometry), objects_.bands, hit);
     }
 
+    bool may_emit() const override {
+        const auto emits = [](const MeshObject& object) {
+            return std::ranges::any_of(object.mesh.materials, [](const MeshMaterial& material) {
+                return material.emission != Rgb{0, 0, 0};
+            });
+        };
+        return std::ranges::any_of(objects_.meshes,
+                                   [&](const auto& object) { return emits(*object); }) ||
+               std::ranges::any_of(objects_.instances,
+                                   [&](const auto& instance) { return emits(*instance.object); });
+    }
+
     double hit_distance(const Ray& ray) const override {
         return find_nearest(ray, k_infinity).distance;
     }

@@ -19,6 +19,9 @@ double alpha_squared(double roughness) {  // alpha is the roughness squared
     return rough * rough * rough * rough;
 }
 
+// Found by trial: a smooth metal shows a faint pattern of a panel's points at most.
+constexpr double k_patch_blur = 0.7;
+
 // D of GGX for a unit half vector on the side of the normal.
 double distribution_of(const Vector3& normal, const Vector3& half, double alpha2) {
     const double nh = std::min(glm::dot(normal, half), 1.0);
@@ -31,12 +34,15 @@ double distribution_of(const Vector3& normal, const Vector3& half, double alpha2
 }  // namespace
 
 MicrofacetLobe microfacet_lobe(const Vector3& normal, const Vector3& to_camera,
-                               const Vector3& to_lamp, double roughness) {
+                               const Vector3& to_lamp, double roughness, double lamp_angle) {
     const Vector3 sum = to_camera + to_lamp;
     const double length = glm::length(sum);
     if (!(length > 0)) return {};  // the lamp shines from straight behind
     const Vector3 half = sum / length;
-    const double alpha2 = alpha_squared(roughness);
+    // The normal turns by half the angle that the light does, and alpha is the tangent of an angle
+    // between normals. Points of a lattice lie nearly two radii of their patches apart.
+    const double blur = k_patch_blur * lamp_angle;
+    const double alpha2 = std::min(alpha_squared(roughness) + blur * blur, 1.0);
     // A shading normal may point away from the viewer.
     constexpr double k_grazing = 1e-4;
     const double nl = glm::dot(normal, to_lamp);
@@ -80,15 +86,16 @@ void SurfaceReflection::brdf(const Point3& position, Spectrum& values) const {
                  values);
 }
 
-void SurfaceReflection::brdf_towards(const Vector3& to_light, Spectrum& values) const {
+void SurfaceReflection::brdf_towards(const Vector3& to_light, Spectrum& values,
+                                     double lamp_angle) const {
     const SurfaceHit& hit = sample_->hit;
     if (!is_glossy()) {
         for (std::size_t b = 0; b < bands_; ++b)
             values[b] = hit.reflectance[b] * std::numbers::inv_pi;
         return;
     }
-    const MicrofacetLobe lobe =
-        microfacet_lobe(hit.normal, -sample_->ray.direction, to_light, material_->roughness);
+    const MicrofacetLobe lobe = microfacet_lobe(hit.normal, -sample_->ray.direction, to_light,
+                                                material_->roughness, lamp_angle);
     for (std::size_t b = 0; b < bands_; ++b) {
         const double fresnel = lobe.fresnel(material_->f0[b]);
         values[b] =

@@ -28,8 +28,11 @@ struct MicrofacetLobe {
 
     double fresnel(double f0) const { return f0 + (1 - f0) * fresnel_weight; }
 };
+/// A lamp that is seen within the small angle `lamp_angle` to each side [radians] counts as a point
+/// before a surface that is rougher by as much as makes the highlights of such lamps, side by side,
+/// a single even one.
 MicrofacetLobe microfacet_lobe(const Vector3& normal, const Vector3& to_camera,
-                               const Vector3& to_lamp, double roughness);
+                               const Vector3& to_lamp, double roughness, double lamp_angle = 0);
 
 /// tan(theta / 2) of the angle theta between the normal and a half vector drawn with the density
 /// D (n.h) over directions; `u` is uniform in [0, 1) (Walter et al. 2007, equation 35).
@@ -48,8 +51,8 @@ class SurfaceReflection {
     /// BRDF per band [1/sr] for light from a lamp at `position`: rho/pi for a diffuse surface; (1 -
     /// F) rho/pi + F D V for a glossy one (glTF 2.0, appendix B).
     void brdf(const Point3& position, Spectrum& values) const;
-    /// The same for light from the unit direction `to_light`.
-    void brdf_towards(const Vector3& to_light, Spectrum& values) const;
+    /// The same for light from the unit direction `to_light`; `lamp_angle` as in microfacet_lobe.
+    void brdf_towards(const Vector3& to_light, Spectrum& values, double lamp_angle = 0) const;
 
     /// Whether it has a specular lobe, and its roughness, 0..1. Precondition of the second: the
     /// first.

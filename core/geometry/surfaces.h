@@ -57,6 +57,9 @@ class Surfaces {
     /// SurfaceHit::has_material, and none by default.
     virtual SurfaceMaterial material(const SurfaceHit& /*hit*/) const { return {}; }
 
+    /// Whether any surface may emit light; true where that is not known.
+    virtual bool may_emit() const { return true; }
+
     /// Distance to the nearest surface from the ray's origin, infinity if there is none. Cheaper
     /// than closest_hit: no shading.
     virtual double hit_distance(const Ray& ray) const = 0;

@@ -1,6 +1,7 @@
 #include "core/light/lamp.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
 
@@ -27,16 +28,17 @@ Lamp::Lamp(std::string name, const Sunlight& sunlight, const Spectrum& irradianc
     sunlight_ = sunlight;
 }
 
-Lamp Lamp::emitter(std::size_t index, const Vector3& direction, double share) const {
-    Lamp beam = emitter(index, position_, share);
+Lamp Lamp::emitter(std::size_t index, const Vector3& direction, double share,
+                   const std::optional<LampPatch>& patch) const {
+    Lamp beam = emitter(index, position_, share, patch);
     beam.sunlight_->direction = direction;
     return beam;
 }
 
 Lamp Lamp::emitter(std::size_t index, const Point3& position, double share,
-                   double patch_radius) const {
+                   const std::optional<LampPatch>& patch) const {
     Lamp point = brightened(share);
-    point.patch_radius_ = patch_radius;
+    point.patch_ = patch;
     point.index_ = index;
     point.share_ = share;
     point.position_ = position;
@@ -47,6 +49,16 @@ Lamp Lamp::brightened(double factor) const {
     Lamp lamp = *this;
     for (double& value : lamp.axis_intensity_) value *= factor;
     return lamp;
+}
+
+Point3 Lamp::origin_on_patch(const Point3& x, const UnitPoint& place) const {
+    const Vector3 aside = patch_->at(place);
+    if (!sunlight_) return patch_->centre + aside;
+    // The square root is the cosine of the angle to the disc's middle.
+    const Vector3 middle = glm::cross(patch_->frame.x, patch_->frame.y);
+    const Sunlight there{aside + std::sqrt(1 - glm::dot(aside, aside)) * middle,
+                         sunlight_->surface};
+    return there.entry(x);
 }
 
 std::string_view Lamp::profile_name() const {

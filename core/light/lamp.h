@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
 #include "core/base/vector_math.h"
+#include "core/light/lamp_patch.h"
 #include "core/light/lamp_profile.h"
 #include "core/scene/scene_context.h"
 
@@ -65,13 +67,15 @@ class Lamp {
     Lamp(std::string name, const Sunlight& sunlight, const Spectrum& irradiance);
 
     /// A point of this lamp, the scene's with this `index`: at `position`, with a `share` of its
-    /// light. `patch_radius`: of the disk whose area is that of the luminous surface that the point
-    /// stands for [m]; 0: it is a lamp by itself.
+    /// light. `patch`: the part of the luminous surface that the point stands for; none: it is a
+    /// lamp by itself.
     Lamp emitter(std::size_t index, const Point3& position, double share,
-                 double patch_radius = 0) const;
+                 const std::optional<LampPatch>& patch = {}) const;
 
     /// A direction of this sun, the scene's lamp with this `index`: with a `share` of its light.
-    Lamp emitter(std::size_t index, const Vector3& direction, double share) const;
+    /// `patch`: the part of the sun's disc that it stands for; none: it has no disc.
+    Lamp emitter(std::size_t index, const Vector3& direction, double share,
+                 const std::optional<LampPatch>& patch = {}) const;
 
     /// The same emitter, but `factor` times as bright.
     Lamp brightened(double factor) const;
@@ -88,11 +92,22 @@ class Lamp {
     /// Where the light that reaches `x` comes from: the position; for a sun, the point of the
     /// water's surface through which it enters (below it, if `x` lies above).
     Point3 origin(const Point3& x) const { return sunlight_ ? sunlight_->entry(x) : position_; }
+    /// Whether it is one of several that stand for parts of a luminous surface or a sun's disc: its
+    /// shadows are soft (origin_on_patch). A lamp that consists of one point has hard ones.
+    bool is_part() const { return patch_ && share_ < 1; }
+    /// Where the light that reaches `x` comes from if it is that of one point of the patch, which
+    /// belongs to a `place` in the unit square. Precondition: is_part().
+    Point3 origin_on_patch(const Point3& x, const UnitPoint& place) const;
+    /// The angle at which the radius of its patch is seen from this distance, if it is small; 0
+    /// without a patch.
+    double patch_angle(double distance) const {
+        return patch_ ? patch_->radius / std::sqrt(spread(distance)) : 0;
+    }
     /// By what its light is divided at a distance from its origin: R^2; 1 for a sun.
     double spread(double distance) const { return sunlight_ ? 1 : distance * distance; }
     /// distance_aside of a point of a lamp with an extent; 0 for all others.
     double aside(const Ray& ray) const {
-        return patch_radius_ > 0 ? distance_aside(position_, patch_radius_, ray) : 0;
+        return patch_ && !sunlight_ ? distance_aside(position_, patch_->radius, ray) : 0;
     }
     /// Whether a point at this distance from its origin lies in the sphere that represents it.
     bool holds(double distance) const { return !sunlight_ && distance < k_lamp_radius; }
@@ -131,7 +146,7 @@ class Lamp {
     std::optional<Sunlight> sunlight_;
     std::size_t index_ = 0;
     double share_ = 1;
-    double patch_radius_ = 0;
+    std::optional<LampPatch> patch_;
 };
 
 }  // namespace uw

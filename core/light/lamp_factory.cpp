@@ -99,34 +99,24 @@ Lamp make_lamp(const LampDesc& given, const Affine& world_from_camera,
 
 namespace {
 
-struct PlanePoint {
-    double x = 0, y = 0;
-};
-
-// The point of a unit lattice as one of the extent, relative to its centre [m].
-PlanePoint on_extent(const LampExtentDesc& extent, double u, double v) {
-    if (extent.shape == LampExtentDesc::Shape::disk) {
-        const double radius = extent.radius * std::sqrt(u), angle = 2 * std::numbers::pi * v;
-        return {radius * std::cos(angle), radius * std::sin(angle)};
-    }
-    // The even steps of u go along the longer side.
-    if (extent.width < extent.height) std::swap(u, v);
-    return {(u - 0.5) * extent.width, (v - 0.5) * extent.height};
-}
-
-std::vector<PlanePoint> fill(const LampExtentDesc& extent, int count) {
-    std::vector<PlanePoint> points;
-    PlanePoint mean;
+std::vector<UnitPoint> lattice(int count) {
+    std::vector<UnitPoint> places;
     for (int i = 0; i < count; ++i) {
         const double turns = (i + 0.5) * std::numbers::phi;
-        points.push_back(on_extent(extent, (i + 0.5) / count, turns - std::floor(turns)));
-        mean.x += points.back().x / count;
-        mean.y += points.back().y / count;
+        places.push_back({(i + 0.5) / count, turns - std::floor(turns)});
     }
-    for (PlanePoint& point : points) {
-        point.x -= mean.x;
-        point.y -= mean.y;
+    return places;
+}
+
+// The points of the surface that belong to these places, moved so that their mean is the centre.
+std::vector<Vector3> fill(const LampFrame& frame, const std::vector<UnitPoint>& places) {
+    std::vector<Vector3> points;
+    Vector3 mean(0);
+    for (const UnitPoint& place : places) {
+        points.push_back(frame.at(place));
+        mean += points.back() / static_cast<double>(places.size());
     }
+    for (Vector3& point : points) point -= mean;
     return points;
 }
 
@@ -136,15 +126,18 @@ void append_sun(const SunDesc& sun, const Lamp& lamp, std::size_t index, int thi
                 std::vector<Lamp>& emitters) {
     const Vector3 middle = lamp.sunlight()->direction;
     const LampPlacement placement{{}, middle};
-    const Vector3 x = placement.across(), y = glm::cross(middle, x);
-    LampExtentDesc disk;
-    disk.shape = LampExtentDesc::Shape::disk;
-    disk.radius = std::sin(glm::radians(0.5 * sun.angle));
+    LampFrame frame{{}, placement.across(), glm::cross(middle, placement.across())};
+    frame.extent.shape = LampExtentDesc::Shape::disk;
+    frame.extent.radius = std::sin(glm::radians(0.5 * sun.angle));
     const int count = std::max(1, sun.samples / thinning);
-    for (const PlanePoint& point : fill(disk, count)) {
-        const double cosine = std::sqrt(1 - point.x * point.x - point.y * point.y);
-        const Vector3 direction = cosine * middle + point.x * x + point.y * y;
-        emitters.push_back(lamp.emitter(index, direction, 1.0 / count).brightened(1 / cosine));
+    const std::vector<UnitPoint> places = lattice(count);
+    const std::vector<Vector3> points = fill(frame, places);
+    const std::vector<LampPatch> patches = divide(frame, {}, places);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double cosine = std::sqrt(1 - glm::dot(points[i], points[i]));
+        const Vector3 direction = cosine * middle + points[i];
+        emitters.push_back(
+            lamp.emitter(index, direction, 1.0 / count, patches[i]).brightened(1 / cosine));
     }
 }
 
@@ -152,40 +145,41 @@ void append_sun(const SunDesc& sun, const Lamp& lamp, std::size_t index, int thi
 // alike.
 constexpr int k_many_points = 512;
 
-LampPoints points_of(const LampSurface& surface, int count) {
+LampPoints points_of(const LampFrame& frame, const Point3& centre,
+                     const std::vector<UnitPoint>& places) {
     LampPoints points;
-    for (const PlanePoint& point : fill(surface.extent, count))
-        points.positions.push_back(surface.lamp.position() + point.x * surface.x +
-                                   point.y * surface.y);
-    points.patch_radius = std::sqrt(surface.area() / (std::numbers::pi * count));
+    for (const Vector3& point : fill(frame, places)) points.positions.push_back(centre + point);
+    points.patch_radius =
+        std::sqrt(frame.area() / (std::numbers::pi * static_cast<double>(places.size())));
     return points;
 }
 
-LampSurface surface_of(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
-                       const Affine& world_from_camera) {
+LampFrame frame_of(const LampDesc& desc, const Affine& world_from_camera) {
     const LampPlacement placement{desc.world_from_frame(world_from_camera), desc.direction};
     const double turn = glm::radians(desc.extent->rotate);
     const Vector3 across = placement.across(), up = glm::cross(-placement.direction, across);
     const auto in_world = [&](const Vector3& v) {
         return placement.world_from_frame.apply_to_vector(v);
     };
-    LampSurface surface{lamp.emitter(index, lamp.position(), 1),
-                        *desc.extent,
-                        in_world(std::cos(turn) * across + std::sin(turn) * up),
-                        in_world(std::cos(turn) * up - std::sin(turn) * across),
-                        {},
-                        {}};
-    const int count = std::max(1, desc.extent->samples / thinning);
-    surface.emitters = points_of(surface, count);
-    surface.many = points_of(surface, std::max(count, k_many_points));
-    return surface;
+    return {*desc.extent, in_world(std::cos(turn) * across + std::sin(turn) * up),
+            in_world(std::cos(turn) * up - std::sin(turn) * across)};
+}
+
+int point_count(const LampDesc& desc, int thinning) {
+    return std::max(1, desc.extent->samples / thinning);
 }
 
 }  // namespace
 
 void append_surface(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                     const Affine& world_from_camera, std::vector<LampSurface>& surfaces) {
-    if (desc.extent) surfaces.push_back(surface_of(desc, lamp, index, thinning, world_from_camera));
+    if (!desc.extent) return;
+    const LampFrame frame = frame_of(desc, world_from_camera);
+    const int count = point_count(desc, thinning);
+    surfaces.push_back(
+        {lamp.emitter(index, lamp.position(), 1), frame,
+         points_of(frame, lamp.position(), lattice(count)),
+         points_of(frame, lamp.position(), lattice(std::max(count, k_many_points)))});
 }
 
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
@@ -198,10 +192,13 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
         emitters.push_back(lamp.emitter(index, lamp.position(), 1));
         return;
     }
-    const LampPoints points = surface_of(desc, lamp, index, thinning, world_from_camera).emitters;
-    const double share = 1.0 / static_cast<double>(points.positions.size());
-    for (const Point3& position : points.positions)
-        emitters.push_back(lamp.emitter(index, position, share, points.patch_radius));
+    const LampFrame frame = frame_of(desc, world_from_camera);
+    const std::vector<UnitPoint> places = lattice(point_count(desc, thinning));
+    const std::vector<Vector3> points = fill(frame, places);
+    const std::vector<LampPatch> patches = divide(frame, lamp.position(), places);
+    const double share = 1.0 / static_cast<double>(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        emitters.push_back(lamp.emitter(index, lamp.position() + points[i], share, patches[i]));
 }
 
 }  // namespace uw

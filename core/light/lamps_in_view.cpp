@@ -31,17 +31,11 @@ double half_tangent_at(double knot) {
 
 }  // namespace
 
-double LampSurface::area() const {
-    if (extent.shape == LampExtentDesc::Shape::disk)
-        return std::numbers::pi * extent.radius * extent.radius;
-    return extent.width * extent.height;
-}
-
 bool LampSurface::is_passed_by(const Ray& ray) const {
     const Vector3 across = glm::cross(lamp.position() - ray.origin, ray.direction);
-    const double half = extent.shape == LampExtentDesc::Shape::disk
-                            ? extent.radius
-                            : 0.5 * std::hypot(extent.width, extent.height);
+    const double half = frame.extent.shape == LampExtentDesc::Shape::disk
+                            ? frame.extent.radius
+                            : 0.5 * std::hypot(frame.extent.width, frame.extent.height);
     const double near = half + k_patches_aside * emitters.patch_radius;
     return glm::dot(across, across) <= near * near;
 }
@@ -138,24 +132,25 @@ void LampEvenness::find(std::size_t lamp, const Ray& ray, double begin,
 
 double LampSurface::crossing(const Ray& ray) const {
     constexpr double k_nowhere = std::numeric_limits<double>::infinity();
-    const Vector3 normal = glm::cross(x, y);
+    const Vector3 normal = glm::cross(frame.x, frame.y);
     const double towards = glm::dot(normal, ray.direction);
     if (towards == 0) return k_nowhere;
     const double s = glm::dot(normal, lamp.position() - ray.origin) / towards;
     if (!(s > 0)) return k_nowhere;
     const Vector3 from_center = ray.at(s) - lamp.position();
-    const double across = glm::dot(from_center, x), along = glm::dot(from_center, y);
+    const double across = glm::dot(from_center, frame.x), along = glm::dot(from_center, frame.y);
     const bool is_inside =
-        extent.shape == LampExtentDesc::Shape::disk
-            ? across * across + along * along <= extent.radius * extent.radius
-            : std::abs(across) <= 0.5 * extent.width && std::abs(along) <= 0.5 * extent.height;
+        frame.extent.shape == LampExtentDesc::Shape::disk
+            ? across * across + along * along <= frame.extent.radius * frame.extent.radius
+            : std::abs(across) <= 0.5 * frame.extent.width &&
+                  std::abs(along) <= 0.5 * frame.extent.height;
     return is_inside ? s : k_nowhere;
 }
 
 double LampSurface::radiance_towards(const Ray& ray) const {
-    const double cosine = std::abs(glm::dot(glm::cross(x, y), ray.direction));
+    const double cosine = std::abs(glm::dot(glm::cross(frame.x, frame.y), ray.direction));
     if (cosine < k_edge_on) return 0;
-    return lamp.relative_intensity(-ray.direction) / (area() * cosine);
+    return lamp.relative_intensity(-ray.direction) / (frame.area() * cosine);
 }
 
 void LampsInView::append(const Ray& ray, double reach, std::vector<SeenLamp>& seen) const {

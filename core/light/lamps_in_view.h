@@ -9,8 +9,8 @@
 #include "core/base/spectrum.h"
 #include "core/light/integrator.h"
 #include "core/light/lamp.h"
+#include "core/light/lamp_patch.h"
 #include "core/light/medium.h"
-#include "core/scene/lamp_desc.h"
 
 namespace uw {
 
@@ -23,12 +23,10 @@ struct LampPoints {
 /// The luminous surface of a lamp with an extent, in the world.
 struct LampSurface {
     Lamp lamp;  // all of it, at its centre
-    LampExtentDesc extent;
-    Vector3 x, y;         // unit vectors in the surface: x along a rectangle's width
+    LampFrame frame;
     LampPoints emitters;  // as in LitScene::emitters
     LampPoints many;      // so many that they are as good as the surface
 
-    double area() const;  // [m^2]
     /// Whether the light of the emitters that is scattered on `ray` may differ from that of the
     /// surface: only where the ray passes it closely.
     bool is_passed_by(const Ray& ray) const;

@@ -291,6 +291,7 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
         for (std::size_t b = 0; b < bands; ++b)
             transmittance[b] = std::exp(-attenuation_.uniform[b] * length);
     };
+    find_half_shades(scene_, samples, light.visible_shares());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const auto& [ray, hit, x, y] = *samples[i];
         set_transmittance(light.to_camera(i), distance(ray.origin, hit.position));
@@ -301,10 +302,11 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
             const double r2 = glm::dot(v, v);
             const double geometry_term = lamp.relative_intensity(-v) * glm::dot(hit.normal, v) /
                                          (lamp.spread(std::sqrt(r2)) * std::sqrt(r2));
-            if (geometry_term <= 0 || glm::dot(hit.geometric_normal, v) <= 0 ||
-                scene_.surfaces->occluded(origin, hit.position))
-                continue;
-            light.geometry_term(i, j) = geometry_term;
+            if (geometry_term <= 0 || glm::dot(hit.geometric_normal, v) <= 0) continue;
+            double& share = light.visible_share(i, j);
+            if (!lamp.is_part()) share = scene_.surfaces->occluded(origin, hit.position) ? 0 : 1;
+            if (share == 0) continue;
+            light.geometry_term(i, j) = share * geometry_term;
             set_transmittance(light.from_emitter(i, j), std::sqrt(r2));
         }
     }

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
+#include "core/base/random.h"
 
 namespace uw {
 
@@ -25,6 +26,44 @@ int pixel(double position) {
 }
 
 }  // namespace
+
+namespace {
+
+// The steps of the additive sequence that fills the unit square most evenly (Roberts 2018, "The
+// unreasonable effectiveness of quasirandom sequences"): the powers of 1/1.3247..., which is the
+// root of x^3 = x + 1.
+constexpr UnitPoint k_even_steps{0.7548776662466927, 0.5698402909980532};
+
+double fraction(double x) {
+    return x - std::floor(x);
+}
+
+}  // namespace
+
+// The samples of a pixel lie in it as evenly as points in a square can; in each pixel, and for each
+// number, this pattern is shifted otherwise.
+Point3 shadow_origin(const Lamp& emitter, const SurfaceSample& sample, std::size_t number) {
+    if (!emitter.is_part()) return emitter.origin(sample.hit.position);
+    const auto pixel_bits = [](double position) {
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(position)));
+    };
+    PathRandom shift(PathRandom::seed_of(pixel_bits(sample.x), pixel_bits(sample.y)), 0);
+    const auto steps = static_cast<double>(number);
+    const double u = fraction(sample.x + shift.next() + steps * k_even_steps.u);
+    const double v = fraction(sample.y + shift.next() + steps * k_even_steps.v);
+    return emitter.origin_on_patch(sample.hit.position, {u, v});
+}
+
+void brdf_for(const Lamp& emitter, const SurfaceReflection& reflection, const SurfaceSample& sample,
+              Spectrum& values) {
+    if (!reflection.is_glossy()) {
+        reflection.brdf_towards(Vector3(0), values);
+        return;
+    }
+    const Vector3 to_lamp = emitter.origin(sample.hit.position) - sample.hit.position;
+    const double length = glm::length(to_lamp);
+    reflection.brdf_towards(to_lamp / length, values, emitter.patch_angle(length));
+}
 
 void SurfaceColumns::begin(const LitScene& scene, const AttenuationTable& attenuation,
                            const ColumnMixing& mixing,
@@ -179,19 +218,22 @@ namespace {
 // A tile of thousands of samples per pixel has a million shadow rays to each lamp.
 constexpr std::size_t k_rays_at_once = 1024;
 
-/// The samples that one lamp may illuminate: they face it and lie within its beam.
+/// The samples that one emitter may illuminate: they face it and lie within its beam.
 struct Facing {
     std::vector<std::size_t> samples;
     std::vector<Point3> positions;
     std::vector<double> radii, geometry_terms;
     std::vector<char> hidden;
 
-    void find(const Lamp& lamp, std::span<const SurfaceSample* const> all) {
+    /// Of all samples, or of those that `wanted` has unless it is empty.
+    void find(const Lamp& lamp, std::span<const SurfaceSample* const> all,
+              std::span<const char> wanted = {}) {
         samples.clear();
         positions.clear();
         radii.clear();
         geometry_terms.clear();
         for (std::size_t i = 0; i < all.size(); ++i) {
+            if (!wanted.empty() && wanted[i] == 0) continue;
             const SurfaceHit& hit = all[i]->hit;
             const Vector3 to_lamp = lamp.origin(hit.position) - hit.position;
             // The geometric normal decides what a lamp can illuminate; the shading normal only
@@ -210,23 +252,109 @@ struct Facing {
     }
 
     void trace_shadows(const Lamp& lamp, const Surfaces& surfaces) {
-        if (!lamp.sunlight()) {
-            for (std::size_t n = 0; n < positions.size(); n += k_rays_at_once) {
+        if (lamp.sunlight()) {
+            for (std::size_t n = 0; n < positions.size(); ++n) {
                 throw_if_stopped();
-                const std::size_t count = std::min(k_rays_at_once, positions.size() - n);
-                surfaces.occluded_many(lamp.position(), std::span(positions).subspan(n, count),
-                                       std::span(hidden).subspan(n, count));
+                hidden[n] = surfaces.occluded(lamp.origin(positions[n]), positions[n]) ? 1 : 0;
             }
             return;
         }
-        for (std::size_t n = 0; n < positions.size(); ++n) {
+        for (std::size_t n = 0; n < positions.size(); n += k_rays_at_once) {
             throw_if_stopped();
-            hidden[n] = surfaces.occluded(lamp.origin(positions[n]), positions[n]) ? 1 : 0;
+            const std::size_t count = std::min(k_rays_at_once, positions.size() - n);
+            surfaces.occluded_many(lamp.position(), std::span(positions).subspan(n, count),
+                                   std::span(hidden).subspan(n, count));
+        }
+    }
+
+    /// Traces the rays with this number (shadow_origin). `all`: as in find.
+    void trace_shadows(const Lamp& part, std::span<const SurfaceSample* const> all,
+                       std::size_t number, const Surfaces& surfaces) {
+        thread_local std::vector<Point3> origins;
+        for (std::size_t n = 0; n < positions.size(); n += k_rays_at_once) {
+            throw_if_stopped();
+            const std::size_t count = std::min(k_rays_at_once, positions.size() - n);
+            origins.clear();
+            for (std::size_t k = n; k < n + count; ++k)
+                origins.push_back(shadow_origin(part, *all[samples[k]], number));
+            surfaces.occluded_many(origins, std::span(positions).subspan(n, count),
+                                   std::span(hidden).subspan(n, count));
         }
     }
 };
 
+/// find_half_shades for one lamp after the other.
+class HalfShades {
+  public:
+    HalfShades(const LitScene& scene, std::span<const SurfaceSample* const> samples,
+               std::span<double> shares)
+        : scene_(scene), samples_(samples), shares_(shares) {}
+
+    /// Those of the emitters from `first` up to `last`.
+    void find(std::size_t first, std::size_t last) {
+        thread_local std::vector<char> lit, dark;
+        lit.assign(samples_.size(), 0);
+        dark.assign(samples_.size(), 0);
+        trace(first, last, 0, {}, [&](std::size_t sample, double& share, bool is_hidden) {
+            (is_hidden ? dark : lit)[sample] = 1;
+            share = is_hidden ? 0 : 1;
+        });
+        // A pixel is in half-shade if any of its samples is: where the first rays decide by
+        // themselves whether there are more, the mean is off.
+        for (std::size_t begin = 0, end = 0; begin < samples_.size(); begin = end) {
+            const auto is_of_pixel = [&](std::size_t i) {
+                return pixel(samples_[i]->x) == pixel(samples_[begin]->x) &&
+                       pixel(samples_[i]->y) == pixel(samples_[begin]->y);
+            };
+            bool any_lit = false, any_dark = false;
+            for (end = begin; end < samples_.size() && is_of_pixel(end); ++end) {
+                any_lit = any_lit || lit[end] != 0;
+                any_dark = any_dark || dark[end] != 0;
+            }
+            std::fill(lit.begin() + static_cast<std::ptrdiff_t>(begin),
+                      lit.begin() + static_cast<std::ptrdiff_t>(end), any_lit && any_dark ? 1 : 0);
+        }
+        if (std::ranges::count(lit, 1) == 0) return;
+        for (int round = 1; round < k_half_shade_rays; ++round)
+            trace(first, last, round, lit, [&](std::size_t, double& share, bool is_hidden) {
+                share += ((is_hidden ? 0 : 1) - share) / (round + 1);
+            });
+    }
+
+  private:
+    template <class Take>
+    void trace(std::size_t first, std::size_t last, int round, std::span<const char> wanted,
+               const Take& take) {
+        thread_local Facing facing;
+        const std::vector<Lamp>& emitters = *scene_.emitters;
+        for (std::size_t j = first; j < last; ++j) {
+            facing.find(emitters[j], samples_, wanted);
+            facing.trace_shadows(emitters[j], samples_,
+                                 j + static_cast<std::size_t>(round) * emitters.size(),
+                                 *scene_.surfaces);
+            for (std::size_t n = 0; n < facing.samples.size(); ++n) {
+                const std::size_t i = facing.samples[n];
+                take(i, shares_[i * emitters.size() + j], facing.hidden[n] != 0);
+            }
+        }
+    }
+
+    const LitScene& scene_;
+    std::span<const SurfaceSample* const> samples_;
+    std::span<double> shares_;
+};
+
 }  // namespace
+
+void find_half_shades(const LitScene& scene, std::span<const SurfaceSample* const> samples,
+                      std::span<double> shares) {
+    const std::vector<Lamp>& emitters = *scene.emitters;
+    HalfShades half_shades(scene, samples, shares);
+    for (std::size_t first = 0, last = 0; first < emitters.size(); first = last) {
+        while (last < emitters.size() && emitters[last].index() == emitters[first].index()) ++last;
+        if (emitters[first].is_part()) half_shades.find(first, last);
+    }
+}
 
 DirectLighting::DirectLighting(const LitScene& scene,
                                std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
@@ -258,15 +386,18 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
         set_depths(i, samples[i]->hit.distance, light.to_camera(i));
         if (weight) light.camera_weights().push_back(weight.of(samples[i]->hit.distance, column));
     }
+    find_half_shades(scene_, samples, light.visible_shares());
     for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
         const Lamp& lamp = (*scene_.emitters)[j];
         facing.find(lamp, samples);
-        facing.trace_shadows(lamp, *scene_.surfaces);
+        if (!lamp.is_part()) facing.trace_shadows(lamp, *scene_.surfaces);
         columns.take_emitter(j);
         for (std::size_t n = 0; n < facing.samples.size(); ++n) {
-            if (facing.hidden[n] != 0) continue;
             const std::size_t i = facing.samples[n];
-            light.geometry_term(i, j) = facing.geometry_terms[n];
+            double& share = light.visible_share(i, j);
+            if (!lamp.is_part()) share = facing.hidden[n] != 0 ? 0 : 1;
+            if (share == 0) continue;
+            light.geometry_term(i, j) = share * facing.geometry_terms[n];
             set_depths(i, facing.radii[n], light.from_emitter(i, j));
             if (weight)
                 light.geometry_term(i, j) *=

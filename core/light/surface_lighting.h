@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "core/base/grid2d.h"
+#include "core/geometry/surface_reflection.h"
 #include "core/geometry/surfaces.h"
 #include "core/light/integrator.h"
 #include "core/light/lamp.h"
 #include "core/light/medium.h"
 
 namespace uw {
+
+/// How many shadow rays a surface sample in half-shade has to each part of the lamp.
+inline constexpr int k_half_shade_rays = 4;
 
 /// Light of every emitter (LitScene::emitters) on surface points, and the transmittance of the
 /// water from the emitters to the points and from there to the camera.
@@ -23,6 +27,7 @@ class SurfaceLight {
         bands_ = bands;
         geometry_terms_.assign(samples * emitters.size(), 0.0);
         transmittances_.assign(samples * (1 + emitters.size()) * bands, 0.0);
+        visible_shares_.assign(samples * emitters.size(), 0.0);
         camera_weights_.clear();
     }
 
@@ -31,6 +36,10 @@ class SurfaceLight {
     /// Whether the emitter shines on the sample.
     bool visible(std::size_t sample, std::size_t emitter) const {
         return geometry_term(sample, emitter) > 0;
+    }
+    /// The share of it that does: 0 or 1, or between them for a part of a lamp (find_half_shades).
+    double visible_share(std::size_t sample, std::size_t emitter) const {
+        return visible_shares_[sample * emitter_count() + emitter];
     }
     /// Irradiance in the absence of water [W/m^2].
     double clean(std::size_t sample, std::size_t emitter, std::size_t band) const {
@@ -51,7 +60,8 @@ class SurfaceLight {
     // For SurfaceLighting, which fills in the values:
 
     /// Irradiance without water for 1 W/sr on the emitter's axis [1/m^2]: relative intensity times
-    /// cosine over squared distance; 0 where it is occluded or behind the surface.
+    /// cosine over squared distance, times the visible share; 0 where it is occluded or behind the
+    /// surface.
     double& geometry_term(std::size_t sample, std::size_t emitter) {
         return geometry_terms_[sample * emitter_count() + emitter];
     }
@@ -68,6 +78,11 @@ class SurfaceLight {
     }
     /// Empty, or the weight of every sample's path to the camera.
     std::vector<double>& camera_weights() { return camera_weights_; }
+    /// Every visible_share: [sample * emitter_count() + emitter].
+    std::span<double> visible_shares() { return visible_shares_; }
+    double& visible_share(std::size_t sample, std::size_t emitter) {
+        return visible_shares_[sample * emitter_count() + emitter];
+    }
     /// All transmittances, for processing in bulk.
     std::span<double> transmittances() { return transmittances_; }
 
@@ -85,9 +100,26 @@ class SurfaceLight {
     const std::vector<Lamp>* emitters_ = nullptr;
     std::size_t bands_ = 0;
     std::vector<double> geometry_terms_;  // [sample][emitter]
+    std::vector<double> visible_shares_;  // likewise
     std::vector<double> camera_weights_;
     std::vector<double> transmittances_;  // [sample][to the camera, then from each emitter][band]
 };
+
+/// Where a shadow ray from a surface sample towards an emitter begins: there, or, if it stands for
+/// a part of a lamp, at a point of that part, another one for each `number` and each sample. The
+/// samples of a pixel cover the part evenly, so that half-shades have no steps, and little noise.
+Point3 shadow_origin(const Lamp& emitter, const SurfaceSample& sample, std::size_t number);
+
+/// Finds what share each sample sees of the emitters that stand for parts of lamps, [sample *
+/// emitters + emitter]; leaves the others' as they are. One shadow ray decides, but for the samples
+/// of a pixel in which they disagree about a lamp: there it is k_half_shade_rays to each part.
+void find_half_shades(const LitScene& scene, std::span<const SurfaceSample* const> samples,
+                      std::span<double> shares);
+
+/// BRDF per band [1/sr] of what `sample` shows, for the light of an emitter: the highlights of
+/// those that stand for parts of a lamp join to that of the lamp.
+void brdf_for(const Lamp& emitter, const SurfaceReflection& reflection, const SurfaceSample& sample,
+              Spectrum& values);
 
 /// How columns of neighbouring surface samples are interpolated rather than integrated one by one.
 struct ColumnMixing {
@@ -176,9 +208,10 @@ class SurfaceLighting {
     }
 };
 
-/// One exact shadow ray for each lamp that a surface faces. Columns are exact too, or interpolated
-/// between neighbours (SurfaceColumns). The deep shadow maps' columns alone would not suffice: each
-/// surface point depends on a single column, so its interpolation error would be visible.
+/// One exact shadow ray for each emitter that a surface faces, more in half-shades
+/// (find_half_shades). Columns are exact too, or interpolated between neighbours (SurfaceColumns).
+/// The deep shadow maps' columns alone would not suffice: each surface point depends on a single
+/// column, so its interpolation error would be visible.
 class DirectLighting final : public SurfaceLighting {
   public:
     /// With exact columns.

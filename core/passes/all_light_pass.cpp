@@ -106,7 +106,7 @@ void GlowSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& 
     for (std::size_t j = 0; j < light.emitter_count(); ++j) {
         if (!light.visible(index, j)) continue;
         const Lamp& emitter = light.emitters()[j];
-        reflection.brdf(emitter.origin(sample.hit.position), brdf);
+        brdf_for(emitter, reflection, sample, brdf);
         double* sum = &radiance[std::min(emitter.index(), groups - 1) * bands_];
         for (std::size_t b = 0; b < bands_; ++b)
             sum[b] += light.irradiance(index, j, b) * brdf[b] * to_camera[b];
@@ -436,9 +436,14 @@ MultipleLightOptions options_of(RenderDesc::Quality quality) {
     return options;
 }
 
+// Whether there is any light to be scattered.
+bool has_light(const PixelRenderer& pixels) {
+    return !pixels.scene().emitters->empty() || pixels.scene().surfaces->may_emit();
+}
+
 }  // namespace
 
-AllLightPass::AllLightPass() : Pass("multiple scattering") {}
+AllLightPass::AllLightPass(double share) : Pass("multiple scattering"), share_(share) {}
 AllLightPass::~AllLightPass() = default;
 
 PassNeeds AllLightPass::needs(const LayerPlan& /*plan*/) const {
@@ -451,15 +456,17 @@ void AllLightPass::provide(LayerSupply& supply) const {
 
 void AllLightPass::begin(Rendering& rendering) {
     light_.reset();
-    if (!rendering.pixels.transport().paths) return;
+    if (!rendering.pixels.transport().paths || !has_light(rendering.pixels)) return;
     rendering.steps.emplace_back([this](const RenderedPixel& pixel) {
         light_->add(pixel.view, pixel.light, pixel.first_sample, pixel.result);
     });
 }
 
 void AllLightPass::run(Rendering& rendering) {
-    if (!rendering.pixels.transport().paths) return;
+    if (!rendering.pixels.transport().paths || !has_light(rendering.pixels)) return;
     MultipleLightOptions options = options_of(rendering.desc.render.quality);
+    options.paths = static_cast<int>(options.paths * share_);
+    options.error /= std::sqrt(share_);
     options.lamps = rendering.plan.has_lamps();
     light_ = std::make_unique<MultipleLight>(rendering.pixels, options);
     light_->prepare(rendering.film.window(), rendering.progress_of(stage()));

@@ -44,7 +44,8 @@ class WeightLattice {
 /// of the scene's, leaves this light out.
 class AllLightPass final : public Pass {
   public:
-    AllLightPass();
+    /// `share`: PathRequest::share.
+    explicit AllLightPass(double share = 1);
     ~AllLightPass() override;
 
     PassNeeds needs(const LayerPlan& plan) const override;
@@ -53,7 +54,8 @@ class AllLightPass final : public Pass {
     void run(Rendering& rendering) override;
 
   private:
-    std::unique_ptr<class MultipleLight> light_;  // of the pixels, from run on
+    double share_;
+    std::unique_ptr<class MultipleLight> light_;  // of the pixels, from run on; none: it is dark
 };
 
 }  // namespace uw

@@ -332,7 +332,7 @@ void ForwardScattering::add_surface(const RenderedPixel& pixel, std::size_t samp
         if (!light.visible(at, j)) continue;
         const std::size_t g = group_of_lamp_[light.emitters()[j].index()];
         add_irradiance(g, j, irradiance);
-        reflection.brdf(light.emitters()[j].origin(surface.hit.position), brdf);
+        brdf_for(light.emitters()[j], reflection, surface, brdf);
         for (std::size_t b = 0; b < bands_; ++b)
             sums.direct[g][b] += irradiance[b] * brdf[b] * seen * to_camera[b];
     }

@@ -391,7 +391,7 @@ void PathPixels::add_direct(const SurfaceSample& surface, const SurfaceLight& li
     term.reflections = 1;
     for (std::size_t j = 0; j < light.emitter_count(); ++j) {
         if (!light.visible(in_light, j)) continue;
-        reflection.brdf(light.emitters()[j].origin(surface.hit.position), brdf);
+        brdf_for(light.emitters()[j], reflection, surface, brdf);
         for (std::size_t b = 0; b < bands; ++b) {
             const double reflected = light.irradiance(in_light, j, b) * brdf[b];
             leaving[b] += reflected;

@@ -78,8 +78,12 @@ class PathPixels {
     PathCounts times_;
 };
 
-/// What is requested of an image that is rendered by light paths (IntegratorKind::traces_paths).
+/// What is requested of the light paths of an image.
 struct PathRequest {
+    /// How many paths the fast form of all light takes (AllLightPass), as a multiple of those that
+    /// the image's quality does.
+    double share = 1;
+    // Of images that are rendered by light paths (IntegratorKind::traces_paths):
     /// The greatest PathAccuracy::error, instead of the scene's samples. No more than k_most_paths
     /// are traced for it.
     std::optional<double> error{};

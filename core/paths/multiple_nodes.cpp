@@ -194,7 +194,7 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
         Spectrum brdf;
         for (std::size_t j = 0; j < w.light.emitter_count(); ++j) {
             if (!w.light.visible(0, j)) continue;
-            reflection.brdf(w.light.emitters()[j].origin(sample.hit.position), brdf);
+            brdf_for(w.light.emitters()[j], reflection, sample, brdf);
             for (std::size_t b = 0; b < bands(); ++b)
                 w.seen[b] += w.light.irradiance(0, j, b) * brdf[b];
         }

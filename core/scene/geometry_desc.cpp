@@ -122,12 +122,23 @@ void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
     }
 }
 
+/// The surface of a level set.
+void read_level_set(ConfigMap& map, GeometryDesc& object) {
+    LevelSetDesc& level_set = object.level_set.emplace();
+    level_set.grid =
+        map.require("grid",
+                    "name the level set whose surface is meant (uwvdb info FILE lists the "
+                    "grids); a fog belongs under volumes")
+            .text("name a grid");
+    if (const auto entry = map.find("up")) level_set.up = read_up_axis(*entry);
+}
+
 GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) {
-    ConfigMap map(
-        value,
-        {"file", "mesh", "transform", "reflectance", "type", "point", "normal", "min", "max",
-         "center", "radius", "camera", "lamps", "light_units", "material", "trajectory"},
-        "write {file: seabed.glb} or {type: sphere, center: [0, 0, 2], radius: 0.2}");
+    ConfigMap map(value,
+                  {"file", "mesh", "transform", "reflectance", "type", "point", "normal", "min",
+                   "max", "center", "radius", "camera", "lamps", "light_units", "material",
+                   "trajectory", "grid", "up"},
+                  "write {file: seabed.glb} or {type: sphere, center: [0, 0, 2], radius: 0.2}");
     GeometryDesc object;
     object.where = value.location();
     if (const auto entry = map.find("reflectance")) {
@@ -151,6 +162,12 @@ GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) 
         map.require("file", "give a mesh file, or type: plane, box or sphere"), context,
         object.is_sequence);
     if (const auto entry = map.find("transform")) object.world_from_object = read_transform(*entry);
+    const std::string extension = object.file.extension().string();
+    if (extension == ".vdb" || extension == ".nvdb") {
+        read_level_set(map, object);
+        map.finish("a VDB file's level set");
+        return object;
+    }
     read_gltf_keys(map, object);
     map.finish("a mesh file");
     return object;

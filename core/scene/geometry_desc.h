@@ -11,6 +11,7 @@
 #include "core/scene/config_value.h"
 #include "core/scene/scene_context.h"
 #include "core/scene/trajectory.h"
+#include "core/scene/volume_desc.h"
 
 namespace uw {
 
@@ -37,6 +38,14 @@ struct GltfImportDesc {
     friend bool operator==(const GltfImportDesc&, const GltfImportDesc&) = default;
 };
 
+/// The grid of a VDB or NanoVDB file whose surface is shown (media/volumes/level_set_mesh.h).
+struct LevelSetDesc {
+    std::string grid;
+    UpAxis up = UpAxis::automatic;
+
+    friend bool operator==(const LevelSetDesc&, const LevelSetDesc&) = default;
+};
+
 /// A span of time [s], both ends included.
 struct TimeRange {
     double first = 0, last = 0;
@@ -51,7 +60,8 @@ struct GeometryDesc {
     std::filesystem::path file;
     std::shared_ptr<const TriangleMesh> mesh;  ///< of type file: in memory, instead of one
     std::string mesh_name;
-    bool is_sequence = false;  ///< `file` has a pattern for the frame number
+    std::optional<LevelSetDesc> level_set;  ///< of type file: `file` is a VDB file
+    bool is_sequence = false;               ///< `file` has a pattern for the frame number
     /// When the nodes of a glTF file move, unless it is one of a sequence (load_scene).
     std::optional<TimeRange> animation;
     std::optional<double> time;  ///< of the animation [s]; none: as its nodes are written

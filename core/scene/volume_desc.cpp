@@ -140,11 +140,7 @@ VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
             {{"cell", Centering::cell}, {"node", Centering::node}}};
         volume.centering = entry->choice(k_choices);
     }
-    if (const auto entry = map.find("up")) {
-        constexpr std::array<std::pair<std::string_view, UpAxis>, 3> k_choices{
-            {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}}};
-        volume.up = entry->choice(k_choices);
-    }
+    if (const auto entry = map.find("up")) volume.up = read_up_axis(*entry);
     if (const auto entry = map.find("level_set")) {
         constexpr std::array<std::pair<std::string_view, LevelSets>, 1> k_choices{
             {{"fog", LevelSets::fog}}};
@@ -160,6 +156,12 @@ VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
 }
 
 }  // namespace
+
+UpAxis read_up_axis(const ConfigValue& value) {
+    constexpr std::array<std::pair<std::string_view, UpAxis>, 3> k_choices{
+        {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}}};
+    return value.choice(k_choices);
+}
 
 std::vector<VolumeDesc> read_volumes(const ConfigValue& value, const SceneContext& context) {
     std::vector<VolumeDesc> volumes;

@@ -54,6 +54,9 @@ enum class Centering { automatic, cell, node };
 /// Which of a file's axes points up; automatic as for Centering.
 enum class UpAxis { automatic, x, y, z };
 
+/// `up`: x, y or z.
+UpAxis read_up_axis(const ConfigValue& value);
+
 /// What becomes of level sets, whose values are distances to a surface: they are refused, or their
 /// inside is taken as fog of value 1, which fades to 0 towards the surface within the narrow band.
 enum class LevelSets { refused, fog };

@@ -70,6 +70,23 @@ ImageScene scene_of_part(const EditedScene& edited, PictureQuality quality,
     });
 }
 
+// What a part of a picture adds to it by light paths, in units that all parts of it share.
+// `brightness`: of its lamp now, to which it is linear; null: it has none.
+double path_light(const LightLayers& layers, const Spectrum* brightness) {
+    if (!layers.plan.has(Layer::multiple)) return 0;
+    const std::size_t channels = layers.film.channel_names().size();
+    const auto first = static_cast<std::size_t>(layers.plan.first_channel(Layer::multiple));
+    const auto bands = static_cast<std::size_t>(layers.plan.band_count());
+    double sum = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        const double rendered = layers.brightness[b];
+        const double factor = !brightness ? 1 : rendered > 0 ? (*brightness)[b] / rendered : 0;
+        for (std::size_t at = first + b; at < layers.film.values().size(); at += channels)
+            sum += factor * static_cast<double>(layers.film.values()[at]);
+    }
+    return std::max(0.0, sum);
+}
+
 // Surfaces that emit light do so beside every lamp, but that light belongs to the unlit part.
 void take_away_emission(LightLayers& light, const LightLayers& unlit) {
     for (const Layer layer :
@@ -227,6 +244,24 @@ bool PictureRenderer::is_step(const EditedScene& scene, PictureQuality quality) 
     return true;
 }
 
+// Of the light paths that `render` takes for the whole picture, those of one part of it. In
+// proportion to what it adds to the picture they leave the same noise; a faint lamp has more, as it
+// may be looked at alone, and turned up.
+double PictureRenderer::share_of_paths(const EditedScene& scene, PictureQuality quality,
+                                       std::optional<std::size_t> lamp) const {
+    if (quality != PictureQuality::final || !has_all_light(scene)) return 1;
+    const auto light = [&](std::optional<std::size_t> part) {
+        const Layers layers =
+            find(PictureQuality::full_draft, part ? scene.lamps[*part].key : k_unlit);
+        return path_light(*layers, part ? &scene.lamps[*part].brightness : nullptr);
+    };
+    double all = light(std::nullopt);
+    for (std::size_t i = 0; i < scene.lamps.size(); ++i) all += light(i);
+    const double even = 1 / static_cast<double>(scene.lamps.size() + 1);
+    const double own = all > 0 ? light(lamp) / all : even;
+    return std::max(own, 0.5 * even);
+}
+
 PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, PictureQuality quality,
                                                 std::optional<std::size_t> lamp) {
     renderer_.set_scene(scene_of_part(scene, quality, lamp));
@@ -234,7 +269,8 @@ PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, Pictur
     LayerPlan plan = layer_plan(renderer_.scene(), layers);
     {
         const StopScope scope(quality <= PictureQuality::small ? is_stopping_ : is_outdated_);
-        renderer_.render({.layers = layers});
+        renderer_.render(
+            {.layers = layers, .paths = {.share = share_of_paths(scene, quality, lamp)}});
     }
     const Spectrum brightness =
         lamp ? renderer_.assembled().lamps.front().axis_intensity() : Spectrum{};

@@ -228,9 +228,8 @@ void check_loaded(const VdbHeader& header, const GridSummary& grid, const std::s
     if (classless && loaded.statistics.background > 0 && negative > 0)
         throw InputError(fmt::format(
             "{}is a level set, though its class is '{}' (background {:g}, {} negative voxels), not "
-            "a concentration; give its volume level_set: fog, which fills its inside, or export a "
-            "fog "
-            "volume; the file has {}",
+            "a concentration; give its volume level_set: fog, which fills its inside, or write "
+            "{{file, grid}} under geometry, which shows its surface; the file has {}",
             prefix, grid.grid_class, loaded.statistics.background, negative,
             header.describe_grids()));
     if (is_flat(loaded.file_from_index.linear()))

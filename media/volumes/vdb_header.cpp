@@ -428,7 +428,9 @@ std::string unusable_because(const GridSummary& grid, LevelSets level_sets) {
             grid.tree_type.empty() ? ", or in NanoVDB also fp4, fp8, fp16 and fpN" : "");
     if (grid.grid_class == "level set" && level_sets == LevelSets::refused)
         return "is a level set (distances to a surface), not a concentration; give its volume "
-               "level_set: fog, which fills its inside, or export a fog volume";
+               "level_set: fog, which fills its inside, or write {file, grid} under geometry, "
+               "which "
+               "shows its surface";
     if (grid.map_type == "NonlinearFrustumMap")
         return "has a frustum (camera-shaped) transform; resample it to an affine one";
     return "";

@@ -188,8 +188,8 @@ TEST(Suns, PenumbraIsAsWideAsTheDisc) {
             irradiance += light.visible(0, j) ? light.irradiance(0, j, 0) : 0;
         const double x = std::clamp(t, -1.0, 1.0);
         const double part = 1 - (std::acos(x) - x * std::sqrt(1 - x * x)) / pi;
-        // 2.4/N at worst for a lattice of N points (lamp_extent.h).
-        EXPECT_NEAR(irradiance, part, 2.4 / 1024 + 1e-3) << t;
+        // Shadow rays begin anywhere in each direction's part of the disc, four in each.
+        EXPECT_NEAR(irradiance, part, 5e-3) << t;
     }
 }
 

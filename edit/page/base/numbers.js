@@ -14,6 +14,10 @@ export function formatNumber(value, digits = 4) {
 export const editableNumber = (value) =>
     value === null || value === undefined ? "" : String(Number(value.toPrecision(7)));
 
+/** Numbers that no scene file needs more digits of than four. */
+export const rounded = (value) => (Array.isArray(value) ? value.map(rounded)
+    : Number(value.toPrecision(4)));
+
 /** As coordinates are shown until they are typed in: to the millimetre, or three digits. */
 export function shortNumber(value) {
     if (value === null || value === undefined) return "";

@@ -1,6 +1,7 @@
 // A lamp's brightness: what it is given in, its spectrum, numbers and sliders. A slider that moves
 // mixes the picture in the browser; the scene changes once, when it is let go.
 
+import { rounded } from "../base/numbers.js";
 import { newGroup } from "../server/editing.js";
 import { logSlider, numberField, selectField } from "./fields.js";
 import { bound } from "./form.js";
@@ -80,10 +81,6 @@ function spectrumOptions(known, own) {
     const mine = own === null ? [] : [JSON.stringify(own)].filter((text) => !all.includes(text));
     return [...all, ...mine].map((value) => ({ value, label: spectrumText(JSON.parse(value)) }));
 }
-
-/** With four digits, as a slider needs no more. */
-const rounded = (value) => (Array.isArray(value) ? value.map(rounded)
-    : Number(value.toPrecision(4)));
 
 /**
  * A slider and a number for all bands together, and one of each for every band. Sliders of single

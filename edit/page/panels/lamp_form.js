@@ -2,7 +2,8 @@
 
 import { h } from "../base/dom.js";
 import { hasPlace } from "../base/lamps.js";
-import { add } from "../base/vec.js";
+import { rounded } from "../base/numbers.js";
+import { add, along, dot, normalize, scale } from "../base/vec.js";
 import { newGroup } from "../server/editing.js";
 import { brightnessFields } from "./brightness_fields.js";
 import { numberField, numbersField, selectField, textField } from "./fields.js";
@@ -24,8 +25,15 @@ const KEY_LABELS = {
 
 const EXTENT_STEPS = { radius: 0.01, width: 0.01, height: 0.01, rotate: 1, samples: 1 };
 
-/** point, rectangle, disk; of a sun whether its disc has an extent. */
-const kindOf = ({ extent, sun }) => extent?.type ?? (sun ? `sun ${sun.angle > 0}` : "point");
+const KINDS = ["point", "rectangle", "disk", "sun"];
+
+/** Where a sun and the lamp that takes its place are as bright: so far before the camera and from the lamp [m]. */
+const SUBJECT_DISTANCE = 2;
+/** How far above the camera the water's surface is put in a scene that has none [m]. */
+const SURFACE_HEIGHT = 5;
+const LEAST_COSINE_OF_SUN = Math.cos((89 * Math.PI) / 180); // from straight down
+
+const kindOf = ({ extent, sun }) => extent?.type ?? (sun ? "sun" : "point");
 
 const hint = (text) => ({ element: h("p", { class: "hint" }, text), update: () => {} });
 
@@ -48,7 +56,7 @@ export class LampForm {
     }
 
     #signature({ scene, lamp }) {
-        return lamp && [lamp.name, lamp.profile.type, lamp.why_not, kindOf(lamp),
+        return lamp && [lamp.name, lamp.profile.type, lamp.why_not, kindOf(lamp), lamp.sun?.angle > 0,
             lamp.brightness.kind, lamp.brightness.spectrum, Array.isArray(lamp.brightness.value),
             scene.ies_files, scene.image.bands, scene.rig];
     }
@@ -73,14 +81,14 @@ export class LampForm {
             names: ["x", "y", "z"], step: 0.01, commit: set("direction", "direction") }),
         (now) => now.direction);
         const brightness = brightnessFields(scene, lamp, this.#editing, this.#picture);
+        parts.push(field(selectField({ label: "Kind", key: "type",
+            options: KINDS.map((kind) => ({ value: kind, label: kind })),
+            commit: (kind, refuse) => this.#setKind(scene, lamp, kind, refuse) }), kindOf));
         if (!hasPlace(lamp)) {
             return [...parts, direction, ...this.#discParts(lamp, field, set), "Brightness",
                 ...brightness, hint("The water's surface is changed in the scene file.")];
         }
         parts.push(
-            field(selectField({ label: "Kind", key: "type",
-                options: ["point", "rectangle", "disk"].map((kind) => ({ value: kind, label: kind })),
-                commit: (kind, refuse) => this.#setKind(lamp, kind, refuse) }), kindOf),
             field(selectField({ label: "Frame", key: "frame",
                 options: ["camera", ...(scene.rig ? ["rig"] : []), "world",
                     ...(lamp.frame === "trajectory" ? ["trajectory"] : [])]
@@ -104,16 +112,24 @@ export class LampForm {
     }
 
     /** Another kind of lamp, about as large as it was. Keys of its old kind leave the file. */
-    #setKind({ name, extent }, kind, onRefusal) {
+    #setKind(scene, lamp, kind, onRefusal) {
+        const { name, extent } = lamp;
         const { radius = 0.1, width = 2 * radius, height = width } = extent ?? {};
-        const keys = {
+        const sized = {
             point: { type: null, width: null, height: null, rotate: null, radius: null, samples: null },
             rectangle: { type: kind, width, height, radius: null },
             disk: { type: kind, width: null, height: null, rotate: null,
                 radius: Math.min(width, height) / 2 },
         }[kind];
-        return this.#editing.edit(`kind of ${name}`, Object.entries(keys).map(([key, value]) =>
-            ({ op: "set", path: `lamps.${name}.${key}`, value })), { onRefusal });
+        const keys = kind === "sun" ? sunOf(scene, lamp)
+            : lamp.sun ? { ...placedLampOf(scene, lamp), ...sized, samples: null } : sized;
+        const changes = Object.entries(keys).map(([key, value]) =>
+            ({ op: "set", path: `lamps.${name}.${key}`, value }));
+        if (kind === "sun" && !scene.water.keys?.surface) {
+            changes.unshift({ op: "set", path: `${scene.water.path}.surface`,
+                value: surfaceAbove(scene.camera) });
+        }
+        return this.#editing.edit(`kind of ${name}`, changes, { onRefusal });
     }
 
     /** Another frame; the lamp stays where it is and shines as it did. */
@@ -171,4 +187,42 @@ export class LampForm {
         }
         return parts;
     }
+}
+
+/** A plane above the camera, level with the axis of the world that points up most. */
+function surfaceAbove({ position, up }) {
+    const axis = up.reduce((best, part, k) => (Math.abs(part) > Math.abs(up[best]) ? k : best), 0);
+    const normal = [0, 0, 0].map((_, k) => (k === axis ? Math.sign(up[axis]) : 0));
+    return { point: along(position, normal, SURFACE_HEIGHT).map(rounded), normal };
+}
+
+/** The keys of a sun in the place of a lamp that has one: it shines the same way, if that is down. */
+function sunOf(scene, { world_direction: direction, brightness, band_intensity: intensity }) {
+    const { normal } = scene.water.keys?.surface ?? surfaceAbove(scene.camera);
+    const down = scale(normalize(normal), -1);
+    const isDown = dot(direction, down) > LEAST_COSINE_OF_SUN;
+    return {
+        type: "sun", position: null, profile: null, frame: null, trajectory: null,
+        width: null, height: null, rotate: null, radius: null, samples: null,
+        intensity: null, power: null, lumens: null,
+        direction: (isDown ? direction : down).map(rounded),
+        irradiance: valueOf(brightness, intensity, SUBJECT_DISTANCE ** -2),
+    };
+}
+
+/** The keys of a lamp in the place of a sun, which shines at what is before the camera. */
+function placedLampOf({ camera }, { world_direction: direction, brightness, band_intensity: irradiance }) {
+    const subject = along(camera.position, camera.forward, SUBJECT_DISTANCE);
+    return {
+        angle: null, irradiance: null, lux: null, frame: "world",
+        position: along(subject, direction, -SUBJECT_DISTANCE).map(rounded),
+        direction: direction.map(rounded),
+        intensity: valueOf(brightness, irradiance, SUBJECT_DISTANCE ** 2),
+    };
+}
+
+/** A lamp's light as a value of a key: one per band, or with a spectrum the sum of them. */
+function valueOf({ spectrum }, bands, factor) {
+    const values = bands.map((value) => rounded(factor * value));
+    return spectrum === null ? values : rounded(values.reduce((total, value) => total + value, 0));
 }

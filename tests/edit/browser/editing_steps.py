@@ -166,6 +166,22 @@ class EditingSteps(unittest.TestCase):
         self.assertEqual((extent["type"], extent["radius"]), ("disk", 0.1))
         self.choose("type", "point")
         self.assertIsNone(self.view.lamp("spot")["extent"])
+        # A sun shines the same way and, 2 m from where the lamp was, as brightly; back again.
+        was = self.view.lamp("spot")
+        self.choose("type", "sun")
+        sun = self.view.lamp("spot")
+        self.assertEqual((sun["profile"]["type"], sun["brightness"]["kind"]), ("sun", "irradiance"))
+        for there, here in zip(was["band_intensity"], sun["band_intensity"]):
+            self.assertAlmostEqual(here / (there / 4), 1, places=3)
+        self.choose("type", "disk")
+        lamp = self.view.lamp("spot")
+        self.assertEqual((lamp["extent"]["type"], lamp["frame"], lamp["sun"]), ("disk", "world", None))
+        for there, here in zip(was["band_intensity"], lamp["band_intensity"]):
+            self.assertAlmostEqual(here / there, 1, places=3)
+        for _ in range(2):
+            self.page.click("button[title^=Undo]")
+            self.view.settle()
+        self.assertEqual(self.view.lamp("spot")["band_intensity"], was["band_intensity"])
         # As bright as it was, in other units.
         before = self.view.lamp("spot")
         self.choose("brightness.kind", "power")
