@@ -48,9 +48,9 @@ if(TARGET uwvdb_image_formats OR TARGET uwvdb_colour_views)
     set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS uwvdb-image-formats)
     set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS uwvdb-image-formats)
     set(CPACK_DEBIAN_IMAGE_FORMATS_DESCRIPTION
-        "Lets uwvdb read textures in TIFF, OpenEXR, Radiance HDR, DPX, TGA, BMP, WebP
-and PSD, write images in most of these, by OpenImageIO, and show them through the
-views of OpenColorIO configs.")
+        "Lets uwvdb read textures in TIFF, OpenEXR, Radiance HDR, TGA, BMP, WebP and
+PSD, write images in most of these and DPX, by OpenImageIO, and show them through
+the views of OpenColorIO configs.")
 endif()
 if(UWVDB_BUILD_PYTHON)
     list(APPEND CPACK_COMPONENTS_ALL python debian_python)

@@ -115,7 +115,8 @@ void sort_by_format(const RenderArguments& a, OutputFiles& files) {
             "--precision {}: -o {} holds light in 32-bit floats or a picture of it in whole "
             "numbers; use float, or leave it out",
             a.precision, name));
-    const bool is_light = format->holds == OutputFormat::Holds::light || !a.precision.empty();
+    const bool is_light = format->holds == OutputFormat::Holds::light ||
+                          (format->holds == OutputFormat::Holds::either && !a.precision.empty());
     if (format->library != OutputFormat::Library::openexr) refuse_exr_options(a, *format, is_light);
     if (a.is_aces) refuse_with_aces(a);
     if (!is_light && a.preview_bits.value_or(8) > format->most_bits)
@@ -133,7 +134,8 @@ void sort_by_format(const RenderArguments& a, OutputFiles& files) {
         files.preview.replace_extension(".png");
         return;
     }
-    (is_sensor_image(files.image) ? files.sensor : files.preview) = std::exchange(files.image, {});
+    fs::path& place = is_sensor_image(files.image) ? files.sensor : files.preview;
+    place = std::exchange(files.image, {});
 }
 
 }  // namespace
@@ -156,6 +158,11 @@ OutputFiles output_files(const RenderArguments& a) {
     sort_by_format(a, files);
     if (!a.contact_sheet.empty()) {
         refuse_other_ending("--contact-sheet", a.contact_sheet, ".png", "PNG");
+        if (!files.preview.empty() && !has_ending_of_image(files.preview))
+            throw UsageError(fmt::format(
+                "--contact-sheet: it is made of the files written, and {} is not read; give -o a "
+                "name that ends in .tif or .png",
+                output_format(files.preview)->name));
         files.contact_sheet = a.contact_sheet;
     }
     files.stats = a.stats;

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "core/base/error.h"
@@ -17,9 +19,9 @@ namespace uw {
 
 namespace {
 
-constexpr std::array<std::string_view, 14> k_endings{".png", ".jpg", ".jpeg", ".tif", ".tiff",
+constexpr std::array<std::string_view, 13> k_endings{".png", ".jpg", ".jpeg", ".tif", ".tiff",
                                                      ".exr", ".hdr", ".pic",  ".bmp", ".webp",
-                                                     ".psd", ".tga", ".tx",   ".dpx"};
+                                                     ".psd", ".tga", ".tx"};
 
 std::string ending_of(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
@@ -50,7 +52,6 @@ std::optional<ImageFormat> other_image_format(std::span<const std::byte> encoded
     if (begins("#?RADIANCE"sv) || begins("#?RGBE"sv)) return ImageFormat{"Radiance HDR", "hdr"};
     if (begins("8BPS"sv)) return ImageFormat{"PSD", "psd"};
     if (begins("RIFF"sv) && has_at(encoded, 8, "WEBP"sv)) return ImageFormat{"WebP", "webp"};
-    if (begins("SDPX"sv) || begins("XPDS"sv)) return ImageFormat{"DPX", "dpx"};
     if (begins("BM"sv)) return ImageFormat{"BMP", "bmp"};
     if (ending_of(name) == ".tga") return ImageFormat{"TGA", "targa"};
     return std::nullopt;
@@ -113,6 +114,36 @@ PixelImage decode_other_image(DecodeImage& decode, std::span<const std::byte> en
                                      name, format.name, fault));
     for (float& value : image.pixels)
         value = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, 1.0F);
+    return image;
+}
+
+std::shared_ptr<const PartialImage> open_partial_image(const std::filesystem::path& file,
+                                                       std::int64_t most_whole) {
+    std::array<std::byte, 16> beginning{};
+    std::ifstream in(file, std::ios::binary);
+    in.read(reinterpret_cast<char*>(beginning.data()), beginning.size());
+    const auto format = other_image_format(beginning, file.string());
+    if (!format || (std::string_view(format->reader) != "tiff" &&
+                    std::string_view(format->reader) != "openexr"))
+        return nullptr;
+    static const ModuleFunction module = load_function(k_module, k_open_parts);
+    if (module.address == nullptr) return nullptr;  // whoever reads the whole will say so
+    std::shared_ptr<const PartialImage> image;
+    std::string fault;
+    reinterpret_cast<OpenParts*>(module.address)(file.c_str(), format->reader, image, fault);
+    if (!image) return nullptr;  // likewise
+    const std::int64_t pixels = std::int64_t{image->width} * image->height;
+    if (pixels <= most_whole) return nullptr;
+    std::error_code status;
+    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, status));
+    constexpr std::int64_t k_most_pixels = std::int64_t{1} << 33;
+    constexpr std::int64_t k_most_values_per_byte = 4096;  // as in check_image_size
+    if (status || pixels > k_most_pixels ||
+        pixels * image->channels / k_most_values_per_byte > bytes)
+        throw InputError(
+            fmt::format("{}: {} x {} pixels are more than the file holds, or than the "
+                        "2^33 supported; scale the image down",
+                        file.string(), image->width, image->height));
     return image;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,6 +37,36 @@ bool has_ending_of_image(const std::filesystem::path& file);
 /// Throws InputError if it is damaged, too large, or if there is no module.
 PixelImage read_other_image(std::span<const std::byte> encoded, const ImageFormat& format,
                             const std::string& name);
+
+/// An image that is read in parts, when they are needed, since all of it would fill the memory.
+/// Threads may read at once.
+class PartialImage {
+  public:
+    PartialImage() = default;
+    virtual ~PartialImage() = default;
+    PartialImage(const PartialImage&) = delete;
+    PartialImage& operator=(const PartialImage&) = delete;
+    PartialImage(PartialImage&&) = delete;
+    PartialImage& operator=(PartialImage&&) = delete;
+
+    /// The pixels of columns x0 to x1 - 1 and rows y0 to y1 - 1, as in PixelImage, but as they are
+    /// in the file: floating-point values may be anything. False if they cannot be read.
+    virtual bool read(int x0, int y0, int x1, int y1, float* values) const = 0;
+    /// All pixels, lines y0 to y1 - 1 at a time, from the top. False if the file is damaged.
+    using Receive = std::function<void(int y0, int y1, const float* values)>;
+    virtual bool read_all(const Receive& receive) const = 0;
+
+    int width = 0, height = 0, channels = 0;
+    bool is_linear = false;  // as of a PixelImage
+};
+
+/// The most pixels of an image that is read as a whole, where parts of it can be read.
+inline constexpr std::int64_t k_most_whole_pixels = std::int64_t{1} << 26;
+
+/// A TIFF or OpenEXR of more than `most_whole` pixels; null for other files. Throws InputError if
+/// it is damaged, has more than 2^33 pixels or more than its bytes can hold; IoError.
+std::shared_ptr<const PartialImage> open_partial_image(
+    const std::filesystem::path& file, std::int64_t most_whole = k_most_whole_pixels);
 
 /// A format that images are written in. A picture is what is to be seen, in whole numbers of 8 or
 /// 16 bits; light is R, G and B as they are, in floating point.
@@ -83,6 +114,12 @@ struct ImageReceiver {
 using DecodeImage = void(std::span<const std::byte> encoded, const char* reader,
                          const ImageReceiver& receiver, std::string& fault);
 inline constexpr const char* k_decode_image = "uwvdb_decode_image_1";
+
+/// What the module exports as k_open_parts: opens the image in the file `path`, whatever its
+/// ending.
+using OpenParts = void(const char* path, const char* reader,
+                       std::shared_ptr<const PartialImage>& image, std::string& fault);
+inline constexpr const char* k_open_parts = "uwvdb_open_parts_1";
 
 /// read_other_image by this function of a module. Throws InputError.
 PixelImage decode_other_image(DecodeImage& decode, std::span<const std::byte> encoded,

@@ -110,6 +110,8 @@ TEST_F(OutputFormats, AreRefusedInOneLine) {
                    "is R, G and B alone");
     expect_failure({"render", "scene.yaml", "-o", "out.dpx", "--compression", "zip"}, 2,
                    "is a DPX alone");
+    expect_failure({"render", "scene.yaml", "-o", "out.dpx", "--contact-sheet", "sheet.png"}, 2,
+                   "DPX is not read; give -o a name that ends in .tif or .png");
     expect_failure({"render", "scene.yaml", "-o", "missing/folder", "--size", "8x4"}, 2, "-o ");
     std::filesystem::copy_file(UWVDB_PROGRAM, folder_ / "alone");  // which has no modules
     const test::ProgramResult result =
