@@ -44,7 +44,7 @@ set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_COMPONENT_PROGRAM_GROUP program)
 set(CPACK_COMPONENT_DEBIAN_GROUP program)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME uwvdb)
-if(TARGET uwvdb_image_formats)
+if(TARGET uwvdb_image_formats OR TARGET uwvdb_colour_views)
     list(APPEND CPACK_COMPONENTS_ALL image_formats)
     set(CPACK_COMPONENT_IMAGE_FORMATS_GROUP image_formats)
     set(CPACK_DEBIAN_IMAGE_FORMATS_PACKAGE_NAME uwvdb-image-formats)
@@ -52,7 +52,8 @@ if(TARGET uwvdb_image_formats)
     set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS uwvdb-image-formats)
     set(CPACK_DEBIAN_IMAGE_FORMATS_DESCRIPTION
         "Lets uwvdb read textures in TIFF, OpenEXR, Radiance HDR, TGA, BMP, WebP and
-PSD, by OpenImageIO.")
+PSD, write images in most of these and DPX, by OpenImageIO, and show them through
+the views of OpenColorIO configs.")
 endif()
 if(UWVDB_MKDOCS AND UWVDB_DOXYGEN)
     list(APPEND CPACK_COMPONENTS_ALL site debian_site)

@@ -59,6 +59,9 @@ if(OpenImageIO_FOUND)
                           INTERFACE_INCLUDE_DIRECTORIES "${uwvdb_oiio_includes}")
 endif()
 
+# Only for the module colour_views, and for tests.
+pkg_check_modules(OPENCOLORIO IMPORTED_TARGET OpenColorIO)
+
 # The system's interpreter, of which the packages pybind11 and NumPy are, whatever else is in PATH.
 if(UWVDB_BUILD_PYTHON)
     if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)

@@ -193,14 +193,8 @@ namespace {
 
 void write_clean(const ViewImages& images, SetFiles& files) {
     const Film film = clean_film(images.film, images.plan, images.colour, images.bands_nm);
-    const double exposure = images.exposures.clean;
-    ImageMetadata metadata = images.metadata;
-    metadata["exposure"] = exposure;
     files.add("clean", images.definition.file(images.view, "clean", ".png"), [&](const auto& file) {
-        if (images.definition.is_16_bit)
-            write_png(file, make_preview16(film, exposure), metadata);
-        else
-            write_png(file, make_preview(film, exposure), metadata);
+        write_picture_of(images, film, images.exposures.clean, file);
     });
 }
 

@@ -120,7 +120,7 @@ std::array<int, 3> colour_at(const ViewImages& images, const Preview& preview, d
 
 std::vector<Observation> observations(const ViewImages& images) {
     const Camera camera(images.camera);
-    const Preview preview = make_preview(images.film, images.exposures.image);
+    const Preview preview = make_preview(images.film, images.exposures.image, images.display.get());
     std::vector<Observation> seen;
     for (std::size_t i = 0; i < images.points->size(); ++i) {
         const SeenPoint point = seen_point((*images.points)[i].position, camera, *images.surfaces);

@@ -11,6 +11,7 @@
 #include "core/base/spectrum.h"
 #include "core/image/colour.h"
 #include "core/image/image_file.h"
+#include "core/image/picture_file.h"
 #include "core/image/pixel_image.h"
 #include "dataset/camera_json.h"
 #include "dataset/set_files.h"
@@ -22,19 +23,21 @@ namespace {
 constexpr std::string_view k_image_role = "image";
 
 void write_new_image(const ViewImages& images, const std::filesystem::path& file) {
-    ImageMetadata metadata = images.metadata;
-    if (images.sensor) {
-        write_png(file, *images.sensor, metadata);
-        return;
-    }
-    metadata["exposure"] = images.exposures.image;
-    if (images.definition.is_16_bit)
-        write_png(file, make_preview16(images.film, images.exposures.image), metadata);
+    if (images.sensor)
+        write_png(file, *images.sensor, images.metadata);
     else
-        write_png(file, make_preview(images.film, images.exposures.image), metadata);
+        write_picture_of(images, images.film, images.exposures.image, file);
 }
 
 }  // namespace
+
+void write_picture_of(const ViewImages& images, const Film& film, double exposure,
+                      const std::filesystem::path& file) {
+    OutputFile out(file);
+    write_picture(out, film, {exposure, images.definition.is_16_bit ? 16 : 8, images.display.get()},
+                  images.metadata);
+    out.commit();
+}
 
 bool ViewImages::has_values(Layer layer) const {
     for (int y = 0; y < height(); ++y) {

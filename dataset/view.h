@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/geometry/surfaces.h"
+#include "core/image/colour_view.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
 #include "core/image/pixel_image.h"
@@ -43,6 +44,7 @@ struct ViewImages {
     LayerPlan plan;                      // of the film
     std::optional<DigitalImage> sensor;  // the camera's own image
     Exposures exposures;
+    std::shared_ptr<const ColourView> display;  // what pictures are seen through; null: sRGB
     ImageMetadata metadata;
     std::shared_ptr<const Surfaces> surfaces;
     std::shared_ptr<const std::vector<SurfacePoint>> points;  // null: no format needs them
@@ -69,6 +71,10 @@ struct ViewImages {
     /// Whether any of a layer's values is a number: a frame without a next one has no flow.
     bool has_values(Layer layer) const;
 };
+
+/// Writes a PNG of `film` at an exposure, of the set's bits and through the scene's view.
+void write_picture_of(const ViewImages& images, const Film& film, double exposure,
+                      const std::filesystem::path& file);
 
 /// Writes the view's image as a PNG: the camera's own if it has a sensor, else R G B times the
 /// exposure as sRGB, of 8 or 16 bits. It is encoded once, for the first of its files.

@@ -19,7 +19,10 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
+#include "core/image/colour_view.h"
 #include "core/image/image_file.h"
+#include "core/image/image_formats.h"
+#include "core/image/picture_file.h"
 #include "core/image/pixel_image.h"
 #include "python/bindings.h"
 #include "python/scene.h"
@@ -38,18 +41,31 @@ namespace uw {
 
 void save(const ImageObject& image, const std::filesystem::path& file,
           std::optional<double> exposure, const ExrOptions& options) {
-    if (file.extension() == ".exr") {
+    const OutputFormat* const format = output_format(file);
+    if (format == nullptr)
+        throw UsageError(
+            fmt::format("save: {}: no format of images has this ending; give a name that ends in "
+                        "{}",
+                        printable(file.string(), 300), output_endings()));
+    if (format->library == OutputFormat::Library::openexr) {
         write_exr(file, image.film, image.metadata, options);
         return;
     }
-    if (file.extension() != ".png")
-        throw UsageError(fmt::format(
-            "save: {}: it is written as OpenEXR or PNG; give a name that ends in .exr or .png",
-            printable(file.string(), 300)));
-    ImageMetadata metadata = image.metadata;
-    const double factor = exposure ? *exposure : automatic_exposure(image.film).value_or(1.0);
-    metadata["exposure"] = factor;
-    write_png(file, make_preview(image.film, factor), metadata);
+    require_writer(*format);
+    OutputFile out(file);
+    const bool wants_floats = options.precision == ExrOptions::Precision::single;
+    if (format->holds == OutputFormat::Holds::light ||
+        (format->holds == OutputFormat::Holds::either && wants_floats)) {
+        write_light(out, image.film, image.metadata);
+    } else {
+        const std::shared_ptr<const ColourView> view = colour_view(image.view);
+        write_picture(
+            out, image.film,
+            {.exposure = exposure ? *exposure : automatic_exposure(image.film).value_or(1.0),
+             .view = view.get()},
+            image.metadata);
+    }
+    out.commit();
 }
 
 namespace {
@@ -156,6 +172,20 @@ RenderReport report_of_state(const py::tuple& state) {
     return r;
 }
 
+py::object view_state(const std::optional<ViewDesc>& view) {
+    if (!view) return py::none();
+    return py::make_tuple(view->config, view->display, view->view, view->look, view->input,
+                          view->where);
+}
+
+std::optional<ViewDesc> view_of_state(const py::object& state) {
+    if (state.is_none()) return std::nullopt;
+    const auto parts = state.cast<py::tuple>();
+    return ViewDesc{parts[0].cast<std::filesystem::path>(), parts[1].cast<std::string>(),
+                    parts[2].cast<std::string>(),           parts[3].cast<std::string>(),
+                    parts[4].cast<std::string>(),           parts[5].cast<std::string>()};
+}
+
 py::tuple image_state(const py::object& self) {
     const auto& image = self.cast<ImageObject&>();
     py::dict derivatives;
@@ -164,7 +194,7 @@ py::tuple image_state(const py::object& self) {
     return py::make_tuple(image.film.width(), image.film.height(), window(image),
                           image.film.channel_names(), pixels(self), image.metadata,
                           report_state(image.report), image.bands_nm, image.objects,
-                          image.materials, derivatives);
+                          image.materials, derivatives, view_state(image.view));
 }
 
 using SavedPixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
@@ -184,10 +214,15 @@ std::shared_ptr<ImageObject> image_of_state(const py::tuple& state) {
             std::copy_n(from, pixel.size(), pixel.begin());
             from += pixel.size();
         }
-    auto image = std::make_shared<ImageObject>(ImageObject{
-        std::move(film), state[5].cast<ImageMetadata>(),
-        report_of_state(state[6].cast<py::tuple>()), state[7].cast<std::vector<double>>(),
-        state[8].cast<std::map<int, std::string>>(), state[9].cast<std::map<int, std::string>>()});
+    auto image =
+        std::make_shared<ImageObject>(ImageObject{std::move(film),
+                                                  state[5].cast<ImageMetadata>(),
+                                                  report_of_state(state[6].cast<py::tuple>()),
+                                                  state[7].cast<std::vector<double>>(),
+                                                  state[8].cast<std::map<int, std::string>>(),
+                                                  state[9].cast<std::map<int, std::string>>(),
+                                                  {},
+                                                  view_of_state(state[11])});
     const auto pixel_count =
         static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
     for (const auto& [name, array] : state[10].cast<py::dict>()) {
@@ -328,7 +363,9 @@ class RendererObject : public RunClient {
                         std::move(there.report),
                         engine_->renderer().scene().desc().water.bands_nm,
                         {},
-                        {}});
+                        {},
+                        {},
+                        engine_->renderer().scene().desc().render.view});
         RenderReport& report = image_->report;
         if (!report.light_note.empty()) report.warnings.push_back(report.light_note);
         add_matte_manifests(there.surfaces->names(), image_->film.channel_names(),

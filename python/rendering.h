@@ -21,10 +21,12 @@ struct ImageObject {
     std::vector<double> bands_nm;
     std::map<int, std::string> objects, materials;            // names by number
     std::map<std::string, std::vector<float>> derivatives{};  // image_derivative
+    std::optional<ViewDesc> view{};                           // that pictures are seen through
 };
 
-/// Writes it as its name's ending says: the OpenEXR that the program writes, or the preview as PNG
-/// at this exposure, none: its own. Throws UsageError for another ending, and IoError.
+/// Writes it as its name's ending says: the OpenEXR that the program writes, its light,
+/// or what is to be seen at this exposure, none: its own. Throws UsageError for another ending, as
+/// colour_view does, and IoError.
 void save(const ImageObject& image, const std::filesystem::path& file,
           std::optional<double> exposure, const ExrOptions& options);
 

@@ -13,6 +13,7 @@
 #include "core/base/text.h"
 #include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh_reader.h"
+#include "core/image/colour_view.h"
 #include "core/light/integrator_table.h"
 #include "core/scene/key_path.h"
 #include "core/scene/pose_file.h"
@@ -243,6 +244,7 @@ class InputCollection {
         const ColourDesc& colour = scene.render.colour;
         add(colour.file, "the response of the scene");
         if (colour.white) add(*colour.white, "the white light of the scene");
+        if (scene.render.view) add(*scene.render.view);
     }
     std::vector<InputFile> take() && { return std::move(files_); }
 
@@ -274,6 +276,12 @@ class InputCollection {
     void add(const PhaseDesc& phase) { add_named(phase.function, "a phase function of the scene"); }
     void add(const LampSpectrumDesc& spectrum, const char* what) {
         if (spectrum.type == LampSpectrumDesc::Type::file) add(spectrum.file, what);
+    }
+    void add(const ViewDesc& view) {
+        if (view.config.empty()) return;
+        const auto [found, is_new] = known_.try_emplace(view.config);
+        if (is_new) found->second = files_of(view);
+        for (const fs::path& file : found->second) add(file, "the OpenColorIO view of the scene");
     }
     void add(const VolumeDesc& volume) {
         add(file_of(volume), "a volume of the scene");

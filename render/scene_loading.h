@@ -83,7 +83,8 @@ struct InputFile {
     bool is_hashed = false;
 };
 
-/// The files that glTF and OBJ files refer to, by that file: looked up once for many frames.
+/// The files that glTF and OBJ files and OpenColorIO configs refer to, by that file: looked up once
+/// for many frames.
 using MeshSideFiles = std::map<std::filesystem::path, std::vector<std::filesystem::path>>;
 
 /// Every file that an image of a scene is read from, the scene file itself first: the one answer to

@@ -108,7 +108,7 @@ void add_output_options(Options& options, DatasetArguments& a) {
             if (text != "8" && text != "16")
                 throw UsageError(
                     fmt::format("--image-bits: expected 8 or 16, found '{}'", printable(text)));
-            a.image.is_preview_16_bit = text == "16";
+            a.image.preview_bits = text == "16" ? 16 : 8;
         },
         "bits of these images: 8, the default, or 16");
     bits.value = Option::Value::word;
@@ -275,7 +275,7 @@ DatasetDefinition definition_of(const DatasetArguments& a, const SceneDesc& scen
     d.quality = a.image.quality;
     if (a.image.samples) d.samples = fmt::format("{}", *a.image.samples);
     d.layers = a.image.layers;
-    d.is_16_bit = a.image.is_preview_16_bit;
+    d.is_16_bit = a.image.preview_bits == 16;
     d.exposure = a.exposure;
     if (a.depth_scale) d.depth_scale = *a.depth_scale;
     d.depth_far = a.depth_far;

@@ -20,6 +20,7 @@
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
+#include "core/image/colour_view.h"
 #include "core/image/pixel_image.h"
 #include "dataset/completion.h"
 #include "dataset/data_card.h"
@@ -41,6 +42,16 @@ namespace uw {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What pictures are seen through; null: sRGB. A set's bytes follow from the scene and its files,
+/// whatever the environment of the process that renders a part of it.
+std::shared_ptr<const ColourView> view_of(const RenderDesc& render) {
+    if (!render.view) return nullptr;
+    if (render.view->config.empty())
+        throw InputError(render.view->where +
+                         ": a data set does not depend on the environment; add config: FILE.ocio");
+    return colour_view(render.view);
+}
 
 constexpr int k_draft_width = 160;  // of the images that exposures follow from [pixels]
 constexpr std::size_t k_most_drafts = 5;
@@ -164,8 +175,8 @@ class ViewRenderer : public ViewClient {
         const auto images = std::make_shared<ViewImages>(ViewImages{
             definition, view, rendered.time().value_or(number / scene.render.fps), scene.camera,
             scene.render.colour, scene.water.bands_nm, std::move(image.film), image.plan,
-            std::move(image.sensor), set_.exposures, std::move(image.metadata), image.surfaces,
-            points_, std::move(inputs_), shared_});
+            std::move(image.sensor), set_.exposures, view_of(scene.render),
+            std::move(image.metadata), image.surfaces, points_, std::move(inputs_), shared_});
         ends_.push_back(std::chrono::steady_clock::now());
         return {[this, images] { write_view(folder_, sum_, *images); }};
     }
@@ -328,6 +339,7 @@ class DatasetRun {
 
     void run() {
         draws_ = draws_of(a_, !read_dataset_file(a_.image.output));
+        view_of(scenes_.of(0).render);  // throws before anything is rendered
         DatasetDefinition wanted = definition_of(a_, scenes_.of(0));
         wanted.draws = draws_;
         check(wanted, scenes_);

@@ -12,6 +12,7 @@
 #include "cli/render/image_output.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/image/colour_view.h"
 #include "core/light/integrator_table.h"
 #include "render/measures/irradiance_vdb.h"
 
@@ -112,6 +113,11 @@ void FrameRenderer::begin_stage(const std::string& stage) {
 
 WantedImage FrameRenderer::want(std::size_t place, ImageScene& scene) {
     const Frame& frame = frames_[place];
+    if (arguments_.is_aces && scene.desc().render.colour.response == ColourDesc::Response::camera)
+        throw UsageError(
+            "--aces: R, G and B are in the camera's own colour space, which no matrix turns into "
+            "ACES2065-1; leave out render.response or --aces");
+    if (!frame.files.preview.empty()) colour_view(scene.desc().render.view);  // throws
     const std::vector<std::string> lamps = names_of(scene.desc().lamps);
     if (lamps != lamps_)
         throw InputError(
@@ -198,8 +204,10 @@ ImageWork FrameRenderer::take(std::size_t place, FinishedImage image) {
             image.film = with_channels(image.film, plan.channel_names(), image.film.window());
     }
     const SequenceClock& clock = engine_.clock();
-    ImageStorage storage{arguments_.exr(), exposure_.of(image.film), arguments_.is_preview_16_bit};
-    if (image.sensor) storage.camera = engine_.renderer().scene().desc().camera.sensor->image;
+    const SceneDesc& scene = engine_.renderer().scene().desc();
+    ImageStorage storage{arguments_.exr(), exposure_.of(image.film), arguments_.preview_bits,
+                         colour_view(scene.render.view)};
+    if (image.sensor) storage.camera = scene.camera.sensor->image;
     // One that cannot be copied would be no part of a function.
     const auto written = std::make_shared<Written>(
         Written{place, std::move(image), std::exchange(stats_, RunStats()), std::move(outputs),

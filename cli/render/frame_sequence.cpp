@@ -13,6 +13,7 @@
 #include "core/base/input_files.h"
 #include "core/base/output_files.h"
 #include "core/base/text.h"
+#include "core/image/image_formats.h"
 #include "render/image_header.h"
 #include "render/image_scene.h"
 
@@ -58,29 +59,91 @@ void refuse_other_ending(const char* option, const fs::path& file, const char* e
 
 // Whether a file of this name is the camera's image alone.
 bool is_sensor_image(const fs::path& file) {
-    const fs::path ending = file.extension();
-    return ending == ".jpg" || ending == ".jpeg" ||
-           (ending == ".png" && file.stem().extension() == k_sensor_ending);
+    const OutputFormat* const format = output_format(file);
+    if (format == nullptr) return false;
+    return format->library == OutputFormat::Library::libjpeg ||
+           (format->library == OutputFormat::Library::libpng &&
+            file.stem().extension() == k_sensor_ending);
 }
 
-// What only an EXR can hold, or tell.
-void refuse_exr_options(const RenderArguments& a) {
+// What only an EXR can hold, or tell. `is_light`: the file holds the light's R, G and B.
+void refuse_exr_options(const RenderArguments& a, const OutputFormat& format, bool is_light) {
+    const auto refuse = [&](bool is_given, const char* option) {
+        if (!is_given) return;
+        const std::string what = is_light                    ? "R, G and B"
+                                 : is_sensor_image(a.output) ? "the camera's image"
+                                                             : fmt::format("a {}", format.name);
+        throw UsageError(
+            fmt::format("{}: is for the EXR, but -o {} is {} alone; give a name that ends in .exr",
+                        option, printable(a.output.string(), 300), what));
+    };
+    refuse(!a.layers.empty(), "--layers");
+    refuse(a.orders.has_value(), "--orders");
+    refuse(!a.precision.empty() && format.holds != OutputFormat::Holds::either, "--precision");
+    refuse(!a.compression.empty(), "--compression");
+    refuse(a.is_aces, "--aces");
+    refuse(a.resume, "--resume");
+}
+
+// What an ACES image container cannot be asked for.
+void refuse_with_aces(const RenderArguments& a) {
     const auto refuse = [&](bool is_given, const char* option) {
         if (is_given)
             throw UsageError(
-                fmt::format("{}: is for the EXR, but -o {} is {} alone; give a name that ends "
-                            "in .exr",
-                            option, printable(a.output.string(), 300),
-                            is_sensor_image(a.output) ? "the camera's image" : "a PNG"));
+                fmt::format("{}: an ACES image container has R, G, B and A alone, as half floats "
+                            "without compression; leave out --aces or {}",
+                            option, option));
     };
     refuse(!a.layers.empty(), "--layers");
     refuse(a.orders.has_value(), "--orders");
     refuse(!a.precision.empty(), "--precision");
     refuse(!a.compression.empty(), "--compression");
-    refuse(a.resume, "--resume");
+}
+
+// Moves the name of what is to be written to the place of its kind: light, a picture of it, or the
+// camera's image. Light and the image of its place have a preview.
+void sort_by_format(const RenderArguments& a, OutputFiles& files) {
+    const std::string name = printable(files.image.string(), 300);
+    const OutputFormat* const format = output_format(files.image);
+    if (format == nullptr)
+        throw UsageError(
+            fmt::format("-o {}: no format of images has this ending; give a name that ends in {}",
+                        name, output_endings()));
+    if (!a.precision.empty() && a.precision != "float" &&
+        format->holds == OutputFormat::Holds::either)
+        throw UsageError(fmt::format(
+            "--precision {}: -o {} holds light in 32-bit floats or a picture of it in whole "
+            "numbers; use float, or leave it out",
+            a.precision, name));
+    const bool is_light = format->holds == OutputFormat::Holds::light ||
+                          (format->holds == OutputFormat::Holds::either && !a.precision.empty());
+    if (format->library != OutputFormat::Library::openexr) refuse_exr_options(a, *format, is_light);
+    if (a.is_aces) refuse_with_aces(a);
+    if (!is_light && a.preview_bits.value_or(8) > format->most_bits)
+        throw UsageError(
+            fmt::format("--preview-bits {}: a {} has {} bits per channel; give a name that ends in "
+                        ".png or .tif",
+                        *a.preview_bits, format->name, format->most_bits));
+    try {
+        require_writer(*format);
+    } catch (const UsageError& error) {
+        throw UsageError(fmt::format("-o {}: {}", name, error.what()));
+    }
+    if (is_light) {
+        files.preview = files.image;
+        files.preview.replace_extension(".png");
+        return;
+    }
+    fs::path& place = is_sensor_image(files.image) ? files.sensor : files.preview;
+    place = std::exchange(files.image, {});
 }
 
 }  // namespace
+
+bool is_exr(const fs::path& file) {
+    const OutputFormat* const format = output_format(file);
+    return format != nullptr && format->library == OutputFormat::Library::openexr;
+}
 
 fs::path sensor_image_beside(const fs::path& image, DevelopmentDesc::Format format) {
     const char* const ending = format == DevelopmentDesc::Format::jpeg ? ".jpg" : ".png";
@@ -92,24 +155,14 @@ OutputFiles output_files(const RenderArguments& a) {
     OutputFiles files;
     const char* const ending = a.frames.empty() ? ".exr" : ".####.exr";
     files.image = a.output.empty() ? a.scene.filename().replace_extension(ending) : a.output;
-    files.preview = files.image;
-    files.preview.replace_extension(".png");
-    if (is_sensor_image(files.image)) {
-        refuse_exr_options(a);
-        files.sensor = files.image;
-        files.image.clear();
-        files.preview.clear();
-    } else if (files.image.extension() == ".png") {
-        refuse_exr_options(a);
-        files.image.clear();
-    } else if (files.image.extension() != ".exr") {
-        throw UsageError(
-            fmt::format("-o {}: it is written as OpenEXR or PNG, a camera's image as PNG or JPEG; "
-                        "give a name that ends in .exr or .png, or in .sensor.png or .jpg",
-                        printable(files.image.string(), 300)));
-    }
+    sort_by_format(a, files);
     if (!a.contact_sheet.empty()) {
         refuse_other_ending("--contact-sheet", a.contact_sheet, ".png", "PNG");
+        if (!files.preview.empty() && !has_ending_of_image(files.preview))
+            throw UsageError(fmt::format(
+                "--contact-sheet: it is made of the files written, and {} is not read; give -o a "
+                "name that ends in .tif or .png",
+                output_format(files.preview)->name));
         files.contact_sheet = a.contact_sheet;
     }
     files.stats = a.stats;
@@ -335,17 +388,19 @@ void add_sensor_images(FrameSequence& sequence, const SceneDesc& scene) {
             throw UsageError(fmt::format("-o {}: {}", printable(files.sensor.string(), 300), what));
         };
         if (!camera.sensor) {
-            if (is_alone)
+            if (!is_alone) continue;
+            if (files.sensor.stem().extension() == k_sensor_ending)
                 refuse(
                     "the camera has no sensor to make it with; add camera.sensor to the scene, "
                     "or give a name that ends in .exr or .png");
+            files.preview = std::exchange(files.sensor, {});  // a JPEG of what is to be seen
             continue;
         }
         const DevelopmentDesc::Format format = camera.sensor->image.format;
         const bool is_png = format == DevelopmentDesc::Format::png;
         if (!is_alone)
             files.sensor = sensor_image_beside(files.main(), format);
-        else if ((files.sensor.extension() == ".png") != is_png)
+        else if ((output_format(files.sensor)->library == OutputFormat::Library::libpng) != is_png)
             refuse(is_png ? "the camera's image is a PNG; give a name that ends in .sensor.png, or "
                             "set camera.sensor.image.format to jpeg"
                           : "the camera's image is a JPEG; give a name that ends in .jpg, or leave "

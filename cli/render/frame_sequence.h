@@ -20,8 +20,8 @@ namespace uw {
 
 /// The files that one render writes.
 struct OutputFiles {
-    std::filesystem::path image;            // EXR; empty: the PNG alone
-    std::filesystem::path preview;          // PNG beside it
+    std::filesystem::path image;            // of light, mostly an EXR; empty: the preview alone
+    std::filesystem::path preview;          // PNG beside it, or what is written instead
     std::filesystem::path sensor{};         // the camera's image, PNG or JPEG; empty: none
     std::filesystem::path stats;            // JSON; empty: none
     std::filesystem::path irradiance_vdb;   // empty: none
@@ -30,7 +30,7 @@ struct OutputFiles {
     std::filesystem::path contact_sheet{};  // PNG of all images; empty: none
     std::filesystem::path manifest_csv{}, manifest_json{};  // of all variations; empty: none
 
-    /// The EXR, or the preview or the camera's image where that is all.
+    /// The light, or the preview or the camera's image where that is all.
     const std::filesystem::path& main() const {
         return !image.empty() ? image : preview.empty() ? sensor : preview;
     }
@@ -45,9 +45,12 @@ inline constexpr std::string_view k_sensor_ending = ".sensor";
 std::filesystem::path sensor_image_beside(const std::filesystem::path& image,
                                           DevelopmentDesc::Format format);
 
+/// Whether a file of this name is written as OpenEXR.
+bool is_exr(const std::filesystem::path& file);
+
 /// The files that the arguments request; names keep their placeholders for the frame number, and so
 /// does the default name of a sequence's images. Throws UsageError for a name whose ending is not
-/// that of its format.
+/// that of its format, and for a format whose writer is not installed.
 OutputFiles output_files(const RenderArguments& arguments);
 
 /// Checks before the work, rather than after it, that all files can be written.

@@ -6,6 +6,7 @@
 #include "core/base/text.h"
 #include "core/image/image_file.h"
 #include "core/image/jpeg_file.h"
+#include "core/image/picture_file.h"
 #include "core/image/pixel_image.h"
 #include "core/image/png_file.h"
 #include "render/image_header.h"
@@ -41,24 +42,30 @@ void warn_of_darkness(const PixelWindow& window, std::size_t empty, bool black,
             "light travels in this water");
 }
 
-void warn_of_half(const HalfLoss& loss, const SayCallback& warn) {
+void warn_of_half(const HalfLoss& loss, const ExrOptions& options, const SayCallback& warn) {
+    const char* const option = options.is_aces ? "--aces" : "--precision half";
+    const char* const mend = options.is_aces ? "scale the lamps' intensities, or leave out --aces"
+                                             : "use --precision float";
     if (loss.too_large > 0)
-        warn(fmt::format(
-            "--precision half: {} {} too large for half floats, and infinite in the file; use "
-            "--precision float",
-            counted(loss.too_large, "value"), loss.too_large == 1 ? "is" : "are"));
+        warn(fmt::format("{}: {} {} too large for half floats, and infinite in the file; {}",
+                         option, counted(loss.too_large, "value"),
+                         loss.too_large == 1 ? "is" : "are", mend));
     if (loss.too_dark)
-        warn(
-            "--precision half: the light is so weak that half floats round it visibly; use "
-            "--precision float");
+        warn(fmt::format("{}: the light is so weak that half floats round it visibly; {}", option,
+                         mend));
 }
 
-void write_preview(OutputFile& out, const Film& film, const ImageStorage& storage, double exposure,
-                   const ImageMetadata& metadata) {
-    if (storage.is_preview_16_bit)
-        write_png_file(out, make_preview16(film, exposure), metadata);
-    else
-        write_png_file(out, make_preview(film, exposure), metadata);
+// The light itself: an EXR, or R, G and B alone.
+void write_light_of(OutputFile& out, const FinishedImage& image, const ImageStorage& storage,
+                    bool with_ids) {
+    if (!is_exr(out.path())) {
+        write_light(out, image.film, image.metadata);
+        return;
+    }
+    ImageMetadata metadata = image.metadata;
+    if (with_ids) add_id_names(image.surfaces->names(), metadata);
+    add_matte_manifests(image.surfaces->names(), image.film.channel_names(), metadata);
+    write_exr(out, image.film, metadata, storage.exr);
 }
 
 void write_camera_image(OutputFile& out, const DigitalImage& image, const DevelopmentDesc& desc,
@@ -74,25 +81,20 @@ void write_camera_image(OutputFile& out, const DigitalImage& image, const Develo
 void write_images(const OutputFiles& files, const FinishedImage& image, const ImageStorage& storage,
                   OutputGroup& outputs, const SayCallback& say, const SayCallback& warn) {
     const Film& film = image.film;
-    ImageMetadata metadata = image.metadata;
     const std::optional<double> automatic = automatic_exposure(film);
     const double exposure = storage.exposure.value_or(automatic.value_or(1.0));
-    const bool with_exr = !files.image.empty();
-    if (with_exr) {
-        ImageMetadata with_names = metadata;
-        if (!files.ids.empty()) add_id_names(image.surfaces->names(), with_names);
-        add_matte_manifests(image.surfaces->names(), film.channel_names(), with_names);
-        write_exr(outputs.add(files.image), film, with_names, storage.exr);
-        if (!files.ids.empty()) write_id_table(outputs.add(files.ids), image.surfaces->names());
-    }
+    const bool with_light = !files.image.empty();
+    if (with_light) write_light_of(outputs.add(files.image), image, storage, !files.ids.empty());
+    if (!files.ids.empty()) write_id_table(outputs.add(files.ids), image.surfaces->names());
     if (image.sensor)
-        write_camera_image(outputs.add(files.sensor), *image.sensor, storage.camera, metadata);
-    metadata["exposure"] = exposure;
+        write_camera_image(outputs.add(files.sensor), *image.sensor, storage.camera,
+                           image.metadata);
     if (!files.preview.empty())
-        write_preview(outputs.add(files.preview), film, storage, exposure, metadata);
+        write_picture(outputs.add(files.preview), film,
+                      {exposure, storage.preview_bits, storage.view.get()}, image.metadata);
     const std::size_t empty = count_empty(film);
     std::optional<HalfLoss> loss;
-    if (with_exr && storage.exr.precision == ExrOptions::Precision::half) loss = half_loss(film);
+    if (with_light && storage.exr.precision == ExrOptions::Precision::half) loss = half_loss(film);
     {
         // Or the EXR might be of one run and its preview of another.
         const FolderLock lock(files.main().parent_path());
@@ -100,12 +102,12 @@ void write_images(const OutputFiles& files, const FinishedImage& image, const Im
     }
     if (!files.irradiance_vdb.empty()) say(fmt::format("wrote {}", files.irradiance_vdb.string()));
     warn_of_darkness(film.window(), empty, !automatic, warn);
-    if (loss) warn_of_half(*loss, warn);
-    if (with_exr) say(fmt::format("wrote {}", files.image.string()));
+    if (loss) warn_of_half(*loss, storage.exr, warn);
+    if (with_light) say(fmt::format("wrote {}", files.image.string()));
     if (!files.ids.empty()) say(fmt::format("wrote {} (names of ids)", files.ids.string()));
     if (image.sensor) say(fmt::format("wrote {} (the camera's image)", files.sensor.string()));
     if (files.preview.empty()) return;
-    say(fmt::format("wrote {} ({}{})", files.preview.string(), with_exr ? "preview, " : "",
+    say(fmt::format("wrote {} ({}{})", files.preview.string(), with_light ? "preview, " : "",
                     automatic ? fmt::format("R G B x {:.4g}", exposure) : "black"));
 }
 

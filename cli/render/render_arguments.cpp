@@ -30,9 +30,10 @@ once; multiple is all light, however often it was scattered and reflected, fast 
 --integrator volume, unbiased by path.
 
 Writes OUT.exr (the image and its depth; more with --layers) and OUT.png beside it, a preview; with
--o OUT.png the preview alone: 8 or 16 bits of what is to be seen, not the light itself, which only
-the EXR holds. A camera with a sensor (camera.sensor) also writes its own image, OUT.sensor.png or
-.jpg, or that alone with -o OUT.sensor.png or -o OUT.jpg. Folders are made. With --frames, a volume's
+-o OUT.png the preview alone: 8 or 16 bits of what is to be seen, not the light itself. So do .jpg
+.tif .dpx .tga .bmp and .webp; .hdr, and .tif with --precision float, hold the light's R G B.
+A camera with a sensor (camera.sensor) also writes its own image, OUT.sensor.png or .jpg, or that
+alone with -o OUT.sensor.png or -o OUT.jpg. Folders are made. With --frames, a volume's
 file may contain a placeholder for the frame's number: file: smoke_####.vdb. A scene of several cameras
 becomes an image of each, OUT.NAME.exr, or with NAME in place of {camera}. --variations makes
 OUT.v0000.exr and so on, or 0000 in place of {variation}, and SCENE.variations.csv and .json beside
@@ -53,14 +54,12 @@ void accept_words(Option& option, const auto& names) {
     for (const auto& [word, meaning] : names) option.words.emplace_back(word);
 }
 
-constexpr std::array<std::pair<std::string_view, bool>, 2> k_preview_bits{
-    {{"8", false}, {"16", true}}};
+constexpr std::array<std::pair<std::string_view, int>, 2> k_preview_bits{{{"8", 8}, {"16", 16}}};
 
-bool is_16(const std::string& text) {
-    if (text != "8" && text != "16")
-        throw UsageError(
-            fmt::format("--preview-bits: expected 8 or 16, found '{}'", printable(text)));
-    return text == "16";
+int preview_bits_in(const std::string& text) {
+    for (const auto& [word, bits] : k_preview_bits)
+        if (text == word) return bits;
+    throw UsageError(fmt::format("--preview-bits: expected 8 or 16, found '{}'", printable(text)));
 }
 
 PreviewExposure exposure_in(const std::string& text) {
@@ -88,6 +87,7 @@ T value_of(const char* option, const std::string& word,
 
 ExrOptions RenderArguments::exr() const {
     const ExrOptions usual;
+    if (is_aces) return ExrOptions::aces();
     return {value_of("--precision", precision, k_precision_names, usual.precision),
             value_of("--compression", compression, k_compression_names, usual.compression)};
 }
@@ -97,8 +97,8 @@ Options render_options(RenderArguments& a) {
     options.path("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
     options.path(
         "-o,--output", "OUT.exr", a.output,
-        "EXR to write, or a PNG or the camera's image alone; default: the scene's name, in "
-        "this folder");
+        "EXR to write, or a PNG, TIFF, ... or the camera's image alone; default: the scene's name, "
+        "in this folder");
     options.parsed(
         "--frames", "1-10,20-40:2|all",
         [&a](const std::string& text) {
@@ -135,15 +135,19 @@ Options render_options(RenderArguments& a) {
         options.text("--compression", "NAME", a.compression,
                      "compress the EXR without loss: zip, zips (each line by itself) or none"),
         k_compression_names);
+    options.flag("--aces", a.is_aces,
+                 "write the EXR as an ACES image container: R, G and B alone, in ACES2065-1, half "
+                 "floats");
     options.parsed(
         "--exposure", "N|auto|first",
         [&a](const std::string& text) { a.exposure = exposure_in(text); },
         "expose the preview by a factor; auto: each image's own; first: the first image's for all");
-    accept_words(options.parsed(
-                     "--preview-bits", "N",
-                     [&a](const std::string& text) { a.is_preview_16_bit = is_16(text); },
-                     "bits of the preview: 8, the default, or 16"),
-                 k_preview_bits);
+    accept_words(
+        options.parsed(
+            "--preview-bits", "N",
+            [&a](const std::string& text) { a.preview_bits = preview_bits_in(text); },
+            "bits per channel of the preview, or of what is written in its place: 8 or 16"),
+        k_preview_bits);
     options.path("--contact-sheet", "OUT.png", a.contact_sheet,
                  "write small pictures of all images, side by side");
     options.integer("--samples", "N", a.samples, 1, k_most_paths,

@@ -31,8 +31,9 @@ struct RenderArguments {
     std::string integrator;                  // empty: the scene's
     std::string layers;                      // empty: the default set
     std::string precision, compression;      // of the EXR; empty: as ExrOptions
+    bool is_aces = false;                    // --aces
     PreviewExposure exposure;                // --exposure
-    bool is_preview_16_bit = false;          // --preview-bits 16
+    std::optional<int> preview_bits;         // --preview-bits; none: as is usual in its format
     std::filesystem::path contact_sheet;     // --contact-sheet: a PNG; empty: none
     std::optional<int> samples;
     std::optional<double> error;  // --error: instead of a number of samples

@@ -24,6 +24,7 @@
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
+#include "core/image/colour_view.h"
 #include "core/image/contact_sheet.h"
 #include "core/image/image_file.h"
 #include "render/image_header.h"
@@ -35,9 +36,11 @@ namespace {
 // Whether the preview of an image that exists is stored as requested; `exposure`: as it is to be,
 // none: as it is.
 bool has_preview(const OutputFiles& files, const RenderArguments& a,
-                 const std::optional<double>& exposure) {
+                 const std::optional<double>& exposure, const std::optional<ViewDesc>& desc) {
+    const std::shared_ptr<const ColourView> view = colour_view(desc);
     const std::optional<PreviewHeader> header = read_preview_header(files.preview);
-    return header && header->bits == (a.is_preview_16_bit ? 16 : 8) &&
+    return header && header->bits == a.preview_bits.value_or(8) &&
+           header->view == (view ? view->name : "") &&
            (!exposure || header->exposure == as_stated_in_png(*exposure));
 }
 
@@ -52,9 +55,11 @@ void leave_out_rendered(FrameSequence& sequence, RunScenes& scenes, const Render
         const ImageScene scene = scene_of_image(scenes.of(frame.variation), frame.image().choice);
         const CameraDesc& camera = scene.desc().camera;
         const ImageLayout layout{camera.width, camera.height, frame.window,
-                                 layer_plan(scene, a.layers, paths).channel_names(), storage};
+                                 a.is_aces ? std::vector<std::string>{"R", "G", "B", "A"}
+                                           : layer_plan(scene, a.layers, paths).channel_names(),
+                                 storage};
         return has_header_of(frame.files.image, layout, metadata_of(scene, frame.number, paths)) &&
-               has_preview(frame.files, a, exposure.of_all());
+               has_preview(frame.files, a, exposure.of_all(), scene.desc().render.view);
     };
     InputTimes inputs(scenes.job());
     std::vector<int> there;  // frames of the scene itself

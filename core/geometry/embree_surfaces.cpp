@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/geometry/embree_scene.h"
+#include "core/geometry/textured_surfaces.h"
 
 namespace uw {
 namespace {
@@ -16,11 +17,17 @@ namespace {
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 /// How often a closest hit at or behind the origin is skipped: a camera in a surface's plane.
 constexpr int k_max_restarts = 16;
+/// SurfaceHit::geometry of what is no mesh.
+constexpr std::uint32_t k_no_mesh = std::numeric_limits<std::uint32_t>::max();
 
-class EmbreeSurfaces final : public Surfaces {
+class EmbreeSurfaces final : public Surfaces, public TexturedSurfaces {
   public:
     explicit EmbreeSurfaces(SceneObjects objects)
-        : objects_(std::move(objects)), scene_(objects_), traced_(scene_.traced()) {}
+        : objects_(std::move(objects)), scene_(objects_), traced_(scene_.traced()) {
+        const auto has_some = [](const auto& mesh) { return mesh->has_textures; };
+        has_textures_ = std::ranges::any_of(objects_.meshes, has_some) ||
+                        std::ranges::any_of(objects_.shared_meshes, has_some);
+    }
 
     bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const override {
         return shade(find_nearest(ray, s_end), ray, s_end, hit);
@@ -41,6 +48,13 @@ class EmbreeSurfaces final : public Surfaces {
                                    [&](const auto& object) { return emits(*object); }) ||
                std::ranges::any_of(objects_.instances,
                                    [&](const auto& instance) { return emits(*instance.object); });
+    }
+
+    bool has_textures() const override { return has_textures_; }
+
+    void filter_textures(const SurfaceSpread& spread, SurfaceHit& hit) const override {
+        if (hit.geometry < objects_.placed_count())
+            filter_mesh(objects_.placed(hit.geometry), objects_.bands, spread, hit);
     }
 
     double hit_distance(const Ray& ray) const override {
@@ -123,12 +137,14 @@ class EmbreeSurfaces final : public Surfaces {
         hit.position = ray.at(nearest.distance);
         if (nearest.plane != nullptr) {
             shade_plane(*nearest.plane, ray.direction, hit);
+            hit.geometry = k_no_mesh;
         } else if (nearest.geometry < objects_.placed_count()) {
             shade_mesh(objects_.placed(nearest.geometry), nearest.primitive, nearest.crossing,
                        objects_.bands, ray.direction, hit);
             hit.geometry = nearest.geometry;
         } else {
             shade_sphere(objects_.spheres[nearest.primitive], ray.direction, hit);
+            hit.geometry = k_no_mesh;
         }
         return true;
     }
@@ -254,6 +270,7 @@ class EmbreeSurfaces final : public Surfaces {
     }
 
     SceneObjects objects_;
+    bool has_textures_ = false;
     EmbreeScene scene_;
     TracedScene traced_;
 };

@@ -89,6 +89,10 @@ std::shared_ptr<MeshObject> make_mesh_object(const GeometryDesc& desc, TriangleM
         object->mesh.colors = {};
         for (MeshMaterial& material : materials) material.base_map = {};
     }
+    object->has_textures = std::ranges::any_of(materials, [](const MeshMaterial& material) {
+        return material.base_map || material.emission_map || material.normal_map ||
+               material.metallic_roughness_map;
+    });
     object->mesh.positions.resize(object->mesh.positions.size() + 4);  // Embree's padding
     return object;
 }

@@ -61,15 +61,16 @@ std::shared_ptr<const Texture> GltfMaterials::picture(std::size_t image, Texture
     if (known) return known;
     const Json& json = document_.list("images")[image];
     const std::string& uri = gltf_uri(json);
+    if (!uri.empty() && !uri.starts_with("data:")) {
+        const std::filesystem::path file = gltf_uri_path(document_.file(), uri);
+        remember_input(file);
+        known = uw::read_texture(file, encoding, keep_alpha);
+        return known;
+    }
     const auto decode = [&]() -> PixelImage {
         const std::string name = fmt::format("{}: texture {}", document_.name(),
                                              printable(json.value("name", std::to_string(image))));
         if (uri.starts_with("data:")) return read_image(decode_data_uri(document_, uri), name);
-        if (!uri.empty()) {
-            const std::filesystem::path file = gltf_uri_path(document_.file(), uri);
-            remember_input(file);
-            return read_image(file);
-        }
         return read_image(bytes_.view(json, "bufferView"), name);
     };
     known = std::make_shared<Texture>(decode(), encoding, keep_alpha);

@@ -1,12 +1,18 @@
 #include "core/geometry/mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/image/image_file.h"
+#include "core/image/image_formats.h"
 
 namespace uw {
 
@@ -60,23 +66,27 @@ int wrapped(double index, int size, TextureWrap wrap) {
 
 }  // namespace
 
-Texture::Texture(const PixelImage& image, TextureEncoding encoding, bool keep_alpha)
-    : width_(image.width), height_(image.height) {
-    if (width_ < 1 || height_ < 1 || image.channels < 1) {
+Texture::Texture(const PixelImage& image, TextureEncoding encoding, bool keep_alpha) {
+    if (image.width < 1 || image.height < 1 || image.channels < 1) {
         throw std::invalid_argument("a texture needs at least one pixel");
     }
     const auto channels = static_cast<std::size_t>(image.channels);
-    const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    rgb_.resize(3 * count);
+    const std::size_t count =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    Level whole{image.width, image.height, static_cast<double>(image.width),
+                static_cast<double>(image.height), std::vector<float>(3 * count)};
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
         throw_if_stopped();
         for (std::size_t color = 0; color < 3; ++color) {
             const float encoded = image.pixels[pixel * channels + (channels < 3 ? 0 : color)];
-            rgb_[3 * pixel + color] = encoding == TextureEncoding::linear || image.is_linear
-                                          ? encoded
-                                          : static_cast<float>(linear_from_srgb(encoded));
+            whole.rgb[3 * pixel + color] = encoding == TextureEncoding::linear || image.is_linear
+                                               ? encoded
+                                               : static_cast<float>(linear_from_srgb(encoded));
         }
     }
+    levels_.push_back(std::move(whole));
+    while (levels_.back().width > 1 || levels_.back().height > 1)
+        levels_.push_back(halved(levels_.back()));
     if (!keep_alpha || (channels != 2 && channels != 4)) return;
     alpha_.resize(count);
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
@@ -84,44 +94,287 @@ Texture::Texture(const PixelImage& image, TextureEncoding encoding, bool keep_al
     }
 }
 
-Texture::Footprint Texture::footprint(double u, double v, const TextureLookup& lookup) const {
+Texture::Texture(std::shared_ptr<const PartialImage> image, const std::string& name,
+                 TextureEncoding encoding, bool keep_alpha, std::int64_t most_texels)
+    : file_(std::move(image)),
+      name_(name),
+      is_encoded_(encoding == TextureEncoding::srgb && !file_->is_linear),
+      has_alpha_in_file_(keep_alpha && (file_->channels == 2 || file_->channels == 4)) {
+    for (int halvings = 0;; ++halvings) {
+        const int step = 1 << halvings;
+        Level level;
+        level.width = (file_->width + step - 1) / step;
+        level.height = (file_->height + step - 1) / step;
+        level.columns = static_cast<double>(file_->width) / step;
+        level.rows = static_cast<double>(file_->height) / step;
+        level.halvings = halvings;
+        const bool is_in_memory = std::int64_t{level.width} * level.height <= most_texels;
+        if (is_in_memory) sum_lines(level);
+        levels_.push_back(std::move(level));
+        if (is_in_memory) break;
+    }
+    while (levels_.back().width > 1 || levels_.back().height > 1)
+        levels_.push_back(halved(levels_.back()));
+}
+
+namespace {
+
+/// linear_from_srgb of whole numbers of 16 bits, and so of 8.
+const std::vector<float>& linear_of_16_bits() {
+    static const std::vector<float> table = [] {
+        std::vector<float> values;
+        constexpr int k_most = 65535;
+        for (int i = 0; i <= k_most; ++i)
+            values.push_back(static_cast<float>(linear_from_srgb(static_cast<double>(i) / k_most)));
+        return values;
+    }();
+    return table;
+}
+
+}  // namespace
+
+double Texture::decoded(float encoded) const {
+    const float value = encoded > 0 ? std::min(encoded, 1.0F) : 0.0F;
+    if (!is_encoded_) return value;
+    const std::vector<float>& table = linear_of_16_bits();
+    return double{table[static_cast<std::size_t>(65535 * value + 0.5F)]};
+}
+
+/// Fills a level with the means over squares of the file's pixels, line after line of them.
+void Texture::sum_lines(Level& level) const {
+    level.rgb.resize(3 * static_cast<std::size_t>(level.width) *
+                     static_cast<std::size_t>(level.height));
+    const int step = 1 << level.halvings;
+    const auto channels = static_cast<std::size_t>(file_->channels);
+    // A line from x0, where a texel begins, to x1.
+    const auto add = [&](int y, int x0, int x1, const float* at) {
+        const int begin = y / step * step;
+        const int rows = std::min(begin + step, file_->height) - begin;
+        float* sum = &level.rgb[3 * (static_cast<std::size_t>(y / step) *
+                                         static_cast<std::size_t>(level.width) +
+                                     static_cast<std::size_t>(x0 / step))];
+        for (int x = x0; x < x1; x += step, sum += 3) {
+            const int columns = std::min(step, file_->width - x);
+            Rgb line{};
+            for (int i = 0; i < columns; ++i, at += channels)
+                for (std::size_t c = 0; c < 3; ++c) line[c] += decoded(at[channels < 3 ? 0 : c]);
+            for (std::size_t c = 0; c < 3; ++c)
+                sum[c] += static_cast<float>(line[c] / (rows * columns));
+        }
+    };
+    const int block = std::max(step, 1024);  // of columns, for one thread
+    const auto blocks = static_cast<std::size_t>((file_->width + block - 1) / block);
+    const bool is_whole = file_->read_all([&](int y0, int y1, const float* values) {
+        throw_if_stopped();
+        parallel_for(blocks, [&](std::size_t i) {
+            const int x0 = static_cast<int>(i) * block, x1 = std::min(x0 + block, file_->width);
+            for (int y = y0; y < y1; ++y)
+                add(y, x0, x1,
+                    values + channels * (static_cast<std::size_t>(file_->width) *
+                                             static_cast<std::size_t>(y - y0) +
+                                         static_cast<std::size_t>(x0)));
+        });
+    });
+    if (!is_whole)
+        throw InputError(name_ + ": cannot read all of the image; it is damaged, save it again");
+}
+
+void Texture::fail_to_read() const {
+    throw IoError(name_ +
+                  ": cannot read the image any more; keep the file until the end of the run");
+}
+
+void Texture::texels_of_file(const Level& level, int x, int y, int columns, int rows,
+                             std::span<Rgb> texels) const {
+    const int step = 1 << level.halvings;
+    const int x0 = x * step, y0 = y * step;
+    const int x1 = std::min(x0 + columns * step, file_->width);
+    const int y1 = std::min(y0 + rows * step, file_->height);
+    const auto channels = static_cast<std::size_t>(file_->channels);
+    thread_local std::vector<float> values;
+    values.resize(channels * static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0));
+    if (!file_->read(x0, y0, x1, y1, values.data())) fail_to_read();
+    std::ranges::fill(texels, Rgb{});
+    const float* at = values.data();
+    for (int j = y0; j < y1; ++j)
+        for (int i = x0; i < x1; ++i, at += channels) {
+            Rgb& texel =
+                texels[static_cast<std::size_t>((j - y0) / step * columns + (i - x0) / step)];
+            for (std::size_t c = 0; c < 3; ++c) texel[c] += decoded(at[channels < 3 ? 0 : c]);
+        }
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const int area = (std::min(x0 + (column + 1) * step, x1) - x0 - column * step) *
+                             (std::min(y0 + (row + 1) * step, y1) - y0 - row * step);
+            for (double& value : texels[static_cast<std::size_t>(row * columns + column)])
+                value /= area;
+        }
+}
+
+double Texture::alpha_of_file(std::size_t place) const {
+    const auto width = static_cast<std::size_t>(file_->width);
+    const int x = static_cast<int>(place % width), y = static_cast<int>(place / width);
+    std::array<float, 4> values{};
+    if (!file_->read(x, y, x + 1, y + 1, values.data())) fail_to_read();
+    return double{values.at(static_cast<std::size_t>(file_->channels) - 1)};
+}
+
+std::shared_ptr<const Texture> read_texture(const std::filesystem::path& file,
+                                            TextureEncoding encoding, bool keep_alpha) {
+    if (auto parts = open_partial_image(file))
+        return std::make_shared<Texture>(std::move(parts), file.string(), encoding, keep_alpha);
+    return std::make_shared<Texture>(read_image(file), encoding, keep_alpha);
+}
+
+namespace {
+
+/// The texels that a texel of half as many covers along a side, of which the outer ones may lie in
+/// it in part, and their shares.
+struct HalvedTexel {
+    int first = 0, count = 0;
+    std::array<double, 3> shares{};
+
+    HalvedTexel(int texel, int size, int half) {
+        const double width = static_cast<double>(size) / half;
+        const double begin = texel * width, end = std::min(begin + width, double(size));
+        first = static_cast<int>(begin);
+        for (int i = first; i < end && count < 3; ++i)
+            shares[static_cast<std::size_t>(count++)] =
+                (std::min(end, i + 1.0) - std::max(begin, double(i))) / width;
+    }
+};
+
+}  // namespace
+
+Texture::Level Texture::halved(const Level& level) {
+    Level half;
+    half.width = (level.width + 1) / 2;
+    half.height = (level.height + 1) / 2;
+    half.columns = level.columns * half.width / level.width;
+    half.rows = level.rows * half.height / level.height;
+    half.rgb.reserve(3 * static_cast<std::size_t>(half.width) *
+                     static_cast<std::size_t>(half.height));
+    std::vector<HalvedTexel> columns;
+    for (int x = 0; x < half.width; ++x) columns.emplace_back(x, level.width, half.width);
+    for (int y = 0; y < half.height; ++y) {
+        throw_if_stopped();
+        const HalvedTexel rows(y, level.height, half.height);
+        for (const HalvedTexel& column : columns) {
+            Rgb sum{};
+            for (int j = 0; j < rows.count; ++j)
+                for (int i = 0; i < column.count; ++i) {
+                    const double share = rows.shares[static_cast<std::size_t>(j)] *
+                                         column.shares[static_cast<std::size_t>(i)];
+                    const float* texel =
+                        &level.rgb[3 * (static_cast<std::size_t>(rows.first + j) *
+                                            static_cast<std::size_t>(level.width) +
+                                        static_cast<std::size_t>(column.first + i))];
+                    for (std::size_t c = 0; c < 3; ++c) sum[c] += share * double{texel[c]};
+                }
+            for (const double value : sum) half.rgb.push_back(static_cast<float>(value));
+        }
+    }
+    return half;
+}
+
+Texture::Footprint Texture::footprint(const Level& level, double u, double v,
+                                      const TextureLookup& lookup) {
+    const int width = level.width, height = level.height;
     const auto place = [&](int x, int y) {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                static_cast<std::size_t>(x);
     };
-    const double x = u * width_, y = v * height_;
+    const double x = u * level.columns, y = v * level.rows;
     if (lookup.filter == TextureFilter::nearest) {
-        return {{place(wrapped(std::floor(x), width_, lookup.wrap_u),
-                       wrapped(std::floor(y), height_, lookup.wrap_v))},
+        return {{place(wrapped(std::floor(x), width, lookup.wrap_u),
+                       wrapped(std::floor(y), height, lookup.wrap_v))},
                 {1.0},
                 1};
     }
     const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
     const double fx = x - 0.5 - left, fy = y - 0.5 - top;
-    const int x0 = wrapped(left, width_, lookup.wrap_u);
-    const int x1 = wrapped(left + 1, width_, lookup.wrap_u);
-    const int y0 = wrapped(top, height_, lookup.wrap_v);
-    const int y1 = wrapped(top + 1, height_, lookup.wrap_v);
+    const int x0 = wrapped(left, width, lookup.wrap_u);
+    const int x1 = wrapped(left + 1, width, lookup.wrap_u);
+    const int y0 = wrapped(top, height, lookup.wrap_v);
+    const int y1 = wrapped(top + 1, height, lookup.wrap_v);
     return {{place(x0, y0), place(x1, y0), place(x0, y1), place(x1, y1)},
             {(1 - fy) * (1 - fx), (1 - fy) * fx, fy * (1 - fx), fy * fx},
             4};
 }
 
 Rgb Texture::sample(double u, double v, const TextureLookup& lookup) const {
-    const Footprint around = footprint(u, v, lookup);
+    return sample(levels_.front(), u, v, lookup);
+}
+
+Rgb Texture::sample(double u, double v, const TextureLookup& lookup,
+                    const TextureSpread& spread) const {
+    std::array<double, 2> along = spread.across, beside = spread.down;
+    const auto texels = [&](const std::array<double, 2>& side) {
+        return std::hypot(side[0] * width(), side[1] * height());
+    };
+    if (texels(along) < texels(beside)) std::swap(along, beside);
+    const double length = texels(along);
+    if (!(length > 1)) return sample(u, v, lookup);
+    // The height over the longer side, as wide as the parallelogram is beside it.
+    const double area = std::abs(along[0] * beside[1] - along[1] * beside[0]) * width() * height();
+    constexpr double k_most_lookups = 16;
+    const double width_beside = std::max({area / length, length / k_most_lookups, 1.0});
+    const int count = static_cast<int>(std::ceil(length / width_beside - 1e-9));
+    const double last = static_cast<double>(levels_.size() - 1);
+    const double level = std::min(std::log2(width_beside), last);
+    const auto finer = static_cast<std::size_t>(level);
+    const double coarser_share = level - std::floor(level);
+    const TextureLookup linear{TextureFilter::linear, lookup.wrap_u, lookup.wrap_v};
+    Rgb sum{};
+    const auto add = [&](const Level& from, double at, double share) {
+        const Rgb texel = sample(from, u + at * along[0], v + at * along[1], linear);
+        for (std::size_t i = 0; i < 3; ++i) sum[i] += share / count * texel[i];
+    };
+    for (int i = 0; i < count; ++i) {
+        const double at = (i + 0.5) / count - 0.5;
+        add(levels_[finer], at, 1 - coarser_share);
+        if (coarser_share > 0) add(levels_[finer + 1], at, coarser_share);
+    }
+    return sum;
+}
+
+Rgb Texture::sample(const Level& level, double u, double v, const TextureLookup& lookup) const {
+    const Footprint around = footprint(level, u, v, lookup);
     Rgb result{};
+    if (level.rgb.empty()) {
+        const auto width = static_cast<std::size_t>(level.width);
+        const auto column = [&](std::size_t k) {
+            return static_cast<int>(around.texels[k] % width);
+        };
+        const auto row = [&](std::size_t k) { return static_cast<int>(around.texels[k] / width); };
+        std::array<Rgb, 4> texels;
+        // Four that are neighbours, not at opposite ends of the texture, are read at once.
+        if (around.count == 4 && column(3) == column(0) + 1 && row(3) == row(0) + 1)
+            texels_of_file(level, column(0), row(0), 2, 2, texels);
+        else
+            for (std::size_t k = 0; k < around.count; ++k)
+                texels_of_file(level, column(k), row(k), 1, 1, std::span(texels).subspan(k, 1));
+        for (std::size_t k = 0; k < around.count; ++k)
+            for (std::size_t i = 0; i < 3; ++i) result[i] += around.weights[k] * texels[k][i];
+        return result;
+    }
     for (std::size_t k = 0; k < around.count; ++k) {
         for (std::size_t i = 0; i < 3; ++i) {
-            result[i] += around.weights[k] * rgb_[3 * around.texels[k] + i];
+            result[i] += around.weights[k] * level.rgb[3 * around.texels[k] + i];
         }
     }
     return result;
 }
 
 double Texture::sample_alpha(double u, double v, const TextureLookup& lookup) const {
-    if (alpha_.empty()) return 1;
-    const Footprint around = footprint(u, v, lookup);
+    if (alpha_.empty() && !has_alpha_in_file_) return 1;
+    const Footprint around = footprint(levels_.front(), u, v, lookup);
     double result = 0;
+    if (has_alpha_in_file_) {
+        for (std::size_t k = 0; k < around.count; ++k)
+            result += around.weights[k] * alpha_of_file(around.texels[k]);
+        return result;
+    }
     for (std::size_t k = 0; k < around.count; ++k) {
         result += around.weights[k] * alpha_[around.texels[k]];
     }

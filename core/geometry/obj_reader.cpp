@@ -190,7 +190,7 @@ class Materials {
         auto& picture = pictures_[*file];
         if (!picture) {
             remember_input(*file);
-            picture = std::make_shared<Texture>(read_image(*file));
+            picture = read_texture(*file);
         }
         use.texture = picture;
         if (map.clamp) use.lookup.wrap_u = use.lookup.wrap_v = TextureWrap::clamp;

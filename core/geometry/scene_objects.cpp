@@ -14,9 +14,9 @@ namespace {
 class MeshPlace {
   public:
     /// Barycentric u and v: (1 - u - v) a + u b + v c; clamped to the triangle. Refers to `mesh`,
-    /// and to the transform of a mesh that is not in world space.
+    /// and to the transform of a mesh that is not in world space. Textures are taken over `spread`.
     MeshPlace(const TriangleMesh& mesh, std::uint32_t triangle, double u, double v,
-              const MeshTransform* transform = nullptr);
+              const MeshTransform* transform = nullptr, const SurfaceSpread& spread = {});
 
     const MeshMaterial& material() const { return *material_; }
     /// Linear RGB 0..1.
@@ -36,6 +36,8 @@ class MeshPlace {
 
   private:
     Rgb sample(const TextureUse& use) const;
+    /// A vector of the triangle's plane, in world space, as a sum of the edges from its corner 0.
+    std::array<double, 2> in_edges(const Vector3& v) const;
     /// Weighted means over the corners.
     double mean(const std::vector<float>& values, std::size_t width, std::size_t component) const;
     /// Unit vertex normal or tangent of corner `k`, in world space; zero if there is none.
@@ -55,6 +57,8 @@ class MeshPlace {
     const std::uint32_t* corners_;
     const MeshTransform* transform_;
     std::array<double, 3> weights_;
+    bool is_spread_ = false;
+    std::array<double, 2> across_{}, down_{};  // of the spread, in_edges
 };
 
 Vector3 unit_or_zero(const Vector3& v) {
@@ -63,7 +67,7 @@ Vector3 unit_or_zero(const Vector3& v) {
 }
 
 MeshPlace::MeshPlace(const TriangleMesh& mesh, std::uint32_t triangle, double u, double v,
-                     const MeshTransform* transform)
+                     const MeshTransform* transform, const SurfaceSpread& spread)
     : mesh_(&mesh),
       material_(
           &mesh.materials[mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[triangle]]),
@@ -71,6 +75,23 @@ MeshPlace::MeshPlace(const TriangleMesh& mesh, std::uint32_t triangle, double u,
       transform_(transform) {
     const double b = std::clamp(u, 0.0, 1.0), c = std::clamp(v, 0.0, 1.0 - b);
     weights_ = {1 - b - c, b, c};
+    is_spread_ = spread.across != Vector3(0.0) || spread.down != Vector3(0.0);
+    if (!is_spread_) return;
+    across_ = in_edges(spread.across);
+    down_ = in_edges(spread.down);
+}
+
+std::array<double, 2> MeshPlace::in_edges(const Vector3& v) const {
+    const auto corner = [&](std::size_t k) {
+        const float* at = &mesh_->positions[3 * std::size_t{corners_[k]}];
+        return Vector3(at[0], at[1], at[2]);
+    };
+    const Vector3 b = in_world(corner(1) - corner(0)), c = in_world(corner(2) - corner(0));
+    const double bb = glm::dot(b, b), bc = glm::dot(b, c), cc = glm::dot(c, c);
+    const double determinant = bb * cc - bc * bc;
+    if (!(determinant > 0)) return {};
+    const double vb = glm::dot(v, b), vc = glm::dot(v, c);
+    return {(cc * vb - bc * vc) / determinant, (bb * vc - bc * vb) / determinant};
 }
 
 double MeshPlace::mean(const std::vector<float>& values, std::size_t width,
@@ -100,7 +121,16 @@ Vector3 MeshPlace::corner_tangent(std::size_t k) const {
 
 Rgb MeshPlace::sample(const TextureUse& use) const {
     const std::vector<float>& uvs = mesh_->uvs[use.uv_set];
-    return use.sample(mean(uvs, 2, 0), mean(uvs, 2, 1));
+    if (!is_spread_) return use.sample(mean(uvs, 2, 0), mean(uvs, 2, 1));
+    const auto edge = [&](std::size_t k, std::size_t component) {
+        return static_cast<double>(uvs[2 * std::size_t{corners_[k]} + component]) -
+               static_cast<double>(uvs[2 * std::size_t{corners_[0]} + component]);
+    };
+    const auto in_texture = [&](const std::array<double, 2>& side) {
+        return std::array<double, 2>{side[0] * edge(1, 0) + side[1] * edge(2, 0),
+                                     side[0] * edge(1, 1) + side[1] * edge(2, 1)};
+    };
+    return use.sample(mean(uvs, 2, 0), mean(uvs, 2, 1), {in_texture(across_), in_texture(down_)});
 }
 
 Rgb MeshPlace::base_color() const {
@@ -228,6 +258,16 @@ Spectrum base_color(const MeshObject& object, const MeshPlace& place,
     return object.reflectance ? *object.reflectance : bands.from_rgb(place.base_color());
 }
 
+/// Fills what textures have a part in, but for the material. The geometric normal is there.
+void shade_with_textures(const MeshObject& object, const MeshPlace& place,
+                         const ReflectanceBands& bands, SurfaceHit& hit) {
+    hit.normal = place.shading_normal(hit.geometric_normal);
+    hit.reflectance = base_color(object, place, bands);
+    if (!object.is_pbr) return;
+    const double metallic = place.roughness_metallic()[1];
+    for (double& rho : hit.reflectance) rho *= 1 - metallic;
+}
+
 }  // namespace
 
 Point3 MeshObject::corner(std::uint32_t triangle, int k) const {
@@ -299,19 +339,21 @@ void shade_mesh(const PlacedMesh& mesh, std::uint32_t triangle, const TriangleCr
     const Vector3 flat = size > 0 ? area / size : -direction;
     const MeshPlace place(object.mesh, triangle, crossing.u, crossing.v, mesh.transform());
     hit.geometric_normal = toward_viewer(flat, direction);
-    hit.normal = place.shading_normal(hit.geometric_normal);
-    hit.reflectance = base_color(object, place, bands);
+    shade_with_textures(object, place, bands, hit);
     hit.has_material = object.is_pbr || place.material().emission != Rgb{0, 0, 0};
-    if (object.is_pbr) {
-        const double metallic = place.roughness_metallic()[1];
-        for (double& rho : hit.reflectance) rho *= 1 - metallic;
-    }
     hit.triangle = triangle;
     hit.u = crossing.u;
     hit.v = crossing.v;
     hit.object_id = mesh.object_id(triangle);
     const std::uint32_t number = place.material().number;
     hit.material_id = number == 0 ? 0 : object.materials_end + number;
+}
+
+void filter_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands, const SurfaceSpread& spread,
+                 SurfaceHit& hit) {
+    if (!mesh.object.has_textures) return;
+    const MeshPlace place(mesh.object.mesh, hit.triangle, hit.u, hit.v, mesh.transform(), spread);
+    shade_with_textures(mesh.object, place, bands, hit);
 }
 
 SurfaceMaterial material_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands,

@@ -11,6 +11,7 @@
 #include "core/base/vector_math.h"
 #include "core/geometry/mesh.h"
 #include "core/geometry/surfaces.h"
+#include "core/geometry/textured_surfaces.h"
 
 namespace uw {
 
@@ -47,8 +48,9 @@ struct MeshObject {
     std::uint32_t materials_end = 0;      // id of the last material before its file's first
     std::optional<Spectrum> reflectance;  // overrides the mesh's colours
     std::size_t vertex_count = 0;
-    bool has_holes = false;  // some material has an alpha cutoff
-    bool is_pbr = false;     // metallic-roughness material; else diffuse
+    bool has_holes = false;     // some material has an alpha cutoff
+    bool is_pbr = false;        // metallic-roughness material; else diffuse
+    bool has_textures = false;  // some material has one
 
     /// Whether a triangle has a hole at the crossing. For meshes with holes.
     bool is_hole(std::uint32_t triangle, const TriangleCrossing& crossing) const;
@@ -145,6 +147,10 @@ std::optional<double> cross_plane(const PlaneObject& plane, const Point3& origin
 /// and the normals are turned to face it.
 void shade_mesh(const PlacedMesh& mesh, std::uint32_t triangle, const TriangleCrossing& crossing,
                 const ReflectanceBands& bands, const Vector3& direction, SurfaceHit& hit);
+
+/// TexturedSurfaces::filter_textures for the hit of a mesh (SurfaceHit::triangle).
+void filter_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands, const SurfaceSpread& spread,
+                 SurfaceHit& hit);
 
 /// The material, beyond diffuse reflection, of the triangle of `hit` (SurfaceHit::triangle).
 SurfaceMaterial material_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands,

@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
@@ -181,6 +182,11 @@ constexpr std::array<std::pair<ExrCompression, Imf::Compression>, 3> k_compressi
 const Imf::Chromaticities k_srgb_chromaticities{
     {0.64F, 0.33F}, {0.30F, 0.60F}, {0.15F, 0.06F}, {0.3127F, 0.3290F}};
 
+/// AP0 and the white of ACES (SMPTE ST 2065-1).
+constexpr float k_aces_white_x = 0.32168F, k_aces_white_y = 0.33767F;
+const Imf::Chromaticities k_aces_chromaticities{
+    {0.7347F, 0.2653F}, {0.0F, 1.0F}, {0.0001F, -0.0770F}, {k_aces_white_x, k_aces_white_y}};
+
 Imf::Header openexr_header(const ExrHeader& header) {
     const PixelWindow& window = header.window;
     Imf::Header result({{0, 0}, {header.width - 1, header.height - 1}},
@@ -198,9 +204,16 @@ Imf::Header openexr_header(const ExrHeader& header) {
             result.insert(name, Imf::FloatAttribute(static_cast<float>(std::get<double>(value))));
     }
     const auto space = header.metadata.find(k_rgb_space);
-    if (space != header.metadata.end() &&
-        space->second == ImageMetadata::mapped_type(std::string(k_linear_srgb)))
-        Imf::addChromaticities(result, k_srgb_chromaticities);
+    const auto is_space = [&](std::string_view name) {
+        return space != header.metadata.end() &&
+               space->second == ImageMetadata::mapped_type(std::string(name));
+    };
+    if (is_space(k_linear_srgb)) Imf::addChromaticities(result, k_srgb_chromaticities);
+    if (is_space(k_aces)) {
+        Imf::addChromaticities(result, k_aces_chromaticities);
+        Imf::addAdoptedNeutral(result, {k_aces_white_x, k_aces_white_y});
+        result.insert("acesImageContainerFlag", Imf::IntAttribute(1));
+    }
     return result;
 }
 

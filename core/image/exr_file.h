@@ -35,6 +35,11 @@ struct ExrOptions {
     enum class Precision { automatic, half, single };
     Precision precision = Precision::automatic;
     ExrCompression compression = ExrCompression::zip;
+    /// An ACES image container (SMPTE ST 2065-4): R, G, B and A alone, converted from linear sRGB
+    /// to ACES2065-1. It has half floats and no compression.
+    bool is_aces = false;
+
+    static ExrOptions aces() { return {Precision::half, ExrCompression::none, true}; }
 };
 
 /// Their words on the command line.
@@ -77,9 +82,10 @@ struct ExrHeader {
 };
 
 /// The entry of the metadata that says what R, G and B are, and its value where they are linear
-/// sRGB: an EXR then states the primaries and the white in its attribute `chromaticities` as well.
+/// sRGB or ACES2065-1: an EXR then states the primaries and the white in its attribute
+/// `chromaticities` as well, and of ACES2065-1 that it is an ACES image container.
 inline constexpr const char* k_rgb_space = "uwvdb/rgb_space";
-inline constexpr std::string_view k_linear_srgb = "linear sRGB";
+inline constexpr std::string_view k_linear_srgb = "linear sRGB", k_aces = "ACES2065-1";
 
 /// Writes all of an EXR with the film's pixels, on all permitted threads, of whose number its bytes
 /// are independent. The film has each channel of `header`, and its window. Throws IoError if

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/output_files.h"
 #include "core/base/text.h"
+#include "core/image/aces.h"
 #include "core/image/exr_file.h"
 #include "core/image/image_formats.h"
 #include "core/image/jpeg_file.h"
@@ -55,8 +56,15 @@ PixelImage read_image(std::span<const std::byte> encoded, const std::string& nam
                      ": cannot read the image: none of the formats known; save it as PNG or JPEG");
 }
 
+ImageMetadata metadata_in(const ExrOptions& options, const ImageMetadata& metadata) {
+    ImageMetadata result = metadata;
+    if (options.is_aces) result[k_rgb_space] = std::string(k_aces);
+    return result;
+}
+
 bool has_header_of(const std::filesystem::path& file, const ImageLayout& layout,
-                   const ImageMetadata& metadata) {
+                   const ImageMetadata& image_metadata) {
+    const ImageMetadata metadata = metadata_in(layout.storage, image_metadata);
     const std::optional<ExrHeader> header = read_exr_header(file);
     if (!header || header->width != layout.width || header->height != layout.height ||
         header->window != layout.window || header->compression != layout.storage.compression ||
@@ -83,6 +91,8 @@ std::optional<PreviewHeader> read_preview_header(const std::filesystem::path& fi
         parse_number(png->texts.at("exposure"), header.exposure) != NumberText::number)
         return std::nullopt;
     header.bits = png->bits;
+    if (const auto view = png->texts.find("view"); view != png->texts.end())
+        header.view = view->second;
     return header;
 }
 
@@ -93,8 +103,30 @@ void write_exr(const std::filesystem::path& file, const Film& film, const ImageM
     out.commit();
 }
 
+namespace {
+
+const std::vector<std::string> k_rgba{"R", "G", "B", "A"};
+
+Film film_in_aces(const Film& film) {
+    Film aces = with_channels(film, k_rgba, film.window());
+    const PixelWindow& window = film.window();
+    for (int y = window.y0; y < window.y1; ++y) {
+        throw_if_stopped();
+        for (int x = window.x0; x < window.x1; ++x) srgb_to_aces(aces.pixel(x, y).first<3>());
+    }
+    return aces;
+}
+
+}  // namespace
+
 void write_exr(OutputFile& out, const Film& film, const ImageMetadata& metadata,
                const ExrOptions& options) {
+    if (options.is_aces) {
+        ExrOptions as_converted = options;
+        as_converted.is_aces = false;
+        write_exr(out, film_in_aces(film), metadata_in(options, metadata), as_converted);
+        return;
+    }
     const ExrHeader header{film.width(),        film.height(),
                            film.window(),       exr_channels(film, options.precision),
                            options.compression, metadata};

@@ -30,16 +30,20 @@ struct ImageLayout {
     ExrOptions storage{};
 };
 
+/// An image's metadata as they are in an EXR that is stored in this way.
+ImageMetadata metadata_in(const ExrOptions& options, const ImageMetadata& metadata);
+
 /// Whether the header of `file` is that of an image written by write_exr with this layout and all
 /// of `metadata`. False if it cannot be read.
 bool has_header_of(const std::filesystem::path& file, const ImageLayout& layout,
                    const ImageMetadata& metadata);
 
-/// The exposure and the bits per channel that a PNG written by write_png states. None if it cannot
-/// be read.
+/// The exposure, the bits per channel and the view that a PNG written as a picture states. None if
+/// it cannot be read.
 struct PreviewHeader {
     double exposure = 1;
     int bits = 8;
+    std::string view{};  // empty: sRGB
 };
 std::optional<PreviewHeader> read_preview_header(const std::filesystem::path& file);
 

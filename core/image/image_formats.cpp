@@ -1,16 +1,19 @@
 #include "core/image/image_formats.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
-#include <link.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/image/loaded_module.h"
 
 namespace uw {
 
@@ -60,49 +63,34 @@ bool has_ending_of_image(const std::filesystem::path& file) {
 
 namespace {
 
-/// The module's function, or why there is none.
-struct LoadedModule {
-    DecodeImage* decode = nullptr;
-    std::string fault;
-};
+constexpr const char* k_module = "uwvdb_image_formats";
+constexpr const char* k_package = "uwvdb-image-formats";
 
-// lib/uwvdb in the nearest folder above the program or library that this code is in: of an
-// installation, a build folder or a Python environment.
-LoadedModule load_module() {
-    Dl_info self{};
-    link_map* loaded = nullptr;
-    if (dladdr1(reinterpret_cast<const void*>(&has_ending_of_image), &self,
-                reinterpret_cast<void**>(&loaded), RTLD_DL_LINKMAP) == 0)
-        return {nullptr, "this program does not know its own place"};
-    std::error_code ignored;
-    // Only libraries have a file name here: what dladdr has for a program is the word that it was
-    // called by, which leads nowhere if it was found along PATH.
-    const bool is_library = loaded->l_name[0] != '\0';
-    std::filesystem::path above =
-        std::filesystem::canonical(is_library ? loaded->l_name : "/proc/self/exe", ignored);
-    constexpr int k_most_above = 5;
-    for (int i = 0; i < k_most_above && above.has_relative_path(); ++i) {
-        above = above.parent_path();
-        const std::filesystem::path file = above / UWVDB_MODULE_FOLDER / "uwvdb_image_formats.so";
-        if (!std::filesystem::exists(file, ignored)) continue;
-        void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-        void* const decode = module != nullptr ? dlsym(module, k_decode_image) : nullptr;
-        if (decode == nullptr) return {nullptr, dlerror()};
-        return {reinterpret_cast<DecodeImage*>(decode), ""};
+bool is_stopped() {
+    try {
+        throw_if_stopped();
+    } catch (const Interrupted&) {
+        return true;
     }
-    return {nullptr, "the module uwvdb_image_formats is not installed"};
+    return false;
 }
 
 }  // namespace
 
 PixelImage read_other_image(std::span<const std::byte> encoded, const ImageFormat& format,
                             const std::string& name) {
-    static const LoadedModule module = load_module();
-    if (module.decode == nullptr)
+    static const ModuleFunction module = load_function(k_module, k_decode_image);
+    if (module.address == nullptr)
         throw InputError(fmt::format(
-            "{}: a {} image needs OpenImageIO ({}); install the package uwvdb-image-formats, or "
-            "save it as PNG or JPEG",
-            name, format.name, module.fault));
+            "{}: a {} image needs OpenImageIO ({}); install the package {}, or save it as PNG or "
+            "JPEG",
+            name, format.name, module.fault, k_package));
+    return decode_other_image(*reinterpret_cast<DecodeImage*>(module.address), encoded, format,
+                              name);
+}
+
+PixelImage decode_other_image(DecodeImage& decode, std::span<const std::byte> encoded,
+                              const ImageFormat& format, const std::string& name) {
     PixelImage image;
     const ImageReceiver receiver{
         [&](int width, int height, int channels, bool is_linear) {
@@ -117,16 +105,9 @@ PixelImage read_other_image(std::span<const std::byte> encoded, const ImageForma
                                 static_cast<std::size_t>(channels));
             return image.pixels.data();
         },
-        [] {
-            try {
-                throw_if_stopped();
-            } catch (const Interrupted&) {
-                return true;
-            }
-            return false;
-        }};
+        is_stopped};
     std::string fault;
-    module.decode(encoded, format.reader, receiver, fault);
+    decode(encoded, format.reader, receiver, fault);
     throw_if_stopped();
     if (!fault.empty())
         throw InputError(fmt::format("{}: cannot read the {} image: {}; save it again, or as PNG",
@@ -134,6 +115,127 @@ PixelImage read_other_image(std::span<const std::byte> encoded, const ImageForma
     for (float& value : image.pixels)
         value = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, 1.0F);
     return image;
+}
+
+std::shared_ptr<const PartialImage> open_partial_image(const std::filesystem::path& file,
+                                                       std::int64_t most_whole) {
+    std::array<std::byte, 16> beginning{};
+    std::ifstream in(file, std::ios::binary);
+    in.read(reinterpret_cast<char*>(beginning.data()), beginning.size());
+    const auto format = other_image_format(beginning, file.string());
+    if (!format || (std::string_view(format->reader) != "tiff" &&
+                    std::string_view(format->reader) != "openexr"))
+        return nullptr;
+    static const ModuleFunction module = load_function(k_module, k_open_parts);
+    if (module.address == nullptr) return nullptr;  // whoever reads the whole will say so
+    std::shared_ptr<const PartialImage> image;
+    std::string fault;
+    reinterpret_cast<OpenParts*>(module.address)(file.c_str(), format->reader, image, fault);
+    if (!image) return nullptr;  // likewise
+    const std::int64_t pixels = std::int64_t{image->width} * image->height;
+    if (pixels <= most_whole) return nullptr;
+    std::error_code status;
+    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, status));
+    constexpr std::int64_t k_most_pixels = std::int64_t{1} << 33;
+    constexpr std::int64_t k_most_values_per_byte = 4096;  // as in check_image_size
+    if (status || pixels > k_most_pixels ||
+        pixels * image->channels / k_most_values_per_byte > bytes)
+        throw InputError(
+            fmt::format("{}: {} x {} pixels are more than the file holds, or than the "
+                        "2^33 supported; scale the image down",
+                        file.string(), image->width, image->height));
+    return image;
+}
+
+namespace {
+
+using Holds = OutputFormat::Holds;
+using Library = OutputFormat::Library;
+constexpr std::array<OutputFormat, 9> k_output_formats{{
+    {"OpenEXR", {".exr"}, Holds::light, Library::openexr},
+    {"PNG", {".png"}, Holds::pictures, Library::libpng, nullptr, 8, 16},
+    {"JPEG", {".jpg", ".jpeg"}, Holds::pictures, Library::libjpeg},
+    {"TIFF", {".tif", ".tiff"}, Holds::either, Library::openimageio, "tiff", 16, 16},
+    {"Radiance HDR", {".hdr"}, Holds::light, Library::openimageio, "hdr"},
+    {"DPX", {".dpx"}, Holds::pictures, Library::openimageio, "dpx", 16, 16},
+    {"TGA", {".tga"}, Holds::pictures, Library::openimageio, "targa"},
+    {"BMP", {".bmp"}, Holds::pictures, Library::openimageio, "bmp"},
+    {"WebP", {".webp"}, Holds::pictures, Library::openimageio, "webp"},
+}};
+
+const ModuleFunction& encoder() {
+    static const ModuleFunction module = load_function(k_module, k_encode_image);
+    return module;
+}
+
+/// A file without a name, in memory: OpenImageIO seeks and reads what it has written, and is to
+/// leave nothing behind.
+class MemoryFile {
+  public:
+    MemoryFile() : descriptor_(memfd_create("image", MFD_CLOEXEC)) {
+        if (descriptor_ < 0) throw IoError("cannot make a file in memory for an image");
+    }
+    ~MemoryFile() { ::close(descriptor_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+    MemoryFile(MemoryFile&&) = delete;
+    MemoryFile& operator=(MemoryFile&&) = delete;
+
+    std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+    /// Hands over all that was written, piece by piece.
+    void copy_to(OutputFile& out) const {
+        std::vector<std::byte> piece(std::size_t{1} << 20);
+        off_t at = 0;
+        for (;;) {
+            throw_if_stopped();
+            const ssize_t count = ::pread(descriptor_, piece.data(), piece.size(), at);
+            if (count < 0) throw IoError(out.path().string() + ": cannot read it back");
+            if (count == 0) return;
+            out.write(std::span(piece).first(static_cast<std::size_t>(count)));
+            at += count;
+        }
+    }
+
+  private:
+    int descriptor_;
+};
+
+}  // namespace
+
+const OutputFormat* output_format(const std::filesystem::path& file) {
+    const std::string ending = ending_of(file);
+    if (ending.empty()) return nullptr;
+    for (const OutputFormat& format : k_output_formats)
+        if (std::ranges::find(format.endings, ending) != format.endings.end()) return &format;
+    return nullptr;
+}
+
+std::string output_endings() {
+    std::string endings;
+    for (const OutputFormat& format : k_output_formats)
+        endings += fmt::format("{}{}", endings.empty() ? "" : ", ", format.endings.front());
+    return endings;
+}
+
+void require_writer(const OutputFormat& format) {
+    if (format.library != Library::openimageio || encoder().address != nullptr) return;
+    throw UsageError(
+        fmt::format("a {} file needs OpenImageIO ({}); install the package {}, or give a name that "
+                    "ends in .exr, .png or .jpg",
+                    format.name, encoder().fault, k_package));
+}
+
+void write_other_image(OutputFile& out, const OutputFormat& format, const ImageValues& image) {
+    require_writer(format);
+    const MemoryFile file;
+    std::string fault;
+    reinterpret_cast<EncodeImage*>(encoder().address)(image, format.writer, file.path().c_str(),
+                                                      is_stopped, fault);
+    throw_if_stopped();
+    if (!fault.empty())
+        throw IoError(fmt::format("{}: cannot write the {} file: {}", out.path().string(),
+                                  format.name, fault));
+    file.copy_to(out);
 }
 
 }  // namespace uw

@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/colour.h"
+#include "core/image/colour_view.h"
 
 namespace uw {
 
@@ -58,6 +59,36 @@ Grid2D<Colour> preview_of(const Film& film, double exposure, const Encode& encod
             if (!(pixel[k_alpha] > 0)) continue;  // black
             for (const FilmChannel channel : {k_red, k_green, k_blue})
                 out[channel] = encode(exposure * pixel[channel]);
+        }
+    });
+    return preview;
+}
+
+/// Through a view: its values, rounded to whole numbers.
+template <class Colour>
+Grid2D<Colour> preview_of(const Film& film, double exposure, const ColourView& view) {
+    using Value = typename Colour::value_type;
+    constexpr float k_most = std::numeric_limits<Value>::max();
+    const PixelWindow& window = film.window();
+    Grid2D<Colour> preview(window.width(), window.height());
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        const int y = window.y0 + static_cast<int>(line);
+        std::vector<float> rgb;
+        for (int x = window.x0; x < window.x1; ++x)
+            for (const float value : film.pixel(x, y).first(3)) {
+                const auto exposed = static_cast<float>(exposure * static_cast<double>(value));
+                rgb.push_back(std::isnan(exposed) ? 0.0F : exposed);
+            }
+        view.apply(rgb);
+        int x = window.x0;
+        const float* value = rgb.data();
+        for (Colour& out : preview.row(static_cast<int>(line))) {
+            const bool has_ray = film.pixel(x++, y)[k_alpha] > 0;  // else black
+            for (Value& stored : out) {
+                const float shown = *value++;
+                if (has_ray && shown > 0)
+                    stored = static_cast<Value>(std::lround(k_most * std::min(shown, 1.0F)));
+            }
         }
     });
     return preview;
@@ -111,11 +142,13 @@ std::optional<double> automatic_exposure(const Film& film) {
     return exposure;
 }
 
-Preview make_preview(const Film& film, double exposure) {
+Preview make_preview(const Film& film, double exposure, const ColourView* view) {
+    if (view != nullptr) return preview_of<Srgb8>(film, exposure, *view);
     return preview_of<Srgb8>(film, exposure, srgb_bytes());
 }
 
-Preview16 make_preview16(const Film& film, double exposure) {
+Preview16 make_preview16(const Film& film, double exposure, const ColourView* view) {
+    if (view != nullptr) return preview_of<Srgb16>(film, exposure, *view);
     return preview_of<Srgb16>(film, exposure, [](double linear) {
         return static_cast<std::uint16_t>(std::lround(65535 * srgb_encode(linear)));
     });

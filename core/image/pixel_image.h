@@ -14,6 +14,8 @@
 
 namespace uw {
 
+class ColourView;  // core/image/colour_view.h
+
 /// Header metadata by name. Numbers are stored as 32-bit floats in EXR, as text in PNG.
 using ImageMetadata = std::map<std::string, std::variant<std::string, double>>;
 
@@ -60,8 +62,9 @@ using Preview16 = Grid2D<Srgb16>;
 /// pixel if fewer than 1 % are not black. Empty if all are black, which the caller should report.
 std::optional<double> automatic_exposure(const Film& film);
 
-/// R, G and B times `exposure` as sRGB. Negative values, NaN and pixels without a ray become black.
-Preview make_preview(const Film& film, double exposure);
-Preview16 make_preview16(const Film& film, double exposure);
+/// R, G and B times `exposure` as sRGB, or through a view. NaN and pixels without a ray become
+/// black, and so do negative values in sRGB.
+Preview make_preview(const Film& film, double exposure, const ColourView* view = nullptr);
+Preview16 make_preview16(const Film& film, double exposure, const ColourView* view = nullptr);
 
 }  // namespace uw

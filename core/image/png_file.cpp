@@ -249,11 +249,12 @@ void write_file(OutputFile& out, const PngLayout& layout, const Row& row,
 }
 
 template <class Colour>
-void write_preview(OutputFile& out, const Grid2D<Colour>& image, const ImageMetadata& metadata) {
+void write_preview(OutputFile& out, const Grid2D<Colour>& image, const ImageMetadata& metadata,
+                   bool is_srgb) {
     static_assert(sizeof(Colour) == 3 * sizeof(typename Colour::value_type));
     constexpr int k_bits = 8 * sizeof(typename Colour::value_type);
     write_file(
-        out, {image.width(), image.height(), 3, k_bits, true},
+        out, {image.width(), image.height(), 3, k_bits, is_srgb},
         [&](int y) { return image.row(y).front().data(); }, metadata);
 }
 
@@ -263,12 +264,14 @@ std::string png_number(double value) {
     return fmt::format("{:.6g}", value);
 }
 
-void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata) {
-    write_preview(out, image, metadata);
+void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata,
+                    bool is_srgb) {
+    write_preview(out, image, metadata, is_srgb);
 }
 
-void write_png_file(OutputFile& out, const Preview16& image, const ImageMetadata& metadata) {
-    write_preview(out, image, metadata);
+void write_png_file(OutputFile& out, const Preview16& image, const ImageMetadata& metadata,
+                    bool is_srgb) {
+    write_preview(out, image, metadata, is_srgb);
 }
 
 void write_png_file(OutputFile& out, const DigitalImage& image, const ImageMetadata& metadata) {

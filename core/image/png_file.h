@@ -25,10 +25,13 @@ struct PngHeader {
 /// None if the file cannot be read.
 std::optional<PngHeader> read_png_header(const std::filesystem::path& file);
 
-/// Writes all of a PNG of 8- or 16-bit sRGB, with metadata as its texts. Throws IoError if libpng
-/// refuses, and Interrupted; what cannot be written is for out.commit() to report.
-void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata);
-void write_png_file(OutputFile& out, const Preview16& image, const ImageMetadata& metadata);
+/// Writes all of a PNG of 8 or 16 bits, with metadata as its texts; `is_srgb`: it says that it is
+/// sRGB. Throws IoError if libpng refuses, and Interrupted; what cannot be written is for
+/// out.commit() to report.
+void write_png_file(OutputFile& out, const Preview& image, const ImageMetadata& metadata,
+                    bool is_srgb = true);
+void write_png_file(OutputFile& out, const Preview16& image, const ImageMetadata& metadata,
+                    bool is_srgb = true);
 /// Writes the image that a camera stores in the same way; the file says that it is sRGB if it is.
 void write_png_file(OutputFile& out, const DigitalImage& image, const ImageMetadata& metadata);
 

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/geometry/surface_reflection.h"
+#include "core/geometry/textured_surfaces.h"
 #include "core/image/cryptomatte.h"
 
 namespace uw {
@@ -193,13 +194,62 @@ void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
     view.ray = rays_.refracted_ray(view.x, view.y);
 }
 
-// The ray of a single sample is that of the ground truth.
+namespace {
+
+/// What of a surface one of the `count` samples of a pixel stands for.
+class SampleSpread {
+  public:
+    SampleSpread(const RaySource& rays, const Surfaces& surfaces, const PixelView& view, int count)
+        : textures_(view.ray ? textures_of(surfaces) : nullptr) {
+        if (textures_ == nullptr) return;
+        center_ = *view.ray;
+        right_ = rays.refracted_ray(view.x + 1, view.y);
+        below_ = rays.refracted_ray(view.x, view.y + 1);
+        // Samples lie less evenly than squares of their share would.
+        constexpr double k_overlap = 1.5;
+        if (count > 1) share_ = std::min(1.0, k_overlap / std::sqrt(static_cast<double>(count)));
+    }
+
+    /// Takes the textures of a hit over it. The pixel's own ray passes near that of each sample,
+    /// through whatever point of the aperture.
+    void filter_textures(SurfaceHit& hit) const {
+        if (textures_ == nullptr) return;
+        textures_->filter_textures({step_on(hit, right_), step_on(hit, below_)}, hit);
+    }
+
+  private:
+    /// From where the pixel's ray meets the plane of a hit towards where `beside` does; zero if one
+    /// never does.
+    Vector3 step_on(const SurfaceHit& hit, const std::optional<Ray>& beside) const {
+        const auto meet = [&](const Ray& ray) -> std::optional<Point3> {
+            const double slope = glm::dot(ray.direction, hit.geometric_normal);
+            const double s = glm::dot(hit.position - ray.origin, hit.geometric_normal) / slope;
+            if (!(s > 0) || !std::isfinite(s)) return std::nullopt;
+            return ray.at(s);
+        };
+        if (!beside) return Vector3(0.0);
+        const auto here = meet(center_), there = meet(*beside);
+        return here && there ? share_ * (*there - *here) : Vector3(0.0);
+    }
+
+    const TexturedSurfaces* textures_;  // null: there are none
+    Ray center_;
+    std::optional<Ray> right_, below_;
+    double share_ = 1;
+};
+
+}  // namespace
+
+// The ray of a single sample is that of the ground truth, but for its textures.
 void PixelRenderer::add_center(PixelView& view) const {
     if (!view.ray) return;
     view.alpha = 1;
     view.distances.push_back(view.has_hit ? view.path : k_far);
     view.weights.push_back(1);
-    if (view.has_hit) view.samples.push_back({*view.ray, view.hit, view.x, view.y});
+    if (view.has_hit) {
+        view.samples.push_back({*view.ray, view.hit, view.x, view.y});
+        SampleSpread(rays_, *scene_.surfaces, view, 1).filter_textures(view.samples.back().hit);
+    }
     lamps_in_view_.append(*view.ray, view.distances.back(), view.lamps);
 }
 
@@ -214,6 +264,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
     const bool has_aperture = rays_.has_aperture();
     const bool differ = has_aperture || rays_.moves();
     const PixelSampling sampling(samples_, x, y);
+    const SampleSpread spread(rays_, *scene_.surfaces, view, std::max(count, samples_.total));
     for (int i = 0; i < count; ++i) {
         throw_if_stopped();
         const ImageOffset offset = sampling.offset(i);
@@ -238,6 +289,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
             lamps_in_view_.append(*ray, k_far, view.lamps);
             continue;
         }
+        spread.filter_textures(sample.hit);
         lamps_in_view_.append(*ray, sample.hit.distance, view.lamps);
         const bool at_center = view.has_hit && sample.hit.object_id == view.hit.object_id &&
                                std::abs(sample.hit.distance / view.path - 1) < k_same_surface;

@@ -69,6 +69,20 @@ ColourDesc read_colour(ConfigMap& map, const SceneContext& context) {
     return colour;
 }
 
+ViewDesc read_view(const ConfigValue& value, const SceneContext& context) {
+    ConfigMap map(value, {"config", "display", "view", "look", "input"},
+                  "write {config: config.ocio, view: Filmic}");
+    ViewDesc view;
+    view.where = value.location();
+    if (const auto entry = map.find("config")) view.config = read_existing_file(*entry, context);
+    for (const auto& [key, word] : {std::pair{"display", &view.display},
+                                    {"view", &view.view},
+                                    {"look", &view.look},
+                                    {"input", &view.input}})
+        if (const auto entry = map.find(key)) *word = entry->text("give a name of the config's");
+    return view;
+}
+
 /// `fps` and `times` of `render`.
 void read_times(ConfigMap& map, RenderDesc& render) {
     if (const auto entry = map.find("fps")) {
@@ -88,7 +102,7 @@ void read_times(ConfigMap& map, RenderDesc& render) {
 RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
     ConfigMap map(value,
                   {"integrator", "scattering", "output", "planes", "samples", "shutter", "response",
-                   "white", "fps", "times"},
+                   "white", "view", "fps", "times"},
                   "write {samples: 4}");
     RenderDesc render;
     render.planes.where = value.location() + ".planes";
@@ -121,6 +135,7 @@ RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
     }
     read_times(map, render);
     render.colour = read_colour(map, context);
+    if (const auto entry = map.find("view")) render.view = read_view(*entry, context);
     return render;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -35,6 +36,18 @@ struct ColourDesc {
     SourceLocation where = "render.response";
 };
 
+/// What pictures of the image are seen through: a view of an OpenColorIO config. Words are empty
+/// where the config's own choice is wanted.
+struct ViewDesc {
+    std::filesystem::path config;  ///< empty: that of the environment variable OCIO
+    std::string display, view;
+    std::string look;   ///< instead of the view's own looks
+    std::string input;  ///< the config's name for linear sRGB; empty: found by itself
+    SourceLocation where = "render.view";
+
+    friend bool operator==(const ViewDesc&, const ViewDesc&) = default;
+};
+
 /// What is rendered and how.
 struct RenderDesc {
     enum class Integrator { volume, planes, reference, path };
@@ -49,6 +62,7 @@ struct RenderDesc {
     Output output = Output::radiance;
     SourceLocation output_where;
     ColourDesc colour;
+    std::optional<ViewDesc> view;  ///< none: sRGB, or what the environment says
     /// Rays per pixel, 1..k_most_samples or, of light paths, k_most_paths; if omitted, as many as
     /// the integrator needs (samples_of).
     std::optional<int> samples;

@@ -127,9 +127,11 @@ class Image(Mapping[str, "NDArray[np.float32]"]):
 
     def save(self, file: str | os.PathLike[str], *, exposure: float | None = None,
              precision: str = "auto") -> None:
-        """Writes the OpenEXR that `uwvdb render` writes, or, to a name that ends in .png, the
-        picture. `precision` of an EXR's light: auto, half or float. Raises IoError and
-        UsageError; the file is whole or not there, also after Ctrl-C, which ends it at once."""
+        """Writes the OpenEXR that `uwvdb render` writes, or, to a name that ends in .png, .jpg,
+        .tif, .dpx, .tga, .bmp or .webp, the picture; .hdr, and .tif with precision="float", hold
+        the light's R, G and B. `precision` of an EXR's light: auto, half or float. Raises IoError
+        and UsageError; the file is whole or not there, also after Ctrl-C, which ends it at
+        once."""
         self._image.save(os.fspath(file), exposure, precision)
 
     def __repr__(self) -> str:

@@ -118,10 +118,18 @@ def test_pictures(tmp_path, scene, renderer):
     assert np.array_equal(image.srgb(), image.srgb(image.automatic_exposure))
     image.save(tmp_path / "picture.png")
     assert (tmp_path / "picture.png").read_bytes()[:4] == b"\x89PNG"
+    image.save(tmp_path / "picture.bmp", exposure=4)
+    bmp = np.frombuffer((tmp_path / "picture.bmp").read_bytes(), np.uint8)
+    assert bmp[:2].tobytes() == b"BM"  # lines from the bottom, of blue, green and red, 54 bytes on
+    assert np.array_equal(bmp[54:].reshape(8, 12, 3)[::-1, :, ::-1], picture)
+    image.save(tmp_path / "light.tif", precision="float")
+    image.save(tmp_path / "picture.tif")
+    sizes = [(tmp_path / name).stat().st_size for name in ("light.tif", "picture.tif")]
+    assert sizes[0] > sizes[1] > 0
     image["rgb"][:] = 0
     assert image.automatic_exposure is None and not image.srgb().any()
-    with pytest.raises(uwvdb.UsageError, match="ends in .exr or .png"):
-        image.save(tmp_path / "picture.tif")
+    with pytest.raises(uwvdb.UsageError, match="ends in .exr, .png"):
+        image.save(tmp_path / "picture.gif")
     with pytest.raises(uwvdb.UsageError, match="precision: unknown 'double'"):
         image.save(tmp_path / "picture.exr", precision="double")
     with pytest.raises(uwvdb.IoError, match="picture.png"):

@@ -30,6 +30,7 @@ ImageFile read_exr(const std::filesystem::path& file) {
     }
     for (const OIIO::ParamValue& entry : spec.extra_attribs)
         image.metadata[entry.name().string()] = entry.get_string();
+    image.metadata["format of values"] = spec.format.c_str();
     return image;
 }
 

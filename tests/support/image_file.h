@@ -8,13 +8,14 @@
 
 namespace uw::test {
 
-/// An EXR as OpenImageIO reads it: every channel by its name, row by row.
+/// An EXR, or an image in another format, as OpenImageIO reads it: every channel by its name, row
+/// by row.
 struct ImageFile {
     int x = 0, y = 0, width = 0, height = 0;  // of the pixels stored
     int full_width = 0, full_height = 0;
     std::vector<std::string> names;  // in the file's order
     std::map<std::string, std::vector<float>> channels;
-    std::map<std::string, std::string> metadata;  // texts and numbers, as text
+    std::map<std::string, std::string> metadata;  // texts and numbers, as text; "format of values"
 
     /// Value at pixel (column, row) of the full image. Throws std::out_of_range.
     float at(const std::string& channel, int column, int row) const {

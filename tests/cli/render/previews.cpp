@@ -111,7 +111,7 @@ TEST_F(Previews, AloneAreThoseBesideAnEXR) {
         arguments.insert(arguments.end(), option.begin(), option.end());
         expect_failure(arguments, 2, "is a PNG alone; give a name that ends in .exr");
     }
-    expect_failure({"render", "scene.yaml", "-o", "out.jpg"}, 2, "ends in .exr or .png");
+    expect_failure({"render", "scene.yaml", "-o", "out.gif"}, 2, "ends in .exr, .png");
     expect_failure({"render", "scene.yaml", "--frames", "1-2", "-o", "out.png"}, 2,
                    "all frames would be written to one file");
 }

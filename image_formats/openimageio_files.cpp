@@ -1,6 +1,10 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <functional>
+#include <span>
+#include <string>
+
 #include "core/image/image_formats.h"
 
 namespace {
@@ -58,4 +62,45 @@ extern "C" void uwvdb_decode_image_1(std::span<const std::byte> encoded, const c
                            const_cast<uw::ImageReceiver*>(&receiver)) ||
         input->has_error())  // a TIFF that ends early is read "well"
         fault = first_line(input->geterror());
+}
+
+namespace {
+
+OIIO::TypeDesc type_of(uw::ImageValues::Type type) {
+    using enum uw::ImageValues::Type;
+    return type == u8 ? OIIO::TypeUInt8 : type == u16 ? OIIO::TypeUInt16 : OIIO::TypeFloat;
+}
+
+bool asks_writer_to_stop(void* is_stopped, float /*done*/) {
+    return (*static_cast<const std::function<bool()>*>(is_stopped))();
+}
+
+}  // namespace
+
+extern "C" uw::EncodeImage uwvdb_encode_image_1;
+
+extern "C" void uwvdb_encode_image_1(const uw::ImageValues& image, const char* writer,
+                                     const char* path, const std::function<bool()>& is_stopped,
+                                     std::string& fault) {
+    const auto output = OIIO::ImageOutput::create(writer, nullptr, "");
+    if (!output) {
+        fault = first_line(OIIO::geterror());
+        return;
+    }
+    output->threads(1);
+    OIIO::ImageSpec spec(image.width, image.height, image.channels, type_of(image.type));
+    if (image.channels == 4) spec.alpha_channel = 3;
+    if (image.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+    if (!image.software.empty()) spec.attribute("Software", image.software);
+    if (!image.description.empty()) spec.attribute("ImageDescription", image.description);
+    spec.attribute("DateTime", "");  // or a TIFF would have that of today
+    // The callback takes no const object.
+    if (!output->open(path, spec) ||
+        !output->write_image(spec.format, image.values, OIIO::AutoStride, OIIO::AutoStride,
+                             OIIO::AutoStride, &asks_writer_to_stop,
+                             const_cast<std::function<bool()>*>(&is_stopped)) ||
+        !output->close()) {
+        fault = first_line(output->geterror());
+        if (fault.empty()) fault = "OpenImageIO does not say why";
+    }
 }

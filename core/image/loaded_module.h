@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+namespace uw {
+
+/// Modules: parts of the program that it loads when they are first needed, since the libraries
+/// behind them would cost every start time. They lie in lib/uwvdb of the nearest folder above the
+/// program or library that this code is in: of an installation, a build folder or a Python
+/// environment.
+
+/// A function that a module exports, or why there is none.
+struct ModuleFunction {
+    void* address = nullptr;
+    std::string fault;
+};
+
+/// The function `symbol` of the module `name`, which stays loaded until the program ends.
+ModuleFunction load_function(const char* name, const char* symbol);
+
+}  // namespace uw
