@@ -17,8 +17,8 @@
 namespace uw::test {
 namespace {
 
-// A sphere of radius 1 m of voxels of 0.1 m: its points lie within a hundredth of a voxel of it,
-// its normals point outwards, and its triangles cover it.
+// A sphere of radius 1 m of voxels of 0.1 m: its points lie on it, its normals point outwards, and
+// its triangles cover it.
 TEST(LevelSetSurfaces, AreWhereTheDistancesVanish) {
     const TempDir dir;
     for (const bool with_class : {true, false}) {
@@ -33,7 +33,9 @@ TEST(LevelSetSurfaces, AreWhereTheDistancesVanish) {
         double area = 0;
         for (std::size_t i = 0; i < mesh->vertex_count(); ++i) {
             const Vector3 at = vector(mesh->positions, i);
-            EXPECT_NEAR(glm::length(at), 1, 2e-3);
+            // Each is the mean of where a voxel's edges cross the sphere, below which it lies by no
+            // more than the middle of the voxel's diagonal: 3 h^2 / 8 R.
+            EXPECT_NEAR(glm::length(at), 1, 3.75e-3);
             EXPECT_GT(glm::dot(vector(mesh->normals, i), glm::normalize(at)), 0.999);
         }
         for (std::size_t t = 0; t < mesh->triangle_count(); ++t) {
@@ -112,8 +114,9 @@ TEST(LevelSetSurfaces, AreSeenLikeAnySurface) {
             ++seen;
             EXPECT_EQ(at(image, Layer::id, x, y), 1);
             EXPECT_NEAR(at(image, Layer::range, x, y), at(truth, Layer::range, x, y), 0.01);
+            // 3 %: a normal that is 0.01 off, where light grazes the sphere at 22 degrees.
             EXPECT_NEAR(at(image, Layer::direct, x, y), at(truth, Layer::direct, x, y),
-                        0.02F * at(truth, Layer::direct, x, y));
+                        0.03F * at(truth, Layer::direct, x, y));
         }
     EXPECT_GT(seen, 200);
     EXPECT_EQ(of_mesh.assembled().surfaces->names().objects.at(0).name, "surface");
