@@ -85,8 +85,13 @@ def test_spot_against_cycles():
     against_cycles("spot")
 
 
+def test_point_with_a_radius_against_cycles():
+    floor_scene()
+    light("POINT", watts=200, location=(-1.5, 0.7, 2.0), shadow_soft_size=0.3)
+    against_cycles("point with a radius", 512, 5e-3)
+
+
 def test_spot_with_a_radius_against_cycles():
-    """Cycles turns the disk that shines towards what it lights; here it lies across the spot's axis."""
     floor_scene()
     light("SPOT", watts=300, location=(-1.5, 0.7, 2.5), rotation=(0.1, -0.5, 0.8), spot_size=1.1,
           spot_blend=0.4, shadow_soft_size=0.2)
