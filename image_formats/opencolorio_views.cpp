@@ -167,7 +167,7 @@ bool has_looks(const OCIO::Config& config, std::string_view looks, std::string& 
     return true;
 }
 
-std::shared_ptr<const uw::ColourView> make_view(const uw::ViewRequest& request,
+std::shared_ptr<uw::ColourView> make_view(const uw::ViewRequest& request,
                                                 std::string& fault) {
     OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
     const OCIO::ConstConfigRcPtr config = OCIO::Config::CreateFromFile(request.config.c_str());
@@ -217,10 +217,10 @@ std::shared_ptr<const uw::ColourView> make_view(const uw::ViewRequest& request,
 
 }  // namespace
 
-extern "C" uw::MakeView uwvdb_make_view_1;
+extern "C" uw::MakeView uwvdb_make_view_2;
 
-extern "C" void uwvdb_make_view_1(const uw::ViewRequest& request,
-                                  std::shared_ptr<const uw::ColourView>& view, std::string& fault) {
+extern "C" void uwvdb_make_view_2(const uw::ViewRequest& request,
+                                  std::shared_ptr<uw::ColourView>& view, std::string& fault) {
     try {
         view = make_view(request, fault);
     } catch (const OCIO::Exception& error) {

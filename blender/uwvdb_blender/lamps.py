@@ -75,12 +75,10 @@ class Lamps:
         else:
             factor = 1 / (4 * math.pi)
             radius = light.shadow_soft_size * matrix.median_scale
+            if radius > 0:
+                entry.update(type="sphere", radius=radius)
             if light.type == "SPOT":
-                if radius > 0:
-                    entry.update(type="disk", radius=radius)
                 entry["profile"] = self._spot(light, matrix)
-            elif radius > 0:
-                self._note(shown, "its radius is left out: shadows of a point light have hard edges")
         if ies is not None:
             file, reference = ies
             if light.type == "AREA":

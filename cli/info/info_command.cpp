@@ -22,7 +22,7 @@
 #include "core/base/input_files.h"
 #include "core/base/output_files.h"
 #include "core/base/text.h"
-#include "core/image/image_file.h"
+#include "core/image/picture_file.h"
 #include "core/light/integrator_table.h"
 #include "render/image_scene.h"
 #include "render/renderer.h"
@@ -200,8 +200,9 @@ VdbSurvey survey_vdb(const InfoArguments& a) {
 }
 
 /// Renders the proposed scene, small, and writes it as a PNG.
-void write_picture(const VdbSurvey& survey, const fs::path& file) {
+void write_thumbnail(const VdbSurvey& survey, const fs::path& file) {
     SceneDesc desc = load_scene_text(survey.advice.scene, survey.scene_folder / "scene.yaml");
+    const std::shared_ptr<const ColourView> view = colour_view(desc.render.view);
     resize_image(desc.camera, k_proposed_width / 2, k_proposed_height / 2);
     if (scattering_of(desc.render) == RenderDesc::Scattering::multiple)
         desc.render.quality = RenderDesc::Quality::draft;  // seconds, not minutes
@@ -210,7 +211,10 @@ void write_picture(const VdbSurvey& survey, const fs::path& file) {
     Renderer renderer;
     renderer.set_scene({std::move(desc), choice});
     const Film& film = renderer.render();
-    write_png(file, make_preview(film, automatic_exposure(film).value_or(1.0)), {});
+    OutputFile out(file);
+    write_picture(out, film,
+                  {.exposure = automatic_exposure(film).value_or(1.0), .view = view.get()}, {});
+    out.commit();
     print_message(fmt::format("wrote {}\n", printable(file.string(), 300)));
 }
 
@@ -230,7 +234,7 @@ std::string info_on_vdb(const InfoArguments& a) {
         throw InputError(fmt::format("{}: {} There is no scene to show; see 'uwvdb info' of it",
                                      printable(a.subject.filename().string(), 300),
                                      survey.advice.lines.front()));
-    if (!a.picture.empty()) write_picture(survey, a.picture);
+    if (!a.picture.empty()) write_thumbnail(survey, a.picture);
     if (a.scene) return survey.advice.scene;
     return report_on_vdb(survey).printed(a.json);
 }

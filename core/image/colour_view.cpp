@@ -22,8 +22,8 @@ std::string config_of_environment() {
     return name != nullptr ? name : "";
 }
 
-std::shared_ptr<const ColourView> make_view(const ViewDesc& desc, const std::string& config,
-                                            const std::string& where) {
+std::shared_ptr<ColourView> make_view(const ViewDesc& desc, const std::string& config,
+                                      const std::string& where) {
     static const ModuleFunction module = load_function("uwvdb_colour_views", k_make_view);
     if (module.address == nullptr)
         throw InputError(
@@ -41,7 +41,7 @@ std::shared_ptr<const ColourView> make_view(const ViewDesc& desc, const std::str
         if (is_of_scene) remember_input(file);
     };
     request.check(config);
-    std::shared_ptr<const ColourView> view;
+    std::shared_ptr<ColourView> view;
     std::string fault;
     reinterpret_cast<MakeView*>(module.address)(request, view, fault);
     if (!fault.empty()) throw InputError(fmt::format("{}: '{}': {}", where, config, fault));
@@ -63,9 +63,13 @@ std::shared_ptr<const ColourView> colour_view(const std::optional<ViewDesc>& des
     static std::pair<std::string, ViewDesc> last;
     static FileStamps stamps;
     static std::shared_ptr<const ColourView> view;
+    static std::uint64_t made = 0;
     const std::lock_guard lock(busy);
     if (view && last == std::pair(config, wanted) && stamps.are_current()) return view;
-    view = make_view(wanted, config, desc ? wanted.where : "OCIO");
+    const std::shared_ptr<ColourView> made_now =
+        make_view(wanted, config, desc ? wanted.where : "OCIO");
+    made_now->number = ++made;
+    view = made_now;
     stamps = FileStamps(view->files);
     last = {config, wanted};
     return view;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -26,6 +27,7 @@ class ColourView {
     /// store: R, G and B in turn, mostly 0 to 1. Threads may call it at once.
     virtual void apply(std::span<float> rgb) const = 0;
 
+    std::uint64_t number = 0;                  // of this program's views, in the order made: from 1
     std::string name;                          // "Filmic / sRGB", with its look
     std::vector<std::filesystem::path> files;  // that it was made of, the config first
 };
@@ -48,8 +50,8 @@ struct ViewRequest {
 };
 
 /// What the module exports as k_make_view: makes `view`, or says in `fault` why there is none.
-using MakeView = void(const ViewRequest& request, std::shared_ptr<const ColourView>& view,
+using MakeView = void(const ViewRequest& request, std::shared_ptr<ColourView>& view,
                       std::string& fault);
-inline constexpr const char* k_make_view = "uwvdb_make_view_1";
+inline constexpr const char* k_make_view = "uwvdb_make_view_2";
 
 }  // namespace uw

@@ -102,8 +102,12 @@ namespace {
 std::vector<UnitPoint> lattice(int count) {
     std::vector<UnitPoint> places;
     for (int i = 0; i < count; ++i) {
-        const double turns = (i + 0.5) * std::numbers::phi;
-        places.push_back({(i + 0.5) / count, turns - std::floor(turns)});
+        const auto fraction = [&](double step) {
+            const double turns = (i + 0.5) * step;
+            return turns - std::floor(turns);
+        };
+        places.push_back(
+            {(i + 0.5) / count, fraction(std::numbers::phi), fraction(std::numbers::sqrt2)});
     }
     return places;
 }

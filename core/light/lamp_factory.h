@@ -27,8 +27,9 @@ Lamp make_lamp(const LampDesc& desc, const Affine& world_from_camera,
 /// made, at least one. `world_from_camera` places lamps fixed to the camera.
 ///
 /// The points are a golden-ratio lattice, on a disk with area in the place of its first coordinate
-/// (Vogel's spiral), moved so that their mean is the centre. With N of them, what varies smoothly
-/// over the lamp is off by about 1/N^2, and the light in a penumbra by about 0.7/N of the lamp's
+/// (Vogel's spiral), in a sphere with the distance from the centre as a third coordinate
+/// (LampFrame), moved so that their mean is the centre. With N of them, what varies smoothly over
+/// the lamp is off by about 1/N^2, and the light in a penumbra by about 0.7/N of the lamp's
 /// (RMS), 2.4/N at worst, for N = 32.
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                      const Affine& world_from_camera, std::vector<Lamp>& emitters);

@@ -9,10 +9,36 @@
 
 namespace uw {
 
+namespace {
+
+// Which r/R of a sphere of radius R a share `inside` of its light comes from. With r = R sin t, the
+// light within r is in proportion to t - sin t cos t, whose derivative is 2 sin^2 t.
+double sphere_radius(double inside) {
+    const double wanted = 0.5 * std::numbers::pi * inside;
+    double low = 0, high = 0.5 * std::numbers::pi;
+    double t = std::min(std::cbrt(1.5 * wanted), high);
+    constexpr int k_steps = 60;
+    for (int i = 0; i < k_steps && high - low > 1e-12; ++i) {
+        const double sine = std::sin(t), excess = t - sine * std::cos(t) - wanted;
+        (excess > 0 ? high : low) = t;
+        const double next = t - excess / (2 * sine * sine);
+        t = next > low && next < high ? next : 0.5 * (low + high);
+    }
+    return std::sin(t);
+}
+
+Vector3 in_sphere(double radius, const UnitPoint& place) {
+    const double r = radius * sphere_radius(place.w);
+    const double cosine = 2 * place.u - 1, sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    const double angle = 2 * std::numbers::pi * place.v;
+    return r * Vector3(sine * std::cos(angle), sine * std::sin(angle), cosine);
+}
+
+}  // namespace
+
 double LampFrame::area() const {
-    if (extent.shape == LampExtentDesc::Shape::disk)
-        return std::numbers::pi * extent.radius * extent.radius;
-    return extent.width * extent.height;
+    if (extent.shape == LampExtentDesc::Shape::rectangle) return extent.width * extent.height;
+    return std::numbers::pi * extent.radius * extent.radius;
 }
 
 Vector3 LampFrame::at(const UnitPoint& place) const {
@@ -21,22 +47,36 @@ Vector3 LampFrame::at(const UnitPoint& place) const {
         const double angle = 2 * std::numbers::pi * place.v;
         return radius * std::cos(angle) * x + radius * std::sin(angle) * y;
     }
+    if (extent.shape == LampExtentDesc::Shape::sphere) {
+        const Vector3 inside = in_sphere(extent.radius, place);
+        return inside.x * x + inside.y * y + inside.z * glm::cross(x, y);
+    }
     // The even steps of u go along the longer side.
-    auto [u, v] = place;
+    auto [u, v, w] = place;
     if (extent.width < extent.height) std::swap(u, v);
     return (u - 0.5) * extent.width * x + (v - 0.5) * extent.height * y;
 }
 
 Vector3 LampPatch::at(const UnitPoint& place) const {
-    return frame.at({begin.u + place.u * (end.u - begin.u), begin.v + place.v * (end.v - begin.v)});
+    return frame.at({begin.u + place.u * (end.u - begin.u), begin.v + place.v * (end.v - begin.v),
+                     begin.w + place.w * (end.w - begin.w)});
 }
 
 namespace {
 
-// How long and how wide the unit square is on the surface, where a disk is as wide as in the mean.
+// How long the unit cube's sides are on the surface, in the mean; flat ones have no third.
 UnitPoint lengths_of(const LampExtentDesc& extent) {
-    if (extent.shape == LampExtentDesc::Shape::disk)
-        return {extent.radius, 4.0 / 3 * std::numbers::pi * extent.radius};
+    switch (extent.shape) {
+        case LampExtentDesc::Shape::disk:
+            return {extent.radius, 4.0 / 3 * std::numbers::pi * extent.radius};
+        case LampExtentDesc::Shape::sphere: {
+            const double mean = 8 / (3 * std::numbers::pi) * extent.radius;  // distance from centre
+            return {std::numbers::pi * mean, 0.5 * std::numbers::pi * std::numbers::pi * mean,
+                    extent.radius};
+        }
+        case LampExtentDesc::Shape::rectangle:
+            break;
+    }
     return {std::max(extent.width, extent.height), std::min(extent.width, extent.height)};
 }
 
@@ -52,8 +92,12 @@ class Division {
             patches_[points.front()].end = end;
             return;
         }
-        const bool is_long = (end.u - begin.u) * lengths_.u >= (end.v - begin.v) * lengths_.v;
-        double UnitPoint::*const along = is_long ? &UnitPoint::u : &UnitPoint::v;
+        const auto length = [&](double UnitPoint::*side) {
+            return (end.*side - begin.*side) * lengths_.*side;
+        };
+        double UnitPoint::*along = &UnitPoint::u;
+        for (double UnitPoint::*const side : {&UnitPoint::v, &UnitPoint::w})
+            if (length(side) > length(along)) along = side;
         const std::size_t half = points.size() / 2;
         std::ranges::sort(points, {}, [&](std::size_t i) { return places_[i].*along; });
         const double share = static_cast<double>(half) / static_cast<double>(points.size());
@@ -78,7 +122,7 @@ std::vector<LampPatch> divide(const LampFrame& frame, const Point3& centre,
                                    {frame, centre, {}, {}, std::sqrt(area * std::numbers::inv_pi)});
     std::vector<std::size_t> points(places.size());
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = i;
-    Division(places, lengths_of(frame.extent), patches).divide(points, {0, 0}, {1, 1});
+    Division(places, lengths_of(frame.extent), patches).divide(points, {0, 0, 0}, {1, 1, 1});
     return patches;
 }
 

@@ -33,9 +33,9 @@ double half_tangent_at(double knot) {
 
 bool LampSurface::is_passed_by(const Ray& ray) const {
     const Vector3 across = glm::cross(lamp.position() - ray.origin, ray.direction);
-    const double half = frame.extent.shape == LampExtentDesc::Shape::disk
-                            ? frame.extent.radius
-                            : 0.5 * std::hypot(frame.extent.width, frame.extent.height);
+    const double half = frame.extent.shape == LampExtentDesc::Shape::rectangle
+                            ? 0.5 * std::hypot(frame.extent.width, frame.extent.height)
+                            : frame.extent.radius;
     const double near = half + k_patches_aside * emitters.patch_radius;
     return glm::dot(across, across) <= near * near;
 }
@@ -132,6 +132,11 @@ void LampEvenness::find(std::size_t lamp, const Ray& ray, double begin,
 
 double LampSurface::crossing(const Ray& ray) const {
     constexpr double k_nowhere = std::numeric_limits<double>::infinity();
+    if (!frame.is_flat()) {
+        const LampPassage passage(ray, lamp.position());
+        return passage.foot > 0 && passage.distance <= frame.extent.radius ? passage.foot
+                                                                           : k_nowhere;
+    }
     const Vector3 normal = glm::cross(frame.x, frame.y);
     const double towards = glm::dot(normal, ray.direction);
     if (towards == 0) return k_nowhere;
@@ -148,7 +153,8 @@ double LampSurface::crossing(const Ray& ray) const {
 }
 
 double LampSurface::radiance_towards(const Ray& ray) const {
-    const double cosine = std::abs(glm::dot(glm::cross(frame.x, frame.y), ray.direction));
+    const double cosine =
+        frame.is_flat() ? std::abs(glm::dot(glm::cross(frame.x, frame.y), ray.direction)) : 1;
     if (cosine < k_edge_on) return 0;
     return lamp.relative_intensity(-ray.direction) / (frame.area() * cosine);
 }

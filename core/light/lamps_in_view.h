@@ -30,7 +30,8 @@ struct LampSurface {
     /// Whether the light of the emitters that is scattered on `ray` may differ from that of the
     /// surface: only where the ray passes it closely.
     bool is_passed_by(const Ray& ray) const;
-    /// Where `ray` crosses the surface [m]; infinite if it does not.
+    /// Where `ray` crosses the surface, or passes the centre of a sphere [m]; infinite if it does
+    /// not.
     double crossing(const Ray& ray) const;
     /// Its radiance towards the origin of a ray that crosses it, for 1 W/sr on the axis [1/m^2]:
     /// relative intensity over the area that is seen. 0 for a surface that is seen edge-on.

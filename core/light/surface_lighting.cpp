@@ -31,8 +31,8 @@ namespace {
 
 // The steps of the additive sequence that fills the unit square most evenly (Roberts 2018, "The
 // unreasonable effectiveness of quasirandom sequences"): the powers of 1/1.3247..., which is the
-// root of x^3 = x + 1.
-constexpr UnitPoint k_even_steps{0.7548776662466927, 0.5698402909980532};
+// root of x^3 = x + 1. The third coordinate's is independent of them: the golden ratio.
+constexpr UnitPoint k_even_steps{0.7548776662466927, 0.5698402909980532, 0.6180339887498949};
 
 double fraction(double x) {
     return x - std::floor(x);
@@ -51,7 +51,8 @@ Point3 shadow_origin(const Lamp& emitter, const SurfaceSample& sample, std::size
     const auto steps = static_cast<double>(number);
     const double u = fraction(sample.x + shift.next() + steps * k_even_steps.u);
     const double v = fraction(sample.y + shift.next() + steps * k_even_steps.v);
-    return emitter.origin_on_patch(sample.hit.position, {u, v});
+    const double w = fraction(5 * sample.x + 3 * sample.y + shift.next() + steps * k_even_steps.w);
+    return emitter.origin_on_patch(sample.hit.position, {u, v, w});
 }
 
 void brdf_for(const Lamp& emitter, const SurfaceReflection& reflection, const SurfaceSample& sample,

@@ -196,22 +196,22 @@ LampExtentDesc read_rectangle(ConfigMap& map) {
     return extent;
 }
 
-LampExtentDesc read_disk(ConfigMap& map) {
+LampExtentDesc read_round(ConfigMap& map, LampExtentDesc::Shape shape, std::string_view mend) {
     LampExtentDesc extent;
-    extent.shape = LampExtentDesc::Shape::disk;
-    constexpr auto k_mend = "give the radius of the luminous disk in metres";
-    extent.radius = map.require("radius", k_mend).positive(k_mend);
+    extent.shape = shape;
+    extent.radius = map.require("radius", mend).positive(mend);
     read_samples(map, extent.samples);
     return extent;
 }
 
-enum class LampType { point, rectangle, disk, sun };
+enum class LampType { point, rectangle, disk, sphere, sun };
 
 LampType read_type(ConfigMap& map) {
     constexpr auto k_types =
         std::to_array<std::pair<std::string_view, LampType>>({{"point", LampType::point},
                                                               {"rectangle", LampType::rectangle},
                                                               {"disk", LampType::disk},
+                                                              {"sphere", LampType::sphere},
                                                               {"sun", LampType::sun}});
     const auto type = map.find("type");
     return type ? type->choice(k_types) : LampType::point;
@@ -284,9 +284,14 @@ void read_placed(ConfigMap& map, LampType type, const SceneContext& context, Lam
     if (const auto entry = map.find("direction"))
         lamp.direction = entry->direction("give the direction in which the lamp shines, not all 0");
     if (type == LampType::rectangle) lamp.extent = read_rectangle(map);
-    if (type == LampType::disk) lamp.extent = read_disk(map);
+    if (type == LampType::disk)
+        lamp.extent = read_round(map, LampExtentDesc::Shape::disk,
+                                 "give the radius of the luminous disk in metres");
     // A diffuse surface, unless a profile says otherwise.
     if (lamp.extent) lamp.profile = CosineProfileDesc{120};
+    if (type == LampType::sphere)
+        lamp.extent = read_round(map, LampExtentDesc::Shape::sphere,
+                                 "give the radius of the luminous sphere in metres");
     if (const auto entry = map.find("profile")) lamp.profile = read_profile(*entry, context);
     read_output(map, context, lamp);
     read_frame(map, context, lamp);

@@ -8,6 +8,7 @@ import { NumbersPanel, patchPixels } from "./numbers/numbers_panel.js";
 import { LampForm } from "./panels/lamp_form.js";
 import { LampList } from "./panels/lamp_list.js";
 import { WaterForm } from "./panels/water_form.js";
+import { ViewFeed } from "./picture/display_view.js";
 import { ImageFeed } from "./picture/image_feed.js";
 import { PictureView } from "./picture/picture_view.js";
 import { barAcross } from "./plan/bar_marks.js";
@@ -70,6 +71,7 @@ const numbersFeed = new NumbersFeed(settings, (found) => {
     numbers.show(found);
     picture.showPatch(patchPixels(found));
 }, refuse);
+const viewFeed = new ViewFeed(scene, (view) => picture.setView(view));
 const imageFeed = new ImageFeed((image) => {
     picture.setImage(image);
     status.showImage(image);
@@ -165,4 +167,4 @@ scene.observe((state) => {
 
 const sceneFeed = new SceneFeed(scene, outlines, editing, showState,
     ({ undo_label: what }) => status.say(`Changed elsewhere${what ? `: ${what}` : ""}`));
-connect({ sceneFeed, imageFeed, status, banners, suggest, refuse });
+connect({ sceneFeed, imageFeed, viewFeed, status, banners, suggest, refuse });

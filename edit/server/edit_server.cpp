@@ -349,6 +349,8 @@ void EditServer::Page::answer(const Request& request, Response& response) {
         {"/api/events", [&] { send_events(response); }},
         {"/api/image", [&] { send_image(request, response); }},
         {"/api/numbers", [&] { send_json(response, measures_.numbers(numbers_request(request))); }},
+        {"/api/view",
+         [&] { send_body(response, measures_.view_table(), "application/octet-stream"); }},
         {"/api/export/numbers.csv",
          [&] {
              send_file(response, measures_.numbers_csv(numbers_request(request)),

@@ -7,6 +7,7 @@
 #include <array>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -109,6 +110,12 @@ std::shared_ptr<const EditedScene> make_edited_scene(std::string_view text, cons
     const SceneDesc& desc = edited->scene.desc();
     edited->warnings = desc.warnings;
     edited->camera = std::make_shared<Camera>(desc.camera);
+    try {
+        edited->view = colour_view(desc.render.view);
+    } catch (const std::runtime_error& fault) {  // InputError or IoError
+        edited->warnings.push_back(std::string(fault.what()) +
+                                   "; until then the picture is shown as sRGB");
+    }
     edited->has_plain_colour =
         is_plain(make_band_colour(desc.render.colour, desc.water.bands_nm), edited->bands());
     edited->surrounding =

@@ -15,6 +15,7 @@
 #include "camera/camera.h"
 #include "core/base/json.h"
 #include "core/base/spectrum.h"
+#include "core/image/colour_view.h"
 #include "core/scene/yaml_document.h"
 #include "edit/document/scene_text.h"
 #include "render/image_scene.h"
@@ -45,6 +46,7 @@ struct EditedScene {
     std::string surrounding;        // identifies all but the lamps
     bool has_plain_colour = true;   // R, G and B are the three bands
     std::shared_ptr<const Camera> camera;
+    std::shared_ptr<const ColourView> view;  // that pictures are seen through; null: sRGB
     std::vector<std::string> warnings;
 
     std::size_t bands() const { return scene.desc().water.bands_nm.size(); }

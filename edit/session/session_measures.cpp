@@ -16,11 +16,12 @@
 #include "core/base/input_files.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
-#include "core/image/image_file.h"
+#include "core/image/picture_file.h"
 #include "core/image/pixel_image.h"
 #include "edit/session/edit_session.h"
 #include "edit/session/picture.h"
 #include "edit/session/request_members.h"
+#include "edit/session/view_table.h"
 #include "render/measures/picture_numbers.h"
 
 namespace uw {
@@ -271,16 +272,23 @@ std::string SessionMeasures::picture_png(std::optional<double> exposure) {
     const double used = exposure ? *exposure : automatic_exposure(film).value_or(1.0);
     const ScratchFolder folder;
     const std::filesystem::path file = folder.path() / "picture.png";
-    write_png(file, make_preview(film, used),
-              {{"uwvdb/scene", scene->scene.desc().file.filename().string()},
-               {"uwvdb/scene_hash", scene->scene.desc().hash},
-               {"exposure", used}});
+    OutputFile out(file);
+    write_picture(out, film, {.exposure = used, .view = scene->view.get()},
+                  {{"uwvdb/scene", scene->scene.desc().file.filename().string()},
+                   {"uwvdb/scene_hash", scene->scene.desc().hash}});
+    out.commit();
     return read_text_file(file, file.string(), std::filesystem::file_size(file), "picture");
 }
 
 void SessionMeasures::tell(Json event) {
     session_.events().publish("suggest",
                               event.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string SessionMeasures::view_table() {
+    const std::shared_ptr<const EditedScene> scene = session_.scene();
+    if (!scene || !scene->view) throw ConflictError("the picture is shown as sRGB");
+    return ViewTable::bytes_of(*scene->view);
 }
 
 Json SessionMeasures::suggest(const Json& request) {

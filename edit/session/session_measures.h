@@ -42,6 +42,8 @@ class SessionMeasures {
     /// The whole scene as uwvdb render makes it, without the lamps that are off: a PNG. Without
     /// `exposure` it has its automatic one.
     std::string picture_png(std::optional<double> exposure);
+    /// ViewTable of the scene's view. Throws ConflictError if there is none.
+    std::string view_table();
 
     /// Begins a search, ends one under way; events tell of it. Throws UsageError.
     Json suggest(const Json& request);

@@ -25,6 +25,7 @@
 #include "core/image/layers.h"
 #include "edit/session/picture.h"
 #include "edit/session/view_geometry.h"
+#include "edit/session/view_table.h"
 #include "media/water/water_types.h"
 #include "render/scene_rendering.h"
 
@@ -293,8 +294,10 @@ std::string reason_to_lock(const ConfigNode* entry) {
 // The luminous surface of a lamp that is not a point, by its keys in scene files.
 Json extent_json(const std::optional<LampExtentDesc>& extent) {
     if (!extent) return nullptr;
-    if (extent->shape == LampExtentDesc::Shape::disk)
-        return {{"type", "disk"}, {"radius", extent->radius}, {"samples", extent->samples}};
+    if (extent->shape != LampExtentDesc::Shape::rectangle)
+        return {{"type", extent->shape == LampExtentDesc::Shape::disk ? "disk" : "sphere"},
+                {"radius", extent->radius},
+                {"samples", extent->samples}};
     return {{"type", "rectangle"},
             {"width", extent->width},
             {"height", extent->height},
@@ -499,6 +502,16 @@ Json not_shown_json(const EditedScene& edited) {
     return sentences;
 }
 
+// What the picture is seen through, and how its table (ViewTable) is looked up.
+Json view_json(const std::shared_ptr<const ColourView>& view) {
+    if (!view) return nullptr;
+    return {{"name", view->name},
+            {"key", view->number},
+            {"side", ViewTable::k_side},
+            {"least", ViewTable::k_least},
+            {"octaves", ViewTable::k_octaves}};
+}
+
 Json ies_files_json(const SceneDesc& desc) {
     namespace fs = std::filesystem;
     std::vector<std::string> names;
@@ -542,6 +555,7 @@ Json scene_json(const EditedScene& edited, const ConfigNode& tree, const SceneSh
             {"warnings", edited.warnings},
             {"light", light_layers_json(edited.scene)},
             {"not_shown", not_shown_json(edited)},
+            {"view", view_json(edited.view)},
             {"camera", camera_json(edited, tree)},
             {"rig", !desc.cameras.empty()},
             {"cameras", std::move(cameras)},

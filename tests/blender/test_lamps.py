@@ -64,9 +64,15 @@ def test_area_light_is_lambertian():
     close(found, wanted, 1e-3, "irradiance", on_floor)
 
 
-def against_cycles(what, samples=64, tolerance=2e-3):
+def against_cycles(what, samples=64, tolerance=2e-3, sphere=None):
+    """`sphere`: (location, radius) of a light that is one. Cycles has a disk across it instead, which shines
+    from there with 1 / (d^2 + r^2): what the sphere does from d is brighter by 1 + (r / d)^2."""
     ours, theirs = render(), render("CYCLES", samples=samples)
     found, wanted = ours["Combined"][..., 0], theirs["Combined"][..., 0]
+    if sphere is not None:
+        location, radius = sphere
+        away = numpy.array(location) - ours["Position"].astype(float)
+        wanted = wanted * (1 + radius**2 / (away**2).sum(axis=-1))
     median_close(found, wanted, tolerance, what, wanted > 0.02 * wanted.max())
     dark = (found > 1e-3 * wanted.max()) != (wanted > 1e-3 * wanted.max())
     assert dark.mean() < 0.01, f"{what}: {dark.mean():.1%} of the pixels are lit by one of both alone"
@@ -85,12 +91,17 @@ def test_spot_against_cycles():
     against_cycles("spot")
 
 
+def test_point_with_a_radius_against_cycles():
+    floor_scene()
+    light("POINT", watts=200, location=(-1.5, 0.7, 2.0), shadow_soft_size=0.3)
+    against_cycles("point with a radius", 512, 2e-3, ((-1.5, 0.7, 2.0), 0.3))
+
+
 def test_spot_with_a_radius_against_cycles():
-    """Cycles turns the disk that shines towards what it lights; here it lies across the spot's axis."""
     floor_scene()
     light("SPOT", watts=300, location=(-1.5, 0.7, 2.5), rotation=(0.1, -0.5, 0.8), spot_size=1.1,
           spot_blend=0.4, shadow_soft_size=0.2)
-    against_cycles("spot with a radius", 512, 4e-2)
+    against_cycles("spot with a radius", 512, 5e-3, ((-1.5, 0.7, 2.5), 0.2))
 
 
 def test_sun_against_cycles():

@@ -31,6 +31,10 @@ LampDesc panel(const LampExtentDesc& extent, const Point3& position, double inte
     return lamp;
 }
 
+LampExtentDesc sphere(double radius, int samples) {
+    return {LampExtentDesc::Shape::sphere, 0, 0, 0, radius, samples};
+}
+
 LampExtentDesc disk(double radius, int samples) {
     return {LampExtentDesc::Shape::disk, 0, 0, 0, radius, samples};
 }
@@ -233,6 +237,40 @@ TEST_P(HalfShade, OfAnEdgeIsAsSoftAsTheDiskIsWide) {
     EXPECT_LT(bias, 3.0 * noise / std::sqrt(k_pixels));
 }
 
+// The same of a sphere, of which a plane through the wall's point and the edge cuts off as much as
+// it does of a disk across it. A point's place in it has three coordinates, of which the samples of
+// a pixel fill two most evenly: they scatter more than a disk's, but still less than at random.
+TEST_P(HalfShade, OfASphereIsThatOfADiskAcross) {
+    constexpr double k_radius = 0.4, k_edge = 0.6;
+    constexpr int k_pixels = 48;
+    const int points = GetParam();
+    const LightOnAWall wall(panel(sphere(k_radius, points), {k_edge, 0, 0}, 10), 4,
+                            {box({k_edge, -50, 2}, {60, 50, 2 + 1e-4})});
+    double squares = 0, of_means = 0;
+    int inside = 0;
+    for (double x = -0.2; x < 1.4; x += 0.04) {
+        const double aside = k_edge - x;  // where that plane passes the centre, in the lamp's plane
+        const double t = std::clamp(aside * 2 / std::hypot(2, aside) / k_radius, -1.0, 1.0);
+        const double truth = 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / pi;
+        double sum = 0;
+        for (int pixel = 0; pixel < k_pixels; ++pixel) {
+            const double seen = wall.seen_by_pixel(x, 0.1, 4, pixel, 7);
+            squares += (seen - truth) * (seen - truth);
+            sum += seen;
+        }
+        if (std::abs(t) == 1) continue;
+        of_means += std::pow(sum / k_pixels - truth, 2);
+        ++inside;
+    }
+    EXPECT_GE(inside, 19);
+    const double noise = std::sqrt(squares / (inside * k_pixels));
+    const double bias = std::sqrt(of_means / inside);
+    std::cout << points << " points: RMS of a pixel " << 100 * noise << " %, of the mean of "
+              << k_pixels << " pixels " << 100 * bias << " %\n";
+    EXPECT_LT(noise, 0.8 * std::sqrt(0.14 / (4 * points)));
+    EXPECT_LT(bias, 3.0 * noise / std::sqrt(k_pixels));
+}
+
 INSTANTIATE_TEST_SUITE_P(Points, HalfShade, testing::Values(4, 8, 32, 100));
 
 // A lamp that consists of one point has hard shadows.
@@ -328,6 +366,36 @@ TEST_P(LampInView, IsADiskOfItsRadiance) {
                 EXPECT_EQ(pixel.lamps_in_view[band], pixel.direct[band]);
                 EXPECT_NEAR(pixel.lamps[0][band], pixel.direct[band] + pixel.backscatter[band],
                             1e-12 * pixel.lamps[0][band]);
+            }
+        }
+    EXPECT_GT(inside, 40);
+}
+
+// An opaque diffuse sphere has the radiance I / (pi r^2) to its edge, where a ray just touches it.
+TEST_P(LampInView, IsASphereOfEvenRadiance) {
+    constexpr double k_radius = 0.6;
+    const Vector3 centre(0.4, 0.2, 3);
+    LampDesc bulb = panel(sphere(k_radius, 8), at_origin_plus(centre), 10);
+    bulb.profile = IsotropicProfileDesc{};
+    SceneDesc desc = lamp_in_view(bulb);
+    desc.render.integrator = GetParam();
+    desc.render.samples = 1;
+    const TestScene scene(desc);
+    const Medium& medium = scene.assembled().water.medium;
+    int inside = 0;
+    for (int y = 0; y < 18; ++y)
+        for (int x = 0; x < 24; ++x) {
+            const PixelResult pixel = scene.pixel(x, y);
+            const Ray ray = center_ray(scene, x, y);
+            const Vector3 to_centre = centre - from_origin(ray.origin);
+            const double s = glm::dot(to_centre, ray.direction);
+            const bool hits = glm::length(to_centre - s * ray.direction) < k_radius;
+            inside += hits ? 1 : 0;
+            for (std::size_t band = 0; band < 3; ++band) {
+                const double truth = hits ? 10 / (pi * k_radius * k_radius) : 0;
+                const double dimmed = truth * std::exp(-medium.uniform.attenuation(band) * s);
+                EXPECT_NEAR(pixel.clean[band], truth, 1e-12 * truth) << x << " " << y;
+                EXPECT_NEAR(pixel.direct[band], dimmed, 1e-12 * truth) << x << " " << y;
             }
         }
     EXPECT_GT(inside, 40);

@@ -25,7 +25,7 @@ const KEY_LABELS = {
 
 const EXTENT_STEPS = { radius: 0.01, width: 0.01, height: 0.01, rotate: 1, samples: 1 };
 
-const KINDS = ["point", "rectangle", "disk", "sun"];
+const KINDS = ["point", "rectangle", "disk", "sphere", "sun"];
 
 /** Where a sun and the lamp that takes its place are as bright: so far before the camera and from the lamp [m]. */
 const SUBJECT_DISTANCE = 2;
@@ -115,11 +115,13 @@ export class LampForm {
     #setKind(scene, lamp, kind, onRefusal) {
         const { name, extent } = lamp;
         const { radius = 0.1, width = 2 * radius, height = width } = extent ?? {};
+        const round = { type: kind, width: null, height: null, rotate: null,
+            radius: Math.min(width, height) / 2 };
         const sized = {
             point: { type: null, width: null, height: null, rotate: null, radius: null, samples: null },
             rectangle: { type: kind, width, height, radius: null },
-            disk: { type: kind, width: null, height: null, rotate: null,
-                radius: Math.min(width, height) / 2 },
+            disk: round,
+            sphere: round,
         }[kind];
         const keys = kind === "sun" ? sunOf(scene, lamp)
             : lamp.sun ? { ...placedLampOf(scene, lamp), ...sized, samples: null } : sized;
@@ -152,9 +154,9 @@ export class LampForm {
         const number = (label, unit, key) => field(numberField({ label, unit, key, step: EXTENT_STEPS[key],
             commit: set(label.toLowerCase(), key) }), (now) => now.extent?.[key] ?? 0);
         return [`Luminous ${extent.type}`,
-            ...(extent.type === "disk" ? [number("Radius", "m", "radius")]
-                : [number("Width", "m", "width"), number("Height", "m", "height"),
-                    number("Rotate", "°", "rotate")]),
+            ...(extent.type === "rectangle" ? [number("Width", "m", "width"),
+                number("Height", "m", "height"), number("Rotate", "°", "rotate")]
+                : [number("Radius", "m", "radius")]),
             number("Points", null, "samples")];
     }
 

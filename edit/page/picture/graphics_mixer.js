@@ -33,6 +33,8 @@ export class GraphicsMixer {
     #gl;
     #uniforms;
     #table;
+    #view = null;
+    #viewTable;
 
     /** Where hasGraphicsCard(). */
     constructor(canvas) {
@@ -50,12 +52,23 @@ export class GraphicsMixer {
         gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, FRAGMENT));
         gl.linkProgram(program);
         gl.useProgram(program);
-        const names = ["planes", "mix_table", "mix_count", "exposure", "false_colour", "ramp"];
+        const names = ["planes", "mix_table", "mix_count", "exposure", "false_colour", "ramp",
+            "has_view", "view_table", "view_steps"];
         this.#uniforms = Object.fromEntries(
             names.map((name) => [name, gl.getUniformLocation(program, name)]));
         gl.uniform1i(this.#uniforms.planes, 0);
         gl.uniform1i(this.#uniforms.mix_table, 1);
+        gl.uniform1i(this.#uniforms.view_table, 2);
         gl.uniform3fv(this.#uniforms.ramp, RAMP.flat());
+        this.#viewTable = gl.createTexture();
+        gl.activeTexture(gl.TEXTURE2);
+        gl.bindTexture(gl.TEXTURE_3D, this.#viewTable);
+        for (const axis of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) {
+            gl.texParameteri(gl.TEXTURE_3D, axis, gl.CLAMP_TO_EDGE);
+        }
+        gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+        gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+        this.setView(this.#view);
         gl.activeTexture(gl.TEXTURE1);
         this.#table = gl.createTexture();
         gl.bindTexture(gl.TEXTURE_2D, this.#table);
@@ -67,6 +80,21 @@ export class GraphicsMixer {
     /** After the graphics card was reset: textures made before are gone. */
     rebuild() {
         this.#build();
+    }
+
+    /** What the picture is seen through (ViewFeed). */
+    setView(view) {
+        this.#view = view;
+        const gl = this.#gl;
+        gl.uniform1i(this.#uniforms.has_view, view ? 1 : 0);
+        if (view) {
+            gl.activeTexture(gl.TEXTURE2);
+            gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+            gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGB8, view.side, view.side, view.side, 0, gl.RGB,
+                gl.UNSIGNED_BYTE, view.bytes);
+            gl.uniform3f(this.#uniforms.view_steps, view.side, view.least, view.octaves);
+        }
+        gl.activeTexture(gl.TEXTURE0);
     }
 
     newPlanes() {

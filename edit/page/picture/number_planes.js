@@ -1,5 +1,6 @@
 // The planes of an image in memory, and the picture that they are mixed into.
 
+import { lookUp } from "./display_view.js";
 import { RAMP } from "./false_colour.js";
 import { toNumbers } from "./image_planes.js";
 
@@ -49,12 +50,13 @@ export class NumberPlanes {
         this.#planes = [];
     }
 
-    /** A canvas with the picture; it stays this object's. */
-    paint(mix, exposure, falseColour) {
-        const as = JSON.stringify([mix, exposure, falseColour]);
+    /** A canvas with the picture, seen through `view` unless that is null; it stays this object's. */
+    paint(mix, exposure, falseColour, view) {
+        const as = JSON.stringify([mix, exposure, falseColour, view?.key]);
         if (as !== this.#paintedAs) {
             this.#sum(mix);
-            this.#colour(exposure, falseColour);
+            if (view && !falseColour) this.#see(exposure, view);
+            else this.#colour(exposure, falseColour);
             this.#painted.getContext("2d", { alpha: false }).putImageData(this.#picture, 0, 0);
             this.#paintedAs = as;
         }
@@ -70,6 +72,16 @@ export class NumberPlanes {
                 light[i + 1] += green * from[i + 1];
                 light[i + 2] += blue * from[i + 2];
             }
+        }
+    }
+
+    #see(exposure, view) {
+        const light = this.#light;
+        const bytes = this.#picture.data.fill(255);
+        const seen = [0, 0, 0];
+        for (let i = 0, at = 0; i < light.length; i += 3, at += 4) {
+            for (let channel = 0; channel < 3; ++channel) seen[channel] = exposure * light[i + channel];
+            lookUp(view, seen, bytes, at);
         }
     }
 

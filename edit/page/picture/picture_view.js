@@ -78,6 +78,12 @@ export class PictureView {
         this.#drawSoon();
     }
 
+    /** What pictures are seen through (ViewFeed). */
+    setView(view) {
+        this.#mixer.setView(view);
+        this.#drawSoon();
+    }
+
     /** Brightness as a slider has it that is being moved: mixed here, without the server. */
     setFactor(name, factor) {
         if (factor === null) delete this.#factors[name];

@@ -5,10 +5,16 @@ import { NumberPlanes } from "./number_planes.js";
 
 export class PlainMixer {
     #context;
+    #view = null;
     #whole = document.createElement("canvas"); // of the window's size, where columns are drawn
 
     constructor(canvas) {
         this.#context = canvas.getContext("2d", { alpha: false });
+    }
+
+    /** What the picture is seen through (ViewFeed). */
+    setView(view) {
+        this.#view = view;
     }
 
     newPlanes() {
@@ -29,7 +35,8 @@ export class PlainMixer {
         if (columns <= 0) return;
         // Enlarged as a whole: the columns are those of the whole picture to the byte.
         const whole = columns === width ? this.#context : this.#aside(width, height);
-        whole.drawImage(planes.paint(mix, exposure, falseColour), 0, 0, width, height);
+        whole.drawImage(planes.paint(mix, exposure, falseColour, this.#view), 0, 0, width,
+            height);
         if (whole !== this.#context) {
             this.#context.drawImage(whole.canvas, first, 0, columns, height, first, 0, columns,
                 height);

@@ -2,10 +2,11 @@
 
 import { Events } from "../server/events.js";
 
-export function connect({ sceneFeed, imageFeed, status, banners, suggest, refuse }) {
+export function connect({ sceneFeed, imageFeed, viewFeed, status, banners, suggest, refuse }) {
     const handlers = {
         hello: () => {
             imageFeed.forget();
+            viewFeed.forget();
             sceneFeed.fetch();
             imageFeed.fetch();
         },

@@ -109,6 +109,37 @@ TEST(LampExtent, ItsPointsFillItWhereTheLampIs) {
     }
 }
 
+// The density of a sphere's points is that whose sums along lines are all the same: on any line of
+// sight they lie as evenly as on a disk. And outside of it the flux of points that each shine in
+// all directions is that of one at the centre: Newton's theorem, for light.
+TEST(LampExtent, ASpheresPointsLieOnADiskFromEverywhere) {
+    constexpr double k_radius = 0.5;
+    constexpr int k_samples = 1024;
+    LampDesc desc = diffuse_lamp({LampExtentDesc::Shape::sphere, 0, 0, 0, k_radius, k_samples});
+    desc.profile = IsotropicProfileDesc{};
+    const std::vector<Lamp> emitters = emitters_of(desc);
+    ASSERT_EQ(emitters.size(), static_cast<std::size_t>(k_samples));
+    for (const Vector3& from : {Vector3(0, 0, 1), Vector3(1, 0, 0), Vector3(2, -1, 0.5)}) {
+        const Vector3 axis = glm::normalize(from);
+        std::vector<int> rings(8);
+        for (const Lamp& emitter : emitters) {
+            const double far = glm::length(glm::cross(from_origin(emitter.position()), axis));
+            ++rings.at(std::min(static_cast<std::size_t>(8 * far * far / (k_radius * k_radius)),
+                                std::size_t{7}));
+        }
+        // As many points at random would scatter by 11, the worst ring by 25.
+        for (const int count : rings) EXPECT_NEAR(count, k_samples / 8, 16) << from.x;
+        for (const double distance : {1.5, 2.0, 4.0, 20.0}) {
+            const double r = distance * k_radius;
+            const double at_centre = emitters[0].axis_intensity()[0] * k_samples / (r * r);
+            // Near the sphere the steps between its points begin to show.
+            EXPECT_NEAR(irradiance(emitters, at_origin_plus(r * axis), -axis), at_centre,
+                        (distance < 2 ? 3e-3 : 1e-3) * at_centre)
+                << distance;
+        }
+    }
+}
+
 TEST(LampExtent, DraftsHaveFewerPoints) {
     EXPECT_EQ(emitters_of(diffuse_lamp(disk(1, 32)), {}, 4).size(), 8U);
     EXPECT_EQ(emitters_of(diffuse_lamp(disk(1, 3)), {}, 4).size(), 1U);

@@ -98,6 +98,37 @@ TEST(LampPatches, OfADiskAreAsLarge) {
     for (const int count : quarters) EXPECT_NEAR(count, all / 4.0, 0.02 * all);
 }
 
+// Seen from anywhere, a sphere's patches together are as dense in each ring of a disk; each has its
+// point in it or near.
+TEST(LampPatches, OfASphereFillADiskFromEverywhere) {
+    constexpr int k_samples = 64;
+    constexpr double k_radius = 0.5;
+    const LampExtentDesc extent{LampExtentDesc::Shape::sphere, 0, 0, 0, k_radius, k_samples};
+    for (const Vector3& axis : {Vector3(0, 0, 1), Vector3(0, 1, 0), Vector3(0.6, 0, 0.8)}) {
+        std::vector<int> rings(8);
+        double farthest = 0;
+        for (const Lamp& point : points_of(lamp_of(extent))) {
+            Vector3 middle(0);
+            for (int i = 0; i < k_steps; ++i)
+                for (int j = 0; j < k_steps; ++j)
+                    for (int k = 0; k < k_steps; ++k) {
+                        const Vector3 at = from_origin(point.origin_on_patch(
+                            {}, {(i + 0.5) / k_steps, (j + 0.5) / k_steps, (k + 0.5) / k_steps}));
+                        const double far = glm::length(glm::cross(at, axis)) / k_radius;
+                        ASSERT_LT(far, 1);
+                        ++rings[static_cast<std::size_t>(8 * far * far)];
+                        middle += at / static_cast<double>(k_steps * k_steps * k_steps);
+                    }
+            farthest = std::max(farthest, glm::length(middle - from_origin(point.position())));
+        }
+        const double all = std::pow(k_steps, 3) * k_samples;
+        // Cubes of places that a ring's edge cuts: 24 x 4 of them along a line across the sphere.
+        for (const int count : rings) EXPECT_NEAR(count, all / 8, 0.005 * all) << axis.x;
+        // The sphere divided by 64 is a cube of 0.2 m.
+        EXPECT_LT(farthest, 0.3);
+    }
+}
+
 // The shadow rays of a sun with a disc come from all of it: their sines to its middle are spread
 // evenly over a disk, so that their mean square is half of the largest.
 TEST(LampPatches, OfASunFillItsDisc) {

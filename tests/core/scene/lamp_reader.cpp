@@ -81,6 +81,10 @@ TEST_F(LampReader, ReadsExtents) {
                               .at(0);
     EXPECT_EQ(disk.extent, (LampExtentDesc{LampExtentDesc::Shape::disk, 0, 0, 0, 0.3, 32}));
     EXPECT_TRUE(std::holds_alternative<IsotropicProfileDesc>(disk.profile));
+    const LampDesc bulb =
+        read("[{type: sphere, radius: 0.1, samples: 8, position: [0, 0, 0], power: 1}]").at(0);
+    EXPECT_EQ(bulb.extent, (LampExtentDesc{LampExtentDesc::Shape::sphere, 0, 0, 0, 0.1, 8}));
+    EXPECT_TRUE(std::holds_alternative<IsotropicProfileDesc>(bulb.profile));
 }
 
 TEST_F(LampReader, RefusesWhatAnExtentCannotBe) {
@@ -89,6 +93,8 @@ TEST_F(LampReader, RefusesWhatAnExtentCannotBe) {
           {"type: rectangle, width: 0, height: 1", "width: must be greater than 0"},
           {"type: disk", "'radius' is missing"},
           {"type: disk, radius: 1, width: 2", "width"},
+          {"type: sphere, width: 1", "'radius' is missing"},
+          {"type: sphere, radius: 1, rotate: 2", "rotate"},
           {"radius: 1", "radius"},
           {"type: disk, radius: 1, samples: 0", "samples"},
           {"type: disc, radius: 1", "did you mean 'disk'?"}})

@@ -16,6 +16,25 @@ from editor import SCENE, Editor, EditorPage  # noqa: E402
 from png import read_png  # noqa: E402
 
 CTRL, SHIFT = 2, 8
+# Redder than sRGB, and with another curve.
+HOUSE = """\
+ocio_profile_version: 2
+roles: {default: lin, scene_linear: lin}
+displays:
+  monitor:
+    - !<View> {name: Plain, colorspace: plain}
+active_displays: []
+active_views: []
+colorspaces:
+  - !<ColorSpace>
+    name: lin
+  - !<ColorSpace>
+    name: plain
+    from_reference: !<GroupTransform>
+      children:
+        - !<MatrixTransform> {matrix: [0.7, 0.3, 0.2, 0, 0, 1, 0, 0, 0.1, 0.3, 0.4, 0, 0, 0, 0, 1]}
+        - !<ExponentTransform> {value: [2, 2, 2, 1], direction: inverse}
+"""
 
 
 class EditingSteps(unittest.TestCase):
@@ -50,6 +69,50 @@ class EditingSteps(unittest.TestCase):
         values = [picture.brightness(i * width, picture.height * 0.4, width, picture.height * 0.2)
                   for i in range(columns)]
         return (values.index(max(values)) + 0.5) / columns
+
+    def assert_mixers_agree(self, looks):
+        by_webgl = EditorPage(self.browser, self.editor, by_webgl=True)
+        self.addCleanup(by_webgl.page.close)
+        by_webgl.wait_final()
+        is_webgl = "document.querySelector('.picture-box canvas').getContext('webgl2') !== null"
+        self.assertFalse(self.page.evaluate(is_webgl))
+        self.assertTrue(by_webgl.page.evaluate(is_webgl))
+        for look in looks:
+            pictures = []
+            for view in (self.view, by_webgl):
+                view.page.command("Page.bringToFront")
+                view.page.click(f'[title="See {look}"]')
+                view.page.evaluate("new Promise((done) => requestAnimationFrame(() => "
+                                   "requestAnimationFrame(done)))")
+                pictures.append(view.canvas())
+            plain, graphics = pictures
+            self.assertEqual((plain.width, plain.height), (graphics.width, graphics.height))
+            self.assertGreater(graphics.brightness(), 5)
+            differences = [abs(a - b) for p, g in zip(plain.planes, graphics.planes)
+                           for a, b in zip(p, g)]
+            # Enlarged, light is interpolated before or after it is turned into colours: a step of
+            # light differs there.
+            self.assertLess(sum(differences) / len(differences), 0.5, look)
+            self.assertLess(sorted(differences)[int(0.99 * len(differences))], 8, look)
+        self.assertEqual(by_webgl.page.complaints, [])
+        self.page.command("Page.bringToFront")
+
+    def assert_canvas_shows(self, rendered, slack):
+        """At the exposure of a picture of `uwvdb render` the page shows it, to `slack` of 255."""
+        exposure = float(rendered.texts["exposure"])
+        self.page.evaluate("sessionStorage.setItem('uwvdb.settings', JSON.stringify({..."
+                           "JSON.parse(sessionStorage.getItem('uwvdb.settings')), "
+                           f"stops: Math.log2({exposure!r})}}))")
+        self.view.open()
+        self.view.wait_final()
+        canvas = self.view.canvas()
+        for y in range(10, 170, 9):
+            for x in range(10, 310, 9):
+                mixed = canvas.at((x + 0.5) / 320 * canvas.width, (y + 0.5) / 180 * canvas.height)
+                near = [rendered.at(x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+                for channel in range(3):
+                    self.assertGreaterEqual(mixed[channel] + slack, min(n[channel] for n in near))
+                    self.assertLessEqual(mixed[channel] - slack, max(n[channel] for n in near))
 
     def test_load(self):
         self.assertEqual(self.view.text(".scene-name"), "wall.yaml")
@@ -284,30 +347,27 @@ class EditingSteps(unittest.TestCase):
                 self.assertEqual(split.at(x, y), after.at(x, y))
 
     def test_both_mixers_show_the_same(self):
-        by_webgl = EditorPage(self.browser, self.editor, by_webgl=True)
-        self.addCleanup(by_webgl.page.close)
-        by_webgl.wait_final()
-        is_webgl = "document.querySelector('.picture-box canvas').getContext('webgl2') !== null"
-        self.assertFalse(self.page.evaluate(is_webgl))
-        self.assertTrue(by_webgl.page.evaluate(is_webgl))
-        for look in ["total", "backscatter", "irradiance"]:
-            pictures = []
-            for view in (self.view, by_webgl):
-                view.page.command("Page.bringToFront")
-                view.page.click(f'[title="See {look}"]')
-                view.page.evaluate("new Promise((done) => requestAnimationFrame(() => "
-                                   "requestAnimationFrame(done)))")
-                pictures.append(view.canvas())
-            plain, graphics = pictures
-            self.assertEqual((plain.width, plain.height), (graphics.width, graphics.height))
-            self.assertGreater(graphics.brightness(), 5)
-            differences = [abs(a - b) for p, g in zip(plain.planes, graphics.planes)
-                           for a, b in zip(p, g)]
-            # Enlarged, light is interpolated before or after it is turned into colours: a step of
-            # light differs there.
-            self.assertLess(sum(differences) / len(differences), 0.5, look)
-            self.assertLess(sorted(differences)[int(0.99 * len(differences))], 8, look)
-        self.assertEqual(by_webgl.page.complaints, [])
+        self.assert_mixers_agree(["total", "backscatter", "irradiance"])
+
+    def test_through_a_view(self):
+        """An OpenColorIO config with the scene: the page shows what `uwvdb render` writes."""
+        before, revision = self.view.canvas(), self.view.state("revision")
+        (self.editor.folder / "house.ocio").write_text(HOUSE)
+        self.editor.scene.write_text(SCENE + "  view: {config: house.ocio}\n")
+        # A scene without changes of its own is read anew.
+        self.page.wait(f"{self.view.DRAWN}?.revision > {revision}")
+        self.view.wait_final()
+        self.assertEqual(self.view.state("view")["name"], "Plain / monitor")
+        rendered = read_png(self.editor.render("viewed.exr"))
+        shown = bytes(self.page.evaluate(
+            "fetch('api/export/picture.png').then(r => r.arrayBuffer())"
+            ".then(b => [...new Uint8Array(b)])"))
+        self.assertEqual(read_png(shown).planes, rendered.planes)
+        self.assertEqual(rendered.texts["view"], "Plain / monitor")
+        self.assert_mixers_agree(["total"])
+        # The page has a table of it, which is off by a step of 255 at most.
+        self.assert_canvas_shows(rendered, 3)
+        self.assertNotEqual(self.view.canvas().planes, before.planes)
 
     def test_suggest(self):
         self.page.click('.lamp-option:has(.swatch)')
@@ -360,19 +420,7 @@ class EditingSteps(unittest.TestCase):
         self.assertEqual(read_png(shown).planes, rendered.planes)
         exposure = float(rendered.texts["exposure"])
         # And so is what the page mixed of it, but for the rounding of half floats and the scaling.
-        self.page.evaluate("sessionStorage.setItem('uwvdb.settings', JSON.stringify({..."
-                           "JSON.parse(sessionStorage.getItem('uwvdb.settings')), "
-                           f"stops: Math.log2({exposure!r})}}))")
-        self.view.open()
-        self.view.wait_final()
-        canvas = self.view.canvas()
-        for y in range(10, 170, 9):
-            for x in range(10, 310, 9):
-                mixed = canvas.at((x + 0.5) / 320 * canvas.width, (y + 0.5) / 180 * canvas.height)
-                near = [rendered.at(x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
-                for channel in range(3):
-                    self.assertGreaterEqual(mixed[channel] + 2, min(n[channel] for n in near))
-                    self.assertLessEqual(mixed[channel] - 2, max(n[channel] for n in near))
+        self.assert_canvas_shows(rendered, 2)
 
     def test_by_keyboard(self):
         self.page.evaluate("document.querySelector('[role=option]').focus()")

@@ -215,8 +215,8 @@ class SceneText {
         const bool has_extent = draw_.chance(0.1);
         out_ << "  - {";
         if (has_extent && draw_.chance(0.5))
-            out_ << "type: disk, samples: 4, radius: " << kinds_.size * draw_.log_uniform(1e-3, 0.3)
-                 << ", ";
+            out_ << draw_.one_of({"type: disk", "type: sphere"})
+                 << ", samples: 4, radius: " << kinds_.size * draw_.log_uniform(1e-3, 0.3) << ", ";
         else if (has_extent)
             out_ << "type: rectangle, samples: 4, width: "
                  << kinds_.size * draw_.log_uniform(1e-3, 0.3)
