@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/troubleshooting.h"
 #include "core/image/colour.h"
 #include "core/light/integrator_table.h"
 #include "render/exposure.h"
@@ -165,8 +166,8 @@ void Renderer::warn_of_multiple_error() {
     if (is_draft || !(report_.multiple_error > k_most_multiple_error)) return;
     report_.warnings.push_back(fmt::format(
         "multiple scattering: its standard error is {:.2g} % of the image's mean; for less, use "
-        "--quality exact, or --integrator path with --error 0.02",
-        100 * *report_.multiple_error));
+        "--quality exact, or --integrator path with --error 0.02{}",
+        100 * *report_.multiple_error, see_troubleshooting("Blotches, grain and spots")));
 }
 
 void Renderer::render_film(const RenderOptions& options, PassList& passes) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/troubleshooting.h"
 #include "core/light/integrator_table.h"
 #include "core/light/lamp_factory.h"
 #include "core/light/medium.h"
@@ -48,8 +49,9 @@ void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
         if (emitter.holds(distance(emitter.position(), ray->origin)))
             scene.warnings.push_back(fmt::format(
                 "{}: the lamp is where the camera's rays enter the water; its in-scatter grows "
-                "without bound there and is cut off at {} m from it; move it aside",
-                desc.lamps[emitter.index()].where, k_lamp_radius));
+                "without bound there and is cut off at {} m from it; move it aside{}",
+                desc.lamps[emitter.index()].where, k_lamp_radius,
+                see_troubleshooting("Blotches, grain and spots")));
     }
 }
 

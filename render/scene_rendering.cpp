@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/troubleshooting.h"
 #include "core/light/integrator_table.h"
 #include "core/passes/all_light_pass.h"
 #include "core/passes/forward_pass.h"
@@ -100,9 +101,8 @@ std::optional<std::string> far_lamp_warning(const AssembledScene& scene) {
     return fmt::format(
         "multiple scattering: the nearest lamp lies behind an optical depth of {:.2g}, as seen "
         "from the camera and from the surfaces it lights; beyond {:g} its noise is large; use "
-        "--integrator "
-        "path with --error 0.02, or move a lamp nearer",
-        *depth, k_most_depth);
+        "--integrator path with --error 0.02, or move a lamp nearer{}",
+        *depth, k_most_depth, see_troubleshooting("Blotches, grain and spots"));
 }
 
 }  // namespace uw

@@ -10,6 +10,10 @@ run_quietly() {
     fi
 }
 
+seconds_since() {  # EPOCHREALTIME then
+    awk -v a="$1" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.1f", b - a }'
+}
+
 # Configures and builds a preset, e.g. `build_preset release`; further arguments are those of
 # `cmake --build`. Ninja shows the progress.
 build_preset() {

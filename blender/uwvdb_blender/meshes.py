@@ -256,11 +256,11 @@ class _Corners:
             self._normals = _read(mesh.vertex_normals, "vector", 3, numpy.float32)
         elif self._normals_of == "FACE":
             self._normals = _read(mesh.polygon_normals, "vector", 3, numpy.float32)
-        elif hasattr(mesh, "corner_normals"):
-            self._normals = _read(mesh.corner_normals, "vector", 3, numpy.float32)
-        else:
+        elif hasattr(mesh, "calc_normals_split"):  # Blender 4.0 has corner_normals, too, but they are empty
             mesh.calc_normals_split()
             self._normals = _read(mesh.loops, "normal", 3, numpy.float32)
+        else:
+            self._normals = _read(mesh.corner_normals, "vector", 3, numpy.float32)
 
     def used_slots(self):
         if self._count == 0:

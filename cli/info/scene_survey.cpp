@@ -13,6 +13,7 @@
 #include "cli/grid_summary.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
+#include "core/base/troubleshooting.h"
 #include "core/light/medium.h"
 #include "render/scene_assembly.h"
 #include "render/scene_rendering.h"
@@ -30,39 +31,45 @@ constexpr double k_little_in_view = 1e-3;
 void warn_of_grid(const GridSurvey& grid, bool has_lamps, std::vector<std::string>& warnings) {
     const std::string name = fmt::format("grid '{}' of '{}': ", grid.report.grid,
                                          printable(grid.report.file.filename().string(), 300));
-    const auto warn = [&](const std::string& what) { warnings.push_back(name + what); };
+    const auto warn_missing = [&](const std::string& what) {
+        warnings.push_back(name + what + see_troubleshooting("The plume is missing"));
+    };
+    const auto warn_black = [&](const std::string& what) {
+        warnings.push_back(name + what + see_troubleshooting("Black"));
+    };
     if (grid.report.bounds.empty()) return;  // loading has warned of it
     if (grid.in_view < k_little_in_view && grid.hidden > grid.in_view)
-        warn(fmt::format(
+        warn_missing(fmt::format(
             "hidden behind {}: {:.3g} % of it is in the image, but behind that surface; "
             "if it is the box of a simulation, leave it out of the geometry, else move "
             "the camera",
             grid.hidden_behind, 100 * grid.hidden));
     else if (grid.in_view == 0)
-        warn(
+        warn_missing(
             "nothing of it is in view of the camera; compare its world bounds with camera.pose, "
             "and give it a transform");
     else if (grid.in_view < k_little_in_view)
-        warn(
+        warn_missing(
             fmt::format("only {:.2g} % of it is in view of the camera; compare its world bounds "
                         "with camera.pose, and give it a transform",
                         100 * grid.in_view));
     if (has_lamps && grid.in_reach == 0)
-        warn("no lamp reaches any of it: it will be black; move a lamp nearer, or aim it there");
+        warn_black(
+            "no lamp reaches any of it: it will be black; move a lamp nearer, or aim it there");
     else if (has_lamps && grid.in_view > 0 && grid.in_both == 0)
-        warn("no lamp reaches what is in view of it: it will be black");
+        warn_black("no lamp reaches what is in view of it: it will be black");
     double most = 0, least = 1e300;
     for (const std::vector<double>& depth : grid.depth) {
         most = std::max(most, std::ranges::max(depth));
         least = std::min(least, std::ranges::min(depth));
     }
     if (most < k_invisible_depth)
-        warn(
+        warn_missing(
             fmt::format("its optical depth is {:.2g} at most: it will be invisible; raise the ppm "
                         "per unit, or check transform.scale",
                         most));
     if (least > k_opaque_depth)
-        warn(
+        warn_missing(
             fmt::format("its optical depth is {:.3g} or more along every axis: it is opaque; lower "
                         "the ppm per unit, or check transform.scale",
                         least));
@@ -72,14 +79,15 @@ void warn_of_surfaces(const SceneSurvey& survey, std::vector<std::string>& warni
     const ViewSurvey& view = survey.view;
     if (view.on_surface == 0) return;
     if (!survey.scene.lamps.empty() && view.lit == 0)
-        warnings.emplace_back(
+        warnings.push_back(
             "no lamp reaches any surface in view: they will be black; move a lamp nearer, or aim "
-            "it there");
+            "it there" +
+            see_troubleshooting("Black"));
     if (view.hidden == 1)
         warnings.push_back(fmt::format(
             "every surface in view lies behind an optical depth over {:g} in all bands: none will "
-            "be seen; go nearer, or make the water or the volumes clearer",
-            k_opaque_depth));
+            "be seen; go nearer, or make the water or the volumes clearer{}",
+            k_opaque_depth, see_troubleshooting("Black")));
     else if (view.hidden > 0.5)
         warnings.push_back(fmt::format(
             "{:.0f} % of the surfaces in view lie behind an optical depth over {:g} in all bands",
@@ -94,14 +102,15 @@ void warn_of_contrast(const SceneSurvey& survey, std::vector<std::string>& warni
     constexpr double k_thin = 0.5;
     warnings.push_back(fmt::format(
         "the volumes change the picture by {:.2g} % where they are seen (99th percentile): they "
-        "will hardly be noticed; {}",
+        "will hardly be noticed; {}{}",
         100 * draft.contrast,
         draft.depth < k_thin
             ? fmt::format("their optical depth there is {:.2g}: raise the ppm per unit, or check "
                           "transform.scale",
                           draft.depth)
             : "move the lamps away from the camera and nearer to the volumes, so that less water "
-              "is lit before them, go nearer with the camera, or make the water clearer"));
+              "is lit before them, go nearer with the camera, or make the water clearer",
+        see_troubleshooting("The plume is missing")));
 }
 
 /// One line for each thing that will be black, opaque or missing.

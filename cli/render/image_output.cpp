@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/troubleshooting.h"
 #include "core/image/image_file.h"
 #include "core/image/jpeg_file.h"
 #include "core/image/picture_file.h"
@@ -39,7 +40,8 @@ void warn_of_darkness(const PixelWindow& window, std::size_t empty, bool black,
         warn(
             "the image is black: no lamp's light reaches the camera; check the "
             "lamps' positions, directions and intensities, the camera's pose, and how far "
-            "light travels in this water");
+            "light travels in this water" +
+            see_troubleshooting("Black"));
 }
 
 void warn_of_half(const HalfLoss& loss, const ExrOptions& options, const SayCallback& warn) {

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/input_files.h"
+#include "core/base/troubleshooting.h"
 #include "core/image/loaded_module.h"
 
 namespace uw {
@@ -28,8 +29,8 @@ std::shared_ptr<ColourView> make_view(const ViewDesc& desc, const std::string& c
     if (module.address == nullptr)
         throw InputError(
             fmt::format("{}: a view needs OpenColorIO ({}); install the package "
-                        "uwvdb-image-formats, or take it out for sRGB",
-                        where, module.fault));
+                        "uwvdb-image-formats, or take it out for sRGB{}",
+                        where, module.fault, see_troubleshooting("Installing")));
     ViewRequest request{config, desc.display, desc.view, desc.look, desc.input, {}};
     std::error_code status;
     if (!std::filesystem::is_regular_file(config, status))

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/troubleshooting.h"
 #include "core/image/loaded_module.h"
 
 namespace uw {
@@ -83,8 +84,8 @@ PixelImage read_other_image(std::span<const std::byte> encoded, const ImageForma
     if (module.address == nullptr)
         throw InputError(fmt::format(
             "{}: a {} image needs OpenImageIO ({}); install the package {}, or save it as PNG or "
-            "JPEG",
-            name, format.name, module.fault, k_package));
+            "JPEG{}",
+            name, format.name, module.fault, k_package, see_troubleshooting("Installing")));
     return decode_other_image(*reinterpret_cast<DecodeImage*>(module.address), encoded, format,
                               name);
 }
@@ -221,8 +222,8 @@ void require_writer(const OutputFormat& format) {
     if (format.library != Library::openimageio || encoder().address != nullptr) return;
     throw UsageError(
         fmt::format("a {} file needs OpenImageIO ({}); install the package {}, or give a name that "
-                    "ends in .exr, .png or .jpg",
-                    format.name, encoder().fault, k_package));
+                    "ends in .exr, .png or .jpg{}",
+                    format.name, encoder().fault, k_package, see_troubleshooting("Installing")));
 }
 
 void write_other_image(OutputFile& out, const OutputFormat& format, const ImageValues& image) {

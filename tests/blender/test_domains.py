@@ -4,8 +4,9 @@
 from plumes import *
 from support import *
 
-# Blender's solver starts Python once more in a way that Python 3.13 ends the program for (Debian 13).
-CANNOT_RUN = sys.version_info >= (3, 13) and "Blender's fluid solver does not work with Python 3.13"
+# Blender's solver starts Python once more in a way that Python 3.12 and later end the program for (Ubuntu 24.04,
+# Debian 13).
+CANNOT_RUN = sys.version_info >= (3, 12) and "Blender's fluid solver does not work with Python 3.12 or later"
 
 
 def baked(folder, frames=10, **settings):

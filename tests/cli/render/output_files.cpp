@@ -165,6 +165,7 @@ TEST_F(OutputFiles, BlackImagesAreNotWithoutAWord) {
         run({"render", "scene.yaml", "--set", "water.absorption=1e5"});
     EXPECT_EQ(murky.exit_code, 0);
     EXPECT_NE(murky.err.find("warning: the image is black"), std::string::npos);
+    EXPECT_NE(murky.err.find(" (see \"Black\" in docs/troubleshooting.md)\n"), std::string::npos);
 }
 
 }  // namespace
