@@ -47,6 +47,10 @@ target_compile_definitions(uwvdb_nanovdb INTERFACE NANOVDB_USE_TBB)
 # pkg-config file alone names.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+if(HTTPLIB_VERSION VERSION_GREATER_EQUAL 0.15)  # Debian 13's: threads in its header end OpenSSL's part of them
+    find_package(OpenSSL REQUIRED)              # libcpp-httplib-dev depends on libssl-dev
+    target_link_libraries(PkgConfig::HTTPLIB INTERFACE OpenSSL::Crypto)
+endif()
 pkg_check_modules(FFTW QUIET fftw3)  # its version
 
 # Only for the module image_formats, and for tests. The exported target names an OpenCV include
