@@ -174,8 +174,12 @@ std::string calibration_obstacle(CalibrationFormat format, const CameraDesc& cam
 std::vector<std::string> calibration_omissions(CalibrationFormat format, const CameraDesc& camera) {
     if (format == CalibrationFormat::scene || !camera.port) return {};
     return std::visit(
-        [](const auto& port) {
+        [&](const auto& port) {
             std::vector<std::string> lines;
+            if (port.dispersion.any())
+                lines.push_back(
+                    fmt::format("the file holds indices of one wavelength: these are of {:g} nm",
+                                camera.wavelength_nm));
             if (port.fresnel) lines.emplace_back("the file cannot hold the port's fresnel");
             if (port.radiance_in_air)
                 lines.emplace_back("the file cannot hold the port's radiance_in");

@@ -312,10 +312,14 @@ std::string write_kalibr(const CameraDesc& camera) {
 namespace {
 
 std::string glass(double thickness, const auto& port) {
-    return fmt::format("thickness: {}, n_air: {}, n_glass: {}, n_water: {}{}{}", thickness,
-                       port.n_air, port.n_glass, port.n_water,
-                       port.fresnel ? ", fresnel: true" : "",
-                       port.radiance_in_air ? ", radiance_in: air" : "");
+    const auto index = [](double number, const std::optional<DispersionDesc>& material) {
+        return material ? scene_text(*material) : fmt::format("{}", number);
+    };
+    return fmt::format(
+        "thickness: {}, n_air: {}, n_glass: {}, n_water: {}{}{}", thickness,
+        index(port.n_air, port.dispersion.air), index(port.n_glass, port.dispersion.glass),
+        index(port.n_water, port.dispersion.water), port.fresnel ? ", fresnel: true" : "",
+        port.radiance_in_air ? ", radiance_in: air" : "");
 }
 
 std::string port_text(const PortDesc& port) {

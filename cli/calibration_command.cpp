@@ -40,6 +40,7 @@ struct CalibrationArguments {
     std::string camera;                       // --camera: which of several
     std::optional<CalibrationFormat> format;  // --to
     std::filesystem::path output;             // -o; empty: standard output
+    std::optional<double> wavelength;         // --wavelength [nm]
     bool json = false;
 };
 
@@ -66,6 +67,10 @@ Options calibration_options(CalibrationArguments& a) {
     for (const CalibrationFormat format : calibration_formats())
         to.words.emplace_back(word_of(format));
     options.path("-o,--output", "FILE", a.output, "the file to write").needs = "--to";
+    options.number("--wavelength", "NM", a.wavelength, k_shortest_dispersion_nm,
+                   k_longest_dispersion_nm,
+                   "of light in nm, whose indices a scene's port has; default: the band "
+                   "nearest to 550");
     options.flag("--json", a.json, "print what was understood as JSON");
     return options;
 }
@@ -186,7 +191,8 @@ std::string lens_text(const CameraDesc& camera) {
 }  // namespace
 
 CalibrationSurvey survey_calibration(const std::filesystem::path& file,
-                                     const Calibration& calibration) {
+                                     const Calibration& calibration,
+                                     std::span<const double> bands_nm) {
     CalibrationSurvey survey;
     survey.file = file;
     survey.calibration = calibration;
@@ -203,6 +209,7 @@ CalibrationSurvey survey_calibration(const std::filesystem::path& file,
         });
     find_fold(desc, survey);
     survey.covered = covered(camera);
+    survey.lateral_colour = band_shifts(desc, bands_nm);
     for (const CalibrationFormat format : calibration_formats())
         survey.targets.push_back({format, calibration_obstacle(format, desc)});
     return survey;
@@ -246,6 +253,14 @@ Report report_on_calibration(const CalibrationSurvey& survey) {
     if (survey.in_water) row("", field_text(*survey.in_water) + " in the water");
     report.set({{"field_of_view_in_housing", field_json(survey.in_lens)},
                 {"field_of_view_in_water", field_json(survey.in_water.value_or(survey.in_lens))}});
+    if (disperses(camera)) {
+        row("", fmt::format("of light of {:g} nm", camera.wavelength_nm));
+        row("lateral colour", text_of(survey.lateral_colour));
+        Json colours = Json::array();
+        for (const auto& [nm, pixels] : survey.lateral_colour)
+            colours.push_back({{"wavelength_nm", nm}, {"pixels", pixels}});
+        report.set({{"wavelength_nm", camera.wavelength_nm}, {"lateral_colour", colours}});
+    }
     if (survey.fold_angle)
         row("lens shows",
             fmt::format("up to {:.3f} deg off the axis{}", *survey.fold_angle / k_degree,
@@ -285,7 +300,8 @@ bool is_scene(const std::filesystem::path& file) {
     return text.starts_with("uwvdb:") || text.find("\nuwvdb:") != std::string::npos;
 }
 
-Calibration read_subject(const CalibrationArguments& a) {
+/// `bands_nm`: those of a scene, in any order.
+Calibration read_subject(const CalibrationArguments& a, std::vector<double>& bands_nm) {
     if (!is_scene(a.file)) return read_calibration(a.file, a.camera);
     if (!a.camera.empty()) throw UsageError("--camera: a scene has one camera; leave --camera out");
     const SceneDesc scene = load_scene(a.file, {});
@@ -293,6 +309,7 @@ Calibration read_subject(const CalibrationArguments& a) {
     result.format = CalibrationFormat::scene;
     result.model = word_of_lens(scene.camera);
     result.desc = scene.camera;
+    bands_nm = scene.water.bands_nm;
     return result;
 }
 
@@ -312,7 +329,9 @@ void run_calibration(const CalibrationArguments& a) {
         throw UsageError(
             "--json: --to already writes to standard output; give -o for the file, or leave one of "
             "them out");
-    const Calibration calibration = read_subject(a);
+    std::vector<double> bands_nm;
+    Calibration calibration = read_subject(a, bands_nm);
+    if (a.wavelength) set_wavelength(calibration.desc, *a.wavelength);
     for (const std::string& warning : calibration.warnings)
         print_message(fmt::format("warning: {}\n", warning));
     if (a.format) {
@@ -336,7 +355,8 @@ void run_calibration(const CalibrationArguments& a) {
             write_text(plain_name(a.output), write_calibration(*a.format, bare));
         }
     }
-    print_output(report_on_calibration(survey_calibration(a.file, calibration)).printed(a.json));
+    print_output(
+        report_on_calibration(survey_calibration(a.file, calibration, bands_nm)).printed(a.json));
 }
 
 }  // namespace

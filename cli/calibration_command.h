@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "camera/calibration.h"
+#include "camera/lateral_colour.h"
 #include "cli/command.h"
 #include "cli/report.h"
 
@@ -26,6 +28,9 @@ struct CalibrationSurvey {
     /// Angle to the axis up to which the lens has rays [rad], and its distance from the principal
     /// point along x [pixels]; empty for a lens that covers everything before it.
     std::optional<double> fold_angle, fold_radius;
+    /// How far the bands of a scene are seen from where light of the camera's wavelength is, at
+    /// most [pixels]; empty where the port's indices do not depend on the wavelength.
+    std::vector<BandShift> lateral_colour;
     double covered = 0;  // fraction of the image's pixels with a ray into the water
     struct Target {
         CalibrationFormat format;
@@ -34,8 +39,10 @@ struct CalibrationSurvey {
     std::vector<Target> targets;
 };
 
+/// `bands_nm`: those of a scene.
 CalibrationSurvey survey_calibration(const std::filesystem::path& file,
-                                     const Calibration& calibration);
+                                     const Calibration& calibration,
+                                     std::span<const double> bands_nm = {});
 
 /// For people, ASCII; for programs, as docs/command-line.md says.
 Report report_on_calibration(const CalibrationSurvey& survey);

@@ -177,6 +177,7 @@ struct PointsArguments {
     std::string camera;                      // --camera: of a rig
     std::optional<int> frame;                // --frame: of meshes that are sequences
     std::optional<std::array<int, 2>> size;  // --size WxH
+    std::optional<double> wavelength;        // --wavelength [nm]
     std::vector<std::string> overrides;      // --set key.path=value
     int threads = 0;                         // 0: all
     bool quiet = false;
@@ -196,6 +197,8 @@ without a header it has these three alone. Each row gets these columns more:
   in_image          1 within the image, else 0
   visible           1 within the image and behind no surface, else 0; how turbid the water is does
                     not matter
+Where the port's indices depend on the wavelength, pixels are those of the band nearest to 550 nm,
+as ground truth is, or of --wavelength.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted.)";
 
@@ -210,7 +213,8 @@ first pixel's centre (0.5, 0.5). Each row gets these columns more:
   origin_x, origin_y, origin_z           where the pixel's ray enters the water, on the outer glass
                                          surface [m, in the world]
   direction_x, direction_y, direction_z  its direction in the water, of length 1, in the world
-They are nan outside the image and where no ray enters the water.
+They are nan outside the image and where no ray enters the water. Where the port's indices depend on
+the wavelength, rays are those of the band nearest to 550 nm, or of --wavelength.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted.)";
 
@@ -222,6 +226,10 @@ Options points_options(PointsArguments& a, std::string table_name, std::string t
                  "the table to write; default: standard output");
     options.text("--camera", "NAME", a.camera, "which camera of a rig");
     options.set(a.overrides);
+    options.number("--wavelength", "NM", a.wavelength, k_shortest_dispersion_nm,
+                   k_longest_dispersion_nm,
+                   "of light in nm, where the port's indices depend on it; default: the "
+                   "band nearest to 550");
     options.size(a.size, "as if rendered at this size, the intrinsics scaled with it");
     options.integer("--frame", "N", a.frame, 0, 999'999'999,
                     "which frame of meshes that are a sequence");
@@ -237,7 +245,10 @@ ImageScene observed_scene(const PointsArguments& a) {
     desc.volumes.clear();
     if (a.size) resize_images(desc, (*a.size)[0], (*a.size)[1]);
     const ImageChoice choice{a.frame, chosen_camera(a.camera, desc.cameras)};
-    return ImageScene(std::move(desc), choice).with([](SceneDesc& seen) { seen.lamps.clear(); });
+    return ImageScene(std::move(desc), choice).with([&](SceneDesc& seen) {
+        seen.lamps.clear();
+        if (a.wavelength) set_wavelength(seen.camera, *a.wavelength);
+    });
 }
 
 AssembledScene with_surfaces(const ImageScene& scene) {

@@ -63,6 +63,8 @@ Json camera_json(const CameraDesc& camera) {
         rows.push_back({pose.linear()[0][row], pose.linear()[1][row], pose.linear()[2][row],
                         pose.offset()[row]});
     const bool is_fisheye = d.model == DistortionDesc::Model::fisheye;
+    Json port = camera.port ? port_json(*camera.port) : Json(nullptr);
+    if (disperses(camera)) port["wavelength_nm"] = camera.wavelength_nm;
     return {{"width", camera.width},
             {"height", camera.height},
             {"fx", k.fx},
@@ -72,7 +74,7 @@ Json camera_json(const CameraDesc& camera) {
             {"model", is_fisheye ? "fisheye" : "brown-conrady"},
             {"k", d.k},
             {"p", d.p},
-            {"port", camera.port ? port_json(*camera.port) : Json(nullptr)},
+            {"port", port},
             {"position", vector_json(pose.offset())},
             {"rotation_wxyz", {q.w, q.x, q.y, q.z}},
             {"world_from_camera", rows}};
@@ -89,7 +91,10 @@ CameraDesc camera_from_json(const Json& json) {
     if (json.at("model") == "fisheye") camera.distortion.model = DistortionDesc::Model::fisheye;
     json.at("k").get_to(camera.distortion.k);
     json.at("p").get_to(camera.distortion.p);
-    if (!json.at("port").is_null()) camera.port = port_from(json.at("port"));
+    if (!json.at("port").is_null()) {
+        camera.port = port_from(json.at("port"));
+        camera.wavelength_nm = json.at("port").value("wavelength_nm", camera.wavelength_nm);
+    }
     Matrix3 linear;
     Vector3 offset;
     for (int row = 0; row < 3; ++row) {

@@ -35,11 +35,14 @@ void for_rows(py::ssize_t count, const std::function<void(py::ssize_t row)>& bod
     });
 }
 
-CameraObject camera_of_scene(const SceneObject& scene, std::size_t camera,
-                             std::optional<int> frame) {
+CameraObject camera_of_scene(const SceneObject& scene, std::size_t camera, std::optional<int> frame,
+                             std::optional<double> wavelength) {
     SceneDesc desc = *scene.desc();
     desc.volumes.clear();
-    const ImageScene image(std::move(desc), {frame, camera});
+    const ImageScene image =
+        ImageScene(std::move(desc), {frame, camera}).with([&](SceneDesc& seen) {
+            if (wavelength) set_wavelength(seen.camera, *wavelength);
+        });
     return {image.desc().camera, camera_of_truth(image)};
 }
 
@@ -140,7 +143,7 @@ py::tuple camera_state(const CameraObject& self) {
     const bool is_fisheye = desc.distortion.model == DistortionDesc::Model::fisheye;
     return py::make_tuple(desc.width, desc.height, std::array{k.fx, k.fy, k.cx, k.cy}, is_fisheye,
                           desc.distortion.k, desc.distortion.p, port_state(desc.port),
-                          matrix_of(desc.world_from_camera));
+                          matrix_of(desc.world_from_camera), desc.wavelength_nm);
 }
 
 CameraObject camera_of_state(const py::tuple& state) {
@@ -154,6 +157,7 @@ CameraObject camera_of_state(const py::tuple& state) {
     desc.distortion.p = state[5].cast<std::array<double, 2>>();
     desc.port = port_of_state(state[6]);
     desc.world_from_camera = affine_of(state[7].cast<DoubleRows>());
+    desc.wavelength_nm = state[8].cast<double>();
     return camera_of(desc);
 }
 
@@ -161,11 +165,14 @@ CameraObject camera_of_state(const py::tuple& state) {
 
 void bind_camera(py::module_& module) {
     py::class_<CameraObject>(module, "Camera")
-        .def(py::init(&camera_of_scene), py::arg("scene"), py::arg("camera"), py::arg("frame"))
+        .def(py::init(&camera_of_scene), py::arg("scene"), py::arg("camera"), py::arg("frame"),
+             py::arg("wavelength"))
         .def("rays", rays, py::arg("pixels"))
         .def("project", project, py::arg("points"), py::arg("beyond"))
         .def_property_readonly("width", [](const CameraObject& c) { return c.camera.width(); })
         .def_property_readonly("height", [](const CameraObject& c) { return c.camera.height(); })
+        .def_property_readonly("wavelength",
+                               [](const CameraObject& c) { return c.desc.wavelength_nm; })
         .def_property_readonly("matrix", matrix)
         .def_property_readonly("distortion", distortion)
         .def_property_readonly(

@@ -179,6 +179,8 @@ ImageMetadata metadata_of(const ImageScene& image, std::optional<int> frame,
         m["uwvdb/port_radiance_in"] = std::string(port.radiance_in_air ? "air" : "water");
     };
     if (scene.camera.port) std::visit(note_port, *scene.camera.port);
+    // Of rays and ground truth: light of other wavelengths goes other ways.
+    if (disperses(scene.camera)) m["uwvdb/wavelength_nm"] = scene.camera.wavelength_nm;
     if (const auto& lens = scene.camera.lens) {
         m["uwvdb/lens_f_number"] = lens->f_number;
         m["uwvdb/lens_focal_length_m"] = lens->focal_length;
@@ -198,6 +200,8 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
         m["uwvdb/exposure_parts"] = static_cast<double>(report.exposure_parts);
         m["uwvdb/exposure_samples"] = static_cast<double>(report.exposure_samples);
     }
+    if (report.colour_groups > 1)
+        m["uwvdb/colour_groups"] = static_cast<double>(report.colour_groups);
     const Medium& medium = scene.water.medium;
     std::vector<double> a, b, c;
     for (int band = 0; band < medium.band_count(); ++band) {

@@ -8,6 +8,7 @@
 #include "core/base/troubleshooting.h"
 #include "core/image/colour.h"
 #include "core/light/integrator_table.h"
+#include "core/passes/pixel_layers.h"
 #include "render/exposure.h"
 #include "render/scene_assembly.h"
 
@@ -142,6 +143,7 @@ void Renderer::count_work() {
     report_.camera_rays = report_.pixels * (samples == 1 ? 1 : samples + 1);
     if (report_.paths.samples > 0)
         report_.camera_rays = report_.pixels * static_cast<std::uint64_t>(report_.paths.samples);
+    report_.camera_rays *= report_.colour_groups;
     report_.splat_rays = std::exchange(splat_rays_, 0);
     for (const auto& field : light_) report_.light_bytes += field->bytes();
     for (const VolumeReport& volume : scene_->volume_reports) {
@@ -170,6 +172,62 @@ void Renderer::warn_of_multiple_error() {
         100 * *report_.multiple_error, see_troubleshooting("Blotches, grain and spots")));
 }
 
+ProgressCallback Renderer::progress_of_group(std::size_t group, std::size_t groups) const {
+    if (groups == 1) return progress_;
+    return [this, group, groups](const std::string& stage, double share) {
+        const double done = stage == "render" ? share : stage == "forward scatter" ? 1 : 0;
+        progress_("render", (static_cast<double>(group) + done) / static_cast<double>(groups));
+    };
+}
+
+void Renderer::render_light(const Exposure& exposure, const AssembledScene& scene, PassList& passes,
+                            Rendering& rendering) {
+    if (exposure.part_count() == 0) {
+        passes.run(Pass::Of::light, rendering);
+        return;
+    }
+    render_exposure(
+        exposure, scene, cache_, passes,
+        [this](const AssembledScene& part) {
+            return needs_.light ? light_of(part, [](double) {}) : DeepShadows();
+        },
+        rendering);
+}
+
+// Light that has its own way through the glass: each group is an image by itself, of whose bands
+// the film takes the light. Everything but the camera is that of the first.
+void Renderer::render_other_groups(std::span<const ColourGroup> groups,
+                                   const RenderOptions& options, PassList& passes) {
+    for (std::size_t k = 1; k < groups.size(); ++k) {
+        ImageScene image = scene_->image.with(
+            [&](SceneDesc& desc) { set_wavelength(desc.camera, groups[k].wavelength_nm); });
+        auto camera = std::make_unique<Camera>(image.desc().camera);
+        const AssembledScene scene =
+            with_moved(*scene_, std::move(image), std::move(camera), cache_);
+        LightTransport own;
+        if (!options.transport) own = make_light_transport(scene, light_, needs_.paths);
+        const PixelRenderer pixels = pixel_renderer(
+            scene, options.transport ? *options.transport : own, in_scatter_parts(*plan_), {});
+        const BandColour colour = colour_->of(groups[k].bands);
+        const ProgressCallback progress = progress_of_group(k, groups.size());
+        Film film(film_->width(), film_->height(), film_->window(), film_->channel_names());
+        ImageProgress reached;
+        Rendering rendering{.desc = scene.desc(),
+                            .time = scene.image.time().value_or(0),
+                            .pixels = pixels,
+                            .light = light_,
+                            .snow = scene.snow.get(),
+                            .plan = *plan_,
+                            .colour = colour,
+                            .film = film,
+                            .progress = progress,
+                            .reached = reached};
+        render_light(Exposure(scene), scene, passes, rendering);
+        take_bands(film, groups[k].bands, *plan_, *film_);
+        report_.include(reached);
+    }
+}
+
 void Renderer::render_film(const RenderOptions& options, PassList& passes) {
     LightTransport own;
     if (!options.transport) own = make_light_transport(*scene_, light_, needs_.paths);
@@ -181,32 +239,28 @@ void Renderer::render_film(const RenderOptions& options, PassList& passes) {
     report_.exposure_parts = static_cast<std::uint64_t>(exposure.part_count());
     report_.exposure_samples = static_cast<std::uint64_t>(exposure.samples());
     report_.motion_pixels = exposure.motion_pixels();
+    if (exposure.part_count() > 0 && options.paths.error)
+        throw UsageError(
+            "--error: is not known of an image in which something moves while the shutter is "
+            "open; give --samples instead");
+    const std::vector<ColourGroup> groups = colour_groups_of(scene_->desc());
+    report_.colour_groups = groups.size();
     const PixelRenderer pixels =
         pixel_renderer(*scene_, transport, in_scatter_parts(*plan_), others.matchers());
+    const BandColour colour = groups.size() > 1 ? colour_->of(groups.front().bands) : *colour_;
+    const ProgressCallback progress = progress_of_group(0, groups.size());
     Rendering rendering{.desc = scene_->desc(),
                         .time = scene_->image.time().value_or(0),
                         .pixels = pixels,
                         .light = light_,
                         .snow = scene_->snow.get(),
                         .plan = *plan_,
-                        .colour = *colour_,
+                        .colour = colour,
                         .film = *film_,
-                        .progress = progress_,
+                        .progress = progress,
                         .reached = report_};
-    if (exposure.part_count() == 0) {
-        passes.run(Pass::Of::light, rendering);
-    } else {
-        if (options.paths.error)
-            throw UsageError(
-                "--error: is not known of an image in which something moves while the shutter is "
-                "open; give --samples instead");
-        render_exposure(
-            exposure, *scene_, cache_, passes,
-            [this](const AssembledScene& part) {
-                return needs_.light ? light_of(part, [](double) {}) : DeepShadows();
-            },
-            rendering);
-    }
+    render_light(exposure, *scene_, passes, rendering);
+    render_other_groups(groups, options, passes);
     passes.run(Pass::Of::image, rendering);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/correspondences.h"
+#include "render/exposure.h"
 #include "render/image_scene.h"
 #include "render/light_left_out.h"
 #include "render/scene_assembly.h"
@@ -43,6 +44,8 @@ struct RenderReport : ImageProgress {
     /// all of them, and how far it moves in the image, at most [pixels]. 0: nothing moves.
     std::uint64_t exposure_parts = 0, exposure_samples = 0;
     double motion_pixels = 0;
+    /// Groups of bands with rays of their own (ColourGroup), each an image that was rendered.
+    std::uint64_t colour_groups = 1;
 };
 
 /// Renders images of scenes: the only path from a scene description to pixels.
@@ -121,6 +124,11 @@ class Renderer {
     void warn_of_error(const PathRequest& request);
     void warn_of_multiple_error();
     void render_film(const RenderOptions& options, PassList& passes);
+    void render_light(const Exposure& exposure, const AssembledScene& scene, PassList& passes,
+                      Rendering& rendering);
+    void render_other_groups(std::span<const ColourGroup> groups, const RenderOptions& options,
+                             PassList& passes);
+    ProgressCallback progress_of_group(std::size_t group, std::size_t groups) const;
     DeepShadows light_of(const AssembledScene& scene, const ShareCallback& progress);
 
     ProgressCallback progress_;

@@ -94,6 +94,11 @@ PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& 
             matchers};
 }
 
+std::vector<ColourGroup> colour_groups_of(const SceneDesc& scene) {
+    const bool is_draft = scene.render.quality == RenderDesc::Quality::draft;
+    return colour_groups(scene.camera, scene.water.bands_nm, is_draft ? 1 : k_shared_rays);
+}
+
 std::optional<std::string> far_lamp_warning(const AssembledScene& scene) {
     if (!paths_at_nodes(scene.desc().render)) return std::nullopt;
     const std::optional<double> depth = depth_of_nearest_lamp(scene);

@@ -4,7 +4,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "camera/lateral_colour.h"
 #include "core/image/layers.h"
 #include "core/passes/pass.h"
 #include "core/passes/path_pass.h"
@@ -25,6 +27,10 @@ LayerPlan layer_plan(const ImageScene& image, std::string_view request,
 
 /// The resolution at which lamps are splatted into water of `medium` for an image of this quality.
 DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium& medium);
+
+/// The bands of an image that are seen along rays of their own, if its camera's port has indices by
+/// wavelength: a draft's may be off by a pixel, others by a tenth of one.
+std::vector<ColourGroup> colour_groups_of(const SceneDesc& scene);
 
 /// Renders the pixels of `scene` by `transport`, one at a time. Both outlive the result. The scene
 /// has slabs if `parts` has the first.

@@ -108,7 +108,12 @@ void show_radiance_in_water(SceneDesc& scene, int longest_side) {
     scene.render.output = RenderDesc::Output::radiance;
     scene.render.colour = {};
     if (camera.port)
-        std::visit([](auto& port) { port.fresnel = port.radiance_in_air = false; }, *camera.port);
+        std::visit(
+            [](auto& port) {
+                port.fresnel = port.radiance_in_air = false;
+                port.dispersion = {};  // what is compared has one ray for all bands
+            },
+            *camera.port);
 }
 
 TrialScene make_trial(const ImageScene& scene) {

@@ -77,6 +77,9 @@ def _port(settings):
     port = {"type": settings.housing.lower(), "fresnel": settings.fresnel,
             "radiance_in": settings.radiance_in.lower()}
     port.update({name: getattr(settings, name) for name in HOUSING_NUMBERS})
+    for name in ("glass", "water"):
+        if getattr(settings, name) != "NUMBER":
+            port[f"n_{name}"] = getattr(settings, name).lower()
     if settings.housing == "FLAT":
         port["distance"] = settings.distance
         tilt, towards = settings.tilt, settings.tilt_towards

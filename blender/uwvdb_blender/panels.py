@@ -135,7 +135,7 @@ class UWVDB_PT_water(_Panel, bpy.types.Panel):
         if settings.kind == "NONE":
             return
         if settings.kind == "COEFFICIENTS":
-            for name in ("absorption", "scattering", "hg_g"):
+            for name in ("absorption", "scattering", "hg_g", "salinity", "temperature"):
                 column.prop(settings, name)
             return
         if settings.kind == "PRESET":
@@ -217,7 +217,12 @@ class UWVDB_PT_housing(CameraPanel, bpy.types.Panel):
         for name in names:
             column.prop(settings, name)
         if names:
-            for name in ("n_air", "n_glass", "n_water", "fresnel", "radiance_in"):
+            column.prop(settings, "n_air")
+            for material, number in (("glass", "n_glass"), ("water", "n_water")):
+                column.prop(settings, material)
+                if getattr(settings, material) == "NUMBER":
+                    column.prop(settings, number)
+            for name in ("fresnel", "radiance_in"):
                 column.prop(settings, name)
         column.prop(settings, "calibration")
 

@@ -149,6 +149,15 @@ class UwvdbCamera(bpy.types.PropertyGroup):
     center: FloatVectorProperty(
         name="Centre", default=(0, 0, 0), unit="LENGTH", precision=4,
         description="Of the dome, from the camera's centre: right, up, forward")
+    glass: EnumProperty(name="Glass", default="NUMBER", items=[
+        ("NUMBER", "Index", "The same index for all light"),
+        ("BK7", "BK7", ""), ("FUSED-SILICA", "Fused Silica", ""), ("SAPPHIRE", "Sapphire", ""),
+        ("PMMA", "PMMA", "Acrylic glass"), ("POLYCARBONATE", "Polycarbonate", "")])
+    water: EnumProperty(name="Water", default="NUMBER", items=[
+        ("NUMBER", "Index", "The same index for all light"),
+        ("SEAWATER", "Sea Water", "By the salinity and temperature of World > Water"),
+        ("FRESHWATER", "Fresh Water", "By the temperature of World > Water")],
+        description="Of the port: each band has its own rays")
     n_air: FloatProperty(name="Index of Air", default=1.0, min=1, max=3, precision=4)
     n_glass: FloatProperty(name="Index of Glass", default=1.49, min=1, max=3, precision=4)
     n_water: FloatProperty(name="Index of Water", default=1.334, min=1, max=3, precision=4)

@@ -16,6 +16,7 @@ def describe(scene, bands, to_metres):
         water.update(_explicit([0.0] * 3, [0.0] * 3, 0.0, bands))
     elif settings.kind == "COEFFICIENTS":
         water.update(_explicit(settings.absorption, settings.scattering, settings.hg_g, bands))
+        water.update(salinity=settings.salinity, temperature=settings.temperature)
     else:
         if settings.kind == "CONSTITUENTS":
             water.update(cdom=settings.cdom, chlorophyll=settings.chlorophyll)

@@ -331,6 +331,9 @@ SceneSurvey survey_scene(const AssembledScene& scene,
     const auto ray = [&](double x, double y) { return scene.camera->refracted_ray(x, y); };
     survey.field_of_view = {degrees_between(ray(0, height / 2), ray(width, height / 2)),
                             degrees_between(ray(width / 2, 0), ray(width / 2, height))};
+    const std::vector<double>& bands_nm = scene.desc().water.bands_nm;
+    survey.lateral_colour = band_shifts(scene.desc().camera, bands_nm);
+    survey.colour_groups = colour_groups_of(scene.desc()).size();
     survey.warnings = scene.warnings;
     append_survey_warnings(survey);
     if (const auto warning = far_lamp_warning(scene)) survey.warnings.push_back(*warning);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/lateral_colour.h"
 #include "cli/info/camera_path.h"
 #include "cli/info/plume_view.h"
 #include "cli/info/vdb_report.h"
@@ -64,8 +65,10 @@ struct SceneSurvey {
     ViewSurvey view;
     std::optional<DraftContrast> contrast;  // of the volumes; none without volumes or lamps
     std::array<double, 2> field_of_view{};  // in the water, through the centre [degrees]
-    std::optional<LightLeftOut> left_out;   // by single scattering; none: it renders all light
-    std::optional<PathSurvey> path;         // of the camera; none: nothing moves
+    std::vector<BandShift> lateral_colour;  // empty: no index depends on the wavelength
+    std::size_t colour_groups = 1;
+    std::optional<LightLeftOut> left_out;  // by single scattering; none: it renders all light
+    std::optional<PathSurvey> path;        // of the camera; none: nothing moves
     std::optional<VariationsSurvey> variations;
     std::vector<std::string> files_outside;  // read by the scene, but not in its folder
     std::vector<std::string> warnings;       // the scene's, then what will be black or opaque

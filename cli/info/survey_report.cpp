@@ -65,6 +65,21 @@ Report report_on_camera(const SceneSurvey& survey) {
                 {"port", camera.port.has_value()},
                 {"position", vector_json(at)},
                 {"direction", vector_json(to)}});
+    if (disperses(camera)) {
+        report.say(fmt::format("rays and ground truth of light of {:g} nm; lateral colour {}",
+                               camera.wavelength_nm, text_of(survey.lateral_colour)));
+        if (survey.colour_groups > 1)
+            report.say(fmt::format(
+                "rendered {} times, as many groups of bands have rays of their own; with numbers "
+                "for n_glass and n_water once",
+                survey.colour_groups));
+        Json shifts = Json::array();
+        for (const BandShift& shift : survey.lateral_colour)
+            shifts.push_back({{"wavelength_nm", shift.wavelength_nm}, {"pixels", shift.pixels}});
+        report.set({{"wavelength_nm", camera.wavelength_nm},
+                    {"lateral_colour", shifts},
+                    {"colour_groups", survey.colour_groups}});
+    }
     const double shutter = survey.scene.desc().render.shutter;
     if (shutter > 0) report.say(fmt::format("exposed for {:.4g} ms", 1e3 * shutter));
     if (camera.line_time > 0)

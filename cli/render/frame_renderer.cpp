@@ -161,6 +161,7 @@ void FrameRenderer::count_work(const RenderReport& report) {
     stats_.count("lamps", report.lamps);
     stats_.count("bands", report.bands);
     if (report.exposure_parts > 0) stats_.count("exposure_parts", report.exposure_parts);
+    if (report.colour_groups > 1) stats_.count("colour_groups", report.colour_groups);
     if (report.exposure_parts > 0) stats_.measure("motion_pixels", report.motion_pixels);
     if (report.multiple_error) stats_.measure("multiple_error", *report.multiple_error);
     if (report.paths.samples == 0) return;

@@ -131,6 +131,13 @@ void BandColour::show_cie1931(std::span<const double> bands_nm, std::span<const 
     }
 }
 
+BandColour BandColour::of(std::span<const std::size_t> bands) const {
+    BandColour share = *this;
+    share.rgb_of_band_ = {};
+    for (const std::size_t band : bands) share.rgb_of_band_[band] = rgb_of_band_[band];
+    return share;
+}
+
 LinearRgb BandColour::operator()(const Spectrum& radiance) const {
     LinearRgb rgb{};
     for (std::size_t i = 0; i < bands_; ++i) {

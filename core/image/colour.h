@@ -75,6 +75,9 @@ class BandColour {
     /// Reads the first `bands` values of `radiance`.
     LinearRgb operator()(const Spectrum& radiance) const;
 
+    /// The share that some of the bands have in the colour: those of all parts of the bands add up.
+    BandColour of(std::span<const std::size_t> bands) const;
+
     /// One line; empty if there is no warning.
     const std::string& warning() const { return warning_; }
 

@@ -218,6 +218,8 @@ class LayerPlan {
     bool is_provided(Layer layer) const { return provided_.has(layer); }
     /// The same for the light of one lamp, by its index in the scene.
     int first_channel_of_lamp(std::size_t lamp) const { return first_of_lamp_[lamp]; }
+    /// The scene's lamps, requested or not.
+    std::size_t lamp_count() const { return first_of_lamp_.size(); }
     /// Whether the light of any single lamp was requested.
     bool has_lamps() const;
 

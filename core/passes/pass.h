@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -36,6 +37,14 @@ struct ImageProgress {
     /// relative to the image's mean.
     std::optional<double> multiple_error;
     std::uint64_t snow_particles = 0;  // drawn
+
+    /// Takes in another image of the same scene, in other bands: the greatest of each.
+    void include(const ImageProgress& other) {
+        paths.samples = std::max(paths.samples, other.paths.samples);
+        paths.error = std::max(paths.error, other.paths.error);
+        multiple_error = std::max(multiple_error, other.multiple_error);
+        snow_particles = std::max(snow_particles, other.snow_particles);
+    }
 };
 
 /// A pixel and what it was made of.

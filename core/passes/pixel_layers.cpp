@@ -309,6 +309,39 @@ void add_forward_scatter_of_lamp(const PixelResult& pixel, const LayerPlan& plan
                   static_cast<float>(pixel.pixel_factor * pixel.backscatter[b]);
 }
 
+void take_bands(const Film& from, std::span<const std::size_t> bands, const LayerPlan& plan,
+                Film& film) {
+    // Where the light of band 0 is, of every layer that has one channel per band.
+    std::vector<std::size_t> firsts;
+    std::vector<float> pixel(film.channel_names().size());
+    const auto add = [&](std::span<const float> own) {
+        if (!own.empty()) firsts.push_back(static_cast<std::size_t>(own.data() - pixel.data()));
+    };
+    for (const LayerKind& kind : k_layers)
+        if (kind.of_exposure() && kind.content != LayerContent::matte && kind.suffixes.empty() &&
+            plan.has(kind.layer))
+            add(plan.channels(kind.layer, pixel));
+    for (std::size_t lamp = 0; lamp < plan.lamp_count(); ++lamp)
+        add(plan.lamp_channels(lamp, pixel));
+    for (std::size_t order = 0; order < plan.order_count(); ++order) {
+        add(plan.order_channels(order, pixel));
+        add(plan.reflection_channels(order, pixel));
+    }
+    const PixelWindow& window = film.window();
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        const int y = window.y0 + static_cast<int>(line);
+        for (int x = window.x0; x < window.x1; ++x) {
+            const std::span<const float> more = from.pixel(x, y);
+            const std::span<float> own = film.pixel(x, y);
+            for (const std::size_t first : firsts)
+                for (const std::size_t band : bands) own[first + band] = more[first + band];
+            for (const std::size_t channel : {k_red, k_green, k_blue})
+                own[channel] += more[channel];
+            if (from.shows_lamp(x, y)) film.mark_lamp(x, y);
+        }
+    });
+}
+
 ExposureMean::ExposureMean(const LayerPlan& plan, const BandColour& colour, Film& mean)
     : plan_(plan), colour_(colour), mean_(mean) {
     // Lamps and orders follow the layers: all channels but those of other kinds are means.

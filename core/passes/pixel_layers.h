@@ -100,6 +100,13 @@ void store_forward_scatter(const PixelResult& pixel, const LayerPlan& plan,
 void add_forward_scatter_of_lamp(const PixelResult& pixel, const LayerPlan& plan, std::size_t lamp,
                                  std::span<float> channels);
 
+/// Takes the light of `bands` into `film` from an image of the same pixels that another camera
+/// sees, that of their wavelength. The colour of each film is the share of its own bands
+/// (BandColour::of): they are added. What is not of a band stays: coverage, mattes and ground
+/// truth.
+void take_bands(const Film& from, std::span<const std::size_t> bands, const LayerPlan& plan,
+                Film& film);
+
 /// The image of an exposure as the mean over images of its parts. Light is averaged, and sums of
 /// layers stay sums to the bit; the transmittance is the mean over what hits a surface. Layers of
 /// the exposure's middle are left alone.

@@ -31,9 +31,11 @@ double read_length(const ConfigValue& value, const SceneContext& context) {
 template <class PortDescription>
 void read_glass(ConfigMap& map, const SceneContext& context, PortDescription& port) {
     if (const auto entry = map.find("thickness")) port.thickness = read_length(*entry, context);
-    if (const auto entry = map.find("n_air")) port.n_air = read_refractive_index(*entry);
-    if (const auto entry = map.find("n_glass")) port.n_glass = read_refractive_index(*entry);
-    if (const auto entry = map.find("n_water")) port.n_water = read_refractive_index(*entry);
+    if (const auto entry = map.find("n_air")) port.dispersion.air = read_index(*entry, port.n_air);
+    if (const auto entry = map.find("n_glass"))
+        port.dispersion.glass = read_index(*entry, port.n_glass);
+    if (const auto entry = map.find("n_water"))
+        port.dispersion.water = read_index(*entry, port.n_water);
     if (const auto fresnel = map.find("fresnel")) {
         constexpr std::array<std::pair<std::string_view, bool>, 2> k_switch{
             {{"true", true}, {"false", false}}};
@@ -74,6 +76,32 @@ DomePortDesc read_dome(ConfigMap& map, const SceneContext& context) {
 }
 
 }  // namespace
+
+bool disperses(const CameraDesc& camera) {
+    return camera.port &&
+           std::visit([](const auto& port) { return port.dispersion.any(); }, *camera.port);
+}
+
+void set_wavelength(CameraDesc& camera, double wavelength_nm) {
+    camera.wavelength_nm = wavelength_nm;
+    if (!camera.port) return;
+    const auto update = [&](const std::optional<DispersionDesc>& material, double& index) {
+        if (material) index = refractive_index(*material, wavelength_nm);
+    };
+    std::visit(
+        [&](auto& port) {
+            update(port.dispersion.air, port.n_air);
+            update(port.dispersion.glass, port.n_glass);
+            update(port.dispersion.water, port.n_water);
+        },
+        *camera.port);
+}
+
+double reference_wavelength(std::span<const double> bands_nm) {
+    constexpr double k_wanted_nm = 550;
+    return *std::ranges::min_element(bands_nm, {},
+                                     [](double nm) { return std::abs(nm - k_wanted_nm); });
+}
 
 void read_resolution(const ConfigValue& both, const ConfigValue& width, const ConfigValue& height,
                      CameraDesc& camera) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/vector_math.h"
 #include "core/scene/config_value.h"
+#include "core/scene/dispersion.h"
 #include "core/scene/scene_context.h"
 #include "core/scene/sensor_desc.h"
 #include "core/scene/trajectory.h"
@@ -37,6 +39,15 @@ struct DistortionDesc {
     friend bool operator==(const DistortionDesc&, const DistortionDesc&) = default;
 };
 
+/// The materials before a port, in it and behind it whose indices depend on the wavelength; the
+/// port's numbers are theirs at the camera's wavelength (set_wavelength).
+struct PortDispersion {
+    std::optional<DispersionDesc> air{}, glass{}, water{};
+
+    bool any() const { return air || glass || water; }
+    friend bool operator==(const PortDispersion&, const PortDispersion&) = default;
+};
+
 /// A flat window, camera frame.
 struct FlatPortDesc {
     Vector3 normal{0, 0, 1};  ///< unit, z > 0
@@ -45,6 +56,7 @@ struct FlatPortDesc {
     double n_air = 1.0, n_glass = 1.49, n_water = 1.334;  ///< refractive indices, 1..3
     bool fresnel = false;                                 ///< reflection losses at both surfaces
     bool radiance_in_air = false;  ///< the camera's radiance is that in air, not in water
+    PortDispersion dispersion{};
 
     friend bool operator==(const FlatPortDesc&, const FlatPortDesc&) = default;
 };
@@ -57,6 +69,7 @@ struct DomePortDesc {
     double n_air = 1.0, n_glass = 1.49, n_water = 1.334;  ///< refractive indices, 1..3
     bool fresnel = false;                                 ///< reflection losses at both surfaces
     bool radiance_in_air = false;  ///< the camera's radiance is that in air, not in water
+    PortDispersion dispersion{};
 
     friend bool operator==(const DomePortDesc&, const DomePortDesc&) = default;
 };
@@ -87,6 +100,8 @@ struct CameraDesc {
     IntrinsicsDesc intrinsics;
     DistortionDesc distortion;
     std::optional<PortDesc> port;
+    /// The light in vacuum that the port's indices are of, and with them all rays [nm].
+    double wavelength_nm = 550;
     std::optional<LensDesc> lens;
     std::optional<SensorDesc> sensor;
     Affine world_from_camera;  ///< rigid; x right, y down, z forward
@@ -103,6 +118,17 @@ struct CameraDesc {
     bool has_intrinsics = true, has_pose = true;
     SourceLocation where;
 };
+
+/// Whether the camera's rays depend on the wavelength.
+bool disperses(const CameraDesc& camera);
+
+/// Makes the camera that of another wavelength [nm]: gives its port the indices there, as far as
+/// they are not the same for all.
+void set_wavelength(CameraDesc& camera, double wavelength_nm);
+
+/// The band, one of `bands_nm`, at whose wavelength a scene's ground truth and calibration hold,
+/// where rays depend on it: the nearest to 550 nm, of two the first.
+double reference_wavelength(std::span<const double> bands_nm);
 
 /// One camera of a rig.
 struct RigCameraDesc {
@@ -125,7 +151,7 @@ void read_resolution(const ConfigValue& both, const ConfigValue& width, const Co
 /// `port` of a camera.
 PortDesc read_port(const ConfigValue& value, const SceneContext& context);
 
-/// A refractive index.
+/// A refractive index that is a number.
 double read_refractive_index(const ConfigValue& value);
 
 /// Checks that the glass lies in front of the camera; `normal` is unit.

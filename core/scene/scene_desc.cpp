@@ -169,6 +169,36 @@ void complete_sensors(SceneDesc& scene) {
         scene.camera = scene.cameras.front().camera;
 }
 
+/// Gives the water before ports the scene's salinity and temperature where it has none of its own,
+/// and all ports the indices of the wavelength that ground truth is of. Throws InputError for bands
+/// at which their materials are not known.
+void complete_ports(SceneDesc& scene) {
+    const auto complete = [&](CameraDesc& camera) {
+        if (!disperses(camera)) return;
+        for (const double nm : scene.water.bands_nm)
+            if (nm < k_shortest_dispersion_nm || nm > k_longest_dispersion_nm)
+                throw InputError(fmt::format(
+                    "{}: port: indices by material are known from {:g} to {:g} nm, and there is a "
+                    "band at {:g} nm; give numbers for n_glass and n_water, or leave that band out",
+                    camera.where, k_shortest_dispersion_nm, k_longest_dispersion_nm, nm));
+        const auto complete_water = [&](std::optional<DispersionDesc>& material) {
+            if (!material || material->material != DispersionDesc::Material::water) return;
+            if (!material->salinity) material->salinity = scene.water.salinity;
+            if (!material->temperature) material->temperature = scene.water.temperature;
+        };
+        std::visit(
+            [&](auto& port) {
+                complete_water(port.dispersion.air);
+                complete_water(port.dispersion.glass);
+                complete_water(port.dispersion.water);
+            },
+            *camera.port);
+        set_wavelength(camera, reference_wavelength(scene.water.bands_nm));
+    };
+    complete(scene.camera);
+    for (RigCameraDesc& entry : scene.cameras) complete(entry.camera);
+}
+
 /// Blur is the mean over more rays than edges need.
 void refine_blur(SceneDesc& desc) {
     constexpr int k_samples = 64;
@@ -257,6 +287,7 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     open_shutter(desc);
     check_lenses(desc);
     complete_sensors(desc);
+    complete_ports(desc);
     refine_blur(desc);
     check_times(desc);
     check_gltf_imports(desc);

@@ -399,8 +399,22 @@ Json port_json(const CameraDesc& camera, const ConfigNode& tree) {
     if (!camera.port) return nullptr;
     Json port = std::visit([](const auto& desc) { return port_values_json(desc); }, *camera.port);
     const ConfigNode* node = tree.find("camera");
-    const bool is_written = node && node->find("port");
-    port["path"] = is_written ? Json("camera.port") : Json(nullptr);
+    const ConfigNode* const written = node ? node->find("port") : nullptr;
+    port["path"] = written ? Json("camera.port") : Json(nullptr);
+    // The materials that indices are given by, as they are written; null: by numbers.
+    const auto material = [&](const std::optional<DispersionDesc>& known, const char* key) -> Json {
+        if (!known) return nullptr;
+        const ConfigNode* const own = written ? written->find(key) : nullptr;
+        const bool is_word = own && own->kind == ConfigNode::Kind::scalar;
+        return is_word ? own->scalar : scene_text(*known);
+    };
+    std::visit(
+        [&](const auto& desc) {
+            port["materials"] = {{"n_air", material(desc.dispersion.air, "n_air")},
+                                 {"n_glass", material(desc.dispersion.glass, "n_glass")},
+                                 {"n_water", material(desc.dispersion.water, "n_water")}};
+        },
+        *camera.port);
     return port;
 }
 

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "core/base/error.h"
+#include "core/scene/dispersion.h"
 #include "media/water/phase_functions.h"
 #include "media/water/species.h"
 #include "media/water/water_types.h"

@@ -48,12 +48,6 @@ double pure_water_absorption(double wavelength_nm, double temperature, double sa
                              salinity * table.per_salinity.value(wavelength_nm));
 }
 
-double water_refractive_index(double wavelength_nm, double temperature, double salinity) {
-    const double t = temperature, s = salinity, nm = wavelength_nm;
-    return 1.31405 + (1.779e-4 - 1.05e-6 * t + 1.6e-8 * t * t) * s - 2.02e-6 * t * t +
-           (15.868 + 0.01155 * s - 0.00423 * t) / nm - 4382 / (nm * nm) + 1.1455e6 / (nm * nm * nm);
-}
-
 double water_vsf_90(double wavelength_nm, double salinity) {
     return 1.38e-4 * (1 + 0.3 * salinity / 37) * std::pow(500 / wavelength_nm, 4.32);
 }

@@ -31,10 +31,6 @@ WavelengthRange pure_water_absorption_range();
 /// `pure_water_absorption_range()`: InputError.
 double pure_water_absorption(double wavelength_nm, double temperature, double salinity);
 
-/// Refractive index of (sea) water against air at `temperature` [deg C] and `salinity` [PSU]:
-/// Quan and Fry 1995, eq. 3, for 0 to 30 deg C, 0 to 35 PSU and 400 to 700 nm, and beyond.
-double water_refractive_index(double wavelength_nm, double temperature, double salinity);
-
 /// Volume scattering function of water's molecules at 90 degrees [1/(m sr)] (Morel 1974):
 /// 1.38e-4 (1 + 0.3 S/37) (500/lambda)^4.32, with `salinity` S in PSU.
 double water_vsf_90(double wavelength_nm, double salinity);

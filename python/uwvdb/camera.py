@@ -58,6 +58,12 @@ class Camera(Native[_uwvdb.Camera]):
         return self._native.height
 
     @property
+    def wavelength(self) -> float:
+        """The light [nm] whose rays these are. All light has the same where the indices of the port
+        are numbers, and without a port."""
+        return self._native.wavelength
+
+    @property
     def matrix(self) -> NDArray[np.float64]:
         """The camera matrix (3, 3) [pixels]: fx, fy, cx, cy from the image's corner."""
         return self._native.matrix

@@ -121,9 +121,14 @@ class Scene(Native[_uwvdb.Scene]):
         """Its camera, of a rig the first: the geometry of rays, through lens and port."""
         return self.camera_at()
 
-    def camera_at(self, camera: str | int | None = None, frame: int | None = None) -> Camera:
-        """The camera of that name or index of a rig, at a frame of what moves."""
-        return Camera._of(_uwvdb.Camera(self._native, self._camera_index(camera), frame))
+    def camera_at(self, camera: str | int | None = None, frame: int | None = None, *,
+                  wavelength: float | None = None) -> Camera:
+        """The camera of that name or index of a rig, at a frame of what moves, as light of that
+        wavelength [nm] is refracted by its port: where its indices depend on it, by default that of
+        the band nearest to 550, as in ground truth."""
+        if wavelength is not None and not 300 <= wavelength <= 1100:
+            raise UsageError(f"camera_at: wavelength: {wavelength} is not from 300 to 1100 nm")
+        return Camera._of(_uwvdb.Camera(self._native, self._camera_index(camera), frame, wavelength))
 
     def _camera_index(self, camera: str | int | None) -> int:
         names = self.cameras

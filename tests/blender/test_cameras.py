@@ -134,6 +134,33 @@ def test_housing_bends_rays():
     close(numpy.hypot(position[..., 0], position[..., 2]), away, 1e-5, "refracted")
 
 
+def test_housing_has_glass_and_water_by_name():
+    """Ground truth is of the band nearest to 550 nm: a point as far away as BK7's and the sea's indices
+    of 540 nm say, and the light of other bands lies elsewhere."""
+    scene = empty_scene()
+    square(size=40, location=(0, 2, 0), rotation=(math.pi / 2, 0, 0))
+    scene.view_layers[0].use_pass_position = True
+    scene.world.uwvdb.kind = "COEFFICIENTS"
+    scene.world.uwvdb.absorption = scene.world.uwvdb.scattering = (0, 0, 0)
+    scene.world.uwvdb.salinity, scene.world.uwvdb.temperature = 35, 10
+    settings = scene.camera.data.uwvdb
+    settings.housing, settings.distance, settings.thickness = "FLAT", 0.1, 0.05
+    settings.glass, settings.water = "BK7", "SEAWATER"
+    position = render()["Position"]
+    rows, columns = position.shape[:2]
+    focal = scene.camera.data.lens / scene.camera.data.sensor_width * columns
+    tangent = numpy.hypot(*numpy.meshgrid((numpy.arange(columns) + 0.5 - columns / 2) / focal,
+                                          (numpy.arange(rows) + 0.5 - rows / 2) / focal))
+    sine = tangent / numpy.hypot(1, tangent)
+
+    def tangent_in(index):
+        s = sine / index
+        return s / numpy.sqrt(1 - s**2)
+
+    away = 0.1 * tangent + 0.05 * tangent_in(1.519039) + 1.85 * tangent_in(1.342066)
+    close(numpy.hypot(position[..., 0], position[..., 2]), away, 1e-5, "refracted")
+
+
 def test_tilt_leans_as_the_tooltip_says():
     """Glass that leans up bends the axis's ray down by the shift of a plane-parallel plate and, in the
     water, by refraction towards the normal: upwards."""

@@ -112,6 +112,30 @@ TEST_F(CalibrationCommand, ConvertsToStandardOutputAndToFiles) {
     EXPECT_EQ(output_of({"calibration", "back.yaml", "--to", "scene"}), back);
 }
 
+TEST_F(CalibrationCommand, TellsTheLateralColourOfAScene) {
+    write("port.yaml", std::string(R"(uwvdb: 1
+camera:
+  resolution: [2000, 1000]
+  intrinsics: {fx: 1000}
+  port: {n_glass: bk7, n_water: seawater}
+)") + k_rest);
+    const std::string text = output_of({"calibration", "port.yaml"});
+    expect_part(text, "1.51904 (glass), 1.34118 (water)");
+    expect_part(text, "of light of 540 nm\n");
+    // At the corner, atan(sqrt(5) / 2) = 48.19 deg in air, by Snell's law for each band.
+    expect_part(text, "lateral colour   up to 5.06 pixels at 620 nm, 8.83 at 450 nm\n");
+    const std::string json = output_of({"calibration", "port.yaml", "--json"});
+    expect_part(json, R"("wavelength_nm": 540.0)");
+    expect_part(output_of({"calibration", "port.yaml", "--wavelength", "450"}), "1.34586 (water)");
+    expect_part(output_of({"calibration", "port.yaml", "--to", "scene"}),
+                "n_glass: bk7, n_water: {salinity: 35, temperature: 20}}");
+    const auto colmap = run({"calibration", "port.yaml", "--to", "colmap"});
+    expect_part(colmap.out, " 1.3411");
+    expect_part(colmap.err, "the file holds indices of one wavelength: these are of 540 nm");
+    // Numbers have no colour.
+    EXPECT_EQ(output_of({"calibration", "scene.yaml"}).find("lateral colour"), std::string::npos);
+}
+
 TEST_F(CalibrationCommand, RefusesInOneLine) {
     write("calibration.yaml", test::k_calibmar_flat);
     const std::string file = "calibration.yaml";

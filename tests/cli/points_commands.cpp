@@ -6,6 +6,7 @@
 
 #include "core/base/csv_table.h"
 #include "core/base/vector_math.h"
+#include "core/scene/dispersion.h"
 #include "tests/support/cli_test.h"
 
 namespace uw {
@@ -65,6 +66,28 @@ TEST_F(PointsCommands, ProjectsByHand) {
     EXPECT_NEAR(table.numbers("path")[1], std::sqrt(1 + 0.0625 + 16), 1e-12);
     EXPECT_EQ(table.numbers("in_image"), (std::vector<double>{1, 1, 1, 1, 1, 0}));
     EXPECT_EQ(table.numbers("visible"), (std::vector<double>{1, 1, 0, 0, 1, 0}));
+}
+
+TEST_F(PointsCommands, AreOfTheWavelengthAskedFor) {
+    write("port.yaml", std::string(R"(uwvdb: 1
+camera: {resolution: [640, 480], intrinsics: {fx: 500}, port: {n_water: seawater}}
+)") + k_plane_in_water);
+    write("points.csv", "x,y,z\n2,0,5\n");
+    // A thin window at the camera's centre: n sin is that of the point.
+    const auto expected = [](double index) {
+        const double sine = index * 2 / std::sqrt(29);
+        return 320 + 500 * sine / std::sqrt(1 - sine * sine);
+    };
+    const auto pixel = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments{"project", "port.yaml", "points.csv"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return table_of(std::move(arguments)).numbers("pixel_x")[0];
+    };
+    EXPECT_NEAR(pixel({}), expected(water_refractive_index(540, 20, 35)), 1e-9);
+    EXPECT_NEAR(pixel({"--wavelength", "450"}), expected(water_refractive_index(450, 20, 35)),
+                1e-9);
+    expect_failure({"project", "port.yaml", "points.csv", "--wavelength", "0.45"}, 2,
+                   "--wavelength");
 }
 
 TEST_F(PointsCommands, RaysOfProjectedPointsPassThroughThem) {

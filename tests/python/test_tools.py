@@ -62,6 +62,23 @@ def test_points_that_are_not_in_the_image():
             camera.project(wrong)
 
 
+def test_cameras_of_other_wavelengths():
+    scene = uwvdb.Scene.load(SCENES / "port.yaml")
+    assert np.array_equal(scene.camera_at(wavelength=450).project([1, 0.5, 2]),
+                          scene.camera.project([1, 0.5, 2]))  # its indices are numbers
+    scene.update({"camera.port.n_glass": "bk7", "camera.port.n_water": "seawater"})
+    assert scene.camera.wavelength == 540
+    blue, green, red = (scene.camera_at(wavelength=nm) for nm in (450, 540, 620))
+    assert blue.wavelength == 450
+    x = [camera.project([1, 0.5, 2])[0] for camera in (red, green, blue)]
+    assert x[0] + 0.2 < x[1] < x[2] - 0.2  # blue is enlarged most
+    assert np.array_equal(green.project([1, 0.5, 2]), scene.camera.project([1, 0.5, 2]))
+    again = pickle.loads(pickle.dumps(blue))
+    assert again.wavelength == 450 and again.project([1, 0.5, 2])[0] == x[2]
+    with pytest.raises(uwvdb.UsageError, match="wavelength"):
+        scene.camera_at(wavelength=0.45)
+
+
 def test_cameras_of_rigs():
     scene = uwvdb.Scene.load(SCENES / "stereo.yaml")
     left, right = (scene.camera_at(name) for name in scene.cameras)

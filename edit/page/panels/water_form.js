@@ -5,6 +5,8 @@ import { checkField, numberField, numbersField, selectField } from "./fields.js"
 import { bound, Form } from "./form.js";
 
 const PORTS = { none: "none: in the water", flat: "flat", dome: "dome" };
+const GLASSES = ["bk7", "fused-silica", "sapphire", "pmma", "polycarbonate"];
+const WATERS = ["seawater", "freshwater"];
 const PORT_STARTS = {
     flat: { type: "flat", distance: 0.02, thickness: 0.01 },
     dome: { type: "dome", radius: 0.08, thickness: 0.01 },
@@ -24,7 +26,7 @@ export class WaterForm {
             (scene) => [scene.water.presets, scene.volumes.map((volume) =>
                 [volume.file, Object.keys(volume.concentrations),
                     Object.values(volume.concentrations).map(Object.keys)]),
-            scene.camera.port?.type ?? null, scene.camera.port?.path],
+            scene.camera.port?.type ?? null, scene.camera.port?.path, scene.camera.port?.materials],
             (scene) => this.#build(scene));
     }
 
@@ -73,6 +75,23 @@ export class WaterForm {
         return parts;
     }
 
+    /** An index by material or by number. */
+    #index(scene, label, key, materials) {
+        const path = `camera.port.${key}`;
+        const current = (now) => now.camera.port?.materials[key] ?? null;
+        const words = current(scene) === null || materials.includes(current(scene))
+            ? materials : [...materials, current(scene)];
+        const commit = this.#set(label.toLowerCase(), path);
+        const field = bound(selectField({ label, key: `${path}.material`,
+            options: [{ value: null, label: "index as a number" },
+                ...words.map((value) => ({ value, label: value }))],
+            commit: (value, refuse) =>
+                commit(value ?? Number(scene.camera.port[key].toFixed(4)), refuse) }), current);
+        if (current(scene) !== null) return [field];
+        return [field, this.#number(`Index of ${label.toLowerCase()}`, null, path,
+            (now) => now.camera.port?.[key] ?? null, { optional: false })];
+    }
+
     #port(scene) {
         const type = scene.camera.port?.type ?? "none";
         const read = (key) => (now) => now.camera.port?.[key] ?? null;
@@ -91,7 +110,8 @@ export class WaterForm {
             ? [number("Distance", "m", "distance"), vector("Normal", null, "normal")]
             : [number("Inner radius", "m", "radius"), vector("Centre", "m", "center")]),
         number("Thickness", "m", "thickness"), number("Index of air", null, "n_air"),
-        number("Index of glass", null, "n_glass"), number("Index of water", null, "n_water"),
+        ...this.#index(scene, "Glass", "n_glass", GLASSES),
+        ...this.#index(scene, "Water", "n_water", WATERS),
         bound(checkField({ label: "Fresnel losses at the glass", key: "camera.port.fresnel",
             commit: this.#set("fresnel", "camera.port.fresnel") }), (now) => now.camera.port.fresnel));
         return parts;

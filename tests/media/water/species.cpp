@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/scene/dispersion.h"
 #include "core/scene/scene_desc.h"
 #include "media/water/mie.h"
 #include "media/water/water_model.h"
@@ -160,14 +161,6 @@ TEST(Species, OfTablesAreThoseOfFormulas) {
                   (void)species_optics(tables, 550, 1.34);
               }).find("scene.yaml:1:1: water.species.test: sizes.csv"),
               std::string::npos);
-}
-
-// Quan and Fry 1995, as tabulated from its coefficients for 35 PSU at 10 deg C.
-TEST(WaterRefractiveIndex, IsQuanAndFrys) {
-    EXPECT_NEAR(water_refractive_index(400, 10, 35), 1.35085, 5.1e-6);
-    EXPECT_NEAR(water_refractive_index(550, 10, 35), 1.34167, 5.1e-6);
-    EXPECT_NEAR(water_refractive_index(700, 10, 35), 1.33735, 5.1e-6);
-    EXPECT_NEAR(water_refractive_index(550, 20, 0), 1.33434, 5.1e-6);
 }
 
 WaterDesc water(const std::string& text) {
