@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/support/adaptive_quadrature.h"
+#include "tests/support/film_rendering.h"
 #include "tests/support/scene_folder.h"
 #include "tests/support/suns.h"
 #include "tests/support/test_scene.h"
@@ -76,6 +77,31 @@ TEST_F(StratifiedWater, ThatIsFlatWhereItIsSeenIsUniform) {
     SceneDesc stepped = uniform;
     stepped.render.integrator = RenderDesc::Integrator::reference;
     EXPECT_LT(worst_of_all(desc, stepped), 3e-3);  // other steps
+}
+
+// The same for all light, by paths: their free ways are drawn in the strata.
+TEST_F(StratifiedWater, HasAllLightOfUniformWaterWhereItIsFlat) {
+    SceneDesc uniform = with_kopelevich(layered_scene(), 0.05, 0.4);
+    uniform.water.absorption.reset();
+    uniform.camera = pinhole_scene(6, 4).camera;
+    uniform.render.integrator = RenderDesc::Integrator::path;
+    uniform.render.samples = 2048;
+    const RenderedFilm a(
+        with_profile(uniform, "depth_m,absorption\n0,0.3\n2,0.3\n2000,0.3\n9000,0\n"));
+    uniform.water.absorption = PerBand{0.3, 0.3, 0.3};
+    const RenderedFilm b(uniform);
+    for (int band = 0; band < 3; ++band) {
+        double difference = 0, squares = 0, sum = 0;
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 6; ++x) {
+                difference += a.total(x, y, band) - b.total(x, y, band);
+                squares += std::pow(a.value(Layer::error, x, y, band), 2) +
+                           std::pow(b.value(Layer::error, x, y, band), 2);
+                sum += b.total(x, y, band);
+            }
+        EXPECT_LT(std::abs(difference), 4 * std::sqrt(squares));
+        EXPECT_LT(std::sqrt(squares), 0.01 * sum);
+    }
 }
 
 // Absorption and scattering of a layer between 2.6 and 3.2 m, whose ends are ramps.
