@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 namespace uw {
 
 std::string bounds_text(const Bounds& b) {
@@ -42,16 +44,24 @@ Report report_on_grid(const VolumeReport& volume, const Medium& medium) {
     const bool is_empty = volume.bounds.empty();
     report.say(is_empty ? "no values above 0" : "bounds " + bounds_text(volume.bounds));
     std::vector<Report> constituents;
+    const std::size_t middle = medium.wavelengths_nm.size() / 2;
     for (const ConstituentReport& c : volume.constituents) {
         const Constituent& constituent =
             medium.constituents[static_cast<std::size_t>(c.constituent)];
         const std::string unit = constituent.unit == "1" ? "" : " " + constituent.unit;
+        std::array<double, 3> depth{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            depth[axis] = c.column[axis] * constituent.per_unit.attenuation(middle);
         Report& part = constituents.emplace_back();
         if (!is_empty)
-            part.say(fmt::format("{}: min {:.4g}, mean {:.4g}, max {:.4g}{}", constituent.name,
-                                 c.min, c.mean, c.max, unit));
+            part.say(fmt::format(
+                "{}: min {:.4g}, mean {:.4g}, max {:.4g}{}; optical depth along x, y, z at {:g} nm "
+                "{:.3g}, {:.3g}, {:.3g}",
+                constituent.name, c.min, c.mean, c.max, unit, medium.wavelengths_nm[middle],
+                depth[0], depth[1], depth[2]));
         part.set({{"name", constituent.name},
                   {"unit", constituent.unit},
+                  {"optical_depth", list_json({depth.begin(), depth.end()})},
                   {"min", number_json(c.min)},
                   {"mean", number_json(c.mean)},
                   {"max", number_json(c.max)}});

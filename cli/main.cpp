@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "cli/water_command.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "media/water/species_cache.h"
 
 namespace {
 
@@ -67,6 +69,8 @@ int main(int argc, char** argv) {
     uw::prepare_streams();
     uw::limit_memory();
     std::set_terminate(end_by_unexpected);
+    if (const std::filesystem::path cache = uw::user_cache_folder(); !cache.empty())
+        uw::keep_species_in(cache / "uwvdb" / "species");
     try {
         std::vector<uw::Command> commands;
         add_all(commands);

@@ -92,6 +92,7 @@ const char* const k_water_examples = R"(Examples:
   uwvdb water jerlov-II --bands 400:700:10 --csv out/jerlov-II
   uwvdb water --set water.particles='{small: 1, large: 1}' --band 540 --svg vsf.svg
   uwvdb water plume.yaml --set water.preset=jerlov-3C --json
+  uwvdb water --species clay,silt,petzold-harbor --band 540 --svg species.svg
 
 Prints a, b and c [1/m] per band and what is derived from them, then the volume scattering function
 by component. --set water.* needs no scene. docs/water.md explains the tables and names their
@@ -106,6 +107,13 @@ Options water_options(WaterArguments& a) {
     options.text("PRESET|SCENE", "", a.subject,
                  "a preset such as jerlov-II, or a scene file; default: pure sea water");
     options.set(a.overrides);
+    options.parsed(
+        "--species", "LIST",
+        [&a](const std::string& text) {
+            for (const std::string_view name : split(text, ','))
+                a.overrides.push_back(fmt::format("water.species.{}={{library: {}}}", name, name));
+        },
+        "compare species of the library, such as clay,silt: adds them to water.species");
     options.parsed(
         "--bands", "LIST", [&a](const std::string& text) { a.bands_nm = parse_bands(text); },
         "nm: 620,540,450 or first:last:step, instead of the water's");
@@ -208,7 +216,11 @@ void run_water(const WaterArguments& a, std::ostream& out) {
     WaterSurvey survey;
     read_subject(a, survey);
     replace_bands(a, survey);
-    survey.table = tabulate_water(survey.water, survey.volumes);
+    {
+        Progress progress("particles", "", 1, ProgressForm::text);
+        survey.table = tabulate_water(survey.water, survey.volumes,
+                                      [&](double share) { progress.update(share); });
+    }
     survey.sources =
         water_sources(survey.water, survey.volumes, survey.table.small_ppm, survey.table.large_ppm);
     choose_vsf_bands(a, survey);

@@ -89,6 +89,17 @@ Columns coefficient_columns(const CoefficientTable& table) {
         [](const auto& t, auto i) { return t.backscatter_fraction(i); });
     add("albedo", "b/c", true, [](const auto& t, auto i) { return t.albedo(i); });
     add("mean_cosine", "<cos psi>", true, [](const auto& t, auto i) { return t.mean_cosine(i); });
+    const double grams = table.grams_per_unit;
+    if (!(grams > 0)) return columns;
+    const auto add_by_mass = [&](const std::string& key, const char* label,
+                                 const CurveValue& value) {
+        columns.push_back({key, label, "[m2/g]", before + key + "_m2_per_g", {}});
+        for (std::size_t i = 0; i < table.absorption.size(); ++i)
+            columns.back().values.push_back(value(table, i) / grams);
+    };
+    add_by_mass("a_mass", "a/mass", k_a);
+    add_by_mass("b_mass", "b/mass", k_b);
+    add_by_mass("bb_mass", "b_b/mass", k_bb);
     return columns;
 }
 
@@ -199,6 +210,31 @@ Report report_on_coefficients(const std::string& heading, const WaterTable& wate
     return report;
 }
 
+/// What changes with depth; at many wavelengths in JSON alone.
+Report report_on_depths(const WaterTable& water) {
+    Report report;
+    report.set({{"depths_m", list_json(water.depths)},
+                {"a", water.absorption_at},
+                {"b", water.scattering_at}});
+    constexpr std::size_t k_most_printed = 4;
+    if (water.depths.empty()) return report;
+    if (water.wavelengths_nm.size() > k_most_printed) return report;
+    Columns columns{{"", "depth", "[m]", "", water.depths}};
+    for (std::size_t band = 0; band < water.wavelengths_nm.size(); ++band) {
+        const std::string nm = fmt::format(" {:g}", water.wavelengths_nm[band]);
+        Column a{"", "a" + nm, "[1/m]", "", {}}, b{"", "b" + nm, "[1/m]", "", {}};
+        for (std::size_t i = 0; i < water.depths.size(); ++i) {
+            a.values.push_back(water.absorption_at[i][band]);
+            b.values.push_back(water.scattering_at[i][band]);
+        }
+        columns.push_back(std::move(a));
+        columns.push_back(std::move(b));
+    }
+    report.say("\nBy depth, linear in between and held above and below:");
+    report.say(columns_text(columns));
+    return report;
+}
+
 Report report_on_vsf(const WaterTable& water, std::size_t band) {
     Report report(
         fmt::format("\nVolume scattering function beta(psi) at {:g} nm; psi is the change of "
@@ -248,12 +284,17 @@ Report report_on_water(const WaterSurvey& survey) {
                                                  "b, backscattering b_b",
                                                  water, water.uniform));
     std::vector<Report> constituents, bands;
-    for (const CoefficientTable& constituent : water.constituents)
+    for (const CoefficientTable& constituent : water.constituents) {
+        const bool is_species = std::ranges::find(survey.water.species, constituent.name,
+                                                  &SpeciesDesc::name) != survey.water.species.end();
         constituents.push_back(report_on_coefficients(
-            fmt::format("\nWhat grids add: '{}', per {}", constituent.name,
+            fmt::format("\n{} '{}', per {}",
+                        is_species ? "Species" : "What grids add:", constituent.name,
                         constituent.unit == "1" ? "unit of the grid's value" : constituent.unit),
             water, constituent));
+    }
     report.add("constituents", constituents);
+    report.add("profile", report_on_depths(water));
     Report vsf;
     vsf.set({{"angles_deg", file_angles()}});
     for (const std::size_t band : survey.vsf_bands) bands.push_back(report_on_vsf(water, band));
@@ -304,8 +345,8 @@ std::string water_coefficients_csv(const WaterSurvey& survey) {
     for (const CoefficientTable& constituent : water.constituents)
         append(columns, coefficient_columns(constituent));
     return csv_header(survey,
-                      "coefficients of the water everywhere, then of what grids add, per unit of "
-                      "its concentration",
+                      "coefficients of the water everywhere, then of what has a concentration, per "
+                      "unit of it",
                       columns) +
            csv_rows(columns);
 }
@@ -323,7 +364,7 @@ std::string water_vsf_csv(const WaterSurvey& survey) {
         if (out.empty())
             out = csv_header(survey,
                              "volume scattering function of the water everywhere and of its "
-                             "components, then of what grids add",
+                             "components, then of what has a concentration",
                              columns);
         out += csv_rows(columns);
     }
@@ -378,13 +419,15 @@ std::pair<double, double> plotted_range(const WaterSurvey& survey) {
 
 FineCurves fine_curves(const WaterSurvey& survey) {
     // Species take too long for that many wavelengths.
-    const bool has_species = !survey.water.amounts.empty();
+    const bool has_species = !survey.water.amounts.empty() || survey.water.profile;
     FineCurves fine{
         {}, !survey.water.absorption && !has_species, !survey.water.scattering && !has_species};
     WaterDesc water = survey.water;
     water.absorption.reset();
     water.scattering.reset();
     water.amounts.clear();
+    water.species.clear();
+    water.profile.reset();
     std::vector<VolumeDesc> volumes = survey.volumes;
     for (VolumeDesc& volume : volumes)
         std::erase_if(volume.grids, [](const GridMappingDesc& grid) {
@@ -457,9 +500,10 @@ PlotPanel scattering_panel(const WaterSurvey& survey, const FineCurves& fine) {
     return panel;
 }
 
-/// What grids add; particles are known at all wavelengths, a grid's own coefficients at the bands.
+/// What grids add, and species; particles are known at all wavelengths, a grid's own coefficients
+/// at the bands.
 PlotPanel constituent_panel(const WaterSurvey& survey, const FineCurves& fine) {
-    PlotPanel panel = spectral_panel(survey, "What grids add: attenuation", "c* [1/m per unit]");
+    PlotPanel panel = spectral_panel(survey, "Concentrations: attenuation", "c* [1/m per unit]");
     for (std::size_t k = 0; k < survey.table.constituents.size(); ++k) {
         const CoefficientTable& constituent = survey.table.constituents[k];
         const CoefficientTable* known = nullptr;
@@ -516,7 +560,7 @@ PlotPanel vsf_panel(const WaterSurvey& survey, AxisScale scale) {
 PlotPanel constituent_vsf_panel(const WaterSurvey& survey) {
     const std::size_t band = survey.plot_band;
     PlotPanel panel = angular_panel(
-        fmt::format("What grids add: VSF at {:g} nm", survey.table.wavelengths_nm[band]),
+        fmt::format("Concentrations: VSF at {:g} nm", survey.table.wavelengths_nm[band]),
         "β* [1/(m sr) per unit]", AxisScale::log);
     for (std::size_t k = 0; k < survey.table.constituents.size(); ++k) {
         const CoefficientTable& constituent = survey.table.constituents[k];

@@ -7,7 +7,7 @@ include(PublicHeaders)
 install(TARGETS uwvdb RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(DIRECTORY assets/cameras assets/grids assets/ies assets/meshes assets/scenes
+install(DIRECTORY assets/cameras assets/grids assets/ies assets/meshes assets/profiles assets/scenes
         DESTINATION ${CMAKE_INSTALL_DATADIR}/uwvdb COMPONENT program)
 
 # Installs as FILE what the program prints when run with the remaining arguments.

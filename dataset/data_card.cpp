@@ -33,10 +33,19 @@ Json water_json(const SceneDesc& scene) {
         c.push_back(attenuation);
     }
     for (const auto& phase : water.medium.phase_functions) phases.push_back(phase->description());
-    return {{"preset", scene.water.preset},      {"bands_nm", scene.water.bands_nm},
-            {"absorption_per_m", std::move(a)},  {"scattering_per_m", std::move(b)},
-            {"attenuation_per_m", std::move(c)}, {"phase_functions", std::move(phases)},
-            {"volumes", scene.volumes.size()}};
+    Json depths = Json::array(), at_depths = Json::array();
+    for (const OpticalCoefficients& there : coefficients_by_depth(water)) {
+        depths.push_back(water.strata->depths()[depths.size()]);
+        const Spectrum attenuation = there.attenuation();
+        at_depths.push_back(
+            list_json(attenuation.first(static_cast<std::size_t>(water.medium.band_count()))));
+    }
+    return {
+        {"preset", scene.water.preset},      {"bands_nm", scene.water.bands_nm},
+        {"absorption_per_m", std::move(a)},  {"scattering_per_m", std::move(b)},
+        {"attenuation_per_m", std::move(c)}, {"phase_functions", std::move(phases)},
+        {"depths_m", std::move(depths)},     {"attenuation_at_depths_per_m", std::move(at_depths)},
+        {"volumes", scene.volumes.size()}};
 }
 
 Json lamps_json(const SceneDesc& scene) {

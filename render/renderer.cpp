@@ -47,8 +47,9 @@ void Renderer::set_scene(ImageScene scene) {
 
 void Renderer::build() {
     if (!scene_)
-        scene_ =
-            assemble_scene(*image_, cache_, [this](const std::string& stage) { begin(stage); });
+        scene_ = assemble_scene(
+            *image_, cache_, [this](const std::string& stage) { begin(stage); },
+            [this](double share) { progress_("particles", share); });
 }
 
 const AssembledScene& Renderer::assemble() {

@@ -122,13 +122,13 @@ void weigh_as_output(const SceneDesc& desc, LightTransport& transport) {
 }  // namespace
 
 AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
-                              const StageCallback& begin_stage) {
+                              const StageCallback& begin_stage, const ShareCallback& particles) {
     AssembledScene scene(image);
     const SceneDesc& desc = scene.desc();
     check_integrator(desc);
     scene.warnings = desc.warnings;
     scene.camera = std::make_unique<Camera>(desc.camera);
-    scene.water = cache.water(desc);
+    scene.water = cache.water(desc, particles);
     scene.scattering = cache.scattering();
     append(scene.warnings, scene.water.warnings);
     const Medium& medium = scene.water.medium;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/light/integrator_kind.h"
 #include "render/assembled_scene.h"
 
@@ -18,9 +19,11 @@ using StageCallback = std::function<void(const std::string& stage)>;
 
 /// Loads and builds what the scene of an image names, but for what is in `cache`, which keeps it
 /// for the next; slabs are not placed. The result is the same to the bit as with an empty cache.
-/// Throws InputError and IoError of one line each.
+/// `particles` is told how far their scattering is computed, before the first stage begins. Throws
+/// InputError and IoError of one line each.
 AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
-                              const StageCallback& begin_stage);
+                              const StageCallback& begin_stage,
+                              const ShareCallback& particles = {});
 
 /// Places the slabs of an assembled scene: costs a ray through each pixel of a coarse image. Throws
 /// as place_slabs.

@@ -4,8 +4,8 @@
 #include <utility>
 #include <variant>
 
-#include "media/volumes/grid_field.h"
 #include "media/volumes/level_set_mesh.h"
+#include "media/volumes/stratified_field.h"
 #include "media/water/species.h"
 #include "render/marine_snow.h"
 
@@ -20,6 +20,7 @@ std::vector<std::filesystem::path> files_of_water(const SceneDesc& scene) {
             files.push_back(table->file);
     };
     if (scene.water.scattering) add(scene.water.scattering->phase);
+    if (scene.water.profile) files.push_back(scene.water.profile->file);
     for (const SpeciesDesc& species : scene.water.species)
         for (std::filesystem::path& file : files_of(species)) files.push_back(std::move(file));
     for (const VolumeDesc& volume : scene.volumes)
@@ -34,8 +35,8 @@ std::vector<std::vector<GridMappingDesc>> grids_of(const SceneDesc& scene) {
     return grids;
 }
 
-WaterModel build_water(const SceneDesc& scene) {
-    WaterModel water = build_water_model(scene.water, scene.volumes);
+WaterModel build_water(const SceneDesc& scene, const ShareCallback& progress) {
+    WaterModel water = build_water_model(scene.water, scene.volumes, progress);
     const std::optional<SnowDesc>& snow = scene.water.snow;
     if (snow && snow->mean == SnowDesc::Mean::added) add_snow(*snow, water.medium);
     return water;
@@ -64,10 +65,10 @@ bool SceneCache::KeptSurfaces::is_of(const SceneDesc& scene) const {
     return geometry == scene.geometry && bands_nm == scene.water.bands_nm && files.are_current();
 }
 
-const WaterModel& SceneCache::water(const SceneDesc& scene) {
+const WaterModel& SceneCache::water(const SceneDesc& scene, const ShareCallback& progress) {
     if (!water_ || !water_->is_of(scene)) {
         FileStamps files(files_of_water(scene));
-        WaterModel model = build_water(scene);
+        WaterModel model = build_water(scene, progress);
         auto scattering = std::make_shared<const ScatteringTables>(model.medium);
         water_ = KeptWater{scene.water, grids_of(scene), std::move(files), std::move(model),
                            std::move(scattering)};
@@ -85,7 +86,8 @@ void SceneCache::keep_only(const SceneDesc& scene, const WaterModel& water) {
         are_the_same = are_the_same && is_kept;
     }
     if (!are_the_same ||
-        (field_ && field_->constituent_count() != water.medium.constituent_count()))
+        (field_ && (field_->constituent_count() != water.medium.constituent_count() ||
+                    field_->strata() != water.strata)))
         field_.reset();
     if (surfaces_ && surfaces_->is_of(scene)) return;
     surfaces_.reset();
@@ -106,7 +108,7 @@ VolumeSet SceneCache::volumes(const SceneDesc& scene, const WaterModel& water) {
         std::vector<GridVolume> grids;
         for (const LoadedVolume& volume : set.volumes)
             grids.insert(grids.end(), volume.grids.begin(), volume.grids.end());
-        field_ = std::make_shared<GridField>(std::move(grids), water.medium.constituent_count());
+        field_ = make_field(std::move(grids), water.medium.constituent_count(), water.strata);
     }
     set.field = field_;
     return set;

@@ -33,8 +33,8 @@ struct SurfaceSet {
 /// volumes and surfaces of the last scene are kept, and no earlier ones.
 class SceneCache {
   public:
-    /// The water of a scene. Throws as build_water_model.
-    const WaterModel& water(const SceneDesc& scene);
+    /// The water of a scene. Throws as build_water_model, to which `progress` goes.
+    const WaterModel& water(const SceneDesc& scene, const ShareCallback& progress = {});
     /// What light paths look up of the water asked for last.
     const std::shared_ptr<const ScatteringTables>& scattering() const { return water_->scattering; }
 

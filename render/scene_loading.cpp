@@ -232,6 +232,7 @@ class InputCollection {
         for (const RigCameraDesc& entry : scene.cameras) add(entry.camera);
         add(scene.rig_trajectory);
         if (scene.water.scattering) add(scene.water.scattering->phase);
+        if (scene.water.profile) add(scene.water.profile->file, "the profile of the water");
         for (const SpeciesDesc& species : scene.water.species)
             for (const fs::path& file : files_of(species)) add(file, "a species of the water");
         for (const VolumeDesc& volume : scene.volumes) add(volume);

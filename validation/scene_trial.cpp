@@ -80,7 +80,7 @@ class SceneTrial {
         const auto start = std::chrono::steady_clock::now();
         TrialScene trial = make_trial(scene_);
         std::optional<TrialScene> mixed;
-        if (!scene_.desc().volumes.empty()) mixed = homogenised(trial, scene_);
+        if (varies()) mixed = homogenised(trial, scene_);
         TrialScene& uniform = mixed ? *mixed : trial;
         result_.smooth = smooth_pixels(uniform);
         compare_before_forward_scatter(trial, uniform);
@@ -91,6 +91,11 @@ class SceneTrial {
     }
 
   private:
+    /// Whether the water is not the same everywhere.
+    bool varies() const {
+        return !scene_.desc().volumes.empty() || scene_.desc().water.profile.has_value();
+    }
+
     void compare_before_forward_scatter(TrialScene& trial, TrialScene& uniform) {
         const std::vector<Component> both{k_direct, k_backscatter};
         render(k_volume, uniform, on_trial(uniform));
@@ -106,7 +111,7 @@ class SceneTrial {
         compare(k_constant_grid, k_volume, both, {});
         render(k_reference, uniform, by_reference(uniform));
         compare(k_volume, k_reference, both, {.where = k_smooth});
-        if (scene_.desc().volumes.empty()) return;
+        if (!varies()) return;
         render(k_volume_on_grids, trial, on_trial(trial));
         render(k_reference_on_grids, trial, by_reference(trial));
         compare(k_volume_on_grids, k_reference_on_grids, both,
@@ -124,7 +129,7 @@ class SceneTrial {
         compare_half_constant_grid(uniform);
         scatter_without_splats(k_reference, uniform, RenderDesc::Integrator::reference);
         compare(k_volume, k_reference, both, {.where = k_smooth});
-        if (!scene_.desc().volumes.empty()) {
+        if (varies()) {
             scatter(k_volume_on_grids, trial, on_trial(trial));
             scatter_without_splats(k_reference_on_grids, trial, RenderDesc::Integrator::reference);
             compare(k_volume_on_grids, k_reference_on_grids, both,

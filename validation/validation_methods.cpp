@@ -15,6 +15,7 @@
 #include "core/light/planes_integrator.h"
 #include "core/passes/forward_pass.h"
 #include "core/passes/pixel_renderer.h"
+#include "media/volumes/stratified_field.h"
 #include "media/volumes/vdb_writer.h"
 
 namespace uw {
@@ -31,18 +32,25 @@ Renderer make_renderer(const ImageScene& scene) {
     return renderer;
 }
 
-// `scene` without its volumes, in the water of `medium`; not splatted.
+// `scene` without its volumes and strata, in the water of `medium`; not splatted.
 Renderer in_water(const ImageScene& scene, Medium medium) {
     Renderer renderer = make_renderer(scene.with([](SceneDesc& desc) { desc.volumes.clear(); }));
-    renderer.edit([&](AssembledScene& parts) { parts.water.medium = std::move(medium); });
+    renderer.edit([&](AssembledScene& parts) {
+        parts.water.medium = std::move(medium);
+        parts.water.strata = nullptr;
+        parts.field = make_field({}, parts.water.medium.constituent_count(), nullptr);
+    });
     return renderer;
 }
 
-// Mean concentration of each constituent over the field's bounds.
-std::vector<double> mean_concentrations(const ConcentrationField& field) {
+// Mean concentration of each constituent over the grids' bounds; without grids, those at `camera`.
+std::vector<double> mean_concentrations(const ConcentrationField& field, const Point3& camera) {
     std::vector<double> mean(static_cast<std::size_t>(field.constituent_count()));
-    const Bounds bounds = field.bounds();
-    if (bounds.empty()) return mean;
+    const Bounds bounds = field.grids().bounds();
+    if (bounds.empty()) {
+        field.sample(camera, mean);
+        return mean;
+    }
     const Vector3 extent = bounds.max - bounds.min;
     std::vector<double> sample(mean.size());
     for (int i = 0; i < k_mean_samples; ++i) {
@@ -122,7 +130,8 @@ TrialScene make_trial(const ImageScene& scene) {
 
 TrialScene homogenised(const TrialScene& trial, const ImageScene& scene) {
     Medium medium = trial.scene().water.medium;
-    const std::vector<double> mean = mean_concentrations(*trial.scene().field);
+    const std::vector<double> mean = mean_concentrations(
+        *trial.scene().field, at_origin_plus(trial.scene().camera->world_from_camera().offset()));
     for (std::size_t k = 0; k < mean.size(); ++k)
         add_scaled(medium.uniform, medium.constituents[k].per_unit, mean[k]);
     medium.constituents.clear();

@@ -52,7 +52,7 @@ double Floor::trace() const {
 double Floor::sum_voxels() const {
     double sum = 0;
     // What a Renderer assembles is a GridField, whatever the scene holds.
-    for (const GridVolume& volume : dynamic_cast<const GridField&>(*scene_.field).volumes())
+    for (const GridVolume& volume : dynamic_cast<const GridField&>(scene_.field->grids()).volumes())
         for (const NanoGrid& brick : volume.bricks()) sum += brick.stored_sum();
     return sum;
 }

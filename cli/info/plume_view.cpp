@@ -13,7 +13,7 @@
 #include "core/base/vector_math.h"
 #include "core/image/colour.h"
 #include "core/light/medium.h"
-#include "media/volumes/grid_field.h"
+#include "media/volumes/stratified_field.h"
 #include "render/measures/picture_numbers.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
@@ -41,7 +41,8 @@ std::vector<double> luminances(const Film& film) {
 std::vector<double> volume_depths(const AssembledScene& scene) {
     const int width = scene.desc().camera.width, height = scene.desc().camera.height;
     std::vector<double> depths(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    const Bounds bounds = scene.field->bounds();
+    const ConcentrationField& grids = scene.field->grids();
+    const Bounds bounds = grids.bounds();
     if (bounds.empty()) return depths;
     const Medium& medium = scene.water.medium;
     const AttenuationTable attenuation(medium);
@@ -53,7 +54,7 @@ std::vector<double> volume_depths(const AssembledScene& scene) {
             if (!ray) continue;
             const double end = std::min(scene.surfaces->hit_distance(*ray),
                                         distance(ray->origin, bounds.center()) + bounds.diagonal());
-            scene.field->column(ray->origin, ray->at(end), columns);
+            grids.column(ray->origin, ray->at(end), columns);
             depths[row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] =
                 attenuation.optical_depth(band, 0, columns);
         }
@@ -261,8 +262,8 @@ class Drafts {
 
     void set_grids(std::vector<GridVolume> grids) {
         renderer_.edit([&](AssembledScene& scene) {
-            scene.field = std::make_shared<GridField>(std::move(grids),
-                                                      scene.water.medium.constituent_count());
+            scene.field = make_field(std::move(grids), scene.water.medium.constituent_count(),
+                                     scene.water.strata);
         });
     }
 

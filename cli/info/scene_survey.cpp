@@ -268,14 +268,18 @@ CentralRaySurvey survey_central_ray(const AssembledScene& scene) {
     survey.surface_distance = scene.surfaces->hit_distance(*ray);
     const Medium& medium = scene.water.medium;
     const AttenuationTable attenuation(medium);
-    const Bounds bounds = scene.field->bounds();
+    const ConcentrationField& grids = scene.field->grids();
+    const Bounds bounds = grids.bounds();
     double end = survey.surface_distance;
     if (!bounds.empty())
         end = std::min(end, distance(ray->origin, bounds.center()) + bounds.diagonal());
     std::vector<double> columns(static_cast<std::size_t>(medium.constituent_count()));
-    if (std::isfinite(end)) scene.field->column(ray->origin, ray->at(end), columns);
-    for (int band = 0; band < medium.band_count(); ++band) {
-        survey.water.push_back(medium.uniform.attenuation(band) * survey.surface_distance);
+    if (std::isfinite(end)) grids.column(ray->origin, ray->at(end), columns);
+    std::vector<double> of_depth(columns.size());
+    if (scene.water.strata && std::isfinite(survey.surface_distance))
+        scene.water.strata->add_column(ray->origin, ray->at(survey.surface_distance), of_depth);
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+        survey.water.push_back(attenuation.optical_depth(band, survey.surface_distance, of_depth));
         survey.volumes.push_back(attenuation.optical_depth(band, 0, columns));
     }
     return survey;

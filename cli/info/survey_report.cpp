@@ -30,7 +30,8 @@ std::string percent(double share) {
     return fmt::format("{:.3g} %", 100 * share);
 }
 
-Report report_on_water(const Medium& medium) {
+Report report_on_water(const AssembledScene& scene) {
+    const Medium& medium = scene.water.medium;
     Report report("water");
     std::vector<double> a, b, c;
     for (int band = 0; band < medium.band_count(); ++band) {
@@ -45,6 +46,27 @@ Report report_on_water(const Medium& medium) {
                 {"a", list_json(a)},
                 {"b", list_json(b)},
                 {"c", list_json(c)}});
+    Report by_depth;
+    Json depths = Json::array(), attenuation = Json::array();
+    const std::vector<OpticalCoefficients> all = coefficients_by_depth(scene.water);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Spectrum there = all[i].attenuation();
+        const std::vector<double> values(there.begin(), there.begin() + medium.band_count());
+        depths.push_back(scene.water.strata->depths()[i]);
+        attenuation.push_back(list_json(values));
+        constexpr std::size_t k_most = 20;
+        if (i < k_most)
+            by_depth.say(
+                fmt::format("  {:.4g} m: c {}", scene.water.strata->depths()[i], per_band(values)));
+        else if (i == k_most)
+            by_depth.say(fmt::format("  and {} more depths", all.size() - k_most));
+    }
+    if (!all.empty()) {
+        report.say(fmt::format("is the least of what changes with depth; by {}:",
+                               scene.desc().water.profile->file.filename().string()));
+        report.add("by_depth", by_depth);
+    }
+    report.set({{"depths_m", std::move(depths)}, {"c_at_depths", std::move(attenuation)}});
     return report;
 }
 
@@ -263,7 +285,7 @@ Report report_on_scene(const SceneSurvey& survey) {
     for (const Lamp& lamp : scene.lamps) lamps.push_back(report_on_lamp(lamp, medium.band_count()));
     for (const GridSurvey& grid : survey.grids) grids.push_back(report_on_grid(grid, medium));
     report.add("sequences", sequences);
-    report.add("water", report_on_water(medium));
+    report.add("water", report_on_water(scene));
     report.add("camera", report_on_camera(survey));
     report.add("lamps", lamps, lamps.empty() ? "no lamps" : "lamps");
     report.add("geometry", report_on_geometry(scene));

@@ -106,7 +106,7 @@ void FrameRenderer::begin_stage(const std::string& stage) {
         show("", 1);  // of how many paths may not be known yet
     else if (stage == "render" || stage == "forward scatter")
         show("Mpx", 1e-6 * static_cast<double>(renderer.report().pixels));
-    if (stage == "multiple scattering") show("", 1);
+    if (stage == "multiple scattering" || stage == "particles") show("", 1);
     if (stage == "multiple scattering" || stage == "render") begin_orderly_stop();
     if (stage != "forward scatter") stats_.begin_stage(stage);  // which is part of "render"
 }

@@ -272,6 +272,12 @@ void confine_inputs() {
     all.is_confined = true;
 }
 
+bool inputs_are_confined() {
+    Registry& all = registry();
+    const std::lock_guard lock(all.mutex);
+    return all.is_confined;
+}
+
 void remember_input(const fs::path& file) {
     Registry& all = registry();
     const std::lock_guard lock(all.mutex);

@@ -76,6 +76,9 @@ void remember_input(const std::filesystem::path& file);
 /// or below it, after symbolic links: what a scene from a stranger names cannot lead elsewhere.
 void confine_inputs();
 
+/// Whether they have to.
+bool inputs_are_confined();
+
 /// Whether `file` lies in `folder` or below it, after symbolic links. One that leads nowhere lies
 /// outside: what is made there later is not known now.
 bool lies_within(const std::filesystem::path& folder, const std::filesystem::path& file);

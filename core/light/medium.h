@@ -9,6 +9,7 @@
 
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
+#include "core/light/strata.h"
 
 namespace uw {
 
@@ -65,8 +66,8 @@ struct OpticalCoefficients {
 
 /// A dissolved or suspended constituent whose concentration varies in space.
 struct Constituent {
-    std::string name;              // "small", "large", or the name of a grid with its own optics
-    std::string unit;              // "ppm" by volume, or "1" for a bare grid value
+    std::string name;  // "small", "large", a species, or the name of a grid with its own optics
+    std::string unit;  // "ppm" by volume, "sample" as measured, "1/m", or "1" for a bare grid value
     OpticalCoefficients per_unit;  // per unit of concentration
 };
 
@@ -76,7 +77,7 @@ struct Medium {
     std::vector<double> wavelengths_nm;  // the bands
     std::vector<std::shared_ptr<const PhaseFunction>> phase_functions;
     OpticalCoefficients uniform;            // water and everything else that is homogeneous
-    std::vector<Constituent> constituents;  // contributed by the grids
+    std::vector<Constituent> constituents;  // contributed by the grids and by depth
 
     int band_count() const { return static_cast<int>(wavelengths_nm.size()); }
     int constituent_count() const { return static_cast<int>(constituents.size()); }
@@ -184,6 +185,10 @@ class ConcentrationField {
     virtual ~ConcentrationField() = default;
 
     virtual int constituent_count() const = 0;
+    /// What of it depends on depth alone; null: nothing does.
+    virtual std::shared_ptr<const Strata> strata() const { return nullptr; }
+    /// The rest, which has voxels and ends somewhere.
+    virtual const ConcentrationField& grids() const { return *this; }
     /// World bounds outside which every concentration is zero; empty if all are zero everywhere.
     virtual Bounds bounds() const = 0;
     /// Edge of the finest voxel [m]; 0 without voxels.

@@ -14,11 +14,15 @@ namespace uw {
 namespace {
 
 constexpr const char* k_uniform_water_only =
-    "the planes integrator handles only uniform water: remove `volumes`, or use integrator volume";
+    "the planes integrator handles only uniform water: remove `volumes` and `water.profile`, or "
+    "use "
+    "integrator volume";
 
 void check_for_planes(const SceneDesc& scene) {
     if (!scene.volumes.empty())
         throw InputError(fmt::format("{}: {}", scene.volumes.front().where, k_uniform_water_only));
+    if (scene.water.profile)
+        throw InputError(fmt::format("{}: {}", scene.water.profile->where, k_uniform_water_only));
     if (scene.camera.distortion.model == DistortionDesc::Model::fisheye)
         throw InputError(fmt::format(
             "{}: render.integrator: the planes integrator sums over slabs parallel to the image "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -36,8 +37,11 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
                                      InScatter& result) const {
     const std::vector<Lamp>& emitters = *scene_.emitters;
     result.reset(distances.size(), scene_.lamp_count());
-    const Interval grid = inside(ray, scene_.field->bounds());
+    const Interval grid = inside(ray, scene_.field->grids().bounds());
     const double voxel = scene_.field->finest_voxel();
+    const std::shared_ptr<const Strata> strata = scene_.field->strata();
+    std::vector<double> bends;  // of the strata
+    if (strata) strata->append_breaks(ray, distances.back(), bends);
     const double least_c =
         attenuation_.uniform.least(static_cast<std::size_t>(attenuation_.band_count));
     const double greatest_c =
@@ -69,9 +73,12 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
                 double length = step_ * scale_at(s);
                 const bool in_grid = s < grid.end && s + length > grid.begin;
                 const auto [least, greatest] =
-                    in_grid ? attenuation_at(ray.at(s)) : std::pair(0.0, 0.0);
-                if (in_grid)
-                    length = std::min({length, 0.25 * voxel, k_depth_of_steps * step_ / greatest});
+                    in_grid || strata ? attenuation_at(ray.at(s)) : std::pair(0.0, 0.0);
+                if (in_grid || strata)
+                    length = std::min(length, k_depth_of_steps * step_ / greatest);
+                if (in_grid) length = std::min(length, 0.25 * voxel);
+                if (const auto bend = std::ranges::upper_bound(bends, s); bend != bends.end())
+                    length = std::min(length, *bend - s);
                 length = std::min(length, end - s);
                 depth += length * least;
                 sum += length * even * in_scatter_per_metre(ray, s + 0.5 * length, j);

@@ -351,6 +351,11 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
         deep_shadows_[lamp]->append_column_breaks(ray, interval, w.marks);
         const double spacing = fineness_.knots_per_panel * scene_.field->finest_voxel();
         for (const double s : w.marks) w.breaks.add_mark(s, spacing);
+        if (const auto strata = scene_.field->strata()) {
+            w.marks.clear();
+            strata->append_breaks(ray, interval.end, w.marks);
+            for (const double s : w.marks) w.breaks.add_edge(s);
+        }
     }
     return w.breaks.kept();
 }

@@ -173,7 +173,8 @@ double lerp(double a, double b, double t) {
 
 FineParticles::FineParticles(const RaySource& rays, const LitScene& scene)
     : rays_(rays),
-      field_(scene.field && !scene.field->bounds().empty() ? scene.field : nullptr),
+      field_(scene.field && !scene.field->grids().bounds().empty() ? &scene.field->grids()
+                                                                   : nullptr),
       attenuation_(*scene.medium) {
     if (field_) column_.resize(static_cast<std::size_t>(field_->constituent_count()));
 }

@@ -23,7 +23,7 @@ constexpr double k_negligible_transmittance = 0.02;
 
 ParticleLight::ParticleLight(const WaterOptics& optics, const LampField& field,
                              const LampGathering& lamps)
-    : bounds_(optics.scene().field->bounds()) {
+    : bounds_(optics.scene().field->grids().bounds()) {
     const Vector3 extent = bounds_.empty() ? Vector3(0) : bounds_.max - bounds_.min;
     if (optics.constituents() == 0 || !(extent.x > 0 && extent.y > 0 && extent.z > 0)) return;
     edge_ = std::cbrt(extent.x * extent.y * extent.z / k_cells_of_particles);

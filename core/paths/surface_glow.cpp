@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "core/base/parallel.h"
 #include "core/paths/point_spread.h"
@@ -19,6 +20,63 @@ constexpr float k_least_weight = 1e-5F;
 constexpr int k_fine_cells = 130'000;
 // Cells show the same surface as a pixel if their distances differ by less, relatively.
 constexpr double k_agreeing_distance = 0.1;
+
+/// Water that changes with depth, as PointSpread can have it: the medium as it is in the mean on
+/// camera rays to surfaces, and by how much more or less of each surface's light is scattered.
+class WaterInView {
+  public:
+    WaterInView(const RaySource& rays, const LitScene& scene)
+        : strata_(scene.field->strata()), medium_(*scene.medium) {
+        if (!strata_) return;
+        for (const Constituent& constituent : medium_.constituents)
+            per_unit_.push_back(constituent.per_unit.total_scattering());
+        uniform_ = medium_.uniform.total_scattering();
+        constexpr int k_rays_across = 16;
+        std::vector<double> columns(per_unit_.size());
+        double length = 0;
+        for (int j = 0; j < k_rays_across; ++j)
+            for (int i = 0; i < k_rays_across; ++i) {
+                const auto ray = rays.refracted_ray((i + 0.5) * rays.width() / k_rays_across,
+                                                    (j + 0.5) * rays.height() / k_rays_across);
+                if (!ray) continue;
+                const double end = scene.surfaces->hit_distance(*ray);
+                if (!(end < k_far)) continue;
+                strata_->add_column(ray->origin, ray->at(end), columns);
+                length += end;
+            }
+        for (std::size_t k = 0; k < columns.size() && length > 0; ++k)
+            for (std::size_t m = 0; m < medium_.uniform.scattering.size(); ++m)
+                medium_.uniform.scattering[m] +=
+                    columns[k] / length * medium_.constituents[k].per_unit.scattering[m];
+        mean_ = medium_.uniform.total_scattering();
+    }
+
+    const Medium& medium() const { return medium_; }
+
+    /// Of a surface's light at the end of a camera ray, e^(b T) - 1 times what arrives without
+    /// being scattered arrives scattered: this, by that of the mean medium.
+    Spectrum factors(const Ray& ray, double distance) const {
+        if (!strata_) return per_band(k_max_bands, [](std::size_t) { return 1.0; });
+        std::vector<double> columns(per_unit_.size());
+        strata_->add_column(ray.origin, ray.at(distance), columns);
+        return per_band(k_max_bands, [&](std::size_t band) {
+            double depth = uniform_[band] * distance;
+            for (std::size_t k = 0; k < columns.size(); ++k)
+                depth += per_unit_[k][band] * columns[k];
+            constexpr double k_opaque = 50;  // nothing is seen beyond
+            const double mean = mean_[band] * distance;
+            return mean > 0 ? std::expm1(std::min(depth, k_opaque)) /
+                                  std::expm1(std::min(mean, k_opaque))
+                            : 1;
+        });
+    }
+
+  private:
+    std::shared_ptr<const Strata> strata_;
+    Medium medium_;
+    Spectrum uniform_{}, mean_{};  // scattering [1/m]
+    std::vector<Spectrum> per_unit_;
+};
 
 }  // namespace
 
@@ -107,13 +165,21 @@ SurfaceGlow::SurfaceGlow(const RaySource& rays, const LitScene& scene,
                   static_cast<int>(std::ceil(rays.height() / spacing_)));
     source_.assign(channels_ * cells_.size(), 0.0F);
     light_.assign(channels_ * cells_.size(), 0.0F);
-    trace(rays, scene, lighting, radiance);
+    const WaterInView water(rays, scene);
+    trace(rays, scene, lighting,
+          [&](const SurfaceSample& sample, const SurfaceLight& light, std::size_t index,
+              std::span<double> values) {
+              radiance(sample, light, index, values);
+              const Spectrum factors = water.factors(sample.ray, sample.hit.distance);
+              const auto bands = static_cast<std::size_t>(scene.medium->band_count());
+              for (std::size_t c = 0; c < values.size(); ++c) values[c] *= factors[c % bands];
+          });
     double farthest = 0;
     for (const Cell& cell : cells_)
         if (std::isfinite(cell.distance))
             farthest = std::max(farthest, static_cast<double>(cell.distance));
     if (farthest == 0) return;
-    const PointSpread spread(*scene.medium, intervals, farthest);
+    const PointSpread spread(water.medium(), intervals, farthest);
     intervals_ = spread.interval_count();
     node_light_.assign(nodes.size() * intervals_ * channels_, 0.0F);
     const std::span<const double> distances = spread.distances();

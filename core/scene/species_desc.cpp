@@ -17,12 +17,11 @@ namespace {
 /// itself. Empty: neither.
 template <std::size_t N>
 std::optional<double> number_with_unit(
-    const ConfigNode& node, const std::array<std::pair<std::string_view, double>, N>& units) {
-    if (node.kind != ConfigNode::Kind::scalar) return {};
+    std::string_view text, const std::array<std::pair<std::string_view, double>, N>& units) {
     double value = 0;
-    if (parse_number(node.scalar, value) == NumberText::number) return value;
+    if (parse_number(text, value) == NumberText::number) return value;
     for (const auto& [unit, factor] : units) {
-        std::string_view number = node.scalar;
+        std::string_view number = text;
         if (!number.ends_with(unit)) continue;
         number.remove_suffix(unit.size());
         while (number.ends_with(' ')) number.remove_suffix(1);
@@ -48,10 +47,12 @@ double read_diameter(const ConfigValue& value, double least, double greatest) {
                                                                           {"mm", 1e-3},
                                                                           {"cm", 1e-2},
                                                                           {"m", 1}}};
-    const std::optional<double> metres = number_with_unit(value.node(), k_units);
+    const ConfigNode& node = value.node();
+    const std::optional<double> metres = node.kind == ConfigNode::Kind::scalar
+                                             ? number_with_unit(node.scalar, k_units)
+                                             : std::nullopt;
     if (!metres)
-        value.fail(
-            fmt::format("expected a diameter, found {}; {}", value.node().description(), k_mend));
+        value.fail(fmt::format("expected a diameter, found {}; {}", node.description(), k_mend));
     // Rounding of the units.
     constexpr double k_slack = 1e-9;
     if (!(*metres >= least * (1 - k_slack)) || !(*metres <= greatest * (1 + k_slack)))
@@ -152,12 +153,24 @@ ParticleIndexDesc read_index(const ConfigValue& value, const SceneContext& conte
     return index;
 }
 
-/// A species of the library (assets/spectra/species.csv).
+/// A species of the library: particles of assets/spectra/species.csv, or a water of
+/// petzold_vsf.csv.
 SpeciesDesc library_species(const ConfigValue& value) {
     const CsvTable library = read_embedded_table("species.csv");
-    const std::vector<std::string> names = library.text("name");
+    std::vector<std::string> names = library.text("name");
+    const std::size_t computed = names.size();
+    const CsvTable measured = read_embedded_table("petzold_vsf.csv");
+    for (const std::string& water : measured.columns())
+        if (water.starts_with("petzold")) names.push_back(water);
     const std::vector<std::string_view> words(names.begin(), names.end());
     const std::size_t row = value.word_index(words);
+    if (row >= computed) {
+        SpeciesDesc species;
+        species.vsf = MeasuredVsfDesc{};
+        species.vsf->library = names[row];
+        species.vsf->has_water = true;
+        return species;
+    }
     const auto number = [&](std::string_view column) { return library.numbers(column)[row]; };
     SpeciesDesc species;
     species.sizes.exponent = number("exponent");
@@ -171,16 +184,67 @@ SpeciesDesc library_species(const ConfigValue& value) {
     return species;
 }
 
+void read_sample(ConfigMap& map, const SceneContext& context, SpeciesDesc& species) {
+    MeasuredVsfDesc& vsf = *species.vsf;
+    if (const auto sample = map.find("sample")) {
+        using Unit = SpeciesAmount::Unit;
+        const ConfigNode& node = sample->node();
+        const auto amount = node.kind == ConfigNode::Kind::scalar ? parse_amount(node.scalar)
+                                                                  : std::optional<SpeciesAmount>{};
+        if (!amount || !(amount->amount > 0) ||
+            (amount->unit != Unit::grams && amount->unit != Unit::number))
+            sample->fail(
+                fmt::format("expected what was in the sample, found {}; write '3 g/m3' or "
+                            "'1e6 /m3'",
+                            node.description()));
+        vsf.sample = amount;
+    }
+    const auto absorption = map.find("absorption");
+    if (!absorption) return;
+    constexpr auto k_mend =
+        "give the particles' absorption in the sample in 1/m, or {file: absorption.csv}";
+    if (absorption->node().kind != ConfigNode::Kind::map) {
+        vsf.absorption = absorption->within(0, 1e6, k_mend);
+        return;
+    }
+    ConfigMap of_file(*absorption, {"file"}, k_mend);
+    vsf.absorption_file = read_existing_file(of_file.require("file", k_mend), context);
+}
+
 SpeciesDesc read_one(const std::string& name, const ConfigValue& value,
                      const SceneContext& context) {
     constexpr auto k_example =
-        "write {library: clay}, or {size: {type: junge, diameter: [0.5 um, 50 um]}, index: 1.15}";
-    ConfigMap map(value, {"library", "size", "index", "density", "coat"}, k_example);
+        "write {library: clay}, or {size: {type: junge, diameter: [0.5 um, 50 um]}, index: 1.15}, "
+        "or {vsf: measured.csv, water: included}";
+    ConfigMap map(value,
+                  {"library", "size", "index", "density", "coat", "vsf", "water", "sample",
+                   "absorption", "ntu"},
+                  k_example);
     SpeciesDesc species;
     if (const auto entry = map.find("library")) species = library_species(*entry);
     const bool is_known = map.has("library");
     species.name = name;
     species.where = value.location();
+    if (const auto ntu = map.find("ntu"))
+        species.ntu_scattering =
+            ntu->between(0, 1e3, "give b at 550 nm in 1/m of as much of the species as has 1 NTU");
+    if (map.has("vsf")) {
+        if (is_known) value.fail("has a 'library' and a 'vsf'; remove one of them");
+        species.vsf = MeasuredVsfDesc{};
+        species.vsf->file = read_existing_file(*map.find("vsf"), context);
+        constexpr std::array<std::pair<std::string_view, bool>, 2> k_choices{
+            {{"included", true}, {"removed", false}}};
+        species.vsf->has_water =
+            map.require("water",
+                        "say whether the scattering of water's molecules is part of what was "
+                        "measured: included or removed")
+                .choice(k_choices);
+    }
+    if (species.vsf) {
+        read_sample(map, context, species);
+        map.finish("a species with a measured VSF");
+        return species;
+    }
     const auto entry = [&](std::string_view key) {
         return is_known ? map.find(key) : std::optional(map.require(key, k_example));
     };
@@ -202,8 +266,10 @@ SpeciesDesc read_one(const std::string& name, const ConfigValue& value,
 }  // namespace
 
 std::vector<SpeciesDesc> read_species(const ConfigValue& value, const SceneContext& context) {
-    constexpr std::array<std::string_view, 5> k_taken{"small", "large", "absorption", "scattering",
-                                                      "phase"};
+    // In concentrations, in grids, and as columns of depth profiles.
+    constexpr std::array<std::string_view, 8> k_taken{"small",      "large",      "absorption",
+                                                      "scattering", "phase",      "attenuation",
+                                                      "cdom",       "chlorophyll"};
     const ConfigNode& node = value.node();
     if (node.kind != ConfigNode::Kind::map)
         value.fail("expected names with what they are, found " + node.description() +
@@ -229,44 +295,69 @@ std::vector<std::string_view> names_of(const std::vector<SpeciesDesc>& species) 
     return names;
 }
 
-std::vector<SpeciesAmount> read_amounts(ConfigMap& map, const std::vector<SpeciesDesc>& species) {
+std::optional<SpeciesAmount> parse_amount(std::string_view text) {
     using Unit = SpeciesAmount::Unit;
     struct Choice {
         std::string_view text;
         Unit unit;
         double factor;
     };
-    constexpr std::array<Choice, 6> k_units{{{"ppm", Unit::ppm, 1},
+    // A bare number goes with the first.
+    constexpr std::array<Choice, 9> k_units{{{"ppm", Unit::own, 1},
                                              {"mg/l", Unit::grams, 1},
                                              {"mg/L", Unit::grams, 1},
                                              {"g/m3", Unit::grams, 1},
                                              {"/m3", Unit::number, 1},
-                                             {"/l", Unit::number, 1000}}};
-    constexpr auto k_mend = "give ppm by volume, or write '3 g/m3' or '1e6 /m3'";
+                                             {"/l", Unit::number, 1000},
+                                             {"NTU", Unit::ntu, 1},
+                                             {"FTU", Unit::ntu, 1},
+                                             {"FNU", Unit::ntu, 1}}};
+    for (const Choice& choice : k_units)
+        if (const auto amount =
+                number_with_unit(text, std::array{std::pair(choice.text, choice.factor)}))
+            return SpeciesAmount{0, *amount, choice.unit};
+    return {};
+}
+
+SpeciesAmount read_amount(std::string_view text, std::size_t index, const SpeciesDesc& species,
+                          const SourceLocation& where) {
+    using Unit = SpeciesAmount::Unit;
+    std::optional<SpeciesAmount> amount = parse_amount(text);
+    if (!amount)
+        throw InputError(
+            fmt::format("{}: expected a concentration, found '{}'; give ppm by volume, or write '3 "
+                        "g/m3', '1e6 /m3' or '4 NTU'",
+                        where, printable(text)));
+    if (!(amount->amount >= 0 && amount->amount <= 1e18))
+        throw InputError(fmt::format("{}: must be from 0 to 1e18, found {:g}; give a concentration",
+                                     where, amount->amount));
+    if (species.vsf) {
+        const bool is_of_sample = amount->unit == Unit::grams || amount->unit == Unit::number;
+        if (text.ends_with("ppm") ||
+            (is_of_sample && !(species.vsf->sample && species.vsf->sample->unit == amount->unit)))
+            throw InputError(fmt::format(
+                "{}: what was in the sample of {} is not known in this unit; give how many times "
+                "as much there is, a bare number, or the species a sample: 3 g/m3",
+                where, species.name));
+    } else if (amount->unit == Unit::grams && !species.density) {
+        throw InputError(fmt::format(
+            "{}: {} has no density, by which grams become particles; give it one in g/cm3", where,
+            species.name));
+    }
+    amount->species = index;
+    return *amount;
+}
+
+std::vector<SpeciesAmount> read_amounts(ConfigMap& map, const std::vector<SpeciesDesc>& species) {
     std::vector<SpeciesAmount> amounts;
     for (std::size_t i = 0; i < species.size(); ++i) {
         const auto entry = map.find(species[i].name);
         if (!entry) continue;
-        const auto read = [&](const Choice& choice) {
-            return number_with_unit(entry->node(),
-                                    std::array{std::pair(choice.text, choice.factor)});
-        };
-        // A bare number goes with the first.
-        const auto choice =
-            std::ranges::find_if(k_units, [&](const Choice& one) { return read(one).has_value(); });
-        if (choice == k_units.end())
-            entry->fail(fmt::format("expected a concentration, found {}; {}",
-                                    entry->node().description(), k_mend));
-        const SpeciesAmount amount{i, *read(*choice), choice->unit};
-        if (!(amount.amount >= 0 && amount.amount <= 1e18))
-            entry->fail(
-                fmt::format("must be from 0 to 1e18, found {:g}; {}", amount.amount, k_mend));
-        if (amount.unit == Unit::grams && !species[i].density)
-            entry->fail(
-                fmt::format("{} has no density, by which grams become particles; give it "
-                            "one in g/cm3",
-                            species[i].name));
-        amounts.push_back(amount);
+        const ConfigNode& node = entry->node();
+        if (node.kind != ConfigNode::Kind::scalar)
+            entry->fail("expected a concentration, found " + node.description() +
+                        "; give ppm by volume, or write '3 g/m3', '1e6 /m3' or '4 NTU'");
+        amounts.push_back(read_amount(node.scalar, i, species[i], entry->location()));
     }
     return amounts;
 }

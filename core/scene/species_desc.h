@@ -40,12 +40,42 @@ struct ParticleIndexDesc {
     friend bool operator==(const ParticleIndexDesc&, const ParticleIndexDesc&) = default;
 };
 
+/// How much of a species there is, or comes with a unit of a grid's value.
+struct SpeciesAmount {
+    enum class Unit : std::uint8_t {
+        own,     // ppm by volume; of a measured species, times as much as there was in the sample
+        grams,   // [g/m^3]
+        number,  // [1/m^3]
+        ntu      // nephelometric turbidity units, and FTU and FNU
+    };
+    std::size_t species = 0;  ///< index into WaterDesc::species
+    double amount = 0;        ///< >= 0
+    Unit unit = Unit::own;
+
+    friend bool operator==(const SpeciesAmount&, const SpeciesAmount&) = default;
+};
+
+/// The volume scattering function of a sample of water, as it was measured.
+struct MeasuredVsfDesc {
+    std::filesystem::path file;  ///< CSV with columns angle_deg and beta_NM [1/(m sr)] for each NM
+    std::string library;         ///< instead: the name of one of Petzold's waters
+    bool has_water = false;      ///< water's molecules scatter in it, too
+    /// What was in the sample; `species` is not used. None: it is not known.
+    std::optional<SpeciesAmount> sample;
+    double absorption = 0;                  ///< by the particles in the sample [1/m]
+    std::filesystem::path absorption_file;  ///< instead: CSV with columns wavelength_nm,absorption
+
+    friend bool operator==(const MeasuredVsfDesc&, const MeasuredVsfDesc&) = default;
+};
+
 /// Particles whose optical properties follow from their sizes and their refractive index
-/// (Lorenz-Mie, for spheres of the same volume).
+/// (Lorenz-Mie, for spheres of the same volume), or were measured.
 struct SpeciesDesc {
     std::string name;
+    std::optional<MeasuredVsfDesc> vsf;  ///< in place of sizes, index, density and coat
     SizesDesc sizes;
     ParticleIndexDesc index;
+    double ntu_scattering = 1;      ///< b at 550 nm of as much as has 1 NTU [1/m]
     std::optional<double> density;  ///< [g/cm^3]
     struct Coat {
         double thickness = 0;  ///< [m], part of the diameter
@@ -57,20 +87,6 @@ struct SpeciesDesc {
     SourceLocation where;
 
     friend bool operator==(const SpeciesDesc&, const SpeciesDesc&) = default;
-};
-
-/// How much of a species there is, or comes with a unit of a grid's value.
-struct SpeciesAmount {
-    enum class Unit : std::uint8_t {
-        ppm,    // by volume
-        grams,  // [g/m^3]
-        number  // [1/m^3]
-    };
-    std::size_t species = 0;  ///< index into WaterDesc::species
-    double amount = 0;        ///< >= 0
-    Unit unit = Unit::ppm;
-
-    friend bool operator==(const SpeciesAmount&, const SpeciesAmount&) = default;
 };
 
 /// Reads a diameter or thickness [m] from `least` to `greatest`: a number of metres, or one with a
@@ -88,7 +104,17 @@ std::vector<SpeciesDesc> read_species(const ConfigValue& value, const SceneConte
 /// The names of `species`, in their order.
 std::vector<std::string_view> names_of(const std::vector<SpeciesDesc>& species);
 
-/// Takes what `map` gives of `species`, as "NAME: 2", "NAME: 3 g/m3" or "NAME: 1e6 /m3".
+/// The amount and unit that a text gives, of species 0: "2", "3 g/m3", "1e6 /m3", "4 NTU"; none if
+/// it is no amount.
+std::optional<SpeciesAmount> parse_amount(std::string_view text);
+
+/// How much of species number `index` a text gives. Throws InputError at `where` for what is no
+/// such amount, and for units that need what the species lacks.
+SpeciesAmount read_amount(std::string_view text, std::size_t index, const SpeciesDesc& species,
+                          const SourceLocation& where);
+
+/// Takes what `map` gives of `species`, as "NAME: 2", "NAME: 3 g/m3", "NAME: 1e6 /m3" or "NAME: 4
+/// NTU".
 std::vector<SpeciesAmount> read_amounts(ConfigMap& map, const std::vector<SpeciesDesc>& species);
 
 }  // namespace uw

@@ -129,13 +129,19 @@ void read_particles(const ConfigValue& value, WaterDesc& water) {
     }
 }
 
-ScatteringDesc read_scattering(const ConfigValue& value, const SceneContext& context) {
+ScatteringDesc read_scattering(const ConfigValue& value, bool has_profile,
+                               const SceneContext& context) {
     constexpr auto k_example = "write {b: [0.2, 0.2, 0.2], phase: {type: hg, g: 0.9}}";
     ConfigMap map(value, {"b", "phase"}, k_example);
     ScatteringDesc scattering;
-    scattering.b =
-        map.require("b", k_example)
-            .non_negative_per_band(context.band_count, "give the scattering coefficient in 1/m");
+    scattering.b = PerBand(context.band_count, 0.0);
+    if (has_profile && !map.has("b")) {
+        scattering.is_by_depth = true;
+    } else {
+        scattering.b = map.require("b", k_example)
+                           .non_negative_per_band(context.band_count,
+                                                  "give the scattering coefficient in 1/m");
+    }
     scattering.phase = read_phase(map.require("phase", k_example), context);
     return scattering;
 }
@@ -241,7 +247,7 @@ WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
     ConfigMap map(
         value,
         {"bands", "preset", "salinity", "temperature", "absorption", "cdom", "chlorophyll",
-         "species", "particles", "scattering", "forward_scatter", "surface", "snow"},
+         "species", "particles", "scattering", "forward_scatter", "profile", "surface", "snow"},
         "write {bands: [620, 540, 450]}");
     WaterDesc water;
     water.where = value.location();
@@ -260,7 +266,7 @@ WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
     }
     read_dissolved(map, water);
     if (const auto entry = map.find("scattering")) {
-        water.scattering = read_scattering(*entry, context);
+        water.scattering = read_scattering(*entry, map.has("profile"), context);
     }
     if (const auto entry = map.find("species")) water.species = read_species(*entry, context);
     if (const auto entry = map.find("particles")) read_particles(*entry, water);
@@ -268,6 +274,13 @@ WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
         water.forward_scatter = read_forward_scatter(*entry);
     if (const auto entry = map.find("surface")) water.surface = read_surface(*entry);
     context.water_surface = water.surface;
+    if (const auto entry = map.find("profile")) {
+        if (!water.surface)
+            entry->fail(
+                "depths count from the water's surface, which is missing; add surface: {point: [0, "
+                "10, 0], normal: [0, 1, 0]}");
+        water.profile = DepthProfileDesc{read_existing_file(*entry, context), entry->location()};
+    }
     if (const auto entry = map.find("snow")) water.snow = read_snow(*entry, context);
     return water;
 }

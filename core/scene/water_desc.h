@@ -104,11 +104,20 @@ struct SnowDesc {
 struct ScatteringDesc {
     PerBand b;  ///< scattering coefficient [1/m], >= 0
     PhaseDesc phase;
+    bool is_by_depth = false;  ///< b is the profile's instead
 
     friend bool operator==(const ScatteringDesc&, const ScatteringDesc&) = default;
 };
 
-/// The homogeneous background water.
+/// What changes with depth: a table, whose columns are in the place of the water's keys.
+struct DepthProfileDesc {
+    std::filesystem::path file;  ///< CSV (media/water/depth_profile.h)
+    SourceLocation where;
+
+    friend bool operator==(const DepthProfileDesc&, const DepthProfileDesc&) = default;
+};
+
+/// The background water.
 struct WaterDesc {
     std::vector<double> bands_nm{620, 540, 450};  ///< wavelengths of the scene's bands [nm]
     std::string preset;                           ///< a Jerlov water type, "jerlov-II"; empty: none
@@ -124,6 +133,7 @@ struct WaterDesc {
     bool mineral_absorption = false;           ///< particles absorb as mineral sediment does
     std::optional<ScatteringDesc> scattering;  ///< instead of that of molecules and particles
     ForwardScatterDesc forward_scatter;
+    std::optional<DepthProfileDesc> profile;  ///< needs `surface`, from which depths count
     std::optional<WaterSurfaceDesc> surface;  ///< above which there is no sunlight
     std::optional<SnowDesc> snow;
     SourceLocation where;

@@ -285,11 +285,13 @@ double farthest_corner(const Bounds& bounds, const Point3& from) {
 
 }  // namespace
 
-ColumnMap::ColumnMap(const ConcentrationField& field, const Point3& lamp, double per_voxel,
+ColumnMap::ColumnMap(const ConcentrationField& of, const Point3& lamp, double per_voxel,
                      std::size_t memory_budget, const DepthTolerance& tolerance)
     : lamp_(lamp),
       per_voxel_(per_voxel),
-      constituents_(static_cast<std::size_t>(field.constituent_count())) {
+      constituents_(static_cast<std::size_t>(of.constituent_count())),
+      strata_(of.strata()) {
+    const ConcentrationField& field = of.grids();
     const Bounds bounds = field.bounds();
     if (bounds.empty() || constituents_ == 0) return;
     const double voxel = field.finest_voxel();
@@ -350,6 +352,9 @@ void ColumnMap::trace_face(const ConcentrationField& field, int face_index,
 
 void ColumnMap::columns(std::span<const Point3> x, std::span<double> column) const {
     std::fill(column.begin(), column.end(), 0.0);
+    if (strata_)
+        for (std::size_t i = 0; i < x.size(); ++i)
+            strata_->add_column(lamp_, x[i], column.subspan(i * constituents_, constituents_));
     if (resolution_ == 0) return;
     for (std::size_t i = 0; i < x.size(); ++i) {
         const Vector3 v = x[i] - lamp_;
@@ -411,11 +416,13 @@ constexpr int k_most_texels = 1 << 14;  // along an edge
 
 }  // namespace
 
-SunColumnMap::SunColumnMap(const ConcentrationField& field, const Sunlight& sun, double per_voxel,
+SunColumnMap::SunColumnMap(const ConcentrationField& of, const Sunlight& sun, double per_voxel,
                            std::size_t memory_budget, const DepthTolerance& tolerance)
     : frame_(sun),
       per_voxel_(per_voxel),
-      constituents_(static_cast<std::size_t>(field.constituent_count())) {
+      constituents_(static_cast<std::size_t>(of.constituent_count())),
+      strata_(of.strata()) {
+    const ConcentrationField& field = of.grids();
     const Bounds bounds = field.bounds();
     if (bounds.empty() || constituents_ == 0) return;
     constexpr double k_none = std::numeric_limits<double>::infinity();
@@ -454,6 +461,10 @@ SunColumnMap::SunColumnMap(const ConcentrationField& field, const Sunlight& sun,
 
 void SunColumnMap::columns(std::span<const Point3> x, std::span<double> column) const {
     std::fill(column.begin(), column.end(), 0.0);
+    if (strata_)
+        for (std::size_t i = 0; i < x.size(); ++i)
+            strata_->add_column(frame_.sun().entry(x[i]), x[i],
+                                column.subspan(i * constituents_, constituents_));
     if (face_.empty()) return;
     for (std::size_t i = 0; i < x.size(); ++i) {
         const LightPoint p = frame_.point(x[i]);

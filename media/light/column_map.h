@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -77,11 +78,11 @@ class ColumnFace {
 };
 
 /// Column concentrations around one lamp: rays from the lamp over the directions that contain a
-/// grid, each with its cumulative columns at equal steps of distance. The optical depth in every
-/// band follows from them (physics section 1).
+/// grid, each with its cumulative columns at equal steps of distance, and the closed form of what
+/// depends on depth alone. The optical depth in every band follows from them (physics section 1).
 class ColumnMap {
   public:
-    /// Marches the field once along each texel's ray. At the field's centre there are about
+    /// Marches the field's grids once along each texel's ray. At their centre there are about
     /// `per_voxel` texels across the finest voxel, and as many steps along it; fewer if a field
     /// that fills its bounds would exceed `memory_budget` [bytes]. `field` is not kept. Columns
     /// have kinks where their rays pass from voxel to voxel: two texels per voxel keep the
@@ -116,6 +117,7 @@ class ColumnMap {
     int resolution_ = 0;
     double step_ = 0;  // [m]
     std::array<Face, 6> faces_;
+    std::shared_ptr<const Strata> strata_;  // of which columns are exact
 };
 
 /// Column concentrations in a sun's light: what a ColumnMap is for a lamp, with parallel rays over
@@ -144,6 +146,7 @@ class SunColumnMap {
     LightPoint first_;  // the first texel's ray; its depth is that from which distances count
     int width_ = 0, height_ = 0;
     ColumnFace face_;
+    std::shared_ptr<const Strata> strata_;  // as in ColumnMap
 };
 
 }  // namespace uw

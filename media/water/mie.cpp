@@ -137,15 +137,29 @@ struct Block {
     std::array<double, k_block> cosine{}, plus_re{}, plus_im{}, minus_re{}, minus_im{};
 };
 
+/// (2n + 1) / n and (n + 1) / n from n = 1 on: divisions would take a quarter of the time.
+struct Ratios {
+    double of_pi, of_before;
+};
+
+std::vector<Ratios> ratios(std::size_t orders) {
+    std::vector<Ratios> all;
+    for (std::size_t at = 0; at < orders; ++at) {
+        const auto n = static_cast<double>(at + 1);
+        all.push_back({(2 * n + 1) / n, (n + 1) / n});
+    }
+    return all;
+}
+
 UWVDB_VECTOR_CLONES void add_orders(Block& block, const Complex* sums, const Complex* differences,
-                                    std::size_t orders) {
+                                    const std::vector<Ratios>& ratios) {
     std::array<double, k_block> pi_before{}, pi{};
     pi.fill(1);
-    for (std::size_t at = 0; at < orders; ++at) {
+    for (std::size_t at = 0; at < ratios.size(); ++at) {
         const auto n = static_cast<double>(at + 1);
         const double s_re = sums[at].real(), s_im = sums[at].imag();
         const double d_re = differences[at].real(), d_im = differences[at].imag();
-        const double of_pi = (2 * n + 1) / n, of_before = (n + 1) / n;
+        const auto [of_pi, of_before] = ratios[at];
         for (std::size_t i = 0; i < k_block; ++i) {
             const double scaled = block.cosine[i] * pi[i];
             const double tau = n * scaled - (n + 1) * pi_before[i];
@@ -165,12 +179,13 @@ UWVDB_VECTOR_CLONES void add_orders(Block& block, const Complex* sums, const Com
 
 void MieScattering::add_intensity(double weight, std::span<const double> cosines,
                                   std::span<double> sum) const {
+    const std::vector<Ratios> of_orders = ratios(sums_.size());
     for (std::size_t first = 0; first < cosines.size(); first += k_block) {
         const std::size_t count = std::min(k_block, cosines.size() - first);
         Block block;
         std::copy_n(cosines.begin() + static_cast<std::ptrdiff_t>(first), count,
                     block.cosine.begin());
-        add_orders(block, sums_.data(), differences_.data(), sums_.size());
+        add_orders(block, sums_.data(), differences_.data(), of_orders);
         for (std::size_t i = 0; i < count; ++i)
             sum[first + i] +=
                 weight / 4 *
@@ -182,7 +197,7 @@ void MieScattering::add_intensity(double weight, std::span<const double> cosines
 std::pair<Complex, Complex> MieScattering::amplitudes(double cosine) const {
     Block block;
     block.cosine.fill(cosine);
-    add_orders(block, sums_.data(), differences_.data(), sums_.size());
+    add_orders(block, sums_.data(), differences_.data(), ratios(sums_.size()));
     const Complex plus{block.plus_re[0], block.plus_im[0]};
     const Complex minus{block.minus_re[0], block.minus_im[0]};
     return {(plus + minus) / 2.0, (plus - minus) / 2.0};

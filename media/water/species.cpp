@@ -7,13 +7,19 @@
 #include <complex>
 #include <mutex>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/csv_table.h"
 #include "core/base/input_files.h"
 #include "core/base/parallel.h"
+#include "core/scene/dispersion.h"
+#include "media/water/measured_vsf.h"
 #include "media/water/mie.h"
+#include "media/water/species_cache.h"
+#include "media/water/water_types.h"
 
 namespace uw {
 
@@ -45,6 +51,16 @@ class VolumeBySize {
     double greatest() const { return sizes_.greatest; }
     double operator()(double log_diameter) const { return factor_ * value(log_diameter); }
     double mean_volume() const { return mean_volume_; }  // of a particle [m^3]
+
+    /// All that the distribution depends on.
+    std::string text() const {
+        std::string text = fmt::format("sizes {} {:a} {:a} {:a} {:a} {:a} {:a}",
+                                       static_cast<int>(sizes_.type), sizes_.least, sizes_.greatest,
+                                       sizes_.exponent, sizes_.median, sizes_.sigma, sizes_.mode);
+        for (std::size_t i = 0; i < curve_.x.size(); ++i)
+            text += fmt::format(" {:a} {:a}", curve_.x[i], curve_.y[i]);
+        return text;
+    }
 
     static double volume(double diameter) {
         return std::numbers::pi / 6 * diameter * diameter * diameter;
@@ -149,31 +165,73 @@ class SizeAverage {
 
     const std::vector<double>& angles() const { return angles_; }
 
-    /// The mean of midpoints of intervals, of which there are more and more.
-    Sums converged() const {
-        constexpr std::size_t k_first = 128, k_most = 2048;
-        Sums coarse = midpoints(k_first);
-        for (std::size_t count = 2 * k_first;; count *= 2) {
-            Sums fine = midpoints(count);
-            if (agree(coarse, fine) || count == k_most) return fine;
-            coarse = std::move(fine);
+    /// All that the sums depend on, and the version of how they are found.
+    std::string text() const {
+        const auto of = [](std::complex<double> index) {
+            return fmt::format("{:a} {:a}", index.real(), index.imag());
+        };
+        return fmt::format("{} wave number {:a} index {} coat {:a} {} angles {} version {}",
+                           sizes_.text(), wave_number_, of(sphere_index_), coat_thickness_,
+                           of(coat_index_), angles_.size(), k_version);
+    }
+
+    /// The trapezoidal rule, to which the sizes halfway are added again and again.
+    Sums converged(const ShareCallback& progress) const {
+        Progress told(progress);
+        const double length = sizes_.last() - sizes_.first();
+        Sums sum = none();
+        add(sum, sum_over(sizes_.first(), length, 2, told), 0.5);  // the ends
+        double step = length / k_first;
+        add(sum, sum_over(sizes_.first() + step, step, k_first - 1, told), 1);
+        for (std::size_t count = k_first;; count *= 2, step /= 2) {
+            Sums fine = sum;
+            add(fine, sum_over(sizes_.first() + 0.5 * step, step, count, told), 1);
+            Sums before = none(), after = none();
+            add(before, sum, step);
+            add(after, fine, 0.5 * step);
+            if (2 * count == k_most || agree(before, after)) return after;
+            sum = std::move(fine);
         }
     }
 
   private:
-    Sums midpoints(std::size_t count) const {
+    static constexpr std::size_t k_first = 128, k_most = 2048;
+    /// To be raised with every change of the results: those of other versions are not used again.
+    static constexpr int k_version = 1;
+
+    /// Counts the sizes that are done. Their number may be less than the most.
+    class Progress {
+      public:
+        explicit Progress(const ShareCallback& tell) : tell_(tell) {}
+        void add(std::size_t sizes) {
+            if (!tell_) return;
+            const std::scoped_lock lock(mutex_);
+            done_ += sizes;
+            tell_(static_cast<double>(done_) / k_most);
+        }
+
+      private:
+        const ShareCallback& tell_;
+        std::mutex mutex_;
+        std::size_t done_ = 0;
+    };
+
+    Sums none() const { return {0, 0, std::vector<double>(angles_.size(), 0)}; }
+
+    /// The sum over `count` logarithms of diameters, `step` apart.
+    Sums sum_over(double first, double step, std::size_t count, Progress& progress) const {
         constexpr std::size_t k_chunk = 16;
-        const double step = (sizes_.last() - sizes_.first()) / static_cast<double>(count);
         std::vector<Sums> parts((count + k_chunk - 1) / k_chunk);
         parallel_for(parts.size(), [&](std::size_t i) {
             // The largest, which take longest, first.
             const std::size_t part = parts.size() - 1 - i;
-            parts[part].phase.assign(angles_.size(), 0);
+            parts[part] = none();
             for (std::size_t at = part * k_chunk; at < std::min(count, (part + 1) * k_chunk); ++at)
-                add_size(sizes_.first() + (static_cast<double>(at) + 0.5) * step, parts[part]);
+                add_size(first + static_cast<double>(at) * step, parts[part]);
+            progress.add(std::min(count - part * k_chunk, k_chunk));
         });
-        Sums sum{0, 0, std::vector<double>(angles_.size(), 0)};
-        for (const Sums& part : parts) add(sum, part, step);
+        Sums sum = none();
+        for (const Sums& part : parts) add(sum, part, 1);
         return sum;
     }
 
@@ -192,8 +250,10 @@ class SizeAverage {
         const MieScattering mie(sphere);
         const double area = weight * std::numbers::pi / 4 * diameter * diameter;
         sums.scattering += area * mie.scattering_efficiency();
-        sums.absorption +=
-            area * std::max(0.0, mie.extinction_efficiency() - mie.scattering_efficiency());
+        // Rounding would make a little of what does not absorb.
+        if (sphere_index_.imag() > 0 || coat_index_.imag() > 0)
+            sums.absorption +=
+                area * std::max(0.0, mie.extinction_efficiency() - mie.scattering_efficiency());
         mie.add_intensity(weight / (wave_number_ * wave_number_), cosines_, sums.phase);
     }
 
@@ -203,10 +263,7 @@ class SizeAverage {
         };
         constexpr double k_coefficient = 1e-4, k_phase = 0.02;
         if (differs(coarse.scattering, fine.scattering, k_coefficient)) return false;
-        // Rounding makes a little of what does not absorb.
-        if (fine.absorption > 1e-9 * fine.scattering &&
-            differs(coarse.absorption, fine.absorption, k_coefficient))
-            return false;
+        if (differs(coarse.absorption, fine.absorption, k_coefficient)) return false;
         double squares = 0;
         for (std::size_t i = 0; i < fine.phase.size(); ++i) {
             const double relative = coarse.phase[i] / fine.phase[i] - 1;
@@ -222,9 +279,19 @@ class SizeAverage {
     std::vector<double> angles_, cosines_;
 };
 
-SpeciesOptics compute(const SpeciesDesc& species, double wavelength_nm, double n_water) {
+SpeciesOptics compute(const SpeciesDesc& species, double wavelength_nm, double n_water,
+                      const ShareCallback& progress) {
     const SizeAverage average(species, wavelength_nm, n_water);
-    const Sums sums = average.converged();
+    const std::string key = average.text();
+    Sums sums;
+    if (auto kept = kept_results(key, 2 + average.angles().size())) {
+        sums = {(*kept)[0], (*kept)[1], {kept->begin() + 2, kept->end()}};
+    } else {
+        sums = average.converged(progress);
+        std::vector<double> results{sums.scattering, sums.absorption};
+        results.insert(results.end(), sums.phase.begin(), sums.phase.end());
+        keep_results(key, results);
+    }
     constexpr double k_ppm = 1e-6;
     SampledCurve curve;
     for (const double psi : average.angles())
@@ -237,7 +304,8 @@ SpeciesOptics compute(const SpeciesDesc& species, double wavelength_nm, double n
 /// The results of this process, of which every image of a run needs the same.
 class KeptOptics {
   public:
-    SpeciesOptics of(const SpeciesDesc& species, double wavelength_nm, double n_water) {
+    SpeciesOptics of(const SpeciesDesc& species, double wavelength_nm, double n_water,
+                     const ShareCallback& progress) {
         const auto is_it = [&](const Entry& entry) {
             return entry.wavelength_nm == wavelength_nm && entry.n_water == n_water &&
                    entry.species == species && entry.files.are_current();
@@ -248,7 +316,7 @@ class KeptOptics {
                 return found->optics;
         }
         FileStamps files(files_of(species));
-        SpeciesOptics optics = compute(species, wavelength_nm, n_water);
+        SpeciesOptics optics = compute(species, wavelength_nm, n_water, progress);
         const std::scoped_lock lock(mutex_);
         constexpr std::size_t k_most = 4096;  // of 20 kB each
         if (entries_.size() >= k_most) entries_.clear();
@@ -268,6 +336,32 @@ class KeptOptics {
     std::vector<Entry> entries_;
 };
 
+SpeciesOptics measured_optics(const SpeciesDesc& species, double wavelength_nm, double salinity) {
+    const MeasuredVsfDesc& desc = *species.vsf;
+    SpeciesOptics optics;
+    optics.absorption = desc.absorption;
+    if (!desc.absorption_file.empty())
+        optics.absorption = read_csv_file(desc.absorption_file, species.where)
+                                .curve("wavelength_nm", "absorption")
+                                .value(wavelength_nm);
+    if (!(optics.absorption >= 0))
+        throw InputError(
+            fmt::format("{}: {} gives an absorption of {:g} 1/m at {:g} nm; give 0 "
+                        "or more",
+                        species.where, desc.absorption_file.filename().string(), optics.absorption,
+                        wavelength_nm));
+    const SampledCurve beta =
+        particle_vsf(read_measured_vsf(species), species, wavelength_nm, salinity);
+    try {
+        const auto phase = std::make_shared<SpeciesPhase>(beta, species.name);
+        optics.scattering = phase->table_integral();
+        optics.phase = phase;
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", species.where, error.what()));
+    }
+    return optics;
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> files_of(const SpeciesDesc& species) {
@@ -278,21 +372,54 @@ std::vector<std::filesystem::path> files_of(const SpeciesDesc& species) {
     add_file(species.sizes.file);
     add_file(species.index.file);
     if (species.coat) add_file(species.coat->index.file);
+    if (species.vsf) {
+        add_file(species.vsf->file);
+        add_file(species.vsf->absorption_file);
+    }
     return files;
 }
 
-SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, double n_water) {
+SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, double n_water,
+                             const ShareCallback& progress) {
     static KeptOptics kept;
-    return kept.of(species, wavelength_nm, n_water);
+    return kept.of(species, wavelength_nm, n_water, progress);
 }
 
-double parts_per_million(const SpeciesDesc& species, const SpeciesAmount& amount) {
+SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm,
+                             const WaterDesc& water, const ShareCallback& progress) {
+    if (species.vsf) return measured_optics(species, wavelength_nm, water.salinity);
+    return species_optics(species, wavelength_nm,
+                          water_refractive_index(wavelength_nm, water.temperature, water.salinity),
+                          progress);
+}
+
+std::vector<double> measured_wavelengths(const SpeciesDesc& species) {
+    return species.vsf ? read_measured_vsf(species).wavelengths_nm : std::vector<double>();
+}
+
+std::string unit_of(const SpeciesDesc& species) {
+    return species.vsf ? "sample" : "ppm";
+}
+
+double concentration_of(const SpeciesDesc& species, const SpeciesAmount& amount,
+                        const WaterDesc& water) {
+    constexpr double k_ntu_nm = 550;
     switch (amount.unit) {
         case SpeciesAmount::Unit::grams:
+            if (species.vsf) return amount.amount / species.vsf->sample->amount;
             return amount.amount / *species.density;  // g/cm^3 is 1 g/m^3 per ppm
         case SpeciesAmount::Unit::number:
+            if (species.vsf) return amount.amount / species.vsf->sample->amount;
             return amount.amount * VolumeBySize(species).mean_volume() * 1e6;
-        case SpeciesAmount::Unit::ppm:
+        case SpeciesAmount::Unit::ntu: {
+            const double b = species_optics(species, k_ntu_nm, water).scattering;
+            if (!(b > 0))
+                throw InputError(fmt::format(
+                    "{}: does not scatter at 550 nm and has no turbidity; give another unit",
+                    species.where));
+            return amount.amount * species.ntu_scattering / b;
+        }
+        case SpeciesAmount::Unit::own:
             break;
     }
     return amount.amount;

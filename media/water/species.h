@@ -2,10 +2,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/light/medium.h"
-#include "core/scene/species_desc.h"
+#include "core/scene/water_desc.h"
 #include "media/water/phase_functions.h"
 
 namespace uw {
@@ -16,23 +19,38 @@ class SpeciesPhase final : public TabulatedPhase {
     using TabulatedPhase::TabulatedPhase;
 };
 
-/// What particles of a species do to light of one wavelength.
+/// What as much of a species as unit_of says does to light of one wavelength.
 struct SpeciesOptics {
-    double absorption = 0, scattering = 0;  // [1/m per ppm by volume]
+    double absorption = 0, scattering = 0;  // [1/m per unit]
     std::shared_ptr<const PhaseFunction> phase;
 };
 
 /// Averages Lorenz-Mie scattering over a species' sizes, at `wavelength_nm` in vacuum, in water of
 /// index `n_water`. Sizes are added until scattering and absorption hold to 1e-4 and the
 /// phase function to 2 % at its angles in the root mean square, or there are 2048. Kept: the
-/// same is not computed twice. Throws InputError at the species' place in the scene for tables
-/// that make no sense, IoError if they cannot be read.
-SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, double n_water);
+/// same is not computed twice, nor what the cache of species holds (species_cache.h). `progress` is
+/// told how far it is if it has to be computed. Throws InputError at the species' place in the
+/// scene for tables that make no sense, IoError if they cannot be read.
+SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, double n_water,
+                             const ShareCallback& progress = {});
+
+/// The same for any species in a scene's water: what was measured is interpolated linearly between
+/// its wavelengths at each angle, without water's molecules, and held beyond its wavelengths.
+SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm,
+                             const WaterDesc& water, const ShareCallback& progress = {});
+
+/// The wavelengths at which a species was measured [nm], ascending; empty if it was computed.
+std::vector<double> measured_wavelengths(const SpeciesDesc& species);
 
 /// The files that a species is read from.
 std::vector<std::filesystem::path> files_of(const SpeciesDesc& species);
 
-/// The concentration in ppm by volume.
-double parts_per_million(const SpeciesDesc& species, const SpeciesAmount& amount);
+/// In what concentrations of a species are counted: "ppm" by volume, or the "sample" measured.
+std::string unit_of(const SpeciesDesc& species);
+
+/// The concentration in that unit. 1 NTU is as much as scatters SpeciesDesc::ntu_scattering at 550
+/// nm in this water.
+double concentration_of(const SpeciesDesc& species, const SpeciesAmount& amount,
+                        const WaterDesc& water);
 
 }  // namespace uw

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "core/base/error.h"
 #include "core/scene/dispersion.h"
+#include "media/water/depth_profile.h"
 #include "media/water/phase_functions.h"
 #include "media/water/species.h"
 #include "media/water/water_types.h"
@@ -44,9 +47,12 @@ using PhaseSource = std::variant<PhaseFunctionDesc, const ParticleKind*, Species
 /// Assembles the model step by step: the uniform water first, since grids may refer to it.
 class Builder {
   public:
-    explicit Builder(const WaterDesc& water);
+    Builder(const WaterDesc& water, const ShareCallback& progress);
 
+    /// Counts the species that will be needed, so that progress is that of all.
+    void expect(const std::vector<VolumeDesc>& volumes);
     void add_uniform();
+    void add_strata();
     void add_grid(const GridMappingDesc& grid, std::vector<GridLoad>& loads);
     WaterModel finish();
 
@@ -59,6 +65,10 @@ class Builder {
     std::size_t phase_index_of(const PhaseSource& source, const Make& make);
     static Spectrum& scattering(OpticalCoefficients& x, std::size_t phase);
 
+    void warn_of_held_wavelengths(std::size_t species);
+    /// Adds what is more of something than its least to a constituent.
+    void add_curve(int constituent, std::vector<double> values);
+    void add_coefficient_curves(const std::vector<double>& values, bool scatters);
     void add_uniform_particles(const ParticleKind& kind, double ppm, double absorbing_ppm);
     void add_species(std::size_t species, double ppm, OpticalCoefficients& x);
     int particle_constituent(const ParticleKind& kind);
@@ -76,7 +86,12 @@ class Builder {
     };
 
     const WaterDesc& water_;
+    const ShareCallback& progress_;
     const std::size_t band_count_;
+    std::optional<DepthProfile> profile_;
+    std::vector<Strata::Curve> curves_;
+    std::size_t expected_ = 0, done_ = 0;     // species to be computed
+    std::vector<bool> known_species_;         // those that have been asked for
     std::vector<PhaseSource> phase_sources_;  // one per medium phase function
     std::vector<OpticsEntry> optics_;
 };
@@ -108,11 +123,23 @@ bool same_optics(const GridMappingDesc::Optics& a, const GridMappingDesc::Optics
            function(a) == function(b);
 }
 
+/// The least of what a profile has [depth * bands + band], by band.
+Spectrum least_by_band(const std::vector<double>& values, std::size_t bands) {
+    Spectrum least{};
+    for (std::size_t i = 0; i < values.size(); ++i)
+        least[i % bands] = i < bands ? values[i] : std::min(least[i % bands], values[i]);
+    return least;
+}
+
 bool is_zero(const Spectrum& x) {
     return std::all_of(x.begin(), x.end(), [](double value) { return value == 0; });
 }
 
-Builder::Builder(const WaterDesc& water) : water_(water), band_count_(water.bands_nm.size()) {
+Builder::Builder(const WaterDesc& water, const ShareCallback& progress)
+    : water_(water),
+      progress_(progress),
+      band_count_(water.bands_nm.size()),
+      known_species_(water.species.size(), false) {
     check_bands(water);
     if (water.absorption) check_per_band(*water.absorption, band_count_, "absorption", water.where);
     if (water.scattering)
@@ -167,12 +194,21 @@ void Builder::add_uniform() {
         throw InputError(fmt::format("{}: {}", water_.where, error.what()));
     }
     OpticalCoefficients& uniform = model.medium.uniform;
-    uniform.absorption = uniform_absorption(water_, preset, model.warnings);
+    if (water_.profile) {
+        profile_ = read_depth_profile(water_);
+        model.warnings = profile_->warnings;
+    }
+    if (profile_ && !profile_->absorption.empty())
+        uniform.absorption = least_by_band(profile_->absorption, band_count_);
+    else
+        uniform.absorption = uniform_absorption(water_, preset, model.warnings);
 
     if (water_.scattering) {
-        const PerBand& given = water_.scattering->b;
         Spectrum& b = scattering(uniform, phase_index(water_.scattering->phase));
-        std::copy(given.begin(), given.end(), b.begin());
+        if (profile_ && !profile_->scattering.empty())
+            b = least_by_band(profile_->scattering, band_count_);
+        else
+            std::ranges::copy(water_.scattering->b, b.begin());
         if (water_.small_ppm.value_or(0) > 0 || water_.large_ppm.value_or(0) > 0)
             model.warnings.push_back(fmt::format(
                 "{}: scattering is given, so particles are not used; remove one or the other",
@@ -185,6 +221,8 @@ void Builder::add_uniform() {
         b[i] = water_scattering(water_.bands_nm[i], water_.salinity);
     model.small_ppm = water_.small_ppm.value_or(preset ? preset->small_ppm : 0);
     model.large_ppm = water_.large_ppm.value_or(preset ? preset->large_ppm : 0);
+    if (profile_ && !profile_->small.empty()) model.small_ppm = std::ranges::min(profile_->small);
+    if (profile_ && !profile_->large.empty()) model.large_ppm = std::ranges::min(profile_->large);
     // A preset's measured absorption includes what its own particles absorb.
     const bool measured = preset && !water_.absorption;
     const double small_counted = measured ? preset->small_ppm : 0;
@@ -194,17 +232,56 @@ void Builder::add_uniform() {
     add_uniform_particles(k_large_particles, model.large_ppm,
                           std::max(0.0, model.large_ppm - large_counted));
     for (const SpeciesAmount& amount : water_.amounts)
-        add_species(amount.species, parts_per_million(water_.species[amount.species], amount),
-                    uniform);
+        add_species(amount.species,
+                    concentration_of(water_.species[amount.species], amount, water_), uniform);
+    if (profile_)
+        for (const DepthProfile::OfSpecies& of : profile_->species)
+            add_species(of.species, std::ranges::min(of.concentration), uniform);
+}
+
+void Builder::expect(const std::vector<VolumeDesc>& volumes) {
+    std::vector<bool> used(water_.species.size(), water_.profile.has_value());
+    const auto use = [&](const std::vector<SpeciesAmount>& amounts) {
+        for (const SpeciesAmount& amount : amounts) used[amount.species] = true;
+    };
+    use(water_.amounts);
+    for (const VolumeDesc& volume : volumes)
+        for (const GridMappingDesc& grid : volume.grids) use(grid.amounts);
+    expected_ = static_cast<std::size_t>(std::ranges::count(used, true)) * band_count_;
+}
+
+void Builder::warn_of_held_wavelengths(std::size_t species) {
+    const std::vector<double> known = measured_wavelengths(water_.species[species]);
+    if (known.empty()) return;
+    constexpr double k_near_nm = 15;
+    std::string outside;
+    for (const double band : water_.bands_nm)
+        if (band < known.front() - k_near_nm || band > known.back() + k_near_nm)
+            outside += fmt::format("{}{:g}", outside.empty() ? "" : ", ", band);
+    if (outside.empty()) return;
+    const std::string range =
+        known.size() == 1 ? fmt::format("at {:g} nm alone", known.front())
+                          : fmt::format("from {:g} to {:g} nm", known.front(), known.back());
+    model.warnings.push_back(
+        fmt::format("{}: its scattering was measured {}, and is taken to be the same at {} nm",
+                    water_.species[species].where, range, outside));
 }
 
 void Builder::add_species(std::size_t species, double ppm, OpticalCoefficients& x) {
     if (ppm == 0) return;
+    const bool is_first = !known_species_[species];
+    known_species_[species] = true;
+    if (is_first) warn_of_held_wavelengths(species);
     for (std::size_t i = 0; i < band_count_; ++i) {
-        const double wavelength = water_.bands_nm[i];
+        ShareCallback tell;
+        if (progress_)
+            tell = [&](double share) {
+                const auto all = static_cast<double>(std::max(expected_, done_ + 1));
+                progress_((static_cast<double>(done_) + share) / all);
+            };
         const SpeciesOptics optics =
-            species_optics(water_.species[species], wavelength,
-                           water_refractive_index(wavelength, water_.temperature, water_.salinity));
+            species_optics(water_.species[species], water_.bands_nm[i], water_, tell);
+        if (is_first) ++done_;
         const std::size_t phase =
             phase_index_of(SpeciesInBand{species, i}, [&] { return optics.phase; });
         scattering(x, phase)[i] += ppm * optics.scattering;
@@ -215,7 +292,7 @@ void Builder::add_species(std::size_t species, double ppm, OpticalCoefficients& 
 int Builder::known_particles(const std::string& name) const {
     const std::vector<Constituent>& all = model.medium.constituents;
     const auto found = std::find_if(all.begin(), all.end(), [&](const Constituent& other) {
-        return other.unit == "ppm" && other.name == name;
+        return (other.unit == "ppm" || other.unit == "sample") && other.name == name;
     });
     return found == all.end() ? -1 : static_cast<int>(found - all.begin());
 }
@@ -223,7 +300,7 @@ int Builder::known_particles(const std::string& name) const {
 int Builder::species_constituent(std::size_t species) {
     const std::string& name = water_.species[species].name;
     if (const int known = known_particles(name); known >= 0) return known;
-    Constituent particles{name, "ppm", {}};
+    Constituent particles{name, unit_of(water_.species[species]), {}};
     add_species(species, 1, particles.per_unit);
     model.medium.constituents.push_back(std::move(particles));
     return model.medium.constituent_count() - 1;
@@ -301,8 +378,89 @@ void Builder::add_grid(const GridMappingDesc& grid, std::vector<GridLoad>& loads
     if (grid.large_ppm != 0)
         loads.push_back({particle_constituent(k_large_particles), grid.large_ppm});
     for (const SpeciesAmount& amount : grid.amounts)
-        if (const double ppm = parts_per_million(water_.species[amount.species], amount); ppm != 0)
-            loads.push_back({species_constituent(amount.species), ppm});
+        if (const double unit = concentration_of(water_.species[amount.species], amount, water_);
+            unit != 0)
+            loads.push_back({species_constituent(amount.species), unit});
+}
+
+void Builder::add_curve(int constituent, std::vector<double> values) {
+    const double least = std::ranges::min(values);
+    for (double& value : values) value -= least;
+    curves_.push_back({static_cast<std::size_t>(constituent), std::move(values)});
+}
+
+/// Whether all bands' values above their least are those of `band` times a factor, which become
+/// `factors`: then one constituent stands for all.
+bool change_alike(const std::vector<double>& values, const Spectrum& least, std::size_t band,
+                  std::size_t bands, Spectrum& factors) {
+    double most = 0;
+    for (std::size_t i = band; i < values.size(); i += bands)
+        most = std::max(most, values[i] - least[band]);
+    for (std::size_t b = 0; b < bands; ++b) {
+        double its = 0;
+        for (std::size_t i = b; i < values.size(); i += bands)
+            its = std::max(its, values[i] - least[b]);
+        factors[b] = its / most;
+        for (std::size_t i = 0; i < values.size(); i += bands)
+            if (std::abs(values[i + b] - least[b] - factors[b] * (values[i + band] - least[band])) >
+                1e-12 * most)
+                return false;
+    }
+    return true;
+}
+
+void Builder::add_coefficient_curves(const std::vector<double>& values, bool scatters) {
+    if (values.empty()) return;
+    const Spectrum least = least_by_band(values, band_count_);
+    const auto changes = [&](std::size_t band) {
+        for (std::size_t i = band; i < values.size(); i += band_count_)
+            if (values[i] > least[band]) return true;
+        return false;
+    };
+    const auto add = [&](std::size_t band, const Spectrum& factors) {
+        const std::string name = scatters ? "scattering" : "absorption";
+        Constituent constituent{unique_name(name), "1/m", {}};
+        if (scatters)
+            scattering(constituent.per_unit, phase_index(water_.scattering->phase)) = factors;
+        else
+            constituent.per_unit.absorption = factors;
+        model.medium.constituents.push_back(std::move(constituent));
+        std::vector<double> curve;
+        for (std::size_t i = band; i < values.size(); i += band_count_) curve.push_back(values[i]);
+        add_curve(model.medium.constituent_count() - 1, std::move(curve));
+    };
+    std::size_t first = 0;
+    while (first < band_count_ && !changes(first)) ++first;
+    if (first == band_count_) return;
+    if (Spectrum factors{}; change_alike(values, least, first, band_count_, factors)) {
+        add(first, factors);
+        return;
+    }
+    for (std::size_t band = first; band < band_count_; ++band) {
+        if (!changes(band)) continue;
+        Spectrum own{};
+        own[band] = 1;
+        add(band, own);
+    }
+}
+
+void Builder::add_strata() {
+    if (!profile_) return;
+    const auto changes = [](const std::vector<double>& values) {
+        return !values.empty() && std::ranges::max(values) > std::ranges::min(values);
+    };
+    if (changes(profile_->small))
+        add_curve(particle_constituent(k_small_particles), profile_->small);
+    if (changes(profile_->large))
+        add_curve(particle_constituent(k_large_particles), profile_->large);
+    for (const DepthProfile::OfSpecies& of : profile_->species)
+        if (changes(of.concentration)) add_curve(species_constituent(of.species), of.concentration);
+    add_coefficient_curves(profile_->absorption, false);
+    add_coefficient_curves(profile_->scattering, true);
+    if (curves_.empty()) return;
+    const WaterSurfaceDesc& surface = water_.surface.value();
+    model.strata = std::make_shared<Strata>(surface.point, surface.normal, profile_->depths,
+                                            std::move(curves_));
 }
 
 void Builder::drop_unused_phases() {
@@ -328,22 +486,48 @@ WaterModel Builder::finish() {
 
 }  // namespace
 
-WaterModel build_water_model(const WaterDesc& water, const std::vector<VolumeDesc>& volumes) {
-    Builder builder(water);
+WaterModel build_water_model(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
+                             const ShareCallback& progress) {
+    Builder builder(water, progress);
+    builder.expect(volumes);
     builder.add_uniform();
     for (const VolumeDesc& volume : volumes) {
         std::vector<std::vector<GridLoad>>& loads = builder.model.loads.emplace_back();
         for (const GridMappingDesc& grid : volume.grids)
             builder.add_grid(grid, loads.emplace_back());
     }
+    builder.add_strata();
     return builder.finish();
+}
+
+std::vector<OpticalCoefficients> coefficients_by_depth(const WaterModel& model) {
+    if (!model.strata) return {};
+    std::vector<OpticalCoefficients> all(model.strata->depths().size(), model.medium.uniform);
+    for (const Strata::Curve& curve : model.strata->curves()) {
+        const OpticalCoefficients& unit = model.medium.constituents[curve.constituent].per_unit;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            all[i].absorption += curve.values[i] * unit.absorption;
+            for (std::size_t m = 0; m < unit.scattering.size(); ++m)
+                all[i].scattering[m] += curve.values[i] * unit.scattering[m];
+        }
+    }
+    return all;
 }
 
 namespace {
 
 constexpr double k_least_step_ppm = 1e-6;  // beyond rounding
 
-void refuse_other_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes) {
+void refuse_other_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
+                        bool is_small) {
+    if (water.profile) {
+        const DepthProfile profile = read_depth_profile(water);
+        if (!(is_small ? profile.small : profile.large).empty())
+            throw UsageError(fmt::format(
+                "the {} particles change with depth; take them out of {}, or take another "
+                "derivative",
+                is_small ? "small" : "large", water.profile->file.filename().string()));
+    }
     if (water.scattering)
         throw UsageError(
             "the water's scattering is given, so that it has no particles; remove "
@@ -373,8 +557,8 @@ double linear_step(const WaterDesc& water, double ppm, double preset_ppm) {
 ParticleDerivative particle_derivative(const WaterDesc& water,
                                        const std::vector<VolumeDesc>& volumes,
                                        WaterParticles particles) {
-    refuse_other_water(water, volumes);
     const bool is_small = particles == WaterParticles::small;
+    refuse_other_water(water, volumes, is_small);
     const WaterModel model = build_water_model(water, volumes);
     const double ppm = is_small ? model.small_ppm : model.large_ppm;
     double preset_ppm = 0;

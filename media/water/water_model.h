@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/light/medium.h"
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
@@ -15,8 +16,9 @@ namespace uw {
 struct WaterModel {
     Medium medium;
     std::vector<std::vector<std::vector<GridLoad>>> loads;  // [volume][grid mapping]
-    double small_ppm = 0, large_ppm = 0;  // background particles, part of medium.uniform
-    std::vector<std::string> warnings;    // one line each, with the location in the scene file
+    double small_ppm = 0, large_ppm = 0;   // background particles, part of medium.uniform
+    std::shared_ptr<const Strata> strata;  // of the depth profile; null if nothing changes
+    std::vector<std::string> warnings;     // one line each, with the location in the scene file
 };
 
 /// Builds the optical properties of the water (physics section 1; docs/physics.md).
@@ -33,10 +35,21 @@ struct WaterModel {
 /// after its first grid. Coefficients without a phase function scatter like the uniform water in
 /// each band, molecules included. Unused phase functions and constituents are omitted.
 ///
+/// A depth profile's least values are part of the uniform water, what is more at some depths of the
+/// constituents: particles of those that grids add to, and absorption and scattering of
+/// "absorption" and "scattering" [1/m], one for each band unless all bands' change alike.
+///
+/// `progress` is told how far the computation of species is, if any takes time.
+///
 /// Throws InputError starting with the location in the scene file: unknown preset, a band outside
 /// pure water's table (300 to 900 nm) without explicit absorption, coefficients without a phase
 /// function in water that does not scatter, and whatever make_phase_function rejects.
-WaterModel build_water_model(const WaterDesc& water, const std::vector<VolumeDesc>& volumes);
+WaterModel build_water_model(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
+                             const ShareCallback& progress = {});
+
+/// The coefficients of all water at the depths of the model's strata, in their order, without what
+/// grids add; none without strata.
+std::vector<OpticalCoefficients> coefficients_by_depth(const WaterModel& model);
 
 /// The water's own particles (WaterDesc::small_ppm, large_ppm).
 enum class WaterParticles : std::uint8_t { small, large };

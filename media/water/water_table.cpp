@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/base/numerics.h"
+#include "media/water/depth_profile.h"
 #include "media/water/phase_functions.h"
 #include "media/water/species.h"
 #include "media/water/water_model.h"
@@ -144,15 +145,59 @@ double CoefficientTable::vsf(std::size_t i, double psi) const {
 }
 
 bool is_given_per_band(const WaterDesc& water, const std::vector<VolumeDesc>& volumes) {
-    if (water.absorption || water.scattering) return true;
+    if (water.absorption || water.scattering || profile_is_per_band(water)) return true;
     return std::any_of(volumes.begin(), volumes.end(), [](const VolumeDesc& volume) {
         return std::any_of(volume.grids.begin(), volume.grids.end(),
                            [](const GridMappingDesc& grid) { return grid.optics.has_value(); });
     });
 }
 
-WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes) {
+namespace {
+
+/// A volume with all of the water's species, so that there is a table of each.
+VolumeDesc volume_of_species(const WaterDesc& water) {
+    VolumeDesc volume;
+    GridMappingDesc& grid = volume.grids.emplace_back();
+    for (std::size_t i = 0; i < water.species.size(); ++i)
+        grid.amounts.push_back({i, 1, SpeciesAmount::Unit::own});
+    return volume;
+}
+
+double grams_per_unit(const WaterDesc& water, const Constituent& constituent) {
+    if (constituent.unit == "ppm" && constituent.name == "small") return k_small_particle_density;
+    if (constituent.unit == "ppm" && constituent.name == "large") return k_large_particle_density;
+    for (const SpeciesDesc& species : water.species) {
+        if (species.name != constituent.name || unit_of(species) != constituent.unit) continue;
+        if (species.density) return *species.density;
+        const bool is_weighed = species.vsf && species.vsf->sample &&
+                                species.vsf->sample->unit == SpeciesAmount::Unit::grams;
+        return is_weighed ? species.vsf->sample->amount : 0;
+    }
+    return 0;
+}
+
+void append_depths(const WaterModel& model, WaterTable& table) {
+    if (!model.strata) return;
+    table.depths = model.strata->depths();
+    table.absorption_at.resize(table.depths.size());
+    table.scattering_at.resize(table.depths.size());
+    const std::vector<OpticalCoefficients> all = coefficients_by_depth(model);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Spectrum a = all[i].absorption, b = all[i].total_scattering();
+        for (std::size_t band = 0; band < model.medium.wavelengths_nm.size(); ++band) {
+            table.absorption_at[i].push_back(a[band]);
+            table.scattering_at[i].push_back(b[band]);
+        }
+    }
+}
+
+}  // namespace
+
+WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes_of_scene,
+                          const ShareCallback& progress) {
     WaterTable table;
+    std::vector<VolumeDesc> volumes = volumes_of_scene;
+    if (!water.species.empty()) volumes.push_back(volume_of_species(water));
     table.wavelengths_nm = water.bands_nm;
     const auto most = is_given_per_band(water, volumes)
                           ? std::max<std::size_t>(1, water.bands_nm.size())
@@ -163,15 +208,28 @@ WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>&
         const std::size_t last = std::min(first + most, water.bands_nm.size());
         piece.bands_nm.assign(water.bands_nm.begin() + static_cast<std::ptrdiff_t>(first),
                               water.bands_nm.begin() + static_cast<std::ptrdiff_t>(last));
-        const WaterModel model = build_water_model(piece, volumes);
+        ShareCallback of_piece;
+        if (progress)
+            of_piece = [&](double share) {
+                const auto all = static_cast<double>(water.bands_nm.size());
+                progress((static_cast<double>(first) + share * static_cast<double>(last - first)) /
+                         all);
+            };
+        const WaterModel model = build_water_model(piece, volumes, of_piece);
         append(model.medium.uniform, model.medium, table.uniform);
-        table.constituents.resize(model.medium.constituents.size());
-        for (std::size_t k = 0; k < table.constituents.size(); ++k) {
-            const Constituent& constituent = model.medium.constituents[k];
-            table.constituents[k].name = constituent.name;
-            table.constituents[k].unit = constituent.unit;
-            append(constituent.per_unit, model.medium, table.constituents[k]);
+        std::size_t k = 0;
+        for (const Constituent& constituent : model.medium.constituents) {
+            // Coefficients that change with depth are not those of a concentration.
+            if (constituent.unit == "1/m") continue;
+            if (k == table.constituents.size())
+                table.constituents.push_back({constituent.name,
+                                              constituent.unit,
+                                              grams_per_unit(water, constituent),
+                                              {},
+                                              {}});
+            append(constituent.per_unit, model.medium, table.constituents[k++]);
         }
+        append_depths(model, table);
         table.small_ppm = model.small_ppm;
         table.large_ppm = model.large_ppm;
         for (const std::string& warning : model.warnings)
@@ -214,15 +272,20 @@ std::string absorption_source(const WaterDesc& water, double small_ppm, double l
     return text;
 }
 
+std::string amount_source(const WaterDesc& water, const SpeciesAmount& amount) {
+    const SpeciesDesc& species = water.species[amount.species];
+    const double concentration = concentration_of(species, amount, water);
+    if (!species.vsf) return fmt::format("{:.4g} ppm {}, Lorenz-Mie", concentration, species.name);
+    return fmt::format("{:.4g} times the sample of {}, {}", concentration, species.name,
+                       species.vsf->library.empty() ? "as measured" : "Petzold 1972");
+}
+
 std::string scattering_source(const WaterDesc& water, double small_ppm, double large_ppm) {
     if (water.scattering) return "scattering: as given per band, with one phase function";
     std::string text =
         fmt::format("scattering: water's molecules, Einstein-Smoluchowski (Morel 1974), {:g} PSU",
                     water.salinity);
-    for (const SpeciesAmount& amount : water.amounts)
-        text += fmt::format("; {:.4g} ppm {}, Lorenz-Mie",
-                            parts_per_million(water.species[amount.species], amount),
-                            water.species[amount.species].name);
+    for (const SpeciesAmount& amount : water.amounts) text += "; " + amount_source(water, amount);
     if (small_ppm + large_ppm == 0) return text;
     text += fmt::format(
         "; Kopelevich's particles (1983; Mobley 1994), {:.4g} ppm small, "
@@ -246,8 +309,8 @@ std::string grid_source(const WaterDesc& water, const VolumeDesc& volume,
             parts.push_back(fmt::format("{:g} ppm large", grid.large_ppm));
         for (const SpeciesAmount& amount : grid.amounts) {
             const SpeciesDesc& species = water.species[amount.species];
-            parts.push_back(
-                fmt::format("{:.4g} ppm {}", parts_per_million(species, amount), species.name));
+            parts.push_back(fmt::format("{:.4g} {} {}", concentration_of(species, amount, water),
+                                        unit_of(species), species.name));
         }
         return place + fmt::format("{}", fmt::join(parts, ", "));
     }
@@ -262,6 +325,11 @@ std::vector<std::string> water_sources(const WaterDesc& water,
                                        double large_ppm) {
     std::vector<std::string> lines{absorption_source(water, small_ppm, large_ppm),
                                    scattering_source(water, small_ppm, large_ppm)};
+    if (water.profile)
+        lines.push_back(
+            fmt::format("profile: {}, by depth; where it changes, what is above is the "
+                        "least of it",
+                        water.profile->file.filename().string()));
     for (const VolumeDesc& volume : volumes)
         for (const GridMappingDesc& grid : volume.grids)
             lines.push_back(grid_source(water, volume, grid));

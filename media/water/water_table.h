@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/light/medium.h"
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
@@ -32,8 +33,9 @@ struct ScatteringPart {
 /// Spectral coefficients of the uniform water [1/m], or of a constituent that grids add [1/m per
 /// unit of its concentration]. `i` is an index into WaterTable::wavelengths_nm.
 struct CoefficientTable {
-    std::string name;  // of the constituent; empty for the uniform water
-    std::string unit;  // of its concentration: "ppm", or "1" for a bare grid value; else empty
+    std::string name;           // of the constituent; empty for the uniform water
+    std::string unit;           // of its concentration (Constituent::unit); else empty
+    double grams_per_unit = 0;  // of its concentration [g/m^3]; 0: not known
     std::vector<double> absorption;
     std::vector<ScatteringPart> parts;  // those that scatter at any wavelength
 
@@ -59,18 +61,23 @@ struct CoefficientTable {
 struct WaterTable {
     std::vector<double> wavelengths_nm;
     CoefficientTable uniform;                    // everything that is homogeneous
-    std::vector<CoefficientTable> constituents;  // contributed by the grids, per unit
-    double small_ppm = 0, large_ppm = 0;         // background particles, part of `uniform`
-    std::vector<std::string> warnings;           // as in WaterModel
+    std::vector<CoefficientTable> constituents;  // of the grids, and all species, per unit
+    std::vector<double> depths;                  // of the water's profile [m]
+    /// Coefficients of all water at these depths [depth][wavelength] [1/m].
+    std::vector<std::vector<double>> absorption_at, scattering_at;
+    double small_ppm = 0, large_ppm = 0;  // background particles, part of `uniform`
+    std::vector<std::string> warnings;    // as in WaterModel
 };
 
 /// Whether coefficients of the water or of a grid are given as numbers per band, and are therefore
 /// known at the scene's own bands only.
 bool is_given_per_band(const WaterDesc& water, const std::vector<VolumeDesc>& volumes);
 
-/// Tabulates the result of build_water_model for `water` at `water.bands_nm`, of which there may be
-/// more than k_max_bands unless numbers are given per band. Throws as build_water_model.
-WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes);
+/// Tabulates the result of build_water_model, to which `progress` goes, for `water` at
+/// `water.bands_nm`, of which there may be more than k_max_bands unless numbers are given per band.
+/// Throws as build_water_model.
+WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
+                          const ShareCallback& progress = {});
 
 /// 2 pi int p(psi) f(psi) sin(psi) dpsi over [90, 180] degrees with f = 1.
 double backscatter_fraction(const PhaseFunction& phase);

@@ -42,7 +42,7 @@ struct Lattice {
 };
 
 Lattice lattice_over(const AssembledScene& scene) {
-    Bounds bounds = scene.field->bounds();
+    Bounds bounds = scene.field->grids().bounds();
     double voxel = scene.field->finest_voxel();
     if (bounds.empty()) {
         bounds = scene.surfaces->bounds();

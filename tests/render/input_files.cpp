@@ -20,6 +20,9 @@ water:
   scattering: {b: 0.2, phase: {type: table, file: water.csv}}
   species:
     silt: {size: {type: table, file: sizes.csv}, index: {file: quartz.csv}, coat: {thickness: 0.1 um, index: {file: film.csv}}}
+    mud: {vsf: mud.csv, water: removed, absorption: {file: mud-absorption.csv}}
+  surface: {point: [0, 5, 0], normal: [0, 1, 0]}
+  profile: ctd.csv
 volumes:
   - file: smoke_####.vdb
     velocity: {grid: v, file: wind_####.vdb}
@@ -53,7 +56,8 @@ class InputFiles : public testing::Test {
     InputFiles() {
         for (const char* name :
              {"water.csv", "smoke_0001.vdb", "wind_0001.vdb", "smoke.csv", "wall.obj", "lamp.ies",
-              "spectrum.csv", "camera.csv", "white.csv", "sizes.csv", "quartz.csv", "film.csv"})
+              "spectrum.csv", "camera.csv", "white.csv", "sizes.csv", "quartz.csv", "film.csv",
+              "mud.csv", "mud-absorption.csv", "ctd.csv"})
             folder_.write(name, "");
         folder_.write("rig.yaml", camchain());
         folder_.write("sub/ship_0001.gltf",
@@ -78,11 +82,17 @@ class InputFiles : public testing::Test {
 TEST_F(InputFiles, AreAllThatASceneNames) {
     const SceneDesc scene = load_scene(folder_.path() / "scene.yaml", {});
     EXPECT_EQ(names_of(scene, {1}),
-              (std::multiset<std::string>{
-                  "scene.yaml", "rig.yaml", "rig.yaml", "rig.yaml", "water.csv", "smoke_0001.vdb",
-                  "wind_0001.vdb", "smoke.csv", "wall.obj", "sub/ship_0001.gltf",
-                  "sub/ship one.bin", "sub/hull.png", "lamp.ies", "spectrum.csv", "camera.csv",
-                  "white.csv", "sizes.csv", "quartz.csv", "film.csv"}));
+              (std::multiset<std::string>{"scene.yaml",         "rig.yaml",
+                                          "rig.yaml",           "rig.yaml",
+                                          "water.csv",          "smoke_0001.vdb",
+                                          "wind_0001.vdb",      "smoke.csv",
+                                          "wall.obj",           "sub/ship_0001.gltf",
+                                          "sub/ship one.bin",   "sub/hull.png",
+                                          "lamp.ies",           "spectrum.csv",
+                                          "camera.csv",         "white.csv",
+                                          "sizes.csv",          "quartz.csv",
+                                          "film.csv",           "mud.csv",
+                                          "mud-absorption.csv", "ctd.csv"}));
     MeshSideFiles known;
     for (const InputFile& input : input_files(scene, {}, known)) {
         const std::string name = input.file.filename().string();

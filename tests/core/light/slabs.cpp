@@ -50,8 +50,8 @@ TEST(FirstSlab, IsAsThickAsTheSceneSays) {
 
 TEST(Planes, AreRefusedWhereTheWaterIsNotUniform) {
     constexpr std::string_view k_hint =
-        "the planes integrator handles only uniform water: remove `volumes`, or use integrator "
-        "volume";
+        "the planes integrator handles only uniform water: remove `volumes` and `water.profile`, "
+        "or use integrator volume";
     SceneDesc desc = with_planes(uniform_scene({1, -0.5, 0}), 8, 0, 5);
     desc.volumes.emplace_back();
     desc.volumes[0].where = "test.yaml:3:5: volumes[0]";
