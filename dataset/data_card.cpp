@@ -52,6 +52,7 @@ Json lamps_json(const SceneDesc& scene) {
     Json lamps = Json::array();
     for (const LampDesc& lamp : scene.lamps) {
         const char* const frame = lamp.sun               ? "sun"
+                                  : lamp.glow            ? "volume"
                                   : lamp.fixed_to_camera ? "camera"
                                   : lamp.fixed_to_rig    ? "rig"
                                                          : "world";

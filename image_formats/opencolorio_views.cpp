@@ -167,8 +167,7 @@ bool has_looks(const OCIO::Config& config, std::string_view looks, std::string& 
     return true;
 }
 
-std::shared_ptr<uw::ColourView> make_view(const uw::ViewRequest& request,
-                                                std::string& fault) {
+std::shared_ptr<uw::ColourView> make_view(const uw::ViewRequest& request, std::string& fault) {
     OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
     const OCIO::ConstConfigRcPtr config = OCIO::Config::CreateFromFile(request.config.c_str());
     tell_files(*config, request.check);

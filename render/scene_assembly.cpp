@@ -80,9 +80,17 @@ void report_volumes(AssembledScene& scene) {
     }
 }
 
+// Precondition: the scene's glows are there.
 void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
     const int thinning = desc.render.quality == RenderDesc::Quality::draft ? k_draft_thinning : 1;
+    auto glow = scene.glows.begin();
     for (const LampDesc& lamp : desc.lamps) {
+        if (lamp.glow) {
+            const std::vector<GlowPart> parts = merged((glow++)->volume->parts, thinning);
+            scene.lamps.push_back(make_lamp(lamp, parts));
+            append_emitters(scene.lamps.back(), scene.lamps.size() - 1, parts, scene.emitters);
+            continue;
+        }
         scene.lamps.push_back(make_lamp(lamp, desc.camera.world_from_camera,
                                         scene.water.medium.wavelengths_nm, scene.warnings));
         const std::size_t index = scene.lamps.size() - 1;
@@ -148,6 +156,7 @@ AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
     scene.surfaces = built.surfaces;
     scene.geometry_warnings = built.warnings;
     append(scene.warnings, scene.geometry_warnings);
+    scene.glows = cache.glows(desc, scene.warnings);
     place_lamps(desc, scene);
     warn_of_lamps_at_the_camera(desc, scene);
     return scene;
@@ -166,6 +175,7 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
     moved.scattering = scene.scattering;
     moved.snow = scene.snow;
     moved.field = scene.field;
+    moved.glows = scene.glows;
     moved.surfaces = scene.surfaces;
     if (desc.geometry != scene.desc().geometry)
         moved.surfaces = cache.surfaces_of_moment(desc).surfaces;

@@ -1,5 +1,7 @@
 #include "render/scene_cache.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 #include <variant>
@@ -112,6 +114,45 @@ VolumeSet SceneCache::volumes(const SceneDesc& scene, const WaterModel& water) {
     }
     set.field = field_;
     return set;
+}
+
+SceneCache::KeptGlow SceneCache::make_glow(const VolumeDesc& desc, const SceneDesc& scene) {
+    const EmissionDesc& emission = desc.emission.front();
+    LoadedVolume loaded = load_volume(desc, {{GridLoad{0, 1}}});
+    auto field = std::make_shared<GridField>(std::move(loaded.grids), 1);
+    const Emission light(emission, scene.water.bands_nm);
+    std::vector<GlowPart> parts = divide_glow(*field, light, emission.samples);
+    if (parts.empty())
+        loaded.warnings.push_back(
+            fmt::format("{}: '{}' gives off no light that is seen; check the unit of its values",
+                        emission.where, emission.grid));
+    return {desc, scene.water.bands_nm, FileStamps(files_of(desc)),
+            std::make_shared<GlowingVolume>(std::move(field), light, std::move(parts)),
+            std::move(loaded.warnings)};
+}
+
+std::vector<SceneGlow> SceneCache::glows(const SceneDesc& scene,
+                                         std::vector<std::string>& warnings) {
+    std::vector<SceneGlow> result;
+    std::vector<KeptGlow> used;
+    for (std::size_t lamp = 0; lamp < scene.lamps.size(); ++lamp) {
+        if (!scene.lamps[lamp].glow) continue;
+        const GlowDesc& glow = *scene.lamps[lamp].glow;
+        VolumeDesc desc = scene.volumes[glow.volume];
+        desc.grids.assign(1, {});
+        desc.grids.front().grid = glow.emission.grid;
+        desc.grids.front().where = glow.emission.where;
+        desc.emission.assign(1, glow.emission);
+        const auto known = std::ranges::find_if(glows_, [&](const KeptGlow& kept) {
+            return kept.desc == desc && kept.bands_nm == scene.water.bands_nm &&
+                   kept.files.are_current();
+        });
+        used.push_back(known != glows_.end() ? *known : make_glow(desc, scene));
+        result.push_back({lamp, used.back().volume});
+        warnings.insert(warnings.end(), used.back().warnings.begin(), used.back().warnings.end());
+    }
+    glows_ = std::move(used);
+    return result;
 }
 
 SceneCache::KeptSurfaces SceneCache::build(const SceneDesc& scene) {

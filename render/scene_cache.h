@@ -7,6 +7,7 @@
 
 #include "core/base/input_files.h"
 #include "core/geometry/geometry_scene.h"
+#include "core/light/glow.h"
 #include "core/paths/scattering_tables.h"
 #include "core/scene/scene_desc.h"
 #include "media/volumes/load_volumes.h"
@@ -44,6 +45,10 @@ class SceneCache {
 
     /// The volumes of a scene in this water. Throws as load_volume.
     VolumeSet volumes(const SceneDesc& scene, const WaterModel& water);
+
+    /// The light of a scene's volumes, of those lamps that are such, in their order. Appends
+    /// warnings of one line each. Throws as load_volume and Emission.
+    std::vector<SceneGlow> glows(const SceneDesc& scene, std::vector<std::string>& warnings);
 
     /// The surfaces of a scene. Throws as build_surfaces, and so do the next two.
     const SurfaceSet& surfaces(const SceneDesc& scene);
@@ -83,6 +88,13 @@ class SceneCache {
 
         bool is_of(const VolumeDesc& other, const std::vector<std::vector<GridLoad>>& its) const;
     };
+    struct KeptGlow {
+        VolumeDesc desc;  // its one grid is what glows
+        std::vector<double> bands_nm;
+        FileStamps files;
+        std::shared_ptr<const GlowingVolume> volume;
+        std::vector<std::string> warnings;
+    };
     struct KeptSurfaces {
         std::vector<GeometryDesc> geometry;
         std::vector<double> bands_nm;
@@ -100,12 +112,14 @@ class SceneCache {
         std::shared_ptr<const TriangleMesh> mesh;
     };
 
+    static KeptGlow make_glow(const VolumeDesc& desc, const SceneDesc& scene);
     KeptSurfaces build(const SceneDesc& scene);
     std::vector<GeometryDesc> with_level_sets(const SceneDesc& scene,
                                               std::vector<std::string>& warnings);
 
     std::optional<KeptWater> water_;
     std::vector<KeptVolume> volumes_;
+    std::vector<KeptGlow> glows_;
     std::shared_ptr<const ConcentrationField> field_;  // of `volumes_`; null: not made
     MeshStore meshes_;
     std::vector<KeptLevelSet> level_sets_;  // of the scene built last

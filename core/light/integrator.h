@@ -33,6 +33,7 @@ struct PathWeight {
 };
 
 struct LampSurface;
+struct SceneGlow;
 
 /// Everything that integrators operate on; all of it must outlive them.
 struct LitScene {
@@ -46,6 +47,8 @@ struct LitScene {
     PathWeight path_weight{};
     /// The luminous surfaces of lamps with an extent; null if there are none.
     const std::vector<LampSurface>* lamp_surfaces = nullptr;
+    /// The volumes that give off light; null if there are none.
+    const std::vector<SceneGlow>* glows = nullptr;
 
     /// How many lamps the scene has.
     std::size_t lamp_count() const { return emitters->empty() ? 0 : emitters->back().index() + 1; }

@@ -45,6 +45,13 @@ Lamp Lamp::emitter(std::size_t index, const Point3& position, double share,
     return point;
 }
 
+Lamp Lamp::emitter(std::size_t index, const Point3& position, const Spectrum& intensity,
+                   double share, const LampPatch& patch) const {
+    Lamp point = emitter(index, position, share, patch);
+    point.axis_intensity_ = intensity;
+    return point;
+}
+
 Lamp Lamp::brightened(double factor) const {
     Lamp lamp = *this;
     for (double& value : lamp.axis_intensity_) value *= factor;

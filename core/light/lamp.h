@@ -77,6 +77,11 @@ class Lamp {
     Lamp emitter(std::size_t index, const Vector3& direction, double share,
                  const std::optional<LampPatch>& patch = {}) const;
 
+    /// A point of this lamp, the light of a volume: one with an intensity of its own [W/sr], the
+    /// `share` of all light. `patch`: the part of the volume that it stands for.
+    Lamp emitter(std::size_t index, const Point3& position, const Spectrum& intensity, double share,
+                 const LampPatch& patch) const;
+
     /// The same emitter, but `factor` times as bright.
     Lamp brightened(double factor) const;
 

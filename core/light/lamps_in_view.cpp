@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
+#include "core/base/numerics.h"
 #include "core/light/ray_panels.h"
 
 namespace uw {
@@ -159,7 +161,99 @@ double LampSurface::radiance_towards(const Ray& ray) const {
     return lamp.relative_intensity(-ray.direction) / (frame.area() * cosine);
 }
 
+namespace {
+
+/// The columns of a profile at distances along its ray, each near the one before.
+class ColumnWalk {
+  public:
+    explicit ColumnWalk(const ConcentrationProfile& profile) : profile_(profile) {}
+
+    void find(double s, std::vector<double>& column) {
+        const auto count = static_cast<std::size_t>(profile_.constituent_count);
+        column.resize(count);
+        if (count == 0) return;
+        while (knot_ > 0 && profile_.s[knot_] > s) --knot_;
+        while (knot_ + 2 < profile_.s.size() && profile_.s[knot_ + 1] < s) ++knot_;
+        const double length = profile_.s[knot_ + 1] - profile_.s[knot_];
+        const double t = std::clamp((s - profile_.s[knot_]) / length, 0.0, 1.0);
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t at = knot_ * count + k;
+            const double begin = profile_.concentration[at];
+            const double slope = profile_.concentration[at + count] - begin;
+            column[k] = profile_.column[at] + t * length * (begin + 0.5 * t * slope);
+        }
+    }
+
+  private:
+    const ConcentrationProfile& profile_;
+    std::size_t knot_ = 0;
+};
+
+}  // namespace
+
+// Between the knots of the grid, a quarter of a voxel apart but where it is constant, the light is
+// linear and the water's columns are smooth: two Gauss nodes for each half of an optical depth.
+void LampsInView::append_volume(const SceneGlow& glow, const Ray& ray, double reach,
+                                std::vector<SeenLamp>& seen) const {
+    const ConcentrationField& field = *glow.volume->field;
+    const double end = std::min(reach, inside(ray, field.bounds()).end);
+    if (!(end > 0)) return;
+    thread_local ConcentrationProfile light, water;
+    thread_local std::vector<double> column;
+    field.profile(ray, end, light);
+    SeenLamp lamp{glow.lamp, 0, {}, {}, true};
+    double weight = 0;
+    std::optional<ColumnWalk> columns;
+    // The least and the greatest of the bands.
+    const auto depths = [&](double s, const std::vector<double>& at) {
+        Interval found{k_far, 0};
+        for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation_.band_count); ++b) {
+            const double depth = attenuation_.optical_depth(b, s, at);
+            found = {std::min(found.begin, depth), std::max(found.end, depth)};
+        }
+        return found;
+    };
+    constexpr double k_piece = 0.5, k_deep = 20;  // optical depths; no light comes from so deep
+    constexpr int k_most = 64;
+    for (std::size_t knot = 0; knot + 1 < light.s.size(); ++knot) {
+        if (light.empty_between(knot)) continue;
+        if (!columns) {
+            scene_.field->profile(ray, end, water);
+            columns.emplace(water);
+        }
+        const double begin = light.s[knot], length = light.s[knot + 1] - begin;
+        const double first = light.concentration[knot], last = light.concentration[knot + 1];
+        columns->find(begin, column);
+        const Interval before = depths(begin, column);
+        columns->find(begin + length, column);
+        const Interval behind = depths(begin + length, column);
+        const int pieces =
+            before.begin > k_deep
+                ? 1
+                : std::clamp(static_cast<int>((behind.end - before.end) / k_piece) + 1, 1, k_most);
+        for (int piece = 0; piece < pieces; ++piece)
+            for (const QuadratureNode& node : gauss_legendre(2)) {
+                const double t = (piece + node.position) / pieces, s = begin + t * length;
+                const Spectrum emitted = node.weight * length / pieces *
+                                         glow.volume->emission.of(first + t * (last - first));
+                columns->find(s, column);
+                lamp.radiance += emitted;
+                lamp.arriving +=
+                    weight_.of(s, column) * (attenuation_.transmittance(s, column) * emitted);
+                double sum = 0;
+                for (const double band : emitted) sum += band;
+                lamp.distance += sum * s;
+                weight += sum;
+            }
+    }
+    if (weight == 0) return;
+    lamp.distance /= weight;
+    seen.push_back(lamp);
+}
+
 void LampsInView::append(const Ray& ray, double reach, std::vector<SeenLamp>& seen) const {
+    if (scene_.glows)
+        for (const SceneGlow& glow : *scene_.glows) append_volume(glow, ray, reach, seen);
     if (!scene_.lamp_surfaces) return;
     for (const LampSurface& surface : *scene_.lamp_surfaces) {
         const double distance = surface.crossing(ray);

@@ -7,6 +7,7 @@
 
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
+#include "core/light/glow.h"
 #include "core/light/integrator.h"
 #include "core/light/lamp.h"
 #include "core/light/lamp_patch.h"
@@ -83,16 +84,18 @@ class LampEvenness {
     std::optional<PhaseIntegrals> integrals_;  // none: no lamp of the scene has an extent
 };
 
-/// A lamp whose luminous surface a ray crosses.
+/// A lamp whose luminous surface, or glowing volume, a ray crosses.
 struct SeenLamp {
-    std::size_t lamp = 0;  // its index in the scene
-    double distance = 0;   // along the ray [m]
-    Spectrum radiance;     // of the surface [W m^-2 sr^-1]
-    Spectrum arriving;     // what of that arrives at the ray's origin, times its PathWeight
+    std::size_t lamp = 0;    // its index in the scene
+    double distance = 0;     // along the ray, of a volume's light in the mean [m]
+    Spectrum radiance;       // before the water dims it [W m^-2 sr^-1]
+    Spectrum arriving;       // what of that arrives at the ray's origin, times its PathWeight
+    bool is_volume = false;  // not a surface
 };
 
 /// What the camera sees of lamps themselves. A luminous surface adds its light to what is behind
-/// it: as it throws no shadow, it hides nothing. Thread safe.
+/// it: as it throws no shadow, it hides nothing. A volume's light is the integral of what it gives
+/// off along the ray, int emission e^-tau ds. Thread safe.
 class LampsInView {
   public:
     /// `scene` must outlive this object.
@@ -104,6 +107,9 @@ class LampsInView {
     void append(const Ray& ray, double reach, std::vector<SeenLamp>& seen) const;
 
   private:
+    void append_volume(const SceneGlow& glow, const Ray& ray, double reach,
+                       std::vector<SeenLamp>& seen) const;
+
     LitScene scene_;
     PathWeight weight_;
     AttenuationTable attenuation_;

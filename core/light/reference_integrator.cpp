@@ -15,7 +15,7 @@ namespace uw {
 namespace {
 
 // Light whose path exceeds the least optical depth by this much adds less than 1e-6.
-constexpr double k_negligible_optical_depth = 15;
+constexpr double k_extinct_optical_depth = 15;
 // Steps among particles are a tenth of an optical depth: this many times the step that is given.
 constexpr double k_depth_of_steps = 20;
 // What is behind this optical depth adds less than 1e-17 of all light.
@@ -48,8 +48,7 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
         attenuation_.uniform.greatest(static_cast<std::size_t>(attenuation_.band_count));
     for (std::size_t j = 0; j < emitters.size(); ++j) {
         const LampPassage passage(ray, emitters[j]);
-        const double reach =
-            least_c > 0 ? passage.reach(k_negligible_optical_depth / least_c) : k_far;
+        const double reach = least_c > 0 ? passage.reach(k_extinct_optical_depth / least_c) : k_far;
         const auto scale_at = [&](double s) {
             // Ten times as far as the densest band's light reaches only the others' is left, of
             // which steps of that length in proportion are as small a part.

@@ -647,7 +647,7 @@ void PathPass::run(Rendering& rendering) {
                     store_pixel(result, plan, rendering.colour, film.pixel(x, y));
                 else
                     merge_paths(result, share, plan, rendering.colour, film.pixel(x, y));
-                if (result.shows_lamp()) film.mark_lamp(x, y);
+                if (result.shows_lamp) film.mark_lamp(x, y);
             }
         });
         accuracy.samples = spread.samples();

@@ -65,8 +65,7 @@ struct PixelResult {
     std::array<double, 2> disparity;
     double disparity_occluded = 0;
 
-    /// Whether any sample sees a lamp itself.
-    bool shows_lamp() const { return lamps_in_view != Spectrum{}; }
+    bool shows_lamp = false;  // whether any sample sees a lamp's surface
     /// Resets to an empty pixel, with 0 for each of `lamp_count` lamps. Storage is reused. `bands`:
     /// as many as any pixel that it has held; clearing all costs a tenth of a simple image's time.
     void reset(std::size_t lamp_count, std::size_t bands = k_max_bands);

@@ -175,7 +175,7 @@ void PixelPass::run(Rendering& rendering) {
     render_tiles(rendering.pixels, in_scatter_tolerance_, rendering.steps, film.window(),
                  rendering.progress_of(stage()), [&](int x, int y, const PixelResult& pixel) {
                      store_pixel(pixel, rendering.plan, rendering.colour, film.pixel(x, y));
-                     if (pixel.shows_lamp()) film.mark_lamp(x, y);
+                     if (pixel.shows_lamp) film.mark_lamp(x, y);
                  });
 }
 

@@ -422,6 +422,7 @@ void PixelRenderer::add_lamp(const SeenLamp& lamp, PixelResult& result) const {
         result.lamps_in_view[b] += arriving;
         if (!result.lamps.empty()) result.lamps[lamp.lamp][b] += arriving;
     }
+    if (!lamp.is_volume) result.shows_lamp = true;
 }
 
 void PixelRenderer::add_water(std::span<const double> in_scatter, PixelResult& result) const {

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <utility>
 #include <variant>
 
+#include "core/base/error.h"
 #include "core/scene/config_value.h"
 #include "core/scene/scene_context.h"
 #include "core/scene/trajectory_reader.h"
@@ -333,6 +335,24 @@ std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& c
         lamps.push_back(std::move(lamp));
     }
     return lamps;
+}
+
+void append_glows(const std::vector<VolumeDesc>& volumes, std::vector<LampDesc>& lamps) {
+    for (std::size_t v = 0; v < volumes.size(); ++v)
+        for (const EmissionDesc& emission : volumes[v].emission) {
+            if (std::ranges::find(lamps, emission.name, &LampDesc::name) != lamps.end())
+                throw InputError(fmt::format(
+                    "{}: the name '{}' is taken by another lamp; give this light a name of its "
+                    "own, such as {{per_unit: [4, 1.5, 0.3], name: fire}}",
+                    emission.where, emission.name));
+            LampDesc lamp;
+            lamp.name = emission.name;
+            lamp.glow = GlowDesc{v, emission};
+            lamp.intensity = emission.per_unit;
+            lamp.fixed_to_camera = false;
+            lamp.where = emission.where;
+            lamps.push_back(std::move(lamp));
+        }
 }
 
 }  // namespace uw

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "core/scene/config_value.h"
 #include "core/scene/scene_context.h"
 #include "core/scene/trajectory.h"
+#include "core/scene/volume_desc.h"
 
 namespace uw {
 
@@ -99,7 +101,15 @@ struct SunDesc {
     friend bool operator==(const SunDesc&, const SunDesc&) = default;
 };
 
-/// A lamp: a point, one with an extent, or a sun.
+/// What makes a lamp the light of a volume: where it shines is up to the volume's grid.
+struct GlowDesc {
+    std::size_t volume = 0;  ///< index in SceneDesc::volumes
+    EmissionDesc emission;
+
+    friend bool operator==(const GlowDesc&, const GlowDesc&) = default;
+};
+
+/// A lamp: a point, one with an extent, a sun, or the light of a volume.
 struct LampDesc {
     std::string name;                      ///< of its layers; unique in the scene
     Point3 position;                       ///< in its frame [m]
@@ -107,6 +117,9 @@ struct LampDesc {
     std::optional<LampExtentDesc> extent;  ///< none: it is a point
     /// Set for a sun, which has no position, no extent and no profile; its frame is the world.
     std::optional<SunDesc> sun;
+    /// Set for the light of a volume, which shines in all directions from where the volume's grid
+    /// says, in the world: `position` means nothing, and `intensity` is EmissionDesc::per_unit.
+    std::optional<GlowDesc> glow;
     LampProfileDesc profile;
     // At most one of the next three is set; none for a profile that is absolute.
     std::optional<PerBand> intensity;  ///< on the axis [W/sr]; with a spectrum, a single total
@@ -133,5 +146,8 @@ LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& con
 
 /// `lamps`.
 std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context);
+
+/// Appends the light of volumes to a scene's lamps. Throws InputError for a name that is taken.
+void append_glows(const std::vector<VolumeDesc>& volumes, std::vector<LampDesc>& lamps);
 
 }  // namespace uw

@@ -283,6 +283,7 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     if (const auto entry = map.find("volumes")) desc.volumes = read_volumes(*entry, context);
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
+    append_glows(desc.volumes, desc.lamps);
     if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
     open_shutter(desc);
     check_lenses(desc);

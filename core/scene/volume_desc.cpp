@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cstddef>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -87,6 +89,60 @@ std::vector<GridMappingDesc> read_grids(const ConfigValue& value, const SceneCon
     return grids;
 }
 
+EmissionDesc::Blackbody read_blackbody(ConfigMap& map) {
+    EmissionDesc::Blackbody blackbody;
+    if (const auto entry = map.find("kelvin"))
+        blackbody.kelvin = entry->positive("give the kelvins that one unit of the grid stands for");
+    if (const auto entry = map.find("offset"))
+        blackbody.offset = entry->number("give the temperature at the value 0 in kelvins");
+    return blackbody;
+}
+
+EmissionDesc read_one_emission(const ConfigValue& value, const std::string& grid,
+                               const SceneContext& context) {
+    constexpr auto k_per_unit = "give W/(sr m3) per unit of the grid's value, one number per band";
+    EmissionDesc emission;
+    emission.grid = grid;
+    emission.where = value.location();
+    for (const char c : grid)
+        emission.name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ? c : '_';
+    emission.name.resize(std::min(emission.name.size(), std::size_t{64}));
+    if (value.node().kind == ConfigNode::Kind::sequence) {
+        emission.per_unit = value.non_negative_per_band(context.band_count, k_per_unit);
+        return emission;
+    }
+    ConfigMap map(value, {"per_unit", "blackbody", "kelvin", "offset", "name", "samples"},
+                  "write flame: [4, 1.5, 0.3], or temperature: {blackbody: 0.5, kelvin: 1000}");
+    if (const auto entry = map.find("blackbody")) {
+        emission.per_unit.assign(
+            context.band_count,
+            entry->non_negative("give the share of a blackbody's radiance that a metre adds"));
+        emission.blackbody = read_blackbody(map);
+    } else {
+        emission.per_unit = map.require("per_unit", k_per_unit)
+                                .non_negative_per_band(context.band_count, k_per_unit);
+    }
+    if (const auto entry = map.find("name"))
+        emission.name = read_short_name(*entry, "a layer's name", "name the light, such as fire");
+    if (const auto entry = map.find("samples"))
+        emission.samples = entry->integer(1, 1024, "give the number of points that stand for it");
+    map.finish(emission.blackbody ? "a blackbody" : "light per unit of a grid's value");
+    return emission;
+}
+
+std::vector<EmissionDesc> read_emission(const ConfigValue& value, const SceneContext& context) {
+    const ConfigNode& node = value.node();
+    if (node.kind != ConfigNode::Kind::map || node.entries.empty())
+        value.fail("expected grid names with the light that they stand for, found " +
+                   node.description() + "; write {flame: [4, 1.5, 0.3]}");
+    std::vector<EmissionDesc> emission;
+    for (const ConfigNode::Entry& entry : node.entries)
+        emission.push_back(
+            read_one_emission(ConfigValue(entry.value, value.path() + "." + printable(entry.key)),
+                              entry.key, context));
+    return emission;
+}
+
 MotionDesc read_motion(const ConfigValue& value, const VolumeDesc& volume,
                        const SceneContext& context) {
     constexpr auto k_form = "write {grid: velocity}, or {grid: [vel.x, vel.y, vel.z]}";
@@ -115,9 +171,15 @@ VolumeDesc read_array(ConfigMap& map, const ConfigValue& name, const SceneContex
     VolumeDesc volume;
     volume.where = map.value().location();
     volume.array = read_in_memory(name, context.arrays ? &context.arrays->grids : nullptr);
-    const ConfigValue grids = map.require("grids", k_grids_example);
-    volume.grids = read_grids(grids, context);
-    if (volume.grids.size() != 1) grids.fail("an array is one grid; give one meaning");
+    if (const auto entry = map.find("emission")) {
+        volume.emission = read_emission(*entry, context);
+        if (volume.emission.size() != 1) entry->fail("an array is one grid; give one light");
+    }
+    if (volume.emission.empty() || map.has("grids")) {
+        const ConfigValue grids = map.require("grids", k_grids_example);
+        volume.grids = read_grids(grids, context);
+        if (volume.grids.size() != 1) grids.fail("an array is one grid; give one meaning");
+    }
     if (const auto entry = map.find("transform"))
         volume.world_from_upright = read_transform(*entry);
     map.finish("an array");
@@ -126,15 +188,17 @@ VolumeDesc read_array(ConfigMap& map, const ConfigValue& name, const SceneContex
 
 VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
     ConfigMap map(value,
-                  {"file", "array", "grids", "centering", "up", "level_set", "voxel_size",
-                   "transform", "velocity"},
+                  {"file", "array", "grids", "emission", "centering", "up", "level_set",
+                   "voxel_size", "transform", "velocity"},
                   "write {file: plume.vdb, grids: {density: {small: 2, large: 10}}}");
     if (const auto array = map.find("array")) return read_array(map, *array, context);
     VolumeDesc volume;
     volume.where = value.location();
     volume.file = read_existing_file_or_sequence(map.require("file", "name a VDB file"), context,
                                                  volume.is_sequence);
-    volume.grids = read_grids(map.require("grids", k_grids_example), context);
+    if (const auto entry = map.find("emission")) volume.emission = read_emission(*entry, context);
+    if (volume.emission.empty() || map.has("grids"))
+        volume.grids = read_grids(map.require("grids", k_grids_example), context);
     if (const auto entry = map.find("centering")) {
         constexpr std::array<std::pair<std::string_view, Centering>, 2> k_choices{
             {{"cell", Centering::cell}, {"node", Centering::node}}};

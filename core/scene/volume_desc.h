@@ -61,12 +61,34 @@ UpAxis read_up_axis(const ConfigValue& value);
 /// inside is taken as fog of value 1, which fades to 0 towards the surface within the narrow band.
 enum class LevelSets { refused, fog };
 
+/// The light that a volume gives off where one of its grids has a value. It is a lamp of the scene.
+struct EmissionDesc {
+    /// A glowing gas or dust: of the grid's values, times `kelvin` plus `offset`, as temperature.
+    struct Blackbody {
+        double kelvin = 1, offset = 0;  ///< [K per unit], [K]
+
+        friend bool operator==(const Blackbody&, const Blackbody&) = default;
+    };
+
+    std::string name;  ///< of the lamp and its layers
+    std::string grid;  ///< name in the file; name[i] if several share it
+    /// What a cubic metre shines in each direction, per unit of the grid's value [W/(sr m^3)]; of a
+    /// blackbody, what share of its radiance a metre adds (its absorption, in equilibrium) [1/m].
+    PerBand per_unit;
+    std::optional<Blackbody> blackbody;
+    int samples = 16;  ///< how many points stand for it where it lights others, 1..1024
+    SourceLocation where;
+
+    friend bool operator==(const EmissionDesc&, const EmissionDesc&) = default;
+};
+
 /// A VDB or NanoVDB file whose grids add to the water, or a grid that is in memory already.
 struct VolumeDesc {
     std::filesystem::path file;
     bool is_sequence = false;  ///< `file` has a pattern for the frame number (frame_pattern.h)
     std::shared_ptr<const LoadedGrid> array;  ///< instead of a file; then `grids` has one
     std::vector<GridMappingDesc> grids;
+    std::vector<EmissionDesc> emission;
     Centering centering = Centering::automatic;
     UpAxis up = UpAxis::automatic;
     LevelSets level_sets = LevelSets::refused;

@@ -65,6 +65,11 @@ EditedLamp make_edited_lamp(EditedScene& edited, const ConfigNode* entries, std:
     const SceneDesc& desc = edited.scene.desc();
     const LampDesc& lamp = desc.lamps[index];
     EditedLamp made;
+    if (lamp.glow) {  // all that it is, is in the rest of the scene
+        made.brightness = per_band(edited.bands(), [](std::size_t) { return 1.0; });
+        made.key = "volume " + lamp.name;
+        return made;
+    }
     made.brightness =
         make_lamp(lamp, desc.camera.world_from_camera, desc.water.bands_nm, edited.warnings)
             .axis_intensity();
@@ -267,9 +272,11 @@ std::size_t SceneChanges::lamp_of(const Json& change) const {
 std::string SceneChanges::entry_of(std::size_t lamp) const {
     const auto entry = scene_->lamps[lamp].entry;
     if (!entry)
-        throw UsageError(
-            fmt::format("'{}' comes from a glTF file, which is not written here; change it there",
-                        this->lamp(lamp).name));
+        throw UsageError(fmt::format(
+            "'{}' {}", this->lamp(lamp).name,
+            this->lamp(lamp).glow
+                ? "is the light of a volume; change its emission in the scene file"
+                : "comes from a glTF file, which is not written here; change it there"));
     return fmt::format("lamps[{}]", *entry);
 }
 

@@ -24,7 +24,7 @@ constexpr const char* k_unlit = "unlit";
 
 // A lamp's image serves any brightness of it, unless it is rendered in the dark.
 void light_up(LampDesc& lamp, const Spectrum& brightness, std::size_t bands) {
-    if (brightness.least(bands) > 0) return;
+    if (lamp.glow || brightness.least(bands) > 0) return;
     lamp.spectrum.reset();
     lamp.power.reset();
     lamp.lumens.reset();
@@ -272,8 +272,11 @@ PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, Pictur
         renderer_.render(
             {.layers = layers, .paths = {.share = share_of_paths(scene, quality, lamp)}});
     }
-    const Spectrum brightness =
-        lamp ? renderer_.assembled().lamps.front().axis_intensity() : Spectrum{};
+    Spectrum brightness;
+    if (lamp && renderer_.scene().desc().lamps.front().glow)
+        brightness = scene.lamps[*lamp].brightness;
+    else if (lamp)
+        brightness = renderer_.assembled().lamps.front().axis_intensity();
     if (!std::exchange(is_announced_, true)) callbacks_.assembled(renderer_);
     if (lamp) ++rendered_;
     auto light = std::make_shared<LightLayers>(LightLayers{lamp ? scene.lamps[*lamp].key : k_unlit,

@@ -23,8 +23,9 @@ void check_request(const SuggestRequest& request, const std::vector<LampDesc>& l
     check(request.lamp < lamps.size(), "there is no such lamp");
     check(!request.partner || (*request.partner < lamps.size() && *request.partner != request.lamp),
           "the partner must be another lamp of the scene");
-    check(!lamps[request.lamp].sun && !(request.partner && lamps[*request.partner].sun),
-          "a sun has no place to search for");
+    const auto has_place = [&](std::size_t lamp) { return !lamps[lamp].sun && !lamps[lamp].glow; };
+    check(has_place(request.lamp) && (!request.partner || has_place(*request.partner)),
+          "a sun and the light of a volume have no place to search for");
     const Vector3 diagonal = request.to - request.from;
     check(std::isfinite(glm::length(diagonal)) && glm::length(diagonal) > 0,
           "give two different positions to search between");

@@ -444,7 +444,7 @@ TEST(LampsInView, HaveTheRadianceOfTheirProfile) {
     EXPECT_NEAR(TestScene(desc).pixel(1, 1).direct[0], 10 / (2 * 0.5), 1e-9);
     desc.lamps[0].profile = CosineProfileDesc{120};
     EXPECT_EQ(TestScene(desc).pixel(1, 1).direct[0], 0);
-    EXPECT_FALSE(TestScene(desc).pixel(1, 1).shows_lamp());
+    EXPECT_FALSE(TestScene(desc).pixel(1, 1).shows_lamp);
 }
 
 TEST(LampsInView, AreHiddenBySurfacesBeforeThemAlone) {

@@ -1,4 +1,4 @@
 // What lamps are, for all that shows them.
 
-/** Whether a lamp stands somewhere, where it can be shown and moved: a sun does not. */
-export const hasPlace = (lamp) => lamp.profile.type !== "sun";
+/** Whether a lamp stands somewhere, where it can be shown and moved: suns and glowing volumes do not. */
+export const hasPlace = (lamp) => !["sun", "volume"].includes(lamp.profile.type);

@@ -75,6 +75,7 @@ export class LampForm {
         if (lamp.why_not) {
             parts.push({ element: h("p", { class: "hint locked" }, lamp.why_not), update: () => {} });
         }
+        if (lamp.profile.type === "volume") return parts;
         parts.push(field(textField({ label: "Name", key: "name", commit:
             (value, refuse) => this.#rename(lamp.name, value, refuse) }), (now) => now.name));
         const direction = field(numbersField({ label: "Direction", key: "direction",

@@ -1,0 +1,241 @@
+// ctest labels: analytic
+// Volumes that give off light: closed forms for a slab, a ball and equilibrium in a furnace,
+// Planck's law, and the light that they scatter and throw on surfaces.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/light/glow.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/test_scene.h"
+#include "tests/support/vdb/vdb_fixtures.h"
+
+namespace uw::test {
+namespace {
+
+/// A grid of the value 1 in a box or a ball of voxels, in the world.
+struct GlowFixture {
+    TempDir folder;
+
+    VolumeDesc volume(const VdbFixture& grid) const {
+        write_fixture(folder / "glow.vdb", {grid});
+        VolumeDesc desc;
+        desc.file = folder / "glow.vdb";
+        desc.where = "test";
+        return desc;
+    }
+    /// From `z` to `z` + 1, 2 m wide, of voxels of 5 cm.
+    VolumeDesc slab(double z) const {
+        VdbFixture grid;
+        grid.name = "flame";
+        grid.min = {-20, -20, 0};
+        grid.max = {20, 20, 19};
+        grid.value = [](int, int, int) { return 1.0; };
+        grid.file_from_index =
+            Affine::translation({0.0, 0.0, z + 0.025}) * Affine::scale(Vector3(0.05));
+        return volume(grid);
+    }
+    /// Around (0, 0, z).
+    VolumeDesc ball(double radius, double z, double value = 1) const {
+        const double voxel = radius / 10;
+        VdbFixture grid;
+        grid.name = "flame";
+        grid.min = {-11, -11, -11};
+        grid.max = {11, 11, 11};
+        grid.value = [=](int i, int j, int k) { return i * i + j * j + k * k <= 100 ? value : 0; };
+        grid.file_from_index = Affine::translation({0.0, 0.0, z}) * Affine::scale(Vector3(voxel));
+        return volume(grid);
+    }
+};
+
+EmissionDesc flame(const PerBand& per_unit) {
+    EmissionDesc emission;
+    emission.name = "flame";
+    emission.grid = "flame";
+    emission.per_unit = per_unit;
+    emission.where = "test";
+    return emission;
+}
+
+/// The scene with the volume's light.
+SceneDesc glowing(VolumeDesc volume, const EmissionDesc& emission, int width = 8, int height = 6) {
+    SceneDesc desc = pinhole_scene(width, height);
+    volume.emission = {emission};
+    desc.volumes = {std::move(volume)};
+    append_glows(desc.volumes, desc.lamps);
+    return desc;
+}
+
+double planck_band(double temperature, double begin_nm, double end_nm) {
+    // [W/(sr m^2)], Simpson's rule: smooth, so that 200 steps are exact to 1e-8.
+    constexpr double h = 6.62607015e-34, c = 299792458, k = 1.380649e-23;
+    const auto radiance = [&](double nm) {
+        const double x = nm * 1e-9;
+        return 2 * h * c * c / std::pow(x, 5) / std::expm1(h * c / (x * k * temperature)) * 1e-9;
+    };
+    constexpr int k_simpson = 200;
+    double sum = 0;
+    for (int i = 0; i <= k_simpson; ++i) {
+        const double weight = i == 0 || i == k_simpson ? 1 : i % 2 == 1 ? 4 : 2;
+        sum += weight * radiance(begin_nm + (end_nm - begin_nm) * i / k_simpson);
+    }
+    return sum * (end_nm - begin_nm) / (3 * k_simpson);
+}
+
+class Glow : public testing::TestWithParam<RenderDesc::Integrator> {
+  protected:
+    GlowFixture fixture_;
+};
+
+// A slab of thickness L, behind d of water: int e^-cs ds = (e^-cd - e^-c(d + L)) / c.
+TEST_P(Glow, OfASlabIsDimmedByWhatIsBeforeEachPartOfIt) {
+    SceneDesc desc = glowing(fixture_.slab(1.5), flame({3, 2, 1}));
+    desc.render.integrator = GetParam();
+    const TestScene scene(desc);
+    const Medium& medium = scene.assembled().water.medium;
+    for (const auto& [x, y] : {std::pair{4, 3}, {3, 2}}) {
+        const Ray ray = scene.assembled().camera->refracted_ray(x + 0.5, y + 0.5).value();
+        const PixelResult pixel = scene.pixel(x, y);
+        const double slant = 1 / ray.direction.z;
+        for (std::size_t band = 0; band < 3; ++band) {
+            const double emission = 3 - static_cast<double>(band);
+            const double c = medium.uniform.attenuation(band);
+            const double truth =
+                emission * (std::exp(-c * 1.5 * slant) - std::exp(-c * 2.5 * slant)) / c;
+            // The slab fades over a voxel around its faces, and the knots of the profile, a quarter
+            // of a voxel apart, do not meet the ramp's four corners: each is off by 1/128 of a
+            // voxel at most, 4e-4 m.
+            EXPECT_NEAR(pixel.direct[band], truth, 4e-4 * truth);
+            EXPECT_NEAR(pixel.clean[band], emission * slant, 4e-4 * emission);
+            EXPECT_NEAR(pixel.lamps[0][band], pixel.direct[band] + pixel.backscatter[band],
+                        1e-12 * pixel.lamps[0][band]);
+        }
+        EXPECT_FALSE(pixel.shows_lamp);  // pictures are exposed for it
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Glow,
+                         testing::Values(RenderDesc::Integrator::volume,
+                                         RenderDesc::Integrator::reference));
+
+// A surface hides what glows behind it, and what glows before it hides nothing.
+TEST(Glows, EndAtSurfaces) {
+    const GlowFixture fixture;
+    SceneDesc desc = glowing(fixture.slab(1.5), flame({3, 2, 1}));
+    desc.water.absorption = {0, 0, 0};
+    desc.water.scattering->b = {0, 0, 0};
+    desc.geometry = {plane_at_z(2)};
+    desc.geometry[0].reflectance = {0, 0, 0};
+    const TestScene scene(desc);
+    const Ray ray = scene.assembled().camera->refracted_ray(4.5, 3.5).value();
+    EXPECT_NEAR(scene.pixel(4, 3).direct[0], 3 * 0.5 / ray.direction.z, 1e-6);
+}
+
+// Outside of a ball the irradiance is that of all its light at its centre, as the parts of it lie
+// around each other as evenly as their number allows.
+TEST(Glows, LightSurfacesAsABallDoes) {
+    const GlowFixture fixture;
+    EmissionDesc emission = flame({3, 2, 1});
+    emission.samples = 64;
+    SceneDesc desc = glowing(fixture.ball(0.3, 1), emission);
+    desc.water.absorption = {0, 0, 0};
+    desc.water.scattering->b = {0, 0, 0};
+    desc.geometry = {plane_at_z(2)};
+    int voxels = 0;
+    for (int i = -10; i <= 10; ++i)
+        for (int j = -10; j <= 10; ++j)
+            for (int k = -10; k <= 10; ++k) voxels += i * i + j * j + k * k <= 100 ? 1 : 0;
+    const double intensity = 3 * voxels * std::pow(0.03, 3);
+    const TestScene scene(desc);
+    ASSERT_EQ(scene.assembled().lamps.size(), 1U);
+    EXPECT_EQ(scene.assembled().emitters.size(), 64U);
+    EXPECT_NEAR(scene.assembled().lamps[0].axis_intensity()[0], intensity, 1e-3 * intensity);
+    EXPECT_NEAR(scene.assembled().lamps[0].position().z, 1, 1e-3);
+    double share = 0;
+    for (const Lamp& emitter : scene.assembled().emitters) {
+        share += emitter.share();
+        EXPECT_NEAR(emitter.share(), 1.0 / 64, 0.25 / 64);  // of 60 or so voxels each
+    }
+    EXPECT_NEAR(share, 1, 1e-12);
+    for (const auto& [x, y] : {std::pair{4, 3}, {0, 0}, {7, 2}}) {
+        const PixelResult pixel = scene.pixel(x, y);
+        const Vector3 way = pixel.hit.position - Point3(0, 0, 1);
+        const double r = glm::length(way);
+        EXPECT_NEAR(pixel.irradiance[0], intensity / (r * r) * way.z / r,
+                    4e-3 * pixel.irradiance[0]);
+    }
+}
+
+// What the water scatters of a small glow is what it scatters of a lamp as bright.
+TEST(Glows, AreScatteredAsALampIs) {
+    const GlowFixture fixture;
+    EmissionDesc emission = flame({3e5, 2e5, 1e5});
+    SceneDesc desc = glowing(fixture.ball(0.02, 1), emission, 16, 12);
+    desc.volumes[0].world_from_upright = Affine::translation({1.5, 0.2, 0.0});
+    const TestScene scene(desc);
+    const Lamp& whole = scene.assembled().lamps[0];
+    SceneDesc lit = pinhole_scene(16, 12);
+    lit.lamps = {isotropic_lamp(whole.position(), whole.axis_intensity()[0])};
+    const TestScene lamp(lit);
+    for (const auto& [x, y] : {std::pair{4, 3}, {8, 6}, {14, 2}}) {
+        const double truth = lamp.pixel(x, y).backscatter[0];
+        EXPECT_GT(truth, 0);
+        EXPECT_NEAR(scene.pixel(x, y).backscatter[0], truth, 2e-3 * truth);
+    }
+}
+
+TEST(Glows, OfABlackbodyFollowPlancksLaw) {
+    EmissionDesc emission = flame({0.5, 0.5, 0.5});
+    emission.blackbody = EmissionDesc::Blackbody{1000, 273.15};
+    const std::vector<double> bands{620, 540, 450};
+    const Emission light(emission, bands);
+    // The bands' intervals end in the middle between them (core/image/spectral_bands).
+    const std::vector<std::array<double, 2>> intervals{{580, 660}, {495, 580}, {405, 495}};
+    const double mean_width = (80 + 85 + 90) / 3.0;
+    for (const double value : {0.4, 1.0, 2.3, 5.0, 20.0}) {
+        const Spectrum found = light.of(value);
+        for (std::size_t band = 0; band < 3; ++band) {
+            const auto [begin, end] = intervals[band];
+            const double truth =
+                0.5 * planck_band(1000 * value + 273.15, begin, end) * mean_width / (end - begin);
+            EXPECT_NEAR(found[band], truth, 2e-3 * truth) << value << " " << band;
+        }
+    }
+    EXPECT_EQ(light.of(0.2), Spectrum{});  // below 500 K
+    const std::vector<double> one{540};
+    EXPECT_THROW(Emission(emission, one), InputError);
+}
+
+// Within a gas that absorbs as much as it emits, and is as hot everywhere, one sees a blackbody.
+TEST(Glows, AreInEquilibriumInAFurnace) {
+    const GlowFixture fixture;
+    EmissionDesc emission = flame({30, 20, 40});
+    emission.blackbody = EmissionDesc::Blackbody{1, 1999};
+    SceneDesc desc = glowing(fixture.slab(-0.5), emission);  // around the camera
+    desc.water.absorption = {30, 20, 40};
+    desc.water.scattering->b = {0, 0, 0};
+    emission.per_unit = {1, 1, 1};
+    const Spectrum truth = Emission(emission, desc.water.bands_nm).of(1);
+    const PixelResult pixel = TestScene(desc).pixel(4, 3);
+    for (std::size_t band = 0; band < 3; ++band) {
+        EXPECT_GT(truth[band], 0);
+        // e^-10 is left at the slab's face.
+        EXPECT_NEAR(pixel.direct[band], truth[band], 1e-4 * truth[band]) << band;
+    }
+}
+
+TEST(Glows, HaveANameOfTheirOwn) {
+    SceneDesc desc = pinhole_scene(4, 3);
+    VolumeDesc volume;
+    volume.emission = {flame({1, 1, 1})};
+    desc.volumes = {volume};
+    desc.lamps = {isotropic_lamp({}, 1)};
+    desc.lamps[0].name = "flame";
+    EXPECT_THROW(append_glows(desc.volumes, desc.lamps), InputError);
+}
+
+}  // namespace
+}  // namespace uw::test
