@@ -179,6 +179,9 @@ class HeldImage {
         const bool is_diffuse = std::ranges::none_of(desc_.geometry, [](const GeometryDesc& g) {
             return g.type == GeometryDesc::Type::file;
         });
+        // A lamp with an extent is seen itself, and its light adds to the surface's.
+        const bool shows_lamps = std::ranges::any_of(
+            desc_.lamps, [](const LampDesc& lamp) { return lamp.extent.has_value(); });
         const double brightest = brightest_total();
         for_pixels([&](int x, int y) {
             const int first = plan_.first_channel(Layer::position);
@@ -197,7 +200,7 @@ class HeldImage {
                 const auto b = static_cast<std::size_t>(band);
                 check(Layer::direct, value(Layer::clean, band, x, y));
                 check(Layer::irradiance, most[b]);
-                if (is_diffuse)
+                if (is_diffuse && !shows_lamps)
                     check(Layer::clean,
                           value(Layer::albedo, band, x, y) * most[b] / std::numbers::pi);
                 // Within what the fast integrator promises (hold_reference).
