@@ -51,16 +51,17 @@ TEST(GridSummary, DepthIsThatOfEachConstituentsColumn) {
 }
 
 TEST(GridSummary, SaysWhatTheGridIsAndWhere) {
-    EXPECT_EQ(describe_grid(report_on_a_plume(), medium_of_two_constituents()),
-              "plume.vdb: grid 'density': 0.01 x 0.02 x 0.04 m per voxel, 1234 active voxels, "
-              "2.5 MB\n"
-              "  centering cell (automatic), up z\n"
-              "  bounds x -1..1, y 0..3, z 2..5 m\n"
-              "  small: min 0, mean 0.25, max 2 ppm\n"
-              "  dye: min 0, mean 0, max 0.5\n"
-              "  optical depth through the middle along x: 0.5 (620 nm), 2.3 (450 nm)\n"
-              "  optical depth through the middle along y: 1 (620 nm), 4.6 (450 nm)\n"
-              "  optical depth through the middle along z: 1.5 (620 nm), 6.9 (450 nm)\n");
+    EXPECT_EQ(
+        describe_grid(report_on_a_plume(), medium_of_two_constituents()),
+        "plume.vdb: grid 'density': 0.01 x 0.02 x 0.04 m per voxel, 1234 active voxels, "
+        "2.5 MB\n"
+        "  centering cell (automatic), up z\n"
+        "  bounds x -1..1, y 0..3, z 2..5 m\n"
+        "  small: min 0, mean 0.25, max 2 ppm; optical depth along x, y, z at 450 nm 2, 4, 6\n"
+        "  dye: min 0, mean 0, max 0.5; optical depth along x, y, z at 450 nm 0.3, 0.6, 0.9\n"
+        "  optical depth through the middle along x: 0.5 (620 nm), 2.3 (450 nm)\n"
+        "  optical depth through the middle along y: 1 (620 nm), 4.6 (450 nm)\n"
+        "  optical depth through the middle along z: 1.5 (620 nm), 6.9 (450 nm)\n");
 }
 
 TEST(GridSummary, OfAnEmptyGridIsShort) {
