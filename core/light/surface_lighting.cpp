@@ -330,8 +330,9 @@ class HalfShades {
         const std::vector<Lamp>& emitters = *scene_.emitters;
         for (std::size_t j = first; j < last; ++j) {
             facing.find(emitters[j], samples_, wanted);
+            // By the lamp alone: a lamp's light is the same whatever others there are.
             facing.trace_shadows(emitters[j], samples_,
-                                 j + static_cast<std::size_t>(round) * emitters.size(),
+                                 j - first + static_cast<std::size_t>(round) * (last - first),
                                  *scene_.surfaces);
             for (std::size_t n = 0; n < facing.samples.size(); ++n) {
                 const std::size_t i = facing.samples[n];

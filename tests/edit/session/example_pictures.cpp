@@ -17,12 +17,9 @@ using namespace uw::test;
 const std::set<std::string> k_elsewhere{"harbour.yaml", "sunlit.yaml", "houdini.yaml"};
 
 // Forward scatter blurs a lamp's light by how far it has come: by its own way where the lamp is
-// rendered alone, by the mean of the ways from all lamps in their one image. Where shadow rays
-// begin on a lamp depends on how many lamps are before it: of a volume's light, all of whose
-// shadows are half-shades, 0.2 % is noise.
+// rendered alone, by the mean of the ways from all lamps in their one image.
 double tolerance_of(const std::string& name) {
-    if (name == "paper/figure6-components.yaml") return 1.5e-2;
-    return name == "vent.yaml" ? 4e-3 : 1e-3;
+    return name == "paper/figure6-components.yaml" ? 1.5e-2 : 1e-3;
 }
 
 // What `uwvdb render` shows of a scene, the editor shows: light of all kinds, of all lamps and of

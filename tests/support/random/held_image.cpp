@@ -179,9 +179,7 @@ class HeldImage {
         const bool is_diffuse = std::ranges::none_of(desc_.geometry, [](const GeometryDesc& g) {
             return g.type == GeometryDesc::Type::file;
         });
-        // A lamp with an extent is seen itself, and its light adds to the surface's.
-        const bool shows_lamps = std::ranges::any_of(
-            desc_.lamps, [](const LampDesc& lamp) { return lamp.extent.has_value(); });
+        const std::vector<double> of_spheres = most_of_spheres(desc_);
         const double brightest = brightest_total();
         for_pixels([&](int x, int y) {
             const int first = plan_.first_channel(Layer::position);
@@ -200,9 +198,10 @@ class HeldImage {
                 const auto b = static_cast<std::size_t>(band);
                 check(Layer::direct, value(Layer::clean, band, x, y));
                 check(Layer::irradiance, most[b]);
-                if (is_diffuse && !shows_lamps)
+                if (is_diffuse)
                     check(Layer::clean,
-                          value(Layer::albedo, band, x, y) * most[b] / std::numbers::pi);
+                          value(Layer::albedo, band, x, y) * most[b] / std::numbers::pi +
+                              of_spheres[b]);
                 // Within what the fast integrator promises (hold_reference).
                 if (most_scattered)
                     check(Layer::backscatter, 1.02 * (*most_scattered)[b] + 0.01 * brightest);

@@ -69,6 +69,19 @@ std::vector<double> most_irradiance(const SceneDesc& scene, const Point3& at, do
     return most;
 }
 
+std::vector<double> most_of_spheres(const SceneDesc& scene) {
+    std::vector<double> most(scene.water.bands_nm.size());
+    for (const LampDesc& lamp : scene.lamps) {
+        if (!lamp.extent || lamp.extent->shape != LampExtentDesc::Shape::sphere) continue;
+        const double area = k_pi * lamp.extent->radius * lamp.extent->radius;
+        for (std::size_t band = 0; band < most.size(); ++band) {
+            const double intensity = most_intensity(lamp, band);
+            if (intensity > 0) most[band] += intensity / area;
+        }
+    }
+    return most;
+}
+
 std::optional<std::vector<double>> most_in_scatter(const SceneDesc& scene, const Ray& ray) {
     const WaterDesc& water = scene.water;
     if (!water.scattering || !water.absorption || !scene.volumes.empty() || water.snow)
