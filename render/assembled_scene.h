@@ -8,6 +8,7 @@
 
 #include "camera/camera.h"
 #include "core/geometry/surfaces.h"
+#include "core/geometry/water_surface.h"
 #include "core/light/integrator.h"
 #include "core/light/lamps_in_view.h"
 #include "core/light/slabs.h"
@@ -33,6 +34,9 @@ struct AssembledScene {
     std::shared_ptr<const SnowModel> snow;               // null: there is none
     std::shared_ptr<const ConcentrationField> field;
     std::shared_ptr<const Surfaces> surfaces;
+    std::optional<WaterSurface> water_surface;  // which reflects; none: the water has no end
+    /// With it, the field and its mirror image above (SubmergedField).
+    std::shared_ptr<const ConcentrationField> field_with_image;
     std::vector<Lamp> lamps;                 // as the description has them, each at its centre
     std::vector<Lamp> emitters;              // the points that they consist of (LitScene::emitters)
     std::vector<LampSurface> lamp_surfaces;  // of those with an extent
@@ -53,7 +57,8 @@ struct AssembledScene {
                 &emitters,
                 {},
                 lamp_surfaces.empty() ? nullptr : &lamp_surfaces,
-                glows.empty() ? nullptr : &glows};
+                glows.empty() ? nullptr : &glows,
+                water_surface ? &*water_surface : nullptr};
     }
 };
 

@@ -9,6 +9,7 @@
 #include "core/light/integrator_table.h"
 #include "core/passes/pixel_layers.h"
 #include "render/image_scene.h"
+#include "render/mirror_image.h"
 #include "render/view_matcher.h"
 
 namespace uw {
@@ -83,7 +84,7 @@ std::vector<TrackedPoint> seen_points(const AssembledScene& scene) {
                                                   (j + 0.5) / k_positions * camera.height());
             SurfaceHit hit;
             if (ray && scene.surfaces->closest_hit(*ray, k_far, hit))
-                points.push_back({hit.position, hit.object_id});
+                points.push_back({hit.position, hit.is_water_surface ? 0 : hit.object_id});
             else if (ray && attenuation > 0)
                 points.push_back({ray->origin + ray->direction / attenuation, 0});
         }
@@ -94,7 +95,8 @@ std::vector<TrackedPoint> seen_points(const AssembledScene& scene) {
 std::vector<TrackedPoint> origins(const SceneDesc& scene, const SurfaceNames& names) {
     std::vector<TrackedPoint> points;
     for (std::size_t i = 0; i < names.objects.size(); ++i) {
-        const GeometryDesc& entry = scene.geometry[names.objects[i].entry];
+        if (!names.objects[i].entry) continue;
+        const GeometryDesc& entry = scene.geometry[*names.objects[i].entry];
         if (entry.type == GeometryDesc::Type::plane) continue;
         Point3 origin = entry.world_from_object * Point3{};
         if (entry.type == GeometryDesc::Type::sphere)
@@ -352,7 +354,7 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
                               .film = image,
                               .progress = tell,
                               .reached = reached};
-            passes.run(Pass::Of::light, of_part);
+            run_light_passes(part, passes, of_part);
             reached_by_parts.add(reached);
             mean.add(image, [&](int row) { return exposure.share(k, row); });
         }

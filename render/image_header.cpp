@@ -86,8 +86,8 @@ void write_id_table(OutputFile& out, const SurfaceNames& names) {
     out.write("layer,number,name,geometry\n");
     const auto write = [&](const char* layer, const NameList& list) {
         for (std::size_t k = 0; k < list.size(); ++k)
-            out.write(
-                fmt::format("{},{},{},{}\n", layer, k + 1, csv_field(list[k].name), list[k].entry));
+            out.write(fmt::format("{},{},{},{}\n", layer, k + 1, csv_field(list[k].name),
+                                  list[k].entry ? fmt::format("{}", *list[k].entry) : ""));
     };
     write("id", names.objects);
     write("material", names.materials);

@@ -46,7 +46,10 @@ int LightSplatter::shadow_resolution(const Lamp& emitter) const {
     return std::max(shared, std::min(options_.shadow_resolution, k_least_shadow_resolution));
 }
 
-void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam) {
+void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Lamp& emitter) {
+    const DirectionCone beam = emitter.cone();
+    const ConcentrationField& field =
+        emitter.is_mirrored() ? *scene.field_with_image : *scene.field;
     if (!maps.shadows) {
         maps.shadows =
             std::make_shared<ShadowMap>(*scene.surfaces, maps.lamp, maps.shadow_resolution, beam);
@@ -56,7 +59,7 @@ void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Dire
     }
     if (!maps.columns) {
         maps.columns =
-            std::make_shared<ColumnMap>(*scene.field, maps.lamp, options_.columns_per_voxel,
+            std::make_shared<ColumnMap>(field, maps.lamp, options_.columns_per_voxel,
                                         options_.column_budget, options_.column_tolerance);
         ++counts_.column_maps;
         counts_.rays += maps.columns->rays_traced();
@@ -108,7 +111,7 @@ std::shared_ptr<const DeepShadow> LightSplatter::splat_lamp(const AssembledScene
                 maps.shadows = other.shadows;
         }
     }
-    complete(maps, scene, beam);
+    complete(maps, scene, emitter);
     maps_.push_back(maps);
     return std::make_shared<DeepShadowMap>(maps.shadows, maps.columns);
 }

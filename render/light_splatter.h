@@ -61,7 +61,7 @@ class LightSplatter {
     int shadow_resolution(const Lamp& emitter) const;
     void drop_outdated(const AssembledScene& scene, const DeepShadowOptions& share);
     void expect_room(std::size_t done, std::size_t all) const;
-    void complete(Maps& maps, const AssembledScene& scene, const DirectionCone& beam);
+    void complete(Maps& maps, const AssembledScene& scene, const Lamp& emitter);
 
     std::shared_ptr<const Surfaces> surfaces_;
     std::weak_ptr<const ConcentrationField> field_;

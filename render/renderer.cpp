@@ -10,6 +10,7 @@
 #include "core/light/integrator_table.h"
 #include "core/passes/pixel_layers.h"
 #include "render/exposure.h"
+#include "render/mirror_image.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -184,7 +185,7 @@ ProgressCallback Renderer::progress_of_group(std::size_t group, std::size_t grou
 void Renderer::render_light(const Exposure& exposure, const AssembledScene& scene, PassList& passes,
                             Rendering& rendering) {
     if (exposure.part_count() == 0) {
-        passes.run(Pass::Of::light, rendering);
+        run_light_passes(scene, passes, rendering);
         return;
     }
     render_exposure(

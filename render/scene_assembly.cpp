@@ -12,6 +12,7 @@
 #include "core/light/lamp_factory.h"
 #include "core/light/medium.h"
 #include "core/light/planes_integrator.h"
+#include "core/light/submerged.h"
 #include "core/passes/forward_images.h"
 #include "core/paths/path_tracer.h"
 #include "media/volumes/load_volumes.h"
@@ -40,7 +41,7 @@ void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
         return;
     }
     const std::optional<WaterSurfaceDesc>& surface = desc.water.surface;
-    if (surface && glm::dot(surface->normal, ray->origin - surface->point) > 0)
+    if (surface && !surface->n && glm::dot(surface->normal, ray->origin - surface->point) > 0)
         scene.warnings.push_back(fmt::format(
             "{}: camera: it lies above water.surface, but all that it sees counts as water; move "
             "it below",
@@ -85,10 +86,13 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
     const int thinning = desc.render.quality == RenderDesc::Quality::draft ? k_draft_thinning : 1;
     auto glow = scene.glows.begin();
     for (const LampDesc& lamp : desc.lamps) {
+        const std::size_t first = scene.emitters.size();
         if (lamp.glow) {
             const std::vector<GlowPart> parts = merged((glow++)->volume->parts, thinning);
             scene.lamps.push_back(make_lamp(lamp, parts));
             append_emitters(scene.lamps.back(), scene.lamps.size() - 1, parts, scene.emitters);
+            if (scene.water_surface)
+                append_mirror_images(*scene.water_surface, first, scene.emitters);
             continue;
         }
         scene.lamps.push_back(make_lamp(lamp, desc.camera.world_from_camera,
@@ -96,8 +100,44 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
         const std::size_t index = scene.lamps.size() - 1;
         append_emitters(lamp, scene.lamps.back(), index, thinning, desc.camera.world_from_camera,
                         scene.emitters);
+        if (scene.water_surface) append_mirror_images(*scene.water_surface, first, scene.emitters);
         append_surface(lamp, scene.lamps.back(), index, thinning, desc.camera.world_from_camera,
                        scene.lamp_surfaces);
+    }
+}
+
+// Where the water's surface reflects, light meets it.
+void submerge(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
+    const std::optional<WaterSurfaceDesc>& surface = desc.water.surface;
+    if (!surface || !surface->n) return;
+    scene.water_surface.emplace(*surface);
+    const SubmergedParts& parts = cache.submerged(*surface, scene.surfaces, scene.field);
+    scene.surfaces = parts.surfaces;
+    scene.field = parts.field;
+    scene.field_with_image = parts.field_with_image;
+}
+
+// Precondition: the lamps are placed.
+void check_below_surface(const SceneDesc& desc, const AssembledScene& scene) {
+    if (!scene.water_surface) return;
+    if (desc.water.forward_scatter.K > 0)
+        throw InputError(fmt::format(
+            "{}: forward scatter knows no water surface that reflects; remove one of the two, or "
+            "write render.scattering: multiple, which has all scattering",
+            desc.water.forward_scatter.where));
+    const auto refuse = [&](const auto& where, const char* what, double height) {
+        throw InputError(fmt::format(
+            "{}: {} is {:.3g} m above water.surface, which refracts: what is seen or lit from the "
+            "air is not rendered; move it below",
+            where, what, height));
+    };
+    const double camera =
+        scene.water_surface->height(at_origin_plus(scene.camera->world_from_camera().offset()));
+    if (camera > 0) refuse(desc.file.filename().string(), "the camera", camera);
+    for (const Lamp& emitter : scene.emitters) {
+        if (emitter.sunlight() || emitter.is_mirrored()) continue;
+        const double height = scene.water_surface->height(emitter.position());
+        if (height > 0) refuse(desc.lamps[emitter.index()].where, "the lamp", height);
     }
 }
 
@@ -156,8 +196,10 @@ AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
     scene.surfaces = built.surfaces;
     scene.geometry_warnings = built.warnings;
     append(scene.warnings, scene.geometry_warnings);
+    submerge(desc, cache, scene);
     scene.glows = cache.glows(desc, scene.warnings);
     place_lamps(desc, scene);
+    check_below_surface(desc, scene);
     warn_of_lamps_at_the_camera(desc, scene);
     return scene;
 }
@@ -177,8 +219,14 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
     moved.field = scene.field;
     moved.glows = scene.glows;
     moved.surfaces = scene.surfaces;
-    if (desc.geometry != scene.desc().geometry)
+    moved.water_surface = scene.water_surface;
+    moved.field_with_image = scene.field_with_image;
+    if (desc.geometry != scene.desc().geometry) {
         moved.surfaces = cache.surfaces_of_moment(desc).surfaces;
+        if (moved.water_surface)
+            moved.surfaces = std::make_shared<SubmergedSurfaces>(
+                moved.surfaces, *moved.water_surface, SkyRadiance());
+    }
     place_lamps(desc, moved);
     moved.warnings.clear();
     if (scene.slabs) moved.slabs = place_slabs(moved);

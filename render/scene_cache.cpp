@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/light/submerged.h"
 #include "media/volumes/level_set_mesh.h"
 #include "media/volumes/stratified_field.h"
 #include "media/water/species.h"
@@ -208,6 +209,20 @@ SurfaceSet SceneCache::surfaces_of_moment(const SceneDesc& then) {
     set.surfaces = build_surfaces(with_level_sets(then, set.warnings), then.water.bands_nm,
                                   set.warnings, meshes_);
     return set;
+}
+
+const SubmergedParts& SceneCache::submerged(const WaterSurfaceDesc& desc,
+                                            std::shared_ptr<const Surfaces> surfaces,
+                                            std::shared_ptr<const ConcentrationField> field) {
+    if (!submerged_ || submerged_->surface != desc || submerged_->surfaces != surfaces ||
+        submerged_->field != field) {
+        const WaterSurface surface(desc);
+        SubmergedParts parts{std::make_shared<SubmergedSurfaces>(surfaces, surface, SkyRadiance()),
+                             std::make_shared<SubmergedField>(field, surface, false),
+                             std::make_shared<SubmergedField>(field, surface, true)};
+        submerged_ = KeptSubmerged{desc, std::move(surfaces), std::move(field), std::move(parts)};
+    }
+    return submerged_->parts;
 }
 
 }  // namespace uw

@@ -28,6 +28,13 @@ struct SurfaceSet {
     std::vector<std::string> warnings;  // one line each
 };
 
+/// The surfaces and concentrations below a water surface, and their mirror image above
+/// (core/light/submerged.h).
+struct SubmergedParts {
+    std::shared_ptr<const Surfaces> surfaces;
+    std::shared_ptr<const ConcentrationField> field, field_with_image;
+};
+
 /// What is loaded and built for one scene and may serve the next: water, volumes, surfaces and the
 /// light of lamps. What is asked for is made, unless what is kept was made of the same description
 /// and of files that have not changed since (FileStamps); both are the same to the bit. The
@@ -58,6 +65,12 @@ class SceneCache {
     /// The surfaces of a moment of an exposure. They are not kept, but the meshes of their files
     /// are.
     SurfaceSet surfaces_of_moment(const SceneDesc& then);
+
+    /// What is below a water surface that reflects, as light meets it there: the same objects if
+    /// they are asked for again with the same arguments.
+    const SubmergedParts& submerged(const WaterSurfaceDesc& surface,
+                                    std::shared_ptr<const Surfaces> surfaces,
+                                    std::shared_ptr<const ConcentrationField> field);
 
     /// The light of a scene's lamps (LightSplatter::splat).
     DeepShadows light(
@@ -112,6 +125,13 @@ class SceneCache {
         std::shared_ptr<const TriangleMesh> mesh;
     };
 
+    struct KeptSubmerged {
+        WaterSurfaceDesc surface;
+        std::shared_ptr<const Surfaces> surfaces;
+        std::shared_ptr<const ConcentrationField> field;
+        SubmergedParts parts;
+    };
+
     static KeptGlow make_glow(const VolumeDesc& desc, const SceneDesc& scene);
     KeptSurfaces build(const SceneDesc& scene);
     std::vector<GeometryDesc> with_level_sets(const SceneDesc& scene,
@@ -124,6 +144,7 @@ class SceneCache {
     MeshStore meshes_;
     std::vector<KeptLevelSet> level_sets_;  // of the scene built last
     std::optional<KeptSurfaces> surfaces_, ahead_;
+    std::optional<KeptSubmerged> submerged_;
     LightSplatter splatter_;
 };
 

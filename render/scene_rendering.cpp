@@ -81,10 +81,16 @@ DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium&
 
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts, const PointMatchers& matchers) {
+    return pixel_renderer(scene, *scene.camera, transport, parts, matchers);
+}
+
+PixelRenderer pixel_renderer(const AssembledScene& scene, const RaySource& rays,
+                             const LightTransport& transport, const InScatterParts& parts,
+                             const PointMatchers& matchers) {
     int samples = samples_of(scene.desc().render);
     if (integrator_kind(scene.desc().render.integrator).traces_paths)
         samples = std::min(samples, k_most_samples_beside_paths);
-    return {*scene.camera,
+    return {rays,
             scene.lit(),
             transport,
             {samples, scene.total_samples, scene.first_sample},

@@ -36,6 +36,10 @@ std::vector<ColourGroup> colour_groups_of(const SceneDesc& scene);
 /// has slabs if `parts` has the first.
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts = {}, const PointMatchers& matchers = {});
+/// The same along other rays than those of the scene's camera; they outlive the result.
+PixelRenderer pixel_renderer(const AssembledScene& scene, const RaySource& rays,
+                             const LightTransport& transport, const InScatterParts& parts = {},
+                             const PointMatchers& matchers = {});
 
 /// One line about lamps too far away for the fast form of multiple scattering: its paths begin at
 /// the camera and seldom come near such lamps, so that few of them carry nearly all the light. None

@@ -105,7 +105,8 @@ ObjectMotions object_motions(const SceneDesc& now, const SceneDesc& then, const 
                              std::vector<std::string>& warnings) {
     if (now.geometry == then.geometry) return {};
     std::vector<std::size_t> counts(now.geometry.size(), 0);
-    for (const SurfaceName& object : names.objects) ++counts.at(object.entry);
+    for (const SurfaceName& object : names.objects)
+        if (object.entry) ++counts.at(*object.entry);
     ObjectMotions motions;
     for (std::size_t entry = 0; entry < now.geometry.size(); ++entry) {
         const ObjectMotions own =

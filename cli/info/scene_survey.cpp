@@ -193,7 +193,8 @@ PointView view_of_point(const AssembledScene& scene, const Point3& x) {
 /// An object as messages name it.
 std::string name_of_object(const Surfaces& surfaces, std::uint32_t id) {
     const SurfaceName& object = surfaces.names().objects.at(id - 1);
-    const std::string entry = fmt::format("geometry[{}]", object.entry);
+    if (!object.entry) return object.name;
+    const std::string entry = fmt::format("geometry[{}]", *object.entry);
     return object.name.empty() ? entry : fmt::format("'{}' ({})", printable(object.name), entry);
 }
 

@@ -346,7 +346,7 @@ void refuse_overlap(const SceneObjects& objects, const std::vector<GeometryDesc>
     throw InputError(fmt::format(
         "{}: near ({:.4g}, {:.4g}, {:.4g}) m, at the object '{}', some {:.2g} triangles lie over "
         "one another, and every ray there would meet all of them; remove what is in the same place",
-        geometry[object.entry].where, at.x, at.y, at.z, object.name, overlap->triangles));
+        geometry[object.entry.value()].where, at.x, at.y, at.z, object.name, overlap->triangles));
 }
 
 class Builder {

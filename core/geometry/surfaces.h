@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,8 +14,8 @@ namespace uw {
 
 /// The name of an object or material of a scene's surfaces.
 struct SurfaceName {
-    std::string name;       // as in the file; not unique
-    std::size_t entry = 0;  // of `geometry`, from 0
+    std::string name;                  // as in the file; not unique
+    std::optional<std::size_t> entry;  // of `geometry`, from 0; none: of the water's surface
 };
 
 /// What the numbers in the layers `id` and `material` stand for: the first has number 1.
@@ -40,6 +41,7 @@ struct SurfaceHit {
     std::uint32_t object_id = 0;        // in Surfaces::names, from 1
     std::uint32_t material_id = 0;      // likewise; 0: none of a file's
     bool has_material = false;          // more than diffuse reflection: see Surfaces::material
+    bool is_water_surface = false;      // seen from below (core/light/submerged.h)
     // For Surfaces::material: the triangle and the position on it.
     std::uint32_t geometry = 0, triangle = 0;
     double u = 0, v = 0;

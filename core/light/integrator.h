@@ -34,6 +34,7 @@ struct PathWeight {
 
 struct LampSurface;
 struct SceneGlow;
+class WaterSurface;
 
 /// Everything that integrators operate on; all of it must outlive them.
 struct LitScene {
@@ -49,6 +50,9 @@ struct LitScene {
     const std::vector<LampSurface>* lamp_surfaces = nullptr;
     /// The volumes that give off light; null if there are none.
     const std::vector<SceneGlow>* glows = nullptr;
+
+    /// The water's surface, at which light is reflected; null: the water has no end.
+    const WaterSurface* water_surface = nullptr;
 
     /// How many lamps the scene has.
     std::size_t lamp_count() const { return emitters->empty() ? 0 : emitters->back().index() + 1; }

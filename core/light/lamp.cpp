@@ -9,6 +9,11 @@
 
 namespace uw {
 
+Sunlight Sunlight::from_air(const Vector3& direction, const WaterSurfaceDesc& surface) {
+    if (!surface.n) return {direction, surface};
+    return {WaterSurface(surface).into_water(direction), surface};
+}
+
 double distance_aside(const Point3& point, double patch_radius, const Ray& ray) {
     const Vector3 across = glm::cross(point - ray.origin, ray.direction);
     const double patch = patch_radius * patch_radius, ratio = glm::dot(across, across) / patch;
@@ -52,6 +57,13 @@ Lamp Lamp::emitter(std::size_t index, const Point3& position, const Spectrum& in
     return point;
 }
 
+Lamp Lamp::mirrored(const WaterSurface& surface) const {
+    Lamp image = *this;
+    image.position_ = surface.mirrored(position_);
+    image.mirror_ = surface;
+    return image;
+}
+
 Lamp Lamp::brightened(double factor) const {
     Lamp lamp = *this;
     for (double& value : lamp.axis_intensity_) value *= factor;
@@ -60,12 +72,13 @@ Lamp Lamp::brightened(double factor) const {
 
 Point3 Lamp::origin_on_patch(const Point3& x, const UnitPoint& place) const {
     const Vector3 aside = patch_->at(place);
+    if (mirror_) return mirror_->mirrored(patch_->centre + aside);
     if (!sunlight_) return patch_->centre + aside;
     // The square root is the cosine of the angle to the disc's middle.
     const Vector3 middle = glm::cross(patch_->frame.x, patch_->frame.y);
-    const Sunlight there{aside + std::sqrt(1 - glm::dot(aside, aside)) * middle,
-                         sunlight_->surface};
-    return there.entry(x);
+    return Sunlight::from_air(aside + std::sqrt(1 - glm::dot(aside, aside)) * middle,
+                              sunlight_->surface)
+        .entry(x);
 }
 
 std::string_view Lamp::profile_name() const {
@@ -75,15 +88,25 @@ std::string_view Lamp::profile_name() const {
 
 double Lamp::relative_intensity(const Vector3& v) const {
     if (sunlight_) return glm::dot(v, sunlight_->direction) > 0 ? 1 : 0;
+    if (mirror_) {
+        const double down = -glm::dot(v, mirror_->up());
+        if (!(down > 0)) return 0;
+        const Vector3 original = mirror_->mirrored(v);
+        return mirror_->reflectance_from_water(down / glm::length(v)) *
+               std::visit([&](const auto& profile) { return profile.relative_intensity(original); },
+                          profile_);
+    }
     return std::visit([&](const auto& profile) { return profile.relative_intensity(v); }, profile_);
 }
 
 bool Lamp::has_even_core() const {
-    return std::visit([](const auto& profile) { return profile.has_even_core(); }, profile_);
+    return !mirror_ && std::visit([](const auto& profile) { return profile.has_even_core(); }, profile_);
 }
 
 DirectionCone Lamp::cone() const {
-    return std::visit([](const auto& profile) { return profile.cone(); }, profile_);
+    DirectionCone cone = std::visit([](const auto& profile) { return profile.cone(); }, profile_);
+    if (mirror_) cone.axis = mirror_->mirrored(cone.axis);
+    return cone;
 }
 
 Interval Lamp::beam(const Ray& ray, const Interval& stretch) const {
@@ -126,8 +149,20 @@ void Lamp::append_profile_breaks(const Ray& ray, const Interval& stretch,
         if (slope != 0) s.push_back(-sunlight_->length_to(ray.origin) / slope);
         return;
     }
-    std::visit([&](const auto& profile) { profile.append_breaks(ray, stretch, position_, s); },
-               profile_);
+    const auto append_breaks = [&](const Ray& seen, const Point3& from) {
+        std::visit([&](const auto& profile) { profile.append_breaks(seen, stretch, from, s); },
+                   profile_);
+    };
+    if (!mirror_) {
+        append_breaks(ray, position_);
+        return;
+    }
+    append_breaks(mirror_->mirrored(ray), mirror_->mirrored(position_));
+    // Total reflection begins like a square root of the angle, steeply: in ever shorter steps.
+    const double critical = mirror_->critical_cosine(), square = critical * critical;
+    for (const double step : {0.0, 1.0 / 256, 1.0 / 64, 1.0 / 16, 1.0 / 4})
+        append_cone_crossings(ray, position_, -mirror_->up(),
+                              std::sqrt(square + step * (1 - square)), s);
 }
 
 }  // namespace uw

@@ -10,6 +10,7 @@
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
 #include "core/base/vector_math.h"
+#include "core/geometry/water_surface.h"
 #include "core/light/lamp_patch.h"
 #include "core/light/lamp_profile.h"
 #include "core/scene/scene_context.h"
@@ -20,6 +21,10 @@ namespace uw {
 struct Sunlight {
     Vector3 direction{0, -1, 0};  // in which it travels in the water, world, unit; downwards
     WaterSurfaceDesc surface;
+
+    /// The light of a sun in this direction (unit) in the air: below a surface that refracts, as
+    /// Snell has it; elsewhere directions are those in the water anyway.
+    static Sunlight from_air(const Vector3& direction, const WaterSurfaceDesc& surface);
 
     /// How far it has come through the water at `x` [m]; negative above the surface.
     double length_to(const Point3& x) const {
@@ -82,6 +87,11 @@ class Lamp {
     Lamp emitter(std::size_t index, const Point3& position, const Spectrum& intensity, double share,
                  const LampPatch& patch) const;
 
+    /// The mirror image of this emitter, a point below a water surface that reflects: what reaches
+    /// a point by way of the surface comes straight from the image, and is as bright as that is in
+    /// its direction.
+    Lamp mirrored(const WaterSurface& surface) const;
+
     /// The same emitter, but `factor` times as bright.
     Lamp brightened(double factor) const;
 
@@ -90,6 +100,8 @@ class Lamp {
     std::size_t index() const { return index_; }
     /// The share of that lamp's light that comes from here.
     double share() const { return share_; }
+    /// Whether it is a mirror image, above the surface.
+    bool is_mirrored() const { return mirror_.has_value(); }
     /// Null unless it is a sun.
     const Sunlight* sunlight() const { return sunlight_ ? &*sunlight_ : nullptr; }
     /// Not of a sun.
@@ -149,6 +161,7 @@ class Lamp {
     LampProfile profile_;
     Spectrum axis_intensity_{};
     std::optional<Sunlight> sunlight_;
+    std::optional<WaterSurface> mirror_;  // of an image, whose profile_ is that of the original
     std::size_t index_ = 0;
     double share_ = 1;
     std::optional<LampPatch> patch_;

@@ -83,6 +83,17 @@ Spectrum axis_intensity(const LampDesc& desc, const LampProfile& profile, std::s
     return intensity;
 }
 
+// Parallel light of this direction in the air has this irradiance below the surface, across its
+// direction there, relative to that in the air across its direction: less what is reflected, and
+// on a wider beam.
+double irradiance_below(const WaterSurfaceDesc& surface, const Vector3& direction) {
+    if (!surface.n) return 1;
+    const WaterSurface boundary(surface);
+    const double in_air = -glm::dot(direction, surface.normal);
+    const double in_water = -glm::dot(boundary.into_water(direction), surface.normal);
+    return (1 - boundary.reflectance_from_air(in_air)) * in_air / in_water;
+}
+
 }  // namespace
 
 Lamp make_lamp(const LampDesc& given, const Affine& world_from_camera,
@@ -93,7 +104,10 @@ Lamp make_lamp(const LampDesc& given, const Affine& world_from_camera,
         make_lamp_profile(desc.profile, {world_from_frame, desc.direction}, warnings);
     resolve_output(desc, profile, bands_nm, warnings);
     const Spectrum intensity = axis_intensity(desc, profile, bands_nm.size());
-    if (desc.sun) return {desc.name, Sunlight{desc.direction, desc.sun->surface}, intensity};
+    if (desc.sun) {
+        const Lamp sun(desc.name, Sunlight::from_air(desc.direction, desc.sun->surface), intensity);
+        return sun.brightened(irradiance_below(desc.sun->surface, desc.direction));
+    }
     return {desc.name, world_from_frame * desc.position, std::move(profile), intensity};
 }
 
@@ -126,9 +140,12 @@ std::vector<Vector3> fill(const LampFrame& frame, const std::vector<UnitPoint>& 
 
 // Seen by a plane perpendicular to it, a disc of uniform radiance is one of the directions' sines,
 // with the irradiance spread evenly over it; perpendicular to a direction itself it is greater.
-void append_sun(const SunDesc& sun, const Lamp& lamp, std::size_t index, int thinning,
-                std::vector<Lamp>& emitters) {
-    const Vector3 middle = lamp.sunlight()->direction;
+// `direction`: of its middle, in the air where the water's surface refracts.
+void append_sun(const SunDesc& sun, const Vector3& direction, const Lamp& lamp, std::size_t index,
+                int thinning, std::vector<Lamp>& emitters) {
+    const WaterSurfaceDesc& surface = sun.surface;
+    const Vector3 middle = direction;
+    const double of_middle = irradiance_below(surface, middle);
     const LampPlacement placement{{}, middle};
     LampFrame frame{{}, placement.across(), glm::cross(middle, placement.across())};
     frame.extent.shape = LampExtentDesc::Shape::disk;
@@ -139,9 +156,11 @@ void append_sun(const SunDesc& sun, const Lamp& lamp, std::size_t index, int thi
     const std::vector<LampPatch> patches = divide(frame, {}, places);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double cosine = std::sqrt(1 - glm::dot(points[i], points[i]));
-        const Vector3 direction = cosine * middle + points[i];
-        emitters.push_back(
-            lamp.emitter(index, direction, 1.0 / count, patches[i]).brightened(1 / cosine));
+        const Vector3 in_air = cosine * middle + points[i];
+        const double factor = irradiance_below(surface, in_air) / (of_middle * cosine);
+        emitters.push_back(lamp.emitter(index, Sunlight::from_air(in_air, surface).direction,
+                                        1.0 / count, patches[i])
+                               .brightened(factor));
     }
 }
 
@@ -215,7 +234,7 @@ void append_surface(const LampDesc& desc, const Lamp& lamp, std::size_t index, i
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                      const Affine& world_from_camera, std::vector<Lamp>& emitters) {
     if (desc.sun && desc.sun->angle > 0) {
-        append_sun(*desc.sun, lamp, index, thinning, emitters);
+        append_sun(*desc.sun, desc.direction, lamp, index, thinning, emitters);
         return;
     }
     if (!desc.extent) {
@@ -229,6 +248,14 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
     const double share = 1.0 / static_cast<double>(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
         emitters.push_back(lamp.emitter(index, lamp.position() + points[i], share, patches[i]));
+}
+
+void append_mirror_images(const WaterSurface& surface, std::size_t first,
+                          std::vector<Lamp>& emitters) {
+    const std::size_t last = emitters.size();
+    for (std::size_t i = first; i < last; ++i)
+        if (!emitters[i].sunlight() && surface.height(emitters[i].position()) < 0)
+            emitters.push_back(emitters[i].mirrored(surface));
 }
 
 }  // namespace uw

@@ -47,4 +47,9 @@ void append_emitters(const Lamp& lamp, std::size_t index, std::span<const GlowPa
 void append_surface(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                     const Affine& world_from_camera, std::vector<LampSurface>& surfaces);
 
+/// Appends the mirror image of each emitter from `first` on that stands below the surface, in
+/// their order.
+void append_mirror_images(const WaterSurface& surface, std::size_t first,
+                          std::vector<Lamp>& emitters);
+
 }  // namespace uw

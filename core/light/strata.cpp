@@ -22,9 +22,21 @@ void Strata::add_sample(const Point3& x, std::span<double> concentration) const 
     for (const Curve& curve : curves_) concentration[curve.constituent] += value(curve, at, i);
 }
 
+void Strata::add_column(const Point3& a, const Point3& b, std::span<double> column) const {
+    const double above_a = glm::dot(a - surface_, up_), above_b = glm::dot(b - surface_, up_);
+    if (is_mirror_ && above_a * above_b < 0) {
+        const Point3 middle = a + above_a / (above_a - above_b) * (b - a);
+        add_straight_column(a, middle, column);
+        add_straight_column(middle, b, column);
+    } else {
+        add_straight_column(a, b, column);
+    }
+}
+
 // Interval by interval, in each of which the mean of the values at both ends is that of all between
 // them: no difference of large integrals loses digits, however level the way is.
-void Strata::add_column(const Point3& a, const Point3& b, std::span<double> column) const {
+void Strata::add_straight_column(const Point3& a, const Point3& b,
+                                 std::span<double> column) const {
     const double from = std::min(depth(a), depth(b)), to = std::max(depth(a), depth(b));
     const double length = distance(a, b);
     const auto add = [&](double first, double last, std::size_t i) {
@@ -43,7 +55,8 @@ void Strata::add_column(const Point3& a, const Point3& b, std::span<double> colu
 }
 
 void Strata::append_breaks(const Ray& ray, double s_end, std::vector<double>& s) const {
-    const double begin = depth(ray.origin), rate = -glm::dot(ray.direction, up_);
+    const double begin = -glm::dot(ray.origin - surface_, up_);
+    const double rate = -glm::dot(ray.direction, up_);
     if (rate == 0) return;
     const auto add = [&](double of) {
         const double at = (of - begin) / rate;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -11,7 +12,8 @@
 namespace uw {
 
 /// Concentrations that depend on the depth below a plane alone: linear between the depths of a
-/// table, and held above and below it. Their columns have a closed form everywhere.
+/// table, and held above and below it. Their columns have a closed form everywhere. Above a plane
+/// that is a mirror there is the image of what lies below (core/light/submerged.h).
 class Strata {
   public:
     /// Concentrations of one of the medium's constituents, >= 0 [in its unit], one per depth.
@@ -23,13 +25,20 @@ class Strata {
     /// `surface` is a point of the plane of depth 0, `up` its unit normal out of the water (world);
     /// `depths` ascend [m].
     Strata(const Point3& surface, const Vector3& up, std::vector<double> depths,
-           std::vector<Curve> curves)
-        : surface_(surface), up_(up), depths_(std::move(depths)), curves_(std::move(curves)) {}
+           std::vector<Curve> curves, bool is_mirror = false)
+        : surface_(surface),
+          up_(up),
+          is_mirror_(is_mirror),
+          depths_(std::move(depths)),
+          curves_(std::move(curves)) {}
 
     const std::vector<double>& depths() const { return depths_; }
     const std::vector<Curve>& curves() const { return curves_; }
-    /// How far below the plane `x` lies [m].
-    double depth(const Point3& x) const { return -glm::dot(x - surface_, up_); }
+    /// How far below the plane `x` lies [m], or its image if that is a mirror.
+    double depth(const Point3& x) const {
+        const double below = -glm::dot(x - surface_, up_);
+        return is_mirror_ ? std::abs(below) : below;
+    }
 
     /// Adds the concentrations at `x` to those of all constituents.
     void add_sample(const Point3& x, std::span<double> concentration) const;
@@ -40,12 +49,15 @@ class Strata {
     void append_breaks(const Ray& ray, double s_end, std::vector<double>& s) const;
 
   private:
+    /// add_column on one side of a mirror.
+    void add_straight_column(const Point3& a, const Point3& b, std::span<double> column) const;
     /// The interval of the table at a depth: 0 above its first depth, i between depths i - 1 and i.
     std::size_t interval(double depth) const;
     double value(const Curve& curve, double depth, std::size_t interval) const;
 
     Point3 surface_;
     Vector3 up_;
+    bool is_mirror_;
     std::vector<double> depths_;
     std::vector<Curve> curves_;
 };

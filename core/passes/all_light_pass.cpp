@@ -94,6 +94,10 @@ void GlowSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& 
                                std::size_t index, std::span<double> radiance) const {
     const std::size_t groups = radiance.size() / bands_;
     const LitScene& scene = pixels_.scene();
+    if (sample.hit.is_water_surface) {  // whose light is that of lamps, too
+        std::ranges::fill(radiance, 0.0);
+        return;
+    }
     const std::span<const double> to_camera = light.to_camera(index);
     indirect_.find(sample.hit, radiance);
     for (std::size_t k = 0; k < radiance.size(); ++k)
@@ -408,7 +412,8 @@ void MultipleLight::add(const PixelView& view, const SurfaceLight& light, std::s
     if (!view.ray) return;
     add_volume(view, result);
     for (std::size_t i = 0; i < view.samples.size(); ++i)
-        add_surface(view.samples[i], light.to_camera(first_sample + i), result);
+        if (!view.samples[i].hit.is_water_surface)
+            add_surface(view.samples[i], light.to_camera(first_sample + i), result);
 }
 
 namespace {

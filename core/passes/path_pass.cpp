@@ -152,9 +152,8 @@ void PathPixels::render(int x, int y, const PathRound& round, const TracedCallba
     for (std::vector<Spectrum>* list : {&result.lamps, &result.orders, &result.reflections})
         for (Spectrum& light : *list) light *= share;
     if (!has_ray) result.pixel_factor = pixels_.pixel_factor(view);
-    if (batches == 1) return;
     // The variance of a batch's mean falls as 1 / its size.
-    for (std::size_t band = 0; band < bands; ++band) {
+    for (std::size_t band = 0; band < bands && batches > 1; ++band) {
         const double mean = result.direct[band] + result.backscatter[band] +
                             result.multiple_volume[band] + result.multiple_surface[band];
         double spread = 0;
@@ -164,6 +163,7 @@ void PathPixels::render(int x, int y, const PathRound& round, const TracedCallba
         }
         result.error[band] = result.pixel_factor * std::sqrt(spread / (batches - 1));
     }
+    pixels_.weigh(x, y, result);
 }
 
 /// Everything but the light of the paths, which is 0 afterwards.

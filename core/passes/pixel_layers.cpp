@@ -237,6 +237,15 @@ void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     seen.clear();
 }
 
+void PixelResult::dim(const Spectrum& factor) {
+    for (Spectrum* const light : {&direct, &lamps_in_view, &forward, &backscatter, &multiple_volume,
+                                  &multiple_surface, &snow, &error})
+        *light *= factor;
+    backscatter_first = {};
+    for (std::vector<Spectrum>* const list : {&lamps, &orders, &reflections})
+        for (Spectrum& light : *list) light *= factor;
+}
+
 InScatterParts in_scatter_parts(const LayerPlan& plan) {
     return {.lamps = plan.has_lamps(), .first_slab = plan.has(Layer::backscatter_first)};
 }
@@ -338,6 +347,39 @@ void take_bands(const Film& from, std::span<const std::size_t> bands, const Laye
             for (const std::size_t channel : {k_red, k_green, k_blue})
                 own[channel] += more[channel];
             if (from.shows_lamp(x, y)) film.mark_lamp(x, y);
+        }
+    });
+}
+
+void add_mirrored(const Film& mirrored, const LayerPlan& plan, const BandColour& colour,
+                  Film& film) {
+    // Channels of light: all but those of layers that are something else.
+    std::vector<std::size_t> channels;
+    std::vector<bool> is_light(film.channel_names().size(), true);
+    is_light[k_alpha] = false;
+    std::vector<float> place(is_light.size());
+    for (const LayerKind& kind : k_layers) {
+        if (kind.content == LayerContent::light || !plan.has(kind.layer)) continue;
+        for (const float& value : plan.channels(kind.layer, place))
+            is_light[static_cast<std::size_t>(&value - place.data())] = false;
+    }
+    for (std::size_t channel = 0; channel < is_light.size(); ++channel)
+        if (is_light[channel]) channels.push_back(channel);
+    const PixelWindow& window = film.window();
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        const int y = window.y0 + static_cast<int>(line);
+        for (int x = window.x0; x < window.x1; ++x) {
+            const std::span<const float> more = mirrored.pixel(x, y);
+            const std::span<float> own = film.pixel(x, y);
+            if (more[k_alpha] == 0) continue;
+            for (const std::size_t channel : channels) own[channel] += more[channel];
+            if (plan.has(Layer::error)) {
+                const auto first = static_cast<std::size_t>(plan.first_channel(Layer::error));
+                for (std::size_t b = first; b < first + plan.band_count(); ++b)
+                    own[b] = std::hypot(own[b], more[b]);
+            }
+            restore_sums(plan, colour, own);
+            if (mirrored.shows_lamp(x, y)) film.mark_lamp(x, y);
         }
     });
 }

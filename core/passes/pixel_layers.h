@@ -65,6 +65,10 @@ struct PixelResult {
     std::array<double, 2> disparity;
     double disparity_occluded = 0;
 
+    /// Multiplies all light by a factor per band, but that of the first slab, of which there is
+    /// none: what is seen in a mirror.
+    void dim(const Spectrum& factor);
+
     bool shows_lamp = false;  // whether any sample sees a lamp's surface
     /// Resets to an empty pixel, with 0 for each of `lamp_count` lamps. Storage is reused. `bands`:
     /// as many as any pixel that it has held; clearing all costs a tenth of a simple image's time.
@@ -105,6 +109,11 @@ void add_forward_scatter_of_lamp(const PixelResult& pixel, const LayerPlan& plan
 /// truth.
 void take_bands(const Film& from, std::span<const std::size_t> bands, const LayerPlan& plan,
                 Film& film);
+
+/// Adds the light of the image of the same pixels that the camera sees in the water's surface.
+/// Ground truth stays that of what is seen without it. Sums of layers stay sums to the bit.
+void add_mirrored(const Film& mirrored, const LayerPlan& plan, const BandColour& colour,
+                  Film& film);
 
 /// The image of an exposure as the mean over images of its parts. Light is averaged, and sums of
 /// layers stay sums to the bit; the transmittance is the mean over what hits a surface. Layers of

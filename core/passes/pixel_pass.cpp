@@ -81,6 +81,7 @@ const PixelResult& TileRenderer::render(int x, int y) {
     renderer_.shade(view, light_, first_sample, lattice_ ? lattice_->values(pixel) : in_scatter_,
                     result_);
     for (const PixelStep& step : steps_) step({x, y, view, light_, first_sample, result_});
+    renderer_.weigh(x, y, result_);
     return result_;
 }
 

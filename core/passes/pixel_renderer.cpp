@@ -61,8 +61,12 @@ void find_matches(const PointMatchers& matchers, std::span<PixelView> views) {
     thread_local std::vector<const SurfaceHit*> hits;
     thread_local std::vector<std::optional<PointMatch>> matches;
     hits.clear();
+    // What is seen in the water's surface is on no point of it.
+    const auto has_point = [](const PixelView& view) {
+        return view.has_hit && !view.hit.is_water_surface;
+    };
     for (const PixelView& view : views)
-        if (view.has_hit) hits.push_back(&view.hit);
+        if (has_point(view)) hits.push_back(&view.hit);
     matches.resize(hits.size());
     const auto look = [&](const PointMatcher* matcher,
                           std::optional<PointMatch> PointMatches::*which) {
@@ -70,7 +74,7 @@ void find_matches(const PointMatchers& matchers, std::span<PixelView> views) {
         matcher->match(hits, matches);
         auto match = matches.begin();
         for (PixelView& view : views)
-            if (view.has_hit) view.matches.*which = *match++;
+            if (has_point(view)) view.matches.*which = *match++;
     };
     look(matchers.next, &PointMatches::next);
     look(matchers.previous, &PointMatches::previous);

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/base/grid2d.h"
@@ -83,6 +85,14 @@ class PixelRenderer {
                   const PixelSamples& samples, const Slabs& slabs, const SensorModel& sensor = {},
                   const InScatterParts& parts = {}, const PointMatchers& matchers = {});
 
+    /// By what the light of a pixel is multiplied, by band, before it is stored: weight(x, y).
+    using PixelWeight = std::function<Spectrum(int x, int y)>;
+    void set_weight(PixelWeight weight) { weight_ = std::move(weight); }
+    /// Does so.
+    void weigh(int x, int y, PixelResult& result) const {
+        if (weight_ && result.alpha > 0) result.dim(weight_(x, y));
+    }
+
     int lamp_count() const { return static_cast<int>(scene_.lamp_count()); }
     int band_count() const { return scene_.medium->band_count(); }
     int samples() const { return samples_.count; }
@@ -139,6 +149,7 @@ class PixelRenderer {
     RayInScatter in_scatter_;
     LampsInView lamps_in_view_;
     PointMatchers matchers_;
+    PixelWeight weight_;  // null: 1
     std::vector<float> object_mattes_, material_mattes_;  // by SurfaceHit's ids
     Affine camera_from_world_;
 };

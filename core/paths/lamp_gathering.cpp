@@ -359,7 +359,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, const PathSta
         for (std::size_t m = 0; m < phases; ++m) beta += w.point.scattering[m][b] * w.p[m];
         radiance[b] *= factor * even[b] * beta * lamp.axis_intensity()[b] * state.throughput[b];
     }
-    PathTerm term = state.term(place->lamp, radiance);
+    PathTerm term = state.term(lamp.index(), radiance);
     if (term.scatterings + term.reflections == 0) term.distance = s;  // on the camera ray
     ++term.scatterings;
     terms.add(term);
@@ -414,7 +414,7 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
     for (std::size_t b = 0; b < bands; ++b)
         radiance[b] *= share.geometry / probability * lamp.axis_intensity()[b] * w.brdf[b] *
                        transmittance[b] * state.throughput[b];
-    PathTerm term = state.term(share.lamp, radiance);
+    PathTerm term = state.term(lamp.index(), radiance);
     ++term.reflections;
     terms.add(term);
 }

@@ -31,35 +31,43 @@ PathTables::PathTables(const LitScene& scene, const ScatteringTables& tables,
 
 namespace {
 
-// The indices of each lamp's first emitter, and of the one after the last.
-std::vector<std::size_t> first_emitters(const std::vector<Lamp>& emitters) {
-    std::vector<std::size_t> first;
-    for (std::size_t i = 0; i < emitters.size(); ++i)
-        if (emitters[i].index() == first.size()) first.push_back(i);
-    first.push_back(emitters.size());
-    return first;
+// The lamps' emitters, or those of their mirror images.
+struct LampEmitters {
+    std::vector<std::size_t> own, images;
+};
+
+std::vector<LampEmitters> emitters_by_lamp(const std::vector<Lamp>& emitters) {
+    std::vector<LampEmitters> lamps;
+    for (std::size_t i = 0; i < emitters.size(); ++i) {
+        if (emitters[i].index() == lamps.size()) lamps.emplace_back();
+        (emitters[i].is_mirrored() ? lamps.back().images : lamps.back().own).push_back(i);
+    }
+    return lamps;
 }
 
 }  // namespace
 
 std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters) {
-    const std::vector<std::size_t> first = first_emitters(emitters);
+    const std::vector<LampEmitters> lamps = emitters_by_lamp(emitters);
     std::size_t most = 1;
-    for (std::size_t j = 0; j + 1 < first.size(); ++j)
-        most = std::max(most, first[j + 1] - first[j]);
+    for (const LampEmitters& lamp : lamps) most = std::max(most, lamp.own.size());
     std::vector<LampView> views(most);
-    for (std::size_t j = 0; j + 1 < first.size(); ++j) {
-        const std::size_t count = first[j + 1] - first[j];
+    // Evenly among the views, each emitter as bright as it is in few of them.
+    const auto share_out = [&](const std::vector<std::size_t>& of_lamp) {
+        const std::size_t count = of_lamp.size();
         for (std::size_t e = 0; e < count; ++e) {
-            // Evenly among the views, each emitter as bright as it is in few of them.
             const std::size_t begin = e * most / count, end = (e + 1) * most / count;
             const double weight = static_cast<double>(most) / static_cast<double>(end - begin);
-            const Lamp& emitter = emitters[first[j] + e];
+            const Lamp& emitter = emitters[of_lamp[e]];
             for (std::size_t view = begin; view < end; ++view) {
                 views[view].lamps.push_back(count == 1 ? emitter : emitter.brightened(weight));
-                views[view].emitters.push_back(first[j] + e);
+                views[view].emitters.push_back(of_lamp[e]);
             }
         }
+    };
+    for (const LampEmitters& lamp : lamps) {
+        share_out(lamp.own);
+        share_out(lamp.images);
     }
     return views;
 }

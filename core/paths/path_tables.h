@@ -18,7 +18,7 @@ namespace uw {
 /// all views is the light of the lamps, so that a path that chooses one at random costs what it
 /// does among point lamps.
 struct LampView {
-    std::vector<Lamp> lamps;            // one per lamp
+    std::vector<Lamp> lamps;            // one per lamp, and its mirror image if it has one
     std::vector<std::size_t> emitters;  // which of the scene's each of them is
 };
 

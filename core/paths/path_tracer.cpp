@@ -168,7 +168,9 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
     const WaterSegment& water = segment.water;
     const std::vector<double>& s = segment.distances;
     Spectrum light_of_surface, weights;
-    const bool has_surface = water.has_hit && !surface_light.empty();
+    // Light of the sky that is scattered is that of lamps.
+    const bool has_surface =
+        water.has_hit && !water.hit.is_water_surface && !surface_light.empty();
     const double reflected =
         has_surface ? guess_surface_light(segment, surface_light, light_of_surface) : 0;
     w.guided.clear();
@@ -363,7 +365,7 @@ bool PathTracer::find_lit_surface(const CameraSegment& segment, PathRandom& rand
 
 double PathTracer::trace_surface(const CameraSegment& segment, PathRandom& random,
                                  PathTerms& terms) const {
-    if (!segment.water.has_hit) return 0;
+    if (!segment.water.has_hit || segment.water.hit.is_water_surface) return 0;
     return trace_paths(segment.paths.surface, random, [&] {
         const PathTables& tables = choose_tables(random);
         PathWalk walk(tables, segment.light, random, terms);

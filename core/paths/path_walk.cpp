@@ -123,12 +123,15 @@ bool PathWalk::leave(const Point3& origin, bool is_last) {
     for (std::size_t b = 0; b < bands; ++b) state_.throughput[b] *= response[b] * factor;
     const Ray ray{origin, chosen.direction};
     trace(ray);
-    tables_.lamps.gather_from_water(w.segment, state_, random_, terms_);
-    if (w.segment.has_hit && !stays_in_water_) {
-        tables_.lamps.gather_from_surface(w.segment, w.transmittance, state_, random_, terms_);
-        if (w.segment.hit.has_material) find_emission(state_.throughput);
+    gather_from_segment();
+    if (is_last) {
+        if (!meets_water_surface()) return false;
+        const double reflectance = reflectance_of_water_surface();
+        for (std::size_t b = 0; b < bands; ++b)
+            state_.throughput[b] *= w.transmittance[b] * reflectance;
+        follow_mirrored();
+        return false;
     }
-    if (is_last) return false;
     w.guides = &vertex.guides();
     find_surface_ahead();
     const double n = branches(chosen);
@@ -137,6 +140,36 @@ bool PathWalk::leave(const Point3& origin, bool is_last) {
     state_.branches *= n;
     for (double i = of_number + 1; i < n; ++i) w.pending.push_back({state_, ray});
     return true;
+}
+
+void PathWalk::gather_from_segment() {
+    const Workspace& w = workspace_of_thread();
+    tables_.lamps.gather_from_water(w.segment, state_, random_, terms_);
+    if (!w.segment.has_hit || stays_in_water_ || meets_water_surface()) return;
+    tables_.lamps.gather_from_surface(w.segment, w.transmittance, state_, random_, terms_);
+    if (w.segment.hit.has_material) find_emission(state_.throughput);
+}
+
+bool PathWalk::meets_water_surface() const {
+    const WaterSegment& segment = workspace_of_thread().segment;
+    return segment.has_hit && segment.hit.is_water_surface;
+}
+
+Ray PathWalk::mirrored_ray() const {
+    const WaterSegment& segment = workspace_of_thread().segment;
+    return {segment.hit.position,
+            tables_.optics.scene().water_surface->mirrored(segment.ray.direction)};
+}
+
+double PathWalk::reflectance_of_water_surface() const {
+    const WaterSurface& surface = *tables_.optics.scene().water_surface;
+    return surface.reflectance_from_water(
+        glm::dot(workspace_of_thread().segment.ray.direction, surface.up()));
+}
+
+void PathWalk::follow_mirrored() {
+    trace(mirrored_ray());
+    gather_from_segment();
 }
 
 // The surface that the path has left may be met again: all that is below its plane.
@@ -175,7 +208,7 @@ double PathWalk::branches(const CandidateDirection& chosen) const {
 void PathWalk::find_surface_ahead() {
     Workspace& w = workspace_of_thread();
     w.surface_ahead = w.surface_radiance = 0;
-    if (!w.segment.has_hit || stays_in_water_) return;
+    if (!w.segment.has_hit || (stays_in_water_ && !meets_water_surface())) return;
     Spectrum arriving;
     double arrived = 0;
     for (std::size_t b = 0; b < tables_.optics.bands(); ++b) {
@@ -183,6 +216,16 @@ void PathWalk::find_surface_ahead() {
         arrived += arriving[b];
     }
     if (!(arrived > 0)) return;
+    if (meets_water_surface()) {
+        const Ray mirrored = mirrored_ray();
+        w.guides_at_water_surface.find(tables_.guides, mirrored.origin, arriving);
+        w.surface_radiance =
+            reflectance_of_water_surface() *
+            (w.guides_at_water_surface.multiple(mirrored.direction) +
+             tables_.guides.particles.at(mirrored.origin) + k_ambient_of_direction * light_.ambient);
+        w.surface_ahead = arrived * w.surface_radiance;
+        return;
+    }
     w.surface_radiance = std::max(k_ambient_of_surface * light_.ambient,
                                   guessed_reflection(tables_.guides, w.segment.hit, arriving));
     w.surface_ahead = arrived * w.surface_radiance;
@@ -249,6 +292,15 @@ bool PathWalk::advance() {
     if (target < w.surface_ahead) {
         for (std::size_t b = 0; b < bands; ++b)
             state_.throughput[b] *= to_end[b] * all / w.surface_ahead;
+        if (meets_water_surface()) {
+            const double reflectance = reflectance_of_water_surface();
+            for (double& value : state_.throughput.first(bands)) value *= reflectance;
+            follow_mirrored();
+            w.guides_of_mirrored.find(tables_.guides, w.segment.ray.origin, state_.throughput);
+            w.guides = &w.guides_of_mirrored;
+            find_surface_ahead();
+            return true;
+        }
         w.vertex.reflect(tables_.guides, w.segment, state_.throughput);
         state_.left = {w.segment.hit.position, w.segment.hit.geometric_normal, w.surface_radiance};
         ++state_.reflections;
@@ -389,7 +441,14 @@ const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
         if (!(all > 0)) return nullptr;
         for (double& share : w.shares) share /= all;
         const double s = draw_distance(random_.next());
-        if (!is_first && meets_surface_before(s)) return &w.segment;
+        if (!is_first && meets_surface_before(s)) {
+            if (!meets_water_surface()) return &w.segment;
+            const double reflectance = reflectance_of_water_surface();
+            for (double& value : throughput.first(bands)) value *= reflectance;
+            optics.set(mirrored_ray(), nullptr, w.segment);
+            std::ranges::fill(w.transmittance.first(bands), 0.0);
+            continue;
+        }
         if (!(s < w.segment.length) || !go_to(s)) return nullptr;
         if (is_first) state_.distance = s;
         const std::optional<Vector3> direction = scatter_plainly(

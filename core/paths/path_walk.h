@@ -57,6 +57,15 @@ class PathWalk {
     bool leave(const Point3& origin, bool is_last = false);
     ExpectedLight expected_from(const Point3& x) const;
     double branches(const CandidateDirection& chosen) const;
+    // Whether the segment ends at the water's surface, which reflects the path along
+    // mirrored_ray() with this reflectance.
+    bool meets_water_surface() const;
+    Ray mirrored_ray() const;
+    double reflectance_of_water_surface() const;
+    // Moves on to the segment that begins there, and gathers its light. The throughput is that at
+    // the surface, after reflection.
+    void follow_mirrored();
+    void gather_from_segment();
     void find_surface_ahead();
     void find_emission(const Spectrum& throughput);
     double arriving(double radiance) const;
@@ -111,7 +120,7 @@ struct PathWalk::Workspace {
     std::vector<CandidateDirection> candidates;
     std::vector<Place> places;
     const LampGuides* guides = nullptr;  // at the beginning of the segment
-    LampGuides guides_of_pending;
+    LampGuides guides_of_pending, guides_of_mirrored, guides_at_water_surface;
     // What the surface at its end reflects, roughly, and what of that arrives at the camera, summed
     // over the bands.
     double surface_radiance = 0, surface_ahead = 0;

@@ -22,6 +22,9 @@ using PerBand = std::vector<double>;
 struct WaterSurfaceDesc {
     Point3 point;             ///< on it, world [m]
     Vector3 normal{0, 1, 0};  ///< out of the water, world, unit
+    /// The water's refractive index against that of the air. None: light meets nothing there, and
+    /// suns are what is left of them below.
+    std::optional<double> n{};
 
     friend bool operator==(const WaterSurfaceDesc&, const WaterSurfaceDesc&) = default;
 };

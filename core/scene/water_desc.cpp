@@ -187,14 +187,29 @@ void read_dissolved(ConfigMap& map, WaterDesc& water) {
     }
 }
 
+// Of the water against the air.
+constexpr double k_least_n = 1.0001, k_greatest_n = 3;
+
 WaterSurfaceDesc read_surface(const ConfigValue& value) {
-    constexpr auto k_example = "write {point: [0, 10, 0], normal: [0, 1, 0]}";
-    ConfigMap map(value, {"point", "normal"}, k_example);
-    return {
-        at_origin_plus(map.require("point", k_example)
-                           .vector("give a point on the water's surface, three lengths in metres")),
-        map.require("normal", k_example)
-            .direction("give the direction out of the water, not all 0")};
+    constexpr auto k_example = "write {height: 10, n: 1.34}, or {point: [0, 10, 0], normal: [0, 1, 0]}";
+    ConfigMap map(value, {"height", "point", "normal", "n"}, k_example);
+    WaterSurfaceDesc surface;
+    if (const auto height = map.find("height")) {
+        for (const auto* const other : {"point", "normal"})
+            if (const auto entry = map.find(other))
+                entry->fail("height says already where the surface is; remove one");
+        surface.point = {0, height->number("give the surface's height along y in metres"), 0};
+    } else {
+        surface.point = at_origin_plus(
+            map.require("point", k_example)
+                .vector("give a point on the water's surface, three lengths in metres"));
+        surface.normal = map.require("normal", k_example)
+                             .direction("give the direction out of the water, not all 0");
+    }
+    if (const auto entry = map.find("n"))
+        surface.n = entry->within(k_least_n, k_greatest_n,
+                                  "give the water's refractive index against air, such as 1.34");
+    return surface;
 }
 
 constexpr double k_least_diameter = 1e-6, k_greatest_diameter = 0.1;

@@ -460,7 +460,7 @@ void Builder::add_strata() {
     if (curves_.empty()) return;
     const WaterSurfaceDesc& surface = water_.surface.value();
     model.strata = std::make_shared<Strata>(surface.point, surface.normal, profile_->depths,
-                                            std::move(curves_));
+                                            std::move(curves_), surface.n.has_value());
 }
 
 void Builder::drop_unused_phases() {
