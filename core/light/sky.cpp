@@ -1,0 +1,602 @@
+#include "core/light/sky.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+#include <variant>
+
+#include "core/base/error.h"
+#include "core/base/numerics.h"
+#include "core/image/spectral_bands.h"
+
+namespace uw {
+
+double transmittance_into_water(double cosine, double n) {
+    if (n == 1) return 1;
+    const double in_water = std::sqrt(1 - (1 - cosine * cosine) / (n * n));
+    const double s = (cosine - n * in_water) / (cosine + n * in_water);
+    const double p = (n * cosine - in_water) / (n * cosine + in_water);
+    return 1 - 0.5 * (s * s + p * p);
+}
+
+Matrix3 world_from_sky(const Vector3& up, const std::optional<Vector3>& north,
+                       const SourceLocation& where) {
+    const Vector3 usual =
+        std::abs(up.z) < std::numbers::sqrt2 / 2 ? Vector3{0, 0, -1} : Vector3{0, 1, 0};
+    const Vector3 given = north.value_or(usual);
+    const Vector3 level = given - glm::dot(given, up) * up;
+    if (glm::length(level) < 1e-6 * glm::length(given))
+        throw InputError(fmt::format(
+            "{}: north is perpendicular to the water's surface; give a direction along it", where));
+    const Vector3 to_north = glm::normalize(level);
+    return {glm::cross(to_north, up), to_north, up};
+}
+
+namespace {
+
+/// The luminous efficacy of light at 555 nm [lm/W].
+constexpr double k_lumens_per_watt_of_sky = 683;
+
+/// Of M1 and M2 (CIE 15:2004).
+struct DaylightFactors {
+    double m1, m2;
+
+    DaylightFactors(double x, double y) {
+        const double below = 0.0241 + 0.2562 * x - 0.7341 * y;
+        m1 = (-1.3515 - 1.7703 * x + 5.9114 * y) / below;
+        m2 = (0.0300 - 31.4424 * x + 30.0717 * y) / below;
+    }
+    double of(const std::array<double, 3>& components) const {
+        return components[0] + m1 * components[1] + m2 * components[2];
+    }
+};
+
+std::array<SampledCurve, 3> daylight_components() {
+    const CsvTable table = read_embedded_table("cie_daylight_components_5nm.csv");
+    return {table.curve("wavelength_nm", "s0"), table.curve("wavelength_nm", "s1"),
+            table.curve("wavelength_nm", "s2")};
+}
+
+}  // namespace
+
+SampledCurve daylight_spectrum(double x, double y) {
+    const std::array<SampledCurve, 3> components = daylight_components();
+    const DaylightFactors factors(x, y);
+    SampledCurve spectrum{components[0].x, {}};
+    for (std::size_t i = 0; i < spectrum.x.size(); ++i)
+        spectrum.y.push_back(
+            factors.of({components[0].y[i], components[1].y[i], components[2].y[i]}));
+    return spectrum;
+}
+
+/// The sky's radiance up to a factor per band.
+class Sky::Distribution {
+  public:
+    Distribution() = default;
+    virtual ~Distribution() = default;
+    Distribution(const Distribution&) = delete;
+    Distribution& operator=(const Distribution&) = delete;
+    Distribution(Distribution&&) = delete;
+    Distribution& operator=(Distribution&&) = delete;
+
+    /// Towards the sky, sky space, unit, z >= 0.
+    virtual Spectrum radiance(const Vector3& towards) const = 0;
+    /// Relative luminance. Where there is none, lux become watts through a spectrum.
+    virtual std::optional<double> luminance(const Vector3& /*towards*/) const { return {}; }
+};
+
+namespace {
+
+/// Uniform, or the CIE's overcast sky: grey.
+class GreySky : public Sky::Distribution {
+  public:
+    /// `rise`: how much brighter the zenith is than the horizon, relative to the horizon.
+    GreySky(double rise, std::size_t bands) : rise_(rise), bands_(bands) {}
+
+    Spectrum radiance(const Vector3& towards) const override {
+        return per_band(bands_, [&](std::size_t) { return 1 + rise_ * towards.z; });
+    }
+
+  private:
+    double rise_;
+    std::size_t bands_;
+};
+
+/// Perez' distribution with Preetham's coefficients, relative to the zenith.
+struct PerezDistribution {
+    double a, b, c, d, e;
+    double at_zenith;  // F(0, theta_sun)
+
+    PerezDistribution(const std::array<std::array<double, 2>, 5>& rows, double turbidity,
+                      double sun_angle) {
+        const auto linear = [&](std::size_t i) { return rows[i][0] * turbidity + rows[i][1]; };
+        a = linear(0);
+        b = linear(1);
+        c = linear(2);
+        d = linear(3);
+        e = linear(4);
+        at_zenith = value(1, sun_angle, std::cos(sun_angle));
+    }
+    // `cosine` of the angle from the zenith, >= 0; `gamma` from the sun.
+    double value(double cosine, double gamma, double cos_gamma) const {
+        // b < 0: nothing is left of the exponential at the horizon.
+        const double gradient = cosine > 0 ? 1 + a * std::exp(b / cosine) : 1;
+        return gradient * (1 + c * std::exp(d * gamma) + e * cos_gamma * cos_gamma);
+    }
+    double relative(double cosine, double gamma, double cos_gamma) const {
+        return value(cosine, gamma, cos_gamma) / at_zenith;
+    }
+};
+
+/// A polynomial in the sun's angle from the zenith whose coefficients are polynomials in turbidity.
+double zenith_chromaticity(const std::array<std::array<double, 4>, 3>& rows, double turbidity,
+                           double sun_angle) {
+    double sum = 0;
+    for (const std::array<double, 4>& row : rows) {
+        double polynomial = 0;
+        for (const double coefficient : row) polynomial = polynomial * sun_angle + coefficient;
+        sum = sum * turbidity + polynomial;
+    }
+    return sum;
+}
+
+// clang-format off
+constexpr std::array<std::array<double, 2>, 5> k_luminance_perez{{
+    {0.1787, -1.4630}, {-0.3554, 0.4275}, {-0.0227, 5.3251}, {0.1206, -2.5771}, {-0.0670, 0.3703}}};
+constexpr std::array<std::array<double, 2>, 5> k_x_perez{{
+    {-0.0193, -0.2592}, {-0.0665, 0.0008}, {-0.0004, 0.2125}, {-0.0641, -0.8989}, {-0.0033, 0.0452}}};
+constexpr std::array<std::array<double, 2>, 5> k_y_perez{{
+    {-0.0167, -0.2608}, {-0.0950, 0.0092}, {-0.0079, 0.2102}, {-0.0441, -1.6537}, {-0.0109, 0.0529}}};
+constexpr std::array<std::array<double, 4>, 3> k_x_zenith{{
+    {0.00166, -0.00375, 0.00209, 0}, {-0.02903, 0.06377, -0.03202, 0.00394},
+    {0.11693, -0.21196, 0.06052, 0.25886}}};
+constexpr std::array<std::array<double, 4>, 3> k_y_zenith{{
+    {0.00275, -0.00610, 0.00317, 0}, {-0.04214, 0.08970, -0.04153, 0.00516},
+    {0.15346, -0.26756, 0.06670, 0.26688}}};
+// clang-format on
+
+/// Preetham's.
+class ClearSky : public Sky::Distribution {
+  public:
+    ClearSky(double turbidity, const Vector3& sun, std::span<const double> bands_nm)
+        : sun_(sun),
+          sun_angle_(std::acos(std::clamp(sun.z, 0.0, 1.0))),
+          luminance_(k_luminance_perez, turbidity, sun_angle_),
+          x_(k_x_perez, turbidity, sun_angle_),
+          y_(k_y_perez, turbidity, sun_angle_),
+          zenith_x_(zenith_chromaticity(k_x_zenith, turbidity, sun_angle_)),
+          zenith_y_(zenith_chromaticity(k_y_zenith, turbidity, sun_angle_)) {
+        const double chi = (4.0 / 9 - turbidity / 120) * (std::numbers::pi - 2 * sun_angle_);
+        zenith_luminance_ =
+            1000 * ((4.0453 * turbidity - 4.9710) * std::tan(chi) - 0.2155 * turbidity + 2.4192);
+        set_bands(bands_nm);
+    }
+
+    Spectrum radiance(const Vector3& towards) const override {
+        const Place place(towards, sun_);
+        const DaylightFactors factors(zenith_x_ * place.of(x_), zenith_y_ * place.of(y_));
+        const double per_density =
+            zenith_luminance_ * place.of(luminance_) / factors.of(luminance_of_components_);
+        return per_band(bands_.size(), [&](std::size_t band) {
+            return std::max(0.0, per_density * factors.of(bands_[band]));
+        });
+    }
+    std::optional<double> luminance(const Vector3& towards) const override {
+        return zenith_luminance_ * Place(towards, sun_).of(luminance_);
+    }
+
+  private:
+    struct Place {
+        double cosine, gamma, cos_gamma;
+
+        Place(const Vector3& towards, const Vector3& sun) : cosine(towards.z) {
+            cos_gamma = std::clamp(glm::dot(towards, sun), -1.0, 1.0);
+            // By the chord: an arc cosine loses half of the digits at the sun.
+            gamma = 2 * std::asin(std::min(1.0, 0.5 * glm::length(towards - sun)));
+        }
+        double of(const PerezDistribution& perez) const {
+            return perez.relative(cosine, gamma, cos_gamma);
+        }
+    };
+
+    // Of each component the mean over each band times the bands' width, and the luminance.
+    void set_bands(std::span<const double> bands_nm) {
+        const std::array<SampledCurve, 3> components = daylight_components();
+        const std::vector<BandInterval> intervals = band_intervals(bands_nm);
+        const double width = bands_nm.size() > 1 ? mean_band_width(intervals) : 1;
+        bands_.resize(bands_nm.size());
+        for (std::size_t i = 0; i < 3; ++i) {
+            const SampledCurve& component = components[i];
+            for (std::size_t b = 0; b < bands_.size(); ++b) {
+                const BandInterval& interval = intervals[b];
+                double mean = component.covers(bands_nm[b]) ? component.value(bands_nm[b]) : 0;
+                if (interval.width() > 0)
+                    mean = integral(component, interval.begin, interval.end) / interval.width();
+                bands_[b][i] = mean * width;
+            }
+            luminance_of_components_[i] = luminance_of(component);
+        }
+    }
+    // Simpson's rule, exact for two functions that are linear in between.
+    static double luminance_of(const SampledCurve& component) {
+        double sum = 0;
+        for (std::size_t i = 0; i + 1 < component.x.size(); ++i) {
+            const double begin = component.x[i], end = component.x[i + 1];
+            const auto product = [&](double nm) {
+                return component.value(nm) * cie1931_matching_functions(nm).y;
+            };
+            sum += (end - begin) / 6 *
+                   (product(begin) + 4 * product(0.5 * (begin + end)) + product(end));
+        }
+        return k_lumens_per_watt_of_sky * sum;
+    }
+
+    Vector3 sun_;
+    double sun_angle_;
+    PerezDistribution luminance_, x_, y_;
+    double zenith_x_, zenith_y_;
+    double zenith_luminance_ = 0;  // [cd/m^2]
+    std::vector<std::array<double, 3>> bands_;
+    std::array<double, 3> luminance_of_components_{};
+};
+
+Vector3 sun_in_sky(const SkyDesc& desc, const Matrix3& world_from_sky) {
+    struct Find {
+        const Matrix3& world_from_sky;
+
+        Vector3 operator()(const SunAnglesDesc& angles) const {
+            const double azimuth = angles.azimuth * k_degree;
+            const double elevation = angles.elevation * k_degree;
+            return {std::cos(elevation) * std::sin(azimuth),
+                    std::cos(elevation) * std::cos(azimuth), std::sin(elevation)};
+        }
+        Vector3 operator()(const SunDirectionDesc& light) const {
+            return glm::transpose(world_from_sky) * -light.direction;
+        }
+    };
+    const Vector3 sun = std::visit(Find{world_from_sky}, *desc.sun);
+    if (sun.z < 0)
+        throw InputError(fmt::format(
+            "{}: the sun stands {:.1f} degrees below the horizon, where the model of a clear sky "
+            "says nothing; raise it, or take another model",
+            desc.where, std::asin(std::min(1.0, -sun.z)) / k_degree));
+    return sun;
+}
+
+}  // namespace
+
+struct Sky::Quadrature {
+    struct Row {
+        double cosine;       // of the angle from the zenith
+        double solid_angle;  // of each of its columns [sr]
+
+        double sine() const { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
+    };
+    std::vector<Row> rows;      // from the zenith down
+    std::vector<double> edges;  // sines of the angles between rows, from 0 to 1: one more than rows
+    std::vector<double> column_sines, column_cosines;  // of azimuths, counterclockwise from east
+    double column_width = 0;                           // [rad]
+    std::size_t bands = 0;
+    std::vector<double> radiance;  // scaled, row by row, column by column
+
+    Vector3 towards(std::size_t row, std::size_t column) const {
+        const double sine = rows[row].sine();
+        return {sine * column_cosines[column], sine * column_sines[column], rows[row].cosine};
+    }
+    std::span<const double> radiance_at(std::size_t row, std::size_t column) const {
+        return std::span(radiance).subspan((row * column_sines.size() + column) * bands, bands);
+    }
+    void set_columns(std::size_t count, double first) {
+        column_width = 2 * std::numbers::pi / static_cast<double>(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double azimuth = first + (static_cast<double>(i) + 0.5) * column_width;
+            column_sines.push_back(std::sin(azimuth));
+            column_cosines.push_back(std::cos(azimuth));
+        }
+    }
+    // Gauss's rule with two nodes in each of so many intervals of the cosine is exact for what is
+    // cubic in it within them, and the midpoint rule converges quickly for what is periodic.
+    // `first`: the azimuth at which columns begin, the sun's, so that they are the same on both
+    // sides of it.
+    static Quadrature even(double first) {
+        constexpr int k_intervals = 64;
+        constexpr std::size_t k_columns = 256;
+        Quadrature quadrature;
+        quadrature.set_columns(k_columns, first);
+        for (int i = k_intervals - 1; i >= 0; --i) {
+            const std::span<const QuadratureNode> nodes = gauss_legendre(2);
+            const double lower = std::min(nodes[0].position, nodes[1].position);
+            for (const double position : {1 - lower, lower})
+                quadrature.rows.push_back(
+                    {(i + position) / k_intervals, 0.5 / k_intervals * quadrature.column_width});
+        }
+        quadrature.set_edges();
+        return quadrature;
+    }
+    void set_edges() {
+        double cosine = 1;
+        edges = {0};
+        for (const Row& row : rows) {
+            cosine -= row.solid_angle / column_width;
+            const double clamped = std::max(0.0, cosine);
+            edges.push_back(std::sqrt(1 - clamped * clamped));
+        }
+    }
+    /// Evaluates the sky everywhere.
+    template <class Radiance>
+    void fill(std::size_t band_count, const Radiance& of) {
+        bands = band_count;
+        radiance.clear();
+        for (std::size_t row = 0; row < rows.size(); ++row)
+            for (std::size_t column = 0; column < column_sines.size(); ++column) {
+                const Spectrum at = of(towards(row, column));
+                radiance.insert(radiance.end(), at.begin(),
+                                at.begin() + static_cast<std::ptrdiff_t>(bands));
+            }
+    }
+    /// int f cos theta dOmega of a function of row and column.
+    template <class Function>
+    double irradiance(const Function& function) const {
+        double sum = 0;
+        for (std::size_t row = 0; row < rows.size(); ++row) {
+            double of_row = 0;
+            for (std::size_t column = 0; column < column_sines.size(); ++column)
+                of_row += function(row, column);
+            sum += of_row * rows[row].cosine * rows[row].solid_angle;
+        }
+        return sum;
+    }
+    double irradiance_in(std::size_t band) const {
+        return irradiance(
+            [&](std::size_t row, std::size_t column) { return radiance_at(row, column)[band]; });
+    }
+};
+
+namespace {
+
+std::shared_ptr<const Sky::Distribution> make_distribution(const SkyDesc& desc,
+                                                           const std::optional<Vector3>& sun,
+                                                           std::span<const double> bands_nm) {
+    switch (desc.model) {
+        case SkyDesc::Model::overcast:
+            return std::make_shared<GreySky>(2, bands_nm.size());
+        case SkyDesc::Model::clear:
+            return std::make_shared<ClearSky>(desc.turbidity, *sun, bands_nm);
+        case SkyDesc::Model::uniform:
+        case SkyDesc::Model::black:
+            break;
+    }
+    return std::make_shared<GreySky>(0, bands_nm.size());
+}
+
+// W/m^2 per band that the description asks for; none: those of a model in its own units, to be
+// scaled as a whole if there are lux.
+std::optional<PerBand> wanted_irradiance(const SkyDesc& desc, std::span<const double> bands_nm) {
+    if (desc.model == SkyDesc::Model::black) return PerBand(bands_nm.size(), 0.0);
+    if (desc.irradiance && !desc.spectrum) return desc.irradiance;
+    if (bands_nm.size() < 2)
+        throw InputError(
+            fmt::format("{}: how much of a spectrum falls into a single band is undefined, as it "
+                        "has no neighbours; give the sky's irradiance in that band",
+                        desc.where));
+    if (!desc.spectrum) return std::nullopt;
+    const LampSpectrum spectrum = make_lamp_spectrum(*desc.spectrum);
+    double watts = 0;
+    if (desc.irradiance) {
+        watts = desc.irradiance->front();
+    } else {
+        const double efficacy = luminous_efficacy(spectrum);
+        if (!(efficacy > 0))
+            throw InputError(
+                fmt::format("{}: nothing of this spectrum is visible (360 to 830 nm), so lux do "
+                            "not determine it; give irradiance in W/m2",
+                            desc.where));
+        watts = *desc.lux / efficacy;
+    }
+    PerBand values = band_values(spectrum, watts, band_intervals(bands_nm));
+    if (watts > 0 && *std::ranges::max_element(values) <= 0)
+        throw InputError(fmt::format(
+            "{}: has no light in any band of the scene; check its wavelengths and water.bands",
+            desc.where));
+    return values;
+}
+
+}  // namespace
+
+Sky::Sky(const SkyDesc& desc, const Vector3& up, std::span<const double> bands_nm)
+    : world_from_sky_(uw::world_from_sky(up, desc.north, desc.where)), bands_(bands_nm.size()) {
+    const std::optional<PerBand> wanted = wanted_irradiance(desc, bands_nm);
+    if (desc.sun) sun_ = sun_in_sky(desc, world_from_sky_);
+    distribution_ = make_distribution(desc, sun_, bands_nm);
+    Quadrature quadrature = Quadrature::even(sun_ ? std::atan2(sun_->y, sun_->x) : 0);
+    quadrature.fill(bands_,
+                    [&](const Vector3& towards) { return distribution_->radiance(towards); });
+    double whole = 1;
+    if (desc.lux && !wanted)
+        whole = *desc.lux / quadrature.irradiance([&](std::size_t row, std::size_t column) {
+            return *distribution_->luminance(quadrature.towards(row, column));
+        });
+    scale_ = per_band(bands_, [&](std::size_t band) {
+        if (!wanted) return whole;
+        if ((*wanted)[band] == 0) return 0.0;
+        const double relative = quadrature.irradiance_in(band);
+        if (!(relative > 0))
+            throw InputError(
+                fmt::format("{}: the sky has no light of {:g} nm that could be scaled to {:g} "
+                            "W/m2; give 0 for this band, or another model",
+                            desc.where, bands_nm[band], (*wanted)[band]));
+        return (*wanted)[band] / relative;
+    });
+    for (std::size_t i = 0; i < quadrature.radiance.size(); ++i)
+        quadrature.radiance[i] *= scale_[i % bands_];
+    quadrature_ = std::make_shared<const Quadrature>(std::move(quadrature));
+}
+
+Spectrum Sky::radiance(const Vector3& towards) const {
+    if (towards.z < 0) return {};
+    return scale_ * distribution_->radiance(towards);
+}
+
+Spectrum Sky::irradiance() const {
+    return per_band(bands_, [&](std::size_t band) { return quadrature_->irradiance_in(band); });
+}
+
+namespace {
+
+/// A part of the sky: some neighbouring rows and columns of the quadrature.
+struct SkyPart {
+    std::size_t row, row_end, column, column_end;
+};
+
+/// Sums of a table of values over any rectangle of it.
+class RectangleSums {
+  public:
+    RectangleSums(std::size_t rows, std::size_t columns, const std::vector<double>& values)
+        : stride_(columns + 1), sums_((rows + 1) * stride_, 0.0) {
+        for (std::size_t row = 0; row < rows; ++row) {
+            double of_row = 0;
+            for (std::size_t column = 0; column < columns; ++column) {
+                of_row += values[row * columns + column];
+                sums_[(row + 1) * stride_ + column + 1] =
+                    sums_[row * stride_ + column + 1] + of_row;
+            }
+        }
+    }
+    double of(const SkyPart& part) const {
+        return at(part.row_end, part.column_end) - at(part.row, part.column_end) -
+               at(part.row_end, part.column) + at(part.row, part.column);
+    }
+
+  private:
+    double at(std::size_t row, std::size_t column) const { return sums_[row * stride_ + column]; }
+
+    std::size_t stride_;
+    std::vector<double> sums_;
+};
+
+/// Halves a part again and again, across its longer side on the disc of the directions' sines,
+/// until there are `count` of about equal weight.
+class SkyDivision {
+  public:
+    SkyDivision(const RectangleSums& weights, std::span<const double> edges, double column_width)
+        : weights_(weights), edges_(edges), column_width_(column_width) {}
+
+    void divide(const SkyPart& part, int count, std::vector<SkyPart>& parts) const {
+        const bool is_single = part.row_end - part.row == 1 && part.column_end - part.column == 1;
+        if (count == 1 || is_single) {
+            parts.push_back(part);
+            return;
+        }
+        const int first_count = count / 2;
+        const auto [first, second] = halved(part, static_cast<double>(first_count) / count);
+        divide(first, first_count, parts);
+        divide(second, count - first_count, parts);
+    }
+
+  private:
+    std::pair<SkyPart, SkyPart> halved(const SkyPart& part, double share) const {
+        const double inner = edges_[part.row], outer = edges_[part.row_end];
+        const double along = 0.5 * (inner + outer) * column_width_ *
+                             static_cast<double>(part.column_end - part.column);
+        const bool is_wide = part.column_end - part.column > 1 &&
+                             (along > outer - inner || part.row_end - part.row == 1);
+        SkyPart first = part, second = part;
+        std::size_t& end = is_wide ? first.column_end : first.row_end;
+        const std::size_t begin = is_wide ? part.column : part.row;
+        const std::size_t last = end;
+        const double wanted = share * weights_.of(part);
+        // The place at which the first has the share that is nearest to what it is to have.
+        std::size_t best = begin + 1;
+        double least = -1;
+        for (std::size_t place = begin + 1; place < last; ++place) {
+            end = place;
+            const double off = std::abs(weights_.of(first) - wanted);
+            if (least < 0 || off < least) {
+                least = off;
+                best = place;
+            }
+        }
+        end = best;
+        (is_wide ? second.column : second.row) = best;
+        return {first, second};
+    }
+
+    const RectangleSums& weights_;
+    std::span<const double> edges_;
+    double column_width_;
+};
+
+}  // namespace
+
+std::vector<SkyDirection> Sky::directions(int count, double water_index) const {
+    const Quadrature& q = *quadrature_;
+    const std::size_t columns = q.column_sines.size();
+    // Per node: plane irradiance below the surface, as a share of all of it in each band, summed.
+    Spectrum below;
+    std::vector<double> row_transmitted;  // T cos theta dOmega
+    std::vector<double> row_cosines;      // in the water
+    for (const Quadrature::Row& row : q.rows) {
+        row_transmitted.push_back(transmittance_into_water(row.cosine, water_index) * row.cosine *
+                                  row.solid_angle);
+        row_cosines.push_back(
+            std::sqrt(1 - (1 - row.cosine * row.cosine) / (water_index * water_index)));
+    }
+    for (std::size_t row = 0; row < q.rows.size(); ++row)
+        for (std::size_t column = 0; column < columns; ++column)
+            add_scaled(below.first(bands_), row_transmitted[row], q.radiance_at(row, column));
+    std::vector<double> weights;
+    for (std::size_t row = 0; row < q.rows.size(); ++row)
+        for (std::size_t column = 0; column < columns; ++column) {
+            const std::span<const double> radiance = q.radiance_at(row, column);
+            double weight = 0;
+            for (std::size_t band = 0; band < bands_; ++band)
+                if (below[band] > 0) weight += radiance[band] / below[band];
+            weights.push_back(weight * row_transmitted[row]);
+        }
+    const RectangleSums sums(q.rows.size(), columns, weights);
+    std::vector<SkyPart> parts;
+    SkyDivision(sums, q.edges, q.column_width).divide({0, q.rows.size(), 0, columns}, count, parts);
+
+    std::vector<SkyDirection> directions;
+    for (const SkyPart& part : parts) {
+        SkyDirection direction;
+        Spectrum irradiance;
+        double weight = 0, scalar = 0, east = 0, north = 0;
+        for (std::size_t row = part.row; row < part.row_end; ++row)
+            for (std::size_t column = part.column; column < part.column_end; ++column) {
+                direction.solid_angle += q.rows[row].solid_angle;
+                add_scaled(irradiance.first(bands_), row_transmitted[row],
+                           q.radiance_at(row, column));
+                const double share = weights[row * columns + column];
+                const Vector3 towards = q.towards(row, column);
+                weight += share;
+                scalar += share / row_cosines[row];
+                east += share * towards.x;
+                north += share * towards.y;
+            }
+        if (!(weight > 0)) continue;
+        // Rounding must not carry it beyond the angles that light in water has.
+        const double steepest = 1, flattest = std::sqrt(1 - 1 / (water_index * water_index));
+        const double in_water = std::clamp(weight / scalar, flattest, steepest);
+        const double sine =
+            std::min(1.0, water_index * std::sqrt(std::max(0.0, 1 - in_water * in_water)));
+        const double level = std::hypot(east, north);
+        // Light from all around has no side: one direction stands for it from above.
+        const bool has_side = level > 1e-9 * weight;
+        direction.towards = has_side ? Vector3{sine * east / level, sine * north / level,
+                                               std::sqrt(std::max(0.0, 1 - sine * sine))}
+                                     : Vector3{0, 0, 1};
+        const double cosine = direction.towards.z;
+        direction.radiance = irradiance / (transmittance_into_water(cosine, water_index) * cosine *
+                                           direction.solid_angle);
+        directions.push_back(direction);
+    }
+    return directions;
+}
+
+}  // namespace uw

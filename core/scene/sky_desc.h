@@ -1,0 +1,67 @@
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "core/base/error.h"
+#include "core/base/vector_math.h"
+#include "core/scene/config_value.h"
+#include "core/scene/lamp_desc.h"
+#include "core/scene/scene_context.h"
+
+namespace uw {
+
+/// The sun by its place in the sky.
+struct SunAnglesDesc {
+    double azimuth = 0;     ///< clockwise from north, seen from above [degrees], -360..360
+    double elevation = 90;  ///< of its centre above the horizon [degrees], 0..90
+
+    friend bool operator==(const SunAnglesDesc&, const SunAnglesDesc&) = default;
+};
+
+/// The sun by its light.
+struct SunDirectionDesc {
+    Vector3 direction;  ///< in which its light travels in the air, world, unit
+
+    friend bool operator==(const SunDirectionDesc&, const SunDirectionDesc&) = default;
+};
+
+/// Where the sun stands. core/light/sky.h finds the place in the sky; it does not compile unless it
+/// handles all of these.
+using SunPositionDesc = std::variant<SunAnglesDesc, SunDirectionDesc>;
+
+/// The light of the sky above the water, without that of the sun's disc.
+struct SkyDesc {
+    /// How its radiance depends on direction (core/light/sky.h has the equations):
+    ///
+    /// - uniform: the same everywhere.
+    /// - black: there is none.
+    /// - overcast: the CIE's, three times as bright overhead as at the horizon.
+    /// - clear: Preetham, Shirley and Smits 1999, by sun and turbidity.
+    enum class Model { uniform, black, overcast, clear };
+
+    Model model = Model::uniform;
+    // At most one of the next two is set, and exactly one unless the model is `black` or `clear`,
+    // which has a brightness of its own.
+    /// Plane irradiance of a horizontal surface in the air [W/m^2]; with a spectrum, a single
+    /// total.
+    std::optional<PerBand> irradiance;
+    /// Its illuminance [lx]; with a spectrum, unless the model is `clear`, which has its own.
+    std::optional<double> lux;
+    std::optional<LampSpectrumDesc> spectrum;  ///< of the irradiance
+    double turbidity = 3;                      ///< of the air, 2..10; `clear` only
+    std::optional<SunPositionDesc> sun;        ///< set for `clear`, and only there
+    /// Where north is, in the world, of any slope but vertical; none: the world's -z, or
+    /// y where up is within 45 degrees of the world's z axis.
+    std::optional<Vector3> north;
+    int samples = 32;  ///< how many directions stand for it, 1..1024
+    SourceLocation where;
+};
+
+/// Where the sun stands: {azimuth, elevation} or {direction}.
+SunPositionDesc read_sun_position(const ConfigValue& value, const SceneContext& context);
+
+/// A sky; the bands' number is known (SceneContext::band_count).
+SkyDesc read_sky(const ConfigValue& value, const SceneContext& context);
+
+}  // namespace uw

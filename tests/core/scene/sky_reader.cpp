@@ -1,0 +1,90 @@
+// ctest labels: unit
+#include "core/scene/sky_desc.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/scene/yaml_document.h"
+#include "tests/support/message_of.h"
+
+namespace uw::test {
+namespace {
+
+class SkyReader : public ::testing::Test {
+  protected:
+    SkyDesc read(const std::string& text) const {
+        const ConfigNode node = parse_yaml(text, "scene.yaml");
+        return read_sky(ConfigValue(node, "sky"), context_);
+    }
+    void expect_refused(const std::string& text, const std::string& part) const {
+        const std::string message = message_of<InputError>([&] { read(text); });
+        EXPECT_NE(message.find(part), std::string::npos) << text << "\n  gave: " << message;
+        EXPECT_EQ(message.find("scene.yaml:1:"), 0U) << message;
+    }
+
+    std::vector<std::string> warnings_;
+    SceneContext context_{".", 3, &warnings_};
+};
+
+TEST_F(SkyReader, ReadsEachModel) {
+    const SkyDesc uniform = read("{model: uniform, irradiance: [1, 2, 3]}");
+    EXPECT_EQ(uniform.model, SkyDesc::Model::uniform);
+    EXPECT_EQ(uniform.irradiance, (PerBand{1, 2, 3}));
+    EXPECT_EQ(uniform.samples, 32);
+    EXPECT_EQ(read("{model: black}").model, SkyDesc::Model::black);
+    const SkyDesc overcast =
+        read("{model: overcast, lux: 9000, spectrum: {type: d65}, samples: 100}");
+    EXPECT_EQ(overcast.model, SkyDesc::Model::overcast);
+    EXPECT_EQ(overcast.lux, 9000);
+    EXPECT_EQ(overcast.spectrum->type, LampSpectrumDesc::Type::d65);
+    EXPECT_EQ(overcast.samples, 100);
+    const SkyDesc clear =
+        read("{model: clear, turbidity: 4, sun: {azimuth: 120, elevation: 40}, north: [2, 0, 0]}");
+    EXPECT_EQ(clear.model, SkyDesc::Model::clear);
+    EXPECT_EQ(clear.turbidity, 4);
+    EXPECT_EQ(std::get<SunAnglesDesc>(*clear.sun), (SunAnglesDesc{120, 40}));
+    EXPECT_EQ(*clear.north, Vector3(1, 0, 0));
+    EXPECT_FALSE(clear.irradiance || clear.lux);
+    const SkyDesc by_light = read("{model: clear, lux: 10, sun: {direction: [0, -2, 0]}}");
+    EXPECT_EQ(std::get<SunDirectionDesc>(*by_light.sun).direction, Vector3(0, -1, 0));
+    EXPECT_EQ(by_light.turbidity, 3);
+    EXPECT_EQ(by_light.lux, 10);
+    EXPECT_EQ(read("{model: uniform, irradiance: 4}").irradiance, (PerBand{4, 4, 4}));
+    EXPECT_EQ(read("{model: uniform, irradiance: 4, spectrum: {type: d65}}").irradiance,
+              (PerBand{4}));
+}
+
+TEST_F(SkyReader, RefusesWhatItDoesNotUse) {
+    expect_refused("{irradiance: 1}", "model");
+    expect_refused("{model: cloudy, irradiance: 1}", "overcast");
+    expect_refused("{model: uniform}", "how bright");
+    expect_refused("{model: uniform, lux: 4}", "spectrum");
+    expect_refused("{model: uniform, lux: 4, irradiance: 1, spectrum: {type: d65}}", "remove one");
+    expect_refused("{model: uniform, irradiance: [1, 2]}", "irradiance");
+    expect_refused("{model: uniform, irradiance: -1}", "irradiance");
+    expect_refused("{model: uniform, irradiance: 1, turbidity: 3}", "sky model 'uniform'");
+    expect_refused("{model: uniform, irradiance: 1, sun: {azimuth: 1, elevation: 2}}",
+                   "sky model 'uniform'");
+    expect_refused("{model: uniform, irradiance: 1, samples: 2000}", "samples");
+    expect_refused("{model: black, irradiance: 1}", "sky model 'black'");
+    expect_refused("{model: clear}", "where the sun stands");
+    expect_refused("{model: clear, sun: {azimuth: 1}}", "elevation");
+    expect_refused("{model: clear, sun: {azimuth: 1, elevation: 91}}", "elevation");
+    expect_refused("{model: clear, sun: {azimuth: 1, direction: [0, -1, 0]}}", "'direction'");
+    expect_refused("{model: clear, sun: {azimuth: 1, elevation: 40}, turbidity: 1}", "turbidity");
+    expect_refused("{model: clear, sun: {azimuth: 1, elevation: 40}, spectrum: {type: d65}}",
+                   "spectrum of its own");
+    expect_refused("{model: clear, sun: {azimuth: 1, elevation: 40}, turbidty: 3}",
+                   "did you mean 'turbidity'");
+    EXPECT_TRUE(warnings_.empty());
+    read("{model: uniform, irradiance: 0}");
+    ASSERT_EQ(warnings_.size(), 1U);
+    EXPECT_NE(warnings_[0].find("dark"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace uw::test
