@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/edit_command.h"
 #include "cli/info/info_command.h"
+#include "cli/measure_command.h"
 #include "cli/points_commands.h"
 #include "cli/process.h"
 #include "cli/render/dataset_command.h"
@@ -39,6 +40,7 @@ void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::dataset_command());
     commands.push_back(uw::info_command());
     commands.push_back(uw::water_command());
+    commands.push_back(uw::measure_command());
     commands.push_back(uw::sweep_command());
     commands.push_back(uw::validate_command());
     commands.push_back(uw::edit_command());

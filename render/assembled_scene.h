@@ -11,6 +11,7 @@
 #include "core/geometry/water_surface.h"
 #include "core/light/integrator.h"
 #include "core/light/lamps_in_view.h"
+#include "core/light/sky.h"
 #include "core/light/slabs.h"
 #include "core/paths/scattering_tables.h"
 #include "media/volumes/load_volumes.h"
@@ -34,6 +35,7 @@ struct AssembledScene {
     std::shared_ptr<const SnowModel> snow;               // null: there is none
     std::shared_ptr<const ConcentrationField> field;
     std::shared_ptr<const Surfaces> surfaces;
+    std::optional<Sky> sky;                     // above the water; none: it is black
     std::optional<WaterSurface> water_surface;  // which reflects; none: the water has no end
     /// With it, the field and its mirror image above (SubmergedField).
     std::shared_ptr<const ConcentrationField> field_with_image;

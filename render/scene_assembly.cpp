@@ -95,6 +95,13 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
                 append_mirror_images(*scene.water_surface, first, scene.emitters);
             continue;
         }
+        if (lamp.sky) {
+            const Sky& sky = scene.sky.value();
+            scene.lamps.push_back(make_lamp(lamp, sky));
+            append_emitters(lamp, scene.lamps.back(), scene.lamps.size() - 1, thinning, sky,
+                            scene.emitters);
+            continue;
+        }
         scene.lamps.push_back(make_lamp(lamp, desc.camera.world_from_camera,
                                         scene.water.medium.wavelengths_nm, scene.warnings));
         const std::size_t index = scene.lamps.size() - 1;
@@ -106,12 +113,21 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
     }
 }
 
+SkyRadiance radiance_of(const std::optional<Sky>& sky) {
+    if (!sky) return {};
+    return [sky = *sky, sky_from_world = glm::transpose(sky->world_from_sky())](
+               const Vector3& towards) { return sky.radiance(sky_from_world * towards); };
+}
+
 // Where the water's surface reflects, light meets it.
 void submerge(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
     const std::optional<WaterSurfaceDesc>& surface = desc.water.surface;
     if (!surface || !surface->n) return;
     scene.water_surface.emplace(*surface);
-    const SubmergedParts& parts = cache.submerged(*surface, scene.surfaces, scene.field);
+    for (const LampDesc& lamp : desc.lamps)
+        if (lamp.sky) scene.sky.emplace(*lamp.sky, surface->normal, desc.water.bands_nm);
+    const SubmergedParts& parts =
+        cache.submerged(*surface, scene.surfaces, scene.field, radiance_of(scene.sky));
     scene.surfaces = parts.surfaces;
     scene.field = parts.field;
     scene.field_with_image = parts.field_with_image;
@@ -220,12 +236,13 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
     moved.glows = scene.glows;
     moved.surfaces = scene.surfaces;
     moved.water_surface = scene.water_surface;
+    moved.sky = scene.sky;
     moved.field_with_image = scene.field_with_image;
     if (desc.geometry != scene.desc().geometry) {
         moved.surfaces = cache.surfaces_of_moment(desc).surfaces;
         if (moved.water_surface)
             moved.surfaces = std::make_shared<SubmergedSurfaces>(
-                moved.surfaces, *moved.water_surface, SkyRadiance());
+                moved.surfaces, *moved.water_surface, radiance_of(moved.sky));
     }
     place_lamps(desc, moved);
     moved.warnings.clear();

@@ -213,11 +213,12 @@ SurfaceSet SceneCache::surfaces_of_moment(const SceneDesc& then) {
 
 const SubmergedParts& SceneCache::submerged(const WaterSurfaceDesc& desc,
                                             std::shared_ptr<const Surfaces> surfaces,
-                                            std::shared_ptr<const ConcentrationField> field) {
-    if (!submerged_ || submerged_->surface != desc || submerged_->surfaces != surfaces ||
+                                            std::shared_ptr<const ConcentrationField> field,
+                                            SkyRadiance sky) {
+    if (sky || !submerged_ || submerged_->surface != desc || submerged_->surfaces != surfaces ||
         submerged_->field != field) {
         const WaterSurface surface(desc);
-        SubmergedParts parts{std::make_shared<SubmergedSurfaces>(surfaces, surface, SkyRadiance()),
+        SubmergedParts parts{std::make_shared<SubmergedSurfaces>(surfaces, surface, std::move(sky)),
                              std::make_shared<SubmergedField>(field, surface, false),
                              std::make_shared<SubmergedField>(field, surface, true)};
         submerged_ = KeptSubmerged{desc, std::move(surfaces), std::move(field), std::move(parts)};

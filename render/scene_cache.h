@@ -8,6 +8,7 @@
 #include "core/base/input_files.h"
 #include "core/geometry/geometry_scene.h"
 #include "core/light/glow.h"
+#include "core/light/submerged.h"
 #include "core/paths/scattering_tables.h"
 #include "core/scene/scene_desc.h"
 #include "media/volumes/load_volumes.h"
@@ -66,11 +67,12 @@ class SceneCache {
     /// are.
     SurfaceSet surfaces_of_moment(const SceneDesc& then);
 
-    /// What is below a water surface that reflects, as light meets it there: the same objects if
-    /// they are asked for again with the same arguments.
+    /// What is below a water surface that reflects, as light meets it there. Without a sky they are
+    /// the same objects if they are asked for again with the same arguments.
     const SubmergedParts& submerged(const WaterSurfaceDesc& surface,
                                     std::shared_ptr<const Surfaces> surfaces,
-                                    std::shared_ptr<const ConcentrationField> field);
+                                    std::shared_ptr<const ConcentrationField> field,
+                                    SkyRadiance sky);
 
     /// The light of a scene's lamps (LightSplatter::splat).
     DeepShadows light(

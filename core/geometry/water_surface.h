@@ -8,8 +8,8 @@
 
 namespace uw {
 
-/// The plane surface of calm water, as light meets it: Snell's law and Fresnel's reflectance between
-/// two transparent media, for unpolarised light (Born and Wolf, section 1.5). World space.
+/// The plane surface of calm water, as light meets it: Snell's law and Fresnel's reflectance
+/// between two transparent media, for unpolarised light (Born and Wolf, section 1.5). World space.
 ///
 /// Light from below comes back as if from behind a mirror. So the water has a mirror image above
 /// the surface, with all that is in it, and what is reflected on its way between two points goes

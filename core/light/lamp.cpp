@@ -40,6 +40,13 @@ Lamp Lamp::emitter(std::size_t index, const Vector3& direction, double share,
     return beam;
 }
 
+Lamp Lamp::emitter(std::size_t index, const Vector3& direction, const Spectrum& irradiance,
+                   double share, const LampPatch& patch) const {
+    Lamp beam = emitter(index, direction, share, patch);
+    beam.axis_intensity_ = irradiance;
+    return beam;
+}
+
 Lamp Lamp::emitter(std::size_t index, const Point3& position, double share,
                    const std::optional<LampPatch>& patch) const {
     Lamp point = brightened(share);
@@ -100,7 +107,8 @@ double Lamp::relative_intensity(const Vector3& v) const {
 }
 
 bool Lamp::has_even_core() const {
-    return !mirror_ && std::visit([](const auto& profile) { return profile.has_even_core(); }, profile_);
+    return !mirror_ &&
+           std::visit([](const auto& profile) { return profile.has_even_core(); }, profile_);
 }
 
 DirectionCone Lamp::cone() const {

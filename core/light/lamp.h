@@ -82,6 +82,12 @@ class Lamp {
     Lamp emitter(std::size_t index, const Vector3& direction, double share,
                  const std::optional<LampPatch>& patch = {}) const;
 
+    /// A direction of this sun that stands for a part of the sky, with an irradiance of its own, on
+    /// a plane perpendicular to it below the surface [W/m^2], the `share` of all light. `patch`:
+    /// that part, as of a sun's disc.
+    Lamp emitter(std::size_t index, const Vector3& direction, const Spectrum& irradiance,
+                 double share, const LampPatch& patch) const;
+
     /// A point of this lamp, the light of a volume: one with an intensity of its own [W/sr], the
     /// `share` of all light. `patch`: the part of the volume that it stands for.
     Lamp emitter(std::size_t index, const Point3& position, const Spectrum& intensity, double share,

@@ -250,6 +250,32 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
         emitters.push_back(lamp.emitter(index, lamp.position() + points[i], share, patches[i]));
 }
 
+Lamp make_lamp(const LampDesc& desc, const Sky& sky) {
+    return {desc.name, Sunlight{desc.direction, desc.sun->surface}, sky.irradiance()};
+}
+
+void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
+                     const Sky& sky, std::vector<Lamp>& emitters) {
+    const WaterSurfaceDesc& surface = desc.sun->surface;
+    const std::vector<SkyDirection> directions =
+        sky.directions(std::max(1, desc.sky->samples / thinning), surface.n.value());
+    // A lamp that consists of nothing is dark, but there: others keep their numbers.
+    if (directions.empty()) emitters.push_back(lamp.emitter(index, desc.direction, 1.0));
+    for (const SkyDirection& part : directions) {
+        const Vector3 in_air = -(sky.world_from_sky() * part.towards);
+        const LampPlacement placement{{}, in_air};
+        LampFrame frame{{}, placement.across(), glm::cross(in_air, placement.across())};
+        frame.extent.shape = LampExtentDesc::Shape::disk;
+        frame.extent.radius = std::sqrt(part.solid_angle / std::numbers::pi);
+        const LampPatch patch{frame, {}, {0, 0, 0}, {1, 1, 1}, frame.extent.radius};
+        Spectrum irradiance = part.normal_irradiance();
+        irradiance *= irradiance_below(surface, in_air);
+        emitters.push_back(lamp.emitter(index, Sunlight::from_air(in_air, surface).direction,
+                                        irradiance, 1.0 / static_cast<double>(directions.size()),
+                                        patch));
+    }
+}
+
 void append_mirror_images(const WaterSurface& surface, std::size_t first,
                           std::vector<Lamp>& emitters) {
     const std::size_t last = emitters.size();

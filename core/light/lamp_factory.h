@@ -9,6 +9,7 @@
 #include "core/light/glow.h"
 #include "core/light/lamp.h"
 #include "core/light/lamps_in_view.h"
+#include "core/light/sky.h"
 #include "core/scene/lamp_desc.h"
 
 namespace uw {
@@ -46,6 +47,12 @@ void append_emitters(const Lamp& lamp, std::size_t index, std::span<const GlowPa
 /// are those of append_emitters.
 void append_surface(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                     const Affine& world_from_camera, std::vector<LampSurface>& surfaces);
+
+/// The light of the sky, `desc.sky`, as the scene's lamp `index`: parallel light from each of the
+/// directions that stand for it, refracted by the water's surface.
+Lamp make_lamp(const LampDesc& desc, const Sky& sky);
+void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
+                     const Sky& sky, std::vector<Lamp>& emitters);
 
 /// Appends the mirror image of each emitter from `first` on that stands below the surface, in
 /// their order.

@@ -17,8 +17,8 @@ namespace uw {
 using SkyRadiance = std::function<Spectrum(const Vector3& from)>;
 
 /// What lies below a water surface, and the surface seen from below, at which all rays that come
-/// from the water end (SurfaceHit::is_water_surface). It emits what it lets through of the sky; that
-/// it reflects is for those to follow who meet it.
+/// from the water end (SurfaceHit::is_water_surface). It emits what it lets through of the sky;
+/// that it reflects is for those to follow who meet it.
 ///
 /// Lines that begin or end above the surface lead to the mirror image of the water (WaterSurface):
 /// they are those of light that is reflected on its way.

@@ -13,9 +13,9 @@ bool MirroredView::may_see(const RaySource& rays, const WaterSurface& surface) {
     constexpr int k_steps = 32;
     for (int j = 0; j <= k_steps; ++j) {
         for (int i = 0; i <= k_steps; ++i) {
-            const std::optional<Ray> ray = rays.refracted_ray(
-                static_cast<double>(i) / k_steps * rays.width(),
-                static_cast<double>(j) / k_steps * rays.height());
+            const std::optional<Ray> ray =
+                rays.refracted_ray(static_cast<double>(i) / k_steps * rays.width(),
+                                   static_cast<double>(j) / k_steps * rays.height());
             if (ray && surface.crossing(*ray)) return true;
         }
     }

@@ -149,7 +149,7 @@ class PixelRenderer {
     RayInScatter in_scatter_;
     LampsInView lamps_in_view_;
     PointMatchers matchers_;
-    PixelWeight weight_;  // null: 1
+    PixelWeight weight_;                                  // null: 1
     std::vector<float> object_mattes_, material_mattes_;  // by SurfaceHit's ids
     Affine camera_from_world_;
 };

@@ -219,10 +219,10 @@ void PathWalk::find_surface_ahead() {
     if (meets_water_surface()) {
         const Ray mirrored = mirrored_ray();
         w.guides_at_water_surface.find(tables_.guides, mirrored.origin, arriving);
-        w.surface_radiance =
-            reflectance_of_water_surface() *
-            (w.guides_at_water_surface.multiple(mirrored.direction) +
-             tables_.guides.particles.at(mirrored.origin) + k_ambient_of_direction * light_.ambient);
+        w.surface_radiance = reflectance_of_water_surface() *
+                             (w.guides_at_water_surface.multiple(mirrored.direction) +
+                              tables_.guides.particles.at(mirrored.origin) +
+                              k_ambient_of_direction * light_.ambient);
         w.surface_ahead = arrived * w.surface_radiance;
         return;
     }

@@ -101,6 +101,8 @@ struct SunDesc {
     friend bool operator==(const SunDesc&, const SunDesc&) = default;
 };
 
+struct SkyDesc;  // core/scene/sky_desc.h
+
 /// What makes a lamp the light of a volume: where it shines is up to the volume's grid.
 struct GlowDesc {
     std::size_t volume = 0;  ///< index in SceneDesc::volumes
@@ -117,6 +119,8 @@ struct LampDesc {
     std::optional<LampExtentDesc> extent;  ///< none: it is a point
     /// Set for a sun, which has no position, no extent and no profile; its frame is the world.
     std::optional<SunDesc> sun;
+    /// Set for the light of the sky, which comes from all sides; `sun` is then set, too.
+    std::shared_ptr<const SkyDesc> sky;
     /// Set for the light of a volume, which shines in all directions from where the volume's grid
     /// says, in the world: `position` means nothing, and `intensity` is EmissionDesc::per_unit.
     std::optional<GlowDesc> glow;

@@ -15,6 +15,7 @@
 #include "core/scene/lamp_desc.h"
 #include "core/scene/render_desc.h"
 #include "core/scene/scene_context.h"
+#include "core/scene/sky_desc.h"
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
 #include "core/scene/yaml_document.h"
@@ -266,7 +267,7 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     check_version(scene);
     ConfigMap map(scene,
                   {"uwvdb", "camera", "cameras", "rig", "water", "volumes", "geometry", "lamps",
-                   "render", k_variations_key},
+                   "sky", "sensors", "render", k_variations_key},
                   "a scene starts with 'uwvdb: 1'");
     map.require("uwvdb", "a scene starts with 'uwvdb: 1'");
 
@@ -283,7 +284,9 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     if (const auto entry = map.find("volumes")) desc.volumes = read_volumes(*entry, context);
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
+    if (const auto entry = map.find("sensors")) desc.meters = read_meters(*entry, context);
     append_glows(desc.volumes, desc.lamps);
+    if (const auto entry = map.find("sky")) append_sky(*entry, context, desc.lamps);
     if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
     open_shutter(desc);
     check_lenses(desc);

@@ -10,6 +10,7 @@
 #include "core/scene/camera_desc.h"
 #include "core/scene/geometry_desc.h"
 #include "core/scene/lamp_desc.h"
+#include "core/scene/meter_desc.h"
 #include "core/scene/render_desc.h"
 #include "core/scene/scene_context.h"
 #include "core/scene/trajectory.h"
@@ -45,6 +46,7 @@ struct SceneDesc {
     std::vector<VolumeDesc> volumes;
     std::vector<GeometryDesc> geometry;
     std::vector<LampDesc> lamps;
+    std::vector<MeterDesc> meters;  ///< `sensors`
     RenderDesc render;
     std::string hash;                   ///< of the text as read with overrides, for image headers
     std::vector<std::string> warnings;  ///< one line each

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/vector_math.h"
@@ -63,5 +64,10 @@ SunPositionDesc read_sun_position(const ConfigValue& value, const SceneContext& 
 
 /// A sky; the bands' number is known (SceneContext::band_count).
 SkyDesc read_sky(const ConfigValue& value, const SceneContext& context);
+
+/// Reads `sky`, above a surface that refracts, and appends its light to the scene's lamps, as one
+/// called "sky". Throws InputError if that name is taken.
+void append_sky(const ConfigValue& value, const SceneContext& context,
+                std::vector<LampDesc>& lamps);
 
 }  // namespace uw

@@ -191,7 +191,8 @@ void read_dissolved(ConfigMap& map, WaterDesc& water) {
 constexpr double k_least_n = 1.0001, k_greatest_n = 3;
 
 WaterSurfaceDesc read_surface(const ConfigValue& value) {
-    constexpr auto k_example = "write {height: 10, n: 1.34}, or {point: [0, 10, 0], normal: [0, 1, 0]}";
+    constexpr auto k_example =
+        "write {height: 10, n: 1.34}, or {point: [0, 10, 0], normal: [0, 1, 0]}";
     ConfigMap map(value, {"height", "point", "normal", "n"}, k_example);
     WaterSurfaceDesc surface;
     if (const auto height = map.find("height")) {

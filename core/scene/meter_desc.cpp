@@ -1,0 +1,60 @@
+#include "core/scene/meter_desc.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace uw {
+
+namespace {
+
+constexpr auto k_example =
+    "write {name: station, position: [0, -5, 0]}, or {name: cast, from: [0, 0, 0], to: [0, -30, "
+    "0], "
+    "count: 16}";
+constexpr int k_most_points = 1000;
+
+Point3 read_point(const ConfigValue& value) {
+    return at_origin_plus(value.vector("give a point in the world, three lengths in metres"));
+}
+
+MeterDesc read_meter(const ConfigValue& value, std::size_t number, const SceneContext& context) {
+    ConfigMap map(value, {"name", "position", "from", "to", "count", "up"}, k_example);
+    MeterDesc meter;
+    meter.where = value.location();
+    meter.name = fmt::format("sensor{}", number);
+    if (const auto name = map.find("name"))
+        meter.name = read_short_name(*name, "a sensor's name", "write name: station");
+    if (context.water_surface) meter.up = context.water_surface->normal;
+    if (const auto up = map.find("up")) meter.up = up->direction("give the direction that is up");
+    if (const auto position = map.find("position")) {
+        for (const auto* const other : {"from", "to", "count"})
+            if (const auto entry = map.find(other))
+                entry->fail("a sensor is at one position or on a line; remove one of the two");
+        meter.points = {read_point(*position)};
+        return meter;
+    }
+    const Point3 from = read_point(map.require("from", k_example));
+    const Point3 to = read_point(map.require("to", k_example));
+    const int count = map.require("count", k_example)
+                          .integer(2, k_most_points, "give how many points of the line, 2 to 1000");
+    for (int i = 0; i < count; ++i)
+        meter.points.push_back(from + static_cast<double>(i) / (count - 1) * (to - from));
+    return meter;
+}
+
+}  // namespace
+
+std::vector<MeterDesc> read_meters(const ConfigValue& value, const SceneContext& context) {
+    std::vector<MeterDesc> meters;
+    for (const ConfigValue& entry : value.list("write one '- name: ...' per sensor")) {
+        MeterDesc meter = read_meter(entry, meters.size() + 1, context);
+        if (std::ranges::find(meters, meter.name, &MeterDesc::name) != meters.end())
+            entry.fail(fmt::format("the name '{}' is taken by another sensor; give each its own",
+                                   meter.name));
+        meters.push_back(std::move(meter));
+    }
+    return meters;
+}
+
+}  // namespace uw

@@ -1,0 +1,270 @@
+#include "render/measures/light_meter.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/base/random.h"
+#include "core/geometry/surface_reflection.h"
+#include "core/geometry/water_surface.h"
+#include "core/paths/path_tracer.h"
+#include "render/scene_assembly.h"
+
+namespace uw {
+
+namespace {
+
+constexpr int k_batches = 16;
+// Rays towards a lamp: as many in each octave of the tangent of half the angle, from here to 1.
+constexpr double k_least_half_tangent = 1e-4;
+// The share of rays that are drawn evenly.
+constexpr double k_even_share = 0.5;
+constexpr std::uint64_t k_meter_seed = 0x6d65746572;
+
+/// The sum of what paths bring.
+class RadianceSum final : public PathTerms {
+  public:
+    explicit RadianceSum(std::size_t bands) : bands_(bands) {}
+    void add(const PathTerm& term) override {
+        for (std::size_t b = 0; b < bands_; ++b) sum_[b] += term.radiance[b];
+    }
+    const Spectrum& sum() const { return sum_; }
+    void reset() { sum_ = {}; }
+
+  private:
+    std::size_t bands_;
+    Spectrum sum_{};
+};
+
+/// Light that arrives from a lamp's direction alone: irradiance across it.
+struct Beam {
+    Vector3 towards;  // the lamp, unit
+    Spectrum irradiance{};
+    double weight = 0;  // without attenuation, summed over bands: rays are drawn by it
+};
+
+std::vector<Beam> beams_at(const AssembledScene& scene, const Point3& x) {
+    const AttenuationTable attenuation(scene.water.medium);
+    std::vector<double> columns(attenuation.constituents.size());
+    std::vector<Beam> beams;
+    for (const Lamp& emitter : scene.emitters) {
+        const Point3 origin = emitter.origin(x);
+        const Vector3 way = x - origin;
+        const double radius = glm::length(way);
+        if (!(radius > 0) || emitter.holds(radius)) continue;
+        const double relative = emitter.relative_intensity(way) / emitter.spread(radius);
+        if (!(relative > 0)) continue;
+        Beam beam{-way / radius};
+        for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation.band_count); ++b)
+            beam.weight += relative * emitter.axis_intensity()[b];
+        if (!scene.surfaces->occluded(origin, x)) {
+            scene.field->column(origin, x, columns);
+            beam.irradiance = attenuation.transmittance(radius, columns);
+            beam.irradiance *= emitter.axis_intensity();
+            beam.irradiance *= relative;
+        }
+        beams.push_back(beam);
+    }
+    return beams;
+}
+
+/// Directions from which light arrives: a share of them drawn evenly, the rest around beams, with
+/// a density that falls as the square of the angle.
+class Directions {
+  public:
+    explicit Directions(const std::vector<Beam>& beams) : beams_(beams) {
+        for (const Beam& beam : beams) total_ += beam.weight;
+    }
+
+    /// Uses three random numbers.
+    Vector3 draw(PathRandom& random) const {
+        const double of_kind = random.next(), u = random.next(),
+                     v = 2 * std::numbers::pi * random.next();
+        const double even = even_share();
+        if (of_kind < even) {
+            const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z));
+            return {r * std::cos(v), r * std::sin(v), z};
+        }
+        double target = (of_kind - even) / (1 - even) * total_;
+        std::size_t i = 0;
+        while (i + 1 < beams_.size() && target >= beams_[i].weight) target -= beams_[i++].weight;
+        const double h = k_least_half_tangent * std::pow(1 / k_least_half_tangent, u);
+        const double cosine = (1 - h * h) / (1 + h * h), sine = 2 * h / (1 + h * h);
+        const Tangents tangents(beams_[i].towards);
+        return cosine * beams_[i].towards +
+               sine * (std::cos(v) * tangents.u + std::sin(v) * tangents.v);
+    }
+
+    /// Of what draw returns [1/sr].
+    double density(const Vector3& direction) const {
+        const double even = even_share();
+        double around = 0;
+        const double octaves = std::log(1 / k_least_half_tangent);
+        for (const Beam& beam : beams_) {
+            const Vector3 sum = direction + beam.towards, difference = direction - beam.towards;
+            const double h2 = glm::dot(difference, difference) / glm::dot(sum, sum);
+            if (h2 < k_least_half_tangent * k_least_half_tangent || !(h2 <= 1)) continue;
+            // dOmega = 8 pi h / (1 + h^2)^2 dh, and h is drawn with the density 1 / (octaves h).
+            around += beam.weight * (1 + h2) * (1 + h2) / (8 * std::numbers::pi * h2 * octaves);
+        }
+        return even / (4 * std::numbers::pi) + (total_ > 0 ? (1 - even) * around / total_ : 0);
+    }
+
+  private:
+    double even_share() const { return total_ > 0 ? k_even_share : 1; }
+
+    const std::vector<Beam>& beams_;
+    double total_ = 0;
+};
+
+/// One estimate of the radiance that arrives along a ray, but for that of lamps themselves.
+class RadianceEstimate {
+  public:
+    RadianceEstimate(const AssembledScene& scene, const LightTransport& transport)
+        : scene_(scene),
+          transport_(transport),
+          attenuation_(scene.water.medium),
+          bands_(static_cast<std::size_t>(scene.water.medium.band_count())),
+          columns_(attenuation_.constituents.size()) {}
+
+    /// `with_sky`: and that of the sky, which beams stand for.
+    Spectrum operator()(Ray ray, std::uint64_t seed, std::uint32_t index, bool with_sky = false) {
+        constexpr int k_most_mirrors = 8;  // one is all that plane surfaces have
+        Spectrum radiance{}, share = per_band(bands_, [](std::size_t) { return 1.0; });
+        for (int mirrors = 0; mirrors < k_most_mirrors; ++mirrors) {
+            SurfaceSample sample{ray, {}, 0, 0};
+            const bool has_hit = scene_.surfaces->closest_hit(ray, k_far, sample.hit);
+            sum_.reset();
+            Spectrum leaving{};
+            const bool is_surface = has_hit && !sample.hit.is_water_surface;
+            if (is_surface) find_direct(sample, leaving);
+            transport_.paths->begin(ray, has_hit ? &sample.hit : nullptr, leaving.first(bands_),
+                                    segment_);
+            const auto stream = [&](std::uint64_t kind) {
+                return PathRandom(
+                    PathRandom::seed_of(seed, kind, static_cast<std::uint64_t>(mirrors)), index);
+            };
+            PathRandom single = stream(1), water = stream(2), lit = stream(3), surface = stream(4);
+            transport_.paths->trace_single(segment_, single, sum_);
+            transport_.paths->trace_water(segment_, water, sum_);
+            transport_.paths->trace_lit_surfaces(segment_, lit, sum_);
+            transport_.paths->trace_surface(segment_, surface, sum_);
+            for (std::size_t b = 0; b < bands_; ++b)
+                radiance[b] += share[b] * (sum_.sum()[b] + leaving[b] * segment_.transmittance[b]);
+            if (!has_hit || is_surface) break;
+            if (with_sky) {
+                const Spectrum sky = scene_.surfaces->material(sample.hit).emission;
+                for (std::size_t b = 0; b < bands_; ++b)
+                    radiance[b] += share[b] * sky[b] * segment_.transmittance[b];
+            }
+            const WaterSurface& mirror = *scene_.water_surface;
+            scene_.field->column(ray.origin, sample.hit.position, columns_);
+            share *= attenuation_.transmittance(sample.hit.distance, columns_);
+            share *= mirror.reflectance_from_water(glm::dot(ray.direction, mirror.up()));
+            ray = {sample.hit.position, mirror.mirrored(ray.direction)};
+        }
+        return radiance;
+    }
+
+  private:
+    // What the surface emits, and reflects of lamps, at the surface.
+    void find_direct(const SurfaceSample& sample, Spectrum& leaving) {
+        transport_.surfaces->evaluate_one(sample, light_);
+        const SurfaceReflection reflection(*scene_.surfaces, sample, static_cast<int>(bands_));
+        if (reflection.emits()) leaving = reflection.emission();
+        Spectrum brdf;
+        for (std::size_t j = 0; j < light_.emitter_count(); ++j) {
+            if (!light_.visible(0, j)) continue;
+            brdf_for(light_.emitters()[j], reflection, sample, brdf);
+            for (std::size_t b = 0; b < bands_; ++b)
+                leaving[b] += light_.irradiance(0, j, b) * brdf[b];
+        }
+    }
+
+    const AssembledScene& scene_;
+    const LightTransport& transport_;
+    AttenuationTable attenuation_;
+    std::size_t bands_;
+    std::vector<double> columns_;
+    CameraSegment segment_;
+    SurfaceLight light_;
+    RadianceSum sum_{bands_};
+};
+
+constexpr std::array k_readings{&MeterReading::down,          &MeterReading::up,
+                                &MeterReading::scalar_down,   &MeterReading::scalar_up,
+                                &MeterReading::radiance_down, &MeterReading::radiance_up};
+
+}  // namespace
+
+LightMeter::LightMeter(const AssembledScene& scene)
+    : scene_(scene), transport_(make_path_transport(scene, scene.scattering)) {}
+
+MeterReading LightMeter::read(const Point3& x, const Vector3& up, int rays) const {
+    const std::vector<Beam> beams = beams_at(scene_, x);
+    const Directions directions(beams);
+    const int in_batch = std::max(1, rays / k_batches);
+    const std::uint64_t seed =
+        PathRandom::seed_of(k_meter_seed, PathRandom::seed_of(std::bit_cast<std::uint64_t>(x.x),
+                                                              std::bit_cast<std::uint64_t>(x.y),
+                                                              std::bit_cast<std::uint64_t>(x.z)));
+    std::array<MeterReading, k_batches> batches;
+    parallel_for(batches.size(), [&](std::size_t batch) {
+        RadianceEstimate estimate(scene_, transport_);
+        MeterReading& sums = batches[batch];
+        for (int i = 0; i < in_batch; ++i) {
+            throw_if_stopped();
+            const auto index = static_cast<std::uint32_t>(i);
+            const auto of = [&](std::uint64_t stream) {
+                return PathRandom::seed_of(seed, batch, stream);
+            };
+            PathRandom random(of(0), index);
+            const Vector3 towards = directions.draw(random);
+            Spectrum light = estimate({x, towards}, of(1), index);
+            const double rise = glm::dot(towards, up);
+            light /= directions.density(towards) * in_batch;
+            // Light that comes from above travels down.
+            (rise > 0 ? sums.scalar_down : sums.scalar_up).mean += light;
+            light *= std::abs(rise);
+            (rise > 0 ? sums.down : sums.up).mean += light;
+            for (const auto& [reading, from] : {std::pair{&MeterReading::radiance_down, up},
+                                                std::pair{&MeterReading::radiance_up, -up}}) {
+                Spectrum vertical = estimate({x, from}, of(from == up ? 2 : 3), index, true);
+                vertical /= in_batch;
+                (sums.*reading).mean += vertical;
+            }
+        }
+    });
+    MeterReading result;
+    for (const auto reading : k_readings) {
+        MeteredSpectrum& value = result.*reading;
+        Spectrum squares{};
+        for (const MeterReading& batch : batches) {
+            Spectrum mean = (batch.*reading).mean;
+            value.mean += mean;
+            mean *= mean;
+            squares += mean;
+        }
+        value.mean /= k_batches;
+        for (std::size_t b = 0; b < k_max_bands; ++b)
+            value.error[b] =
+                std::sqrt(std::max(0.0, squares[b] / k_batches - value.mean[b] * value.mean[b]) /
+                          (k_batches - 1));
+    }
+    for (const Beam& beam : beams) {
+        const double rise = glm::dot(beam.towards, up);
+        Spectrum light = beam.irradiance;
+        (rise > 0 ? result.scalar_down : result.scalar_up).mean += light;
+        light *= std::abs(rise);
+        (rise > 0 ? result.down : result.up).mean += light;
+    }
+    return result;
+}
+
+}  // namespace uw
