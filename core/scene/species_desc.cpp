@@ -153,8 +153,8 @@ ParticleIndexDesc read_index(const ConfigValue& value, const SceneContext& conte
     return index;
 }
 
-/// A species of the library: particles of assets/spectra/species.csv, or a water of
-/// petzold_vsf.csv.
+/// A species of the library: particles of assets/spectra/species.csv, a water of petzold_vsf.csv,
+/// or a class of Kopelevich's.
 SpeciesDesc library_species(const ConfigValue& value) {
     const CsvTable library = read_embedded_table("species.csv");
     std::vector<std::string> names = library.text("name");
@@ -162,8 +162,13 @@ SpeciesDesc library_species(const ConfigValue& value) {
     const CsvTable measured = read_embedded_table("petzold_vsf.csv");
     for (const std::string& water : measured.columns())
         if (water.starts_with("petzold")) names.push_back(water);
+    const std::size_t kopelevich = names.size();
+    names.insert(names.end(), {"kopelevich-small", "kopelevich-large"});
     const std::vector<std::string_view> words(names.begin(), names.end());
     const std::size_t row = value.word_index(words);
+    if (row >= kopelevich)
+        return kopelevich_species(
+            row == kopelevich ? KopelevichClass::small : KopelevichClass::large, {}, {});
     if (row >= computed) {
         SpeciesDesc species;
         species.vsf = MeasuredVsfDesc{};
@@ -211,6 +216,20 @@ void read_sample(ConfigMap& map, const SceneContext& context, SpeciesDesc& speci
     vsf.absorption_file = read_existing_file(of_file.require("file", k_mend), context);
 }
 
+}  // namespace
+
+SpeciesDesc kopelevich_species(KopelevichClass kind, std::string name, SourceLocation where) {
+    SpeciesDesc species;
+    species.name = std::move(name);
+    species.kopelevich = kind;
+    species.density =
+        kind == KopelevichClass::small ? k_small_particle_density : k_large_particle_density;
+    species.where = std::move(where);
+    return species;
+}
+
+namespace {
+
 SpeciesDesc read_one(const std::string& name, const ConfigValue& value,
                      const SceneContext& context) {
     constexpr auto k_example =
@@ -243,6 +262,10 @@ SpeciesDesc read_one(const std::string& name, const ConfigValue& value,
     if (species.vsf) {
         read_sample(map, context, species);
         map.finish("a species with a measured VSF");
+        return species;
+    }
+    if (species.kopelevich) {
+        map.finish("a species of Kopelevich's");
         return species;
     }
     const auto entry = [&](std::string_view key) {
@@ -339,6 +362,11 @@ SpeciesAmount read_amount(std::string_view text, std::size_t index, const Specie
                 "{}: what was in the sample of {} is not known in this unit; give how many times "
                 "as much there is, a bare number, or the species a sample: 3 g/m3",
                 where, species.name));
+    } else if (species.kopelevich && amount->unit == Unit::number) {
+        throw InputError(fmt::format(
+            "{}: how many particles of {} are 1 ppm is not known, since Kopelevich gives no sizes; "
+            "give ppm, or write '3 g/m3' or '4 NTU'",
+            where, species.name));
     } else if (amount->unit == Unit::grams && !species.density) {
         throw InputError(fmt::format(
             "{}: {} has no density, by which grams become particles; give it one in g/cm3", where,

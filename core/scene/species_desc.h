@@ -55,6 +55,16 @@ struct SpeciesAmount {
     friend bool operator==(const SpeciesAmount&, const SpeciesAmount&) = default;
 };
 
+/// The two classes of particles of Kopelevich's model (1983; Mobley 1994, section 3.8).
+enum class KopelevichClass : std::uint8_t {
+    small,  // mineral
+    large   // organic
+};
+
+/// Density of Kopelevich's particles [g/cm^3], which is also the mass of one ppm by volume [g/m^3].
+inline constexpr double k_small_particle_density = 2;
+inline constexpr double k_large_particle_density = 1;
+
 /// The volume scattering function of a sample of water, as it was measured.
 struct MeasuredVsfDesc {
     std::filesystem::path file;  ///< CSV with columns angle_deg and beta_NM [1/(m sr)] for each NM
@@ -69,10 +79,11 @@ struct MeasuredVsfDesc {
 };
 
 /// Particles whose optical properties follow from their sizes and their refractive index
-/// (Lorenz-Mie, for spheres of the same volume), or were measured.
+/// (Lorenz-Mie, for spheres of the same volume), were measured, or are those of Kopelevich's model.
 struct SpeciesDesc {
     std::string name;
-    std::optional<MeasuredVsfDesc> vsf;  ///< in place of sizes, index, density and coat
+    std::optional<MeasuredVsfDesc> vsf;         ///< in place of sizes, index, density and coat
+    std::optional<KopelevichClass> kopelevich;  ///< in place of sizes, index and coat
     SizesDesc sizes;
     ParticleIndexDesc index;
     double ntu_scattering = 1;      ///< b at 550 nm of as much as has 1 NTU [1/m]
@@ -88,6 +99,9 @@ struct SpeciesDesc {
 
     friend bool operator==(const SpeciesDesc&, const SpeciesDesc&) = default;
 };
+
+/// Particles of Kopelevich's model.
+SpeciesDesc kopelevich_species(KopelevichClass kind, std::string name, SourceLocation where);
 
 /// Reads a diameter or thickness [m] from `least` to `greatest`: a number of metres, or one with a
 /// unit, "0.2 mm".

@@ -362,6 +362,17 @@ SpeciesOptics measured_optics(const SpeciesDesc& species, double wavelength_nm, 
     return optics;
 }
 
+SpeciesOptics kopelevich_optics(const SpeciesDesc& species, double wavelength_nm,
+                                bool mineral_absorption) {
+    static const std::shared_ptr<const PhaseFunction> k_small = std::make_shared<KopelevichSmall>(),
+                                                      k_large = std::make_shared<KopelevichLarge>();
+    const bool is_small = *species.kopelevich == KopelevichClass::small;
+    return {mineral_absorption ? *species.density * mineral_mass_absorption(wavelength_nm) : 0,
+            is_small ? kopelevich_small_scattering(wavelength_nm)
+                     : kopelevich_large_scattering(wavelength_nm),
+            is_small ? k_small : k_large};
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> files_of(const SpeciesDesc& species) {
@@ -388,9 +399,18 @@ SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, d
 SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm,
                              const WaterDesc& water, const ShareCallback& progress) {
     if (species.vsf) return measured_optics(species, wavelength_nm, water.salinity);
+    if (species.kopelevich)
+        return kopelevich_optics(species, wavelength_nm, water.mineral_absorption);
     return species_optics(species, wavelength_nm,
                           water_refractive_index(wavelength_nm, water.temperature, water.salinity),
                           progress);
+}
+
+std::vector<SpeciesDesc> all_species(const WaterDesc& water) {
+    std::vector<SpeciesDesc> all = water.species;
+    all.push_back(kopelevich_species(KopelevichClass::small, "small", water.where));
+    all.push_back(kopelevich_species(KopelevichClass::large, "large", water.where));
+    return all;
 }
 
 std::vector<double> measured_wavelengths(const SpeciesDesc& species) {

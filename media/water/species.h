@@ -35,9 +35,15 @@ SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, d
                              const ShareCallback& progress = {});
 
 /// The same for any species in a scene's water: what was measured is interpolated linearly between
-/// its wavelengths at each angle, without water's molecules, and held beyond its wavelengths.
+/// its wavelengths at each angle, without water's molecules, and held beyond its wavelengths;
+/// Kopelevich's particles have his coefficients, one phase function at all wavelengths, and absorb
+/// with WaterDesc::mineral_absorption.
 SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm,
                              const WaterDesc& water, const ShareCallback& progress = {});
+
+/// The species of a water, followed by those that every water has: Kopelevich's "small" and
+/// "large".
+std::vector<SpeciesDesc> all_species(const WaterDesc& water);
 
 /// The wavelengths at which a species was measured [nm], ascending; empty if it was computed.
 std::vector<double> measured_wavelengths(const SpeciesDesc& species);

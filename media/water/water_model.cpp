@@ -19,21 +19,6 @@ namespace uw {
 
 namespace {
 
-/// One kind of Kopelevich's particles.
-struct ParticleKind {
-    const char* name;
-    double density;
-    double (*scattering)(double wavelength_nm);
-    std::shared_ptr<const PhaseFunction> (*make_phase)();
-};
-
-constexpr ParticleKind k_small_particles{
-    "small", k_small_particle_density, kopelevich_small_scattering,
-    [] { return std::shared_ptr<const PhaseFunction>(std::make_shared<KopelevichSmall>()); }};
-constexpr ParticleKind k_large_particles{
-    "large", k_large_particle_density, kopelevich_large_scattering,
-    [] { return std::shared_ptr<const PhaseFunction>(std::make_shared<KopelevichLarge>()); }};
-
 /// A species in one band, where its phase function is its own.
 struct SpeciesInBand {
     std::size_t species, band;
@@ -42,7 +27,7 @@ struct SpeciesInBand {
 };
 
 /// The source of a phase function of the medium: equal sources share one.
-using PhaseSource = std::variant<PhaseFunctionDesc, const ParticleKind*, SpeciesInBand>;
+using PhaseSource = std::variant<PhaseFunctionDesc, KopelevichClass, SpeciesInBand>;
 
 /// Assembles the model step by step: the uniform water first, since grids may refer to it.
 class Builder {
@@ -60,7 +45,6 @@ class Builder {
 
   private:
     std::size_t phase_index(const PhaseDesc& desc);
-    std::size_t phase_index(const ParticleKind& kind);
     template <class Make>
     std::size_t phase_index_of(const PhaseSource& source, const Make& make);
     static Spectrum& scattering(OpticalCoefficients& x, std::size_t phase);
@@ -69,15 +53,16 @@ class Builder {
     /// Adds what is more of something than its least to a constituent.
     void add_curve(int constituent, std::vector<double> values);
     void add_coefficient_curves(const std::vector<double>& values, bool scatters);
-    void add_uniform_particles(const ParticleKind& kind, double ppm, double absorbing_ppm);
-    void add_species(std::size_t species, double ppm, OpticalCoefficients& x);
-    int particle_constituent(const ParticleKind& kind);
+    /// Adds particles, of which `absorbing_ppm` absorb, where others do not say so all of them.
+    void add_species(std::size_t species, double ppm, double absorbing_ppm, OpticalCoefficients& x);
+    void add_species(std::size_t species, double ppm, OpticalCoefficients& x) {
+        add_species(species, ppm, ppm, x);
+    }
     int species_constituent(std::size_t species);
     int known_particles(const std::string& name) const;
     int optics_constituent(const GridMappingDesc& grid);
     void scatter_like_water(const GridMappingDesc& grid, OpticalCoefficients& x) const;
     std::string unique_name(const std::string& wanted) const;
-    double mineral_absorption(const ParticleKind& kind, std::size_t band) const;
     void drop_unused_phases();
 
     struct OpticsEntry {
@@ -86,6 +71,8 @@ class Builder {
     };
 
     const WaterDesc& water_;
+    const std::vector<SpeciesDesc> species_;  // the water's, then Kopelevich's
+    const std::size_t small_, large_;         // indices of the latter
     const ShareCallback& progress_;
     const std::size_t band_count_;
     std::optional<DepthProfile> profile_;
@@ -137,9 +124,12 @@ bool is_zero(const Spectrum& x) {
 
 Builder::Builder(const WaterDesc& water, const ShareCallback& progress)
     : water_(water),
+      species_(all_species(water)),
+      small_(water.species.size()),
+      large_(small_ + 1),
       progress_(progress),
       band_count_(water.bands_nm.size()),
-      known_species_(water.species.size(), false) {
+      known_species_(species_.size(), false) {
     check_bands(water);
     if (water.absorption) check_per_band(*water.absorption, band_count_, "absorption", water.where);
     if (water.scattering)
@@ -162,28 +152,9 @@ std::size_t Builder::phase_index(const PhaseDesc& desc) {
     return phase_index_of(desc.function, [&] { return make_phase_function(desc, model.warnings); });
 }
 
-std::size_t Builder::phase_index(const ParticleKind& kind) {
-    return phase_index_of(&kind, kind.make_phase);
-}
-
 Spectrum& Builder::scattering(OpticalCoefficients& x, std::size_t phase) {
     if (x.scattering.size() <= phase) x.scattering.resize(phase + 1);
     return x.scattering[phase];
-}
-
-double Builder::mineral_absorption(const ParticleKind& kind, std::size_t band) const {
-    return water_.mineral_absorption ? kind.density * mineral_mass_absorption(water_.bands_nm[band])
-                                     : 0;
-}
-
-void Builder::add_uniform_particles(const ParticleKind& kind, double ppm, double absorbing_ppm) {
-    if (ppm == 0) return;
-    OpticalCoefficients& uniform = model.medium.uniform;
-    Spectrum& b = scattering(uniform, phase_index(kind));
-    for (std::size_t i = 0; i < band_count_; ++i) {
-        b[i] += ppm * kind.scattering(water_.bands_nm[i]);
-        uniform.absorption[i] += absorbing_ppm * mineral_absorption(kind, i);
-    }
 }
 
 void Builder::add_uniform() {
@@ -227,31 +198,30 @@ void Builder::add_uniform() {
     const bool measured = preset && !water_.absorption;
     const double small_counted = measured ? preset->small_ppm : 0;
     const double large_counted = measured ? preset->large_ppm : 0;
-    add_uniform_particles(k_small_particles, model.small_ppm,
-                          std::max(0.0, model.small_ppm - small_counted));
-    add_uniform_particles(k_large_particles, model.large_ppm,
-                          std::max(0.0, model.large_ppm - large_counted));
+    add_species(small_, model.small_ppm, std::max(0.0, model.small_ppm - small_counted), uniform);
+    add_species(large_, model.large_ppm, std::max(0.0, model.large_ppm - large_counted), uniform);
     for (const SpeciesAmount& amount : water_.amounts)
-        add_species(amount.species,
-                    concentration_of(water_.species[amount.species], amount, water_), uniform);
+        add_species(amount.species, concentration_of(species_[amount.species], amount, water_),
+                    uniform);
     if (profile_)
         for (const DepthProfile::OfSpecies& of : profile_->species)
             add_species(of.species, std::ranges::min(of.concentration), uniform);
 }
 
 void Builder::expect(const std::vector<VolumeDesc>& volumes) {
-    std::vector<bool> used(water_.species.size(), water_.profile.has_value());
+    std::vector<bool> used(species_.size(), water_.profile.has_value());
     const auto use = [&](const std::vector<SpeciesAmount>& amounts) {
         for (const SpeciesAmount& amount : amounts) used[amount.species] = true;
     };
     use(water_.amounts);
     for (const VolumeDesc& volume : volumes)
         for (const GridMappingDesc& grid : volume.grids) use(grid.amounts);
-    expected_ = static_cast<std::size_t>(std::ranges::count(used, true)) * band_count_;
+    for (std::size_t i = 0; i < species_.size(); ++i)
+        if (used[i] && !species_[i].kopelevich) expected_ += band_count_;
 }
 
 void Builder::warn_of_held_wavelengths(std::size_t species) {
-    const std::vector<double> known = measured_wavelengths(water_.species[species]);
+    const std::vector<double> known = measured_wavelengths(species_[species]);
     if (known.empty()) return;
     constexpr double k_near_nm = 15;
     std::string outside;
@@ -264,11 +234,13 @@ void Builder::warn_of_held_wavelengths(std::size_t species) {
                           : fmt::format("from {:g} to {:g} nm", known.front(), known.back());
     model.warnings.push_back(
         fmt::format("{}: its scattering was measured {}, and is taken to be the same at {} nm",
-                    water_.species[species].where, range, outside));
+                    species_[species].where, range, outside));
 }
 
-void Builder::add_species(std::size_t species, double ppm, OpticalCoefficients& x) {
+void Builder::add_species(std::size_t species, double ppm, double absorbing_ppm,
+                          OpticalCoefficients& x) {
     if (ppm == 0) return;
+    const std::optional<KopelevichClass>& kopelevich = species_[species].kopelevich;
     const bool is_first = !known_species_[species];
     known_species_[species] = true;
     if (is_first) warn_of_held_wavelengths(species);
@@ -280,12 +252,13 @@ void Builder::add_species(std::size_t species, double ppm, OpticalCoefficients& 
                 progress_((static_cast<double>(done_) + share) / all);
             };
         const SpeciesOptics optics =
-            species_optics(water_.species[species], water_.bands_nm[i], water_, tell);
-        if (is_first) ++done_;
-        const std::size_t phase =
-            phase_index_of(SpeciesInBand{species, i}, [&] { return optics.phase; });
+            species_optics(species_[species], water_.bands_nm[i], water_, tell);
+        if (is_first && !kopelevich) ++done_;
+        const PhaseSource source =
+            kopelevich ? PhaseSource(*kopelevich) : PhaseSource(SpeciesInBand{species, i});
+        const std::size_t phase = phase_index_of(source, [&] { return optics.phase; });
         scattering(x, phase)[i] += ppm * optics.scattering;
-        x.absorption[i] += ppm * optics.absorption;
+        x.absorption[i] += absorbing_ppm * optics.absorption;
     }
 }
 
@@ -298,30 +271,17 @@ int Builder::known_particles(const std::string& name) const {
 }
 
 int Builder::species_constituent(std::size_t species) {
-    const std::string& name = water_.species[species].name;
+    const std::string& name = species_[species].name;
     if (const int known = known_particles(name); known >= 0) return known;
-    Constituent particles{name, unit_of(water_.species[species]), {}};
+    Constituent particles{name, unit_of(species_[species]), {}};
     add_species(species, 1, particles.per_unit);
-    model.medium.constituents.push_back(std::move(particles));
-    return model.medium.constituent_count() - 1;
-}
-
-int Builder::particle_constituent(const ParticleKind& kind) {
-    if (const int known = known_particles(kind.name); known >= 0) return known;
-    Constituent particles{kind.name, "ppm", {}};
-    Spectrum& b = scattering(particles.per_unit, phase_index(kind));
-    for (std::size_t i = 0; i < band_count_; ++i) {
-        b[i] = kind.scattering(water_.bands_nm[i]);
-        particles.per_unit.absorption[i] = mineral_absorption(kind, i);
-    }
     model.medium.constituents.push_back(std::move(particles));
     return model.medium.constituent_count() - 1;
 }
 
 std::string Builder::unique_name(const std::string& wanted) const {
     const auto taken = [&](const std::string& name) {
-        return name == k_small_particles.name || name == k_large_particles.name ||
-               std::ranges::count(names_of(water_.species), name) > 0 ||
+        return std::ranges::count(names_of(species_), name) > 0 ||
                std::any_of(model.medium.constituents.begin(), model.medium.constituents.end(),
                            [&](const Constituent& other) { return other.name == name; });
     };
@@ -373,14 +333,13 @@ void Builder::add_grid(const GridMappingDesc& grid, std::vector<GridLoad>& loads
         loads.push_back({optics_constituent(grid), 1});
         return;
     }
-    if (grid.small_ppm != 0)
-        loads.push_back({particle_constituent(k_small_particles), grid.small_ppm});
-    if (grid.large_ppm != 0)
-        loads.push_back({particle_constituent(k_large_particles), grid.large_ppm});
+    const auto add = [&](std::size_t species, double per_unit) {
+        if (per_unit != 0) loads.push_back({species_constituent(species), per_unit});
+    };
+    add(small_, grid.small_ppm);
+    add(large_, grid.large_ppm);
     for (const SpeciesAmount& amount : grid.amounts)
-        if (const double unit = concentration_of(water_.species[amount.species], amount, water_);
-            unit != 0)
-            loads.push_back({species_constituent(amount.species), unit});
+        add(amount.species, concentration_of(species_[amount.species], amount, water_));
 }
 
 void Builder::add_curve(int constituent, std::vector<double> values) {
@@ -449,10 +408,8 @@ void Builder::add_strata() {
     const auto changes = [](const std::vector<double>& values) {
         return !values.empty() && std::ranges::max(values) > std::ranges::min(values);
     };
-    if (changes(profile_->small))
-        add_curve(particle_constituent(k_small_particles), profile_->small);
-    if (changes(profile_->large))
-        add_curve(particle_constituent(k_large_particles), profile_->large);
+    if (changes(profile_->small)) add_curve(species_constituent(small_), profile_->small);
+    if (changes(profile_->large)) add_curve(species_constituent(large_), profile_->large);
     for (const DepthProfile::OfSpecies& of : profile_->species)
         if (changes(of.concentration)) add_curve(species_constituent(of.species), of.concentration);
     add_coefficient_curves(profile_->absorption, false);

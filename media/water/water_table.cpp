@@ -164,9 +164,7 @@ VolumeDesc volume_of_species(const WaterDesc& water) {
 }
 
 double grams_per_unit(const WaterDesc& water, const Constituent& constituent) {
-    if (constituent.unit == "ppm" && constituent.name == "small") return k_small_particle_density;
-    if (constituent.unit == "ppm" && constituent.name == "large") return k_large_particle_density;
-    for (const SpeciesDesc& species : water.species) {
+    for (const SpeciesDesc& species : all_species(water)) {
         if (species.name != constituent.name || unit_of(species) != constituent.unit) continue;
         if (species.density) return *species.density;
         const bool is_weighed = species.vsf && species.vsf->sample &&
@@ -265,7 +263,11 @@ std::string absorption_source(const WaterDesc& water, double small_ppm, double l
             water.cdom);
     if (!water.absorption && water.chlorophyll > 0)
         text += fmt::format("; chlorophyll {:g} mg/m^3 (Bricaud et al. 1995)", water.chlorophyll);
-    if (water.mineral_absorption && small_ppm + large_ppm > 0)
+    const bool has_kopelevich =
+        small_ppm + large_ppm > 0 || std::ranges::any_of(water.amounts, [&](const auto& amount) {
+            return water.species[amount.species].kopelevich.has_value();
+        });
+    if (water.mineral_absorption && has_kopelevich)
         text += water.absorption || water.preset.empty()
                     ? "; particles as mineral (Babin et al. 2003)"
                     : "; particles beyond the preset's own as mineral (Babin et al. 2003)";
@@ -275,7 +277,9 @@ std::string absorption_source(const WaterDesc& water, double small_ppm, double l
 std::string amount_source(const WaterDesc& water, const SpeciesAmount& amount) {
     const SpeciesDesc& species = water.species[amount.species];
     const double concentration = concentration_of(species, amount, water);
-    if (!species.vsf) return fmt::format("{:.4g} ppm {}, Lorenz-Mie", concentration, species.name);
+    if (!species.vsf)
+        return fmt::format("{:.4g} ppm {}, {}", concentration, species.name,
+                           species.kopelevich ? "Kopelevich 1983" : "Lorenz-Mie");
     return fmt::format("{:.4g} times the sample of {}, {}", concentration, species.name,
                        species.vsf->library.empty() ? "as measured" : "Petzold 1972");
 }

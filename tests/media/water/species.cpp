@@ -220,6 +220,51 @@ TEST(Species, AddToTheWaterInEachBand) {
         1e-12);
 }
 
+// Two descriptions of the same water: Kopelevich's particles by the water's own keys, and as
+// species.
+TEST(Species, OfTheLibraryAreKopelevichsParticles) {
+    const WaterDesc by_keys =
+        water("{particles: {small: 0.3, large: 2, absorption: mineral}, bands: [650, 550, 412]}");
+    const WaterDesc by_names = water(
+        "{species: {fine: {library: kopelevich-small}, coarse: {library: kopelevich-large}}, "
+        "particles: {fine: 0.3, coarse: 2 g/m3, absorption: mineral}, bands: [650, 550, 412]}");
+    VolumeDesc of_keys;
+    of_keys.grids.emplace_back().small_ppm = 1.5;
+    of_keys.grids[0].large_ppm = 7;
+    VolumeDesc of_names;
+    of_names.grids.emplace_back().amounts = {{0, 3, SpeciesAmount::Unit::grams},
+                                             {1, 7, SpeciesAmount::Unit::own}};
+    const WaterModel keys = build_water_model(by_keys, {of_keys});
+    const WaterModel names = build_water_model(by_names, {of_names});
+    // Molecules and one phase function for each class, in all bands.
+    ASSERT_EQ(keys.medium.phase_count(), 3);
+    ASSERT_EQ(names.medium.phase_count(), 3);
+    EXPECT_EQ(names.loads, keys.loads);
+    EXPECT_GT(keys.medium.uniform.absorption[2], keys.medium.uniform.absorption[1]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_DOUBLE_EQ(names.medium.uniform.absorption[i], keys.medium.uniform.absorption[i]);
+        for (std::size_t m = 0; m < 3; ++m) {
+            EXPECT_DOUBLE_EQ(names.medium.uniform.scattering[m][i],
+                             keys.medium.uniform.scattering[m][i]);
+            EXPECT_EQ(names.medium.phase_functions[m]->evaluate(0.2),
+                      keys.medium.phase_functions[m]->evaluate(0.2));
+        }
+        EXPECT_DOUBLE_EQ(keys.medium.uniform.scattering[1][i],
+                         0.3 * kopelevich_small_scattering(by_keys.bands_nm[i]));
+        for (std::size_t k = 0; k < 2; ++k) {
+            const OpticalCoefficients& a = names.medium.constituents[k].per_unit;
+            const OpticalCoefficients& b = keys.medium.constituents[k].per_unit;
+            EXPECT_DOUBLE_EQ(a.absorption[i], b.absorption[i]);
+            EXPECT_DOUBLE_EQ(a.total_scattering()[i], b.total_scattering()[i]);
+        }
+    }
+    EXPECT_EQ(names.medium.constituents[0].name, "fine");
+    // 1 NTU scatters 1/m at 550 nm.
+    EXPECT_DOUBLE_EQ(
+        concentration_of(by_names.species[1], {1, 1, SpeciesAmount::Unit::ntu}, by_names),
+        1 / kopelevich_large_scattering(550));
+}
+
 TEST(Species, OfGridsAreConstituentsPerPpm) {
     const WaterDesc desc = water("{species: {silt: {library: clay}}, particles: {small: 0.1}}");
     VolumeDesc volume;
@@ -257,6 +302,12 @@ TEST(Species, ErrorsSayWhatIsWrong) {
     EXPECT_NE(error("{species: {a: {size: {type: junge, diameter: [1 um, 2 um]}, index: 1.1}}, "
                     "particles: {a: 3 g/m3}}")
                   .find("no density"),
+              std::string::npos);
+    EXPECT_NE(
+        error("{species: {a: {library: kopelevich-small}}, particles: {a: 1e6 /m3}}").find("ppm"),
+        std::string::npos);
+    EXPECT_NE(error("{species: {a: {library: kopelevich-small, index: 1.1}}}")
+                  .find("not used by a species of Kopelevich's"),
               std::string::npos);
     EXPECT_NE(error("{species: {a: {library: clay}}, particles: {a: 3 kg}}")
                   .find("expected a concentration"),
