@@ -8,6 +8,7 @@
 #include <mutex>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -127,15 +128,59 @@ std::complex<double> index_at(const ParticleIndexDesc& index, double wavelength_
 /// Scattering angles [rad], fine where spheres up to `greatest_x` have their forward peak.
 std::vector<double> scattering_angles(double greatest_x) {
     std::vector<double> angles{0};
-    constexpr int k_per_octave = 28;
-    constexpr double k_linear = std::numbers::pi / 180, k_widest = 30 * std::numbers::pi / 180;
+    constexpr int k_per_octave = 32;
+    constexpr double k_widest = 30 * std::numbers::pi / 180;
+    constexpr int k_rest = 200;  // steps of 0.75 degrees
     for (double psi = 0.3 / std::max(greatest_x, 1.0); psi < k_widest;
          psi *= std::exp2(1.0 / k_per_octave))
         angles.push_back(psi);
-    const auto rest = static_cast<int>(std::ceil((std::numbers::pi - k_widest) / k_linear));
-    for (int i = 0; i <= rest; ++i)
-        angles.push_back(i == rest ? std::numbers::pi : k_widest + i * k_linear);
+    for (int i = 0; i < k_rest; ++i)
+        angles.push_back(k_widest + i * (std::numbers::pi - k_widest) / k_rest);
+    angles.push_back(std::numbers::pi);
     return angles;
+}
+
+/// The value at `x` of the polynomial through the points (xs, ys).
+double interpolated(std::span<const double> xs, std::span<const double> ys, double x) {
+    double y = 0;
+    for (std::size_t i = 0; i < xs.size(); ++i) {
+        double weight = 1;
+        for (std::size_t k = 0; k < xs.size(); ++k)
+            if (k != i) weight *= (x - xs[k]) / (xs[i] - xs[k]);
+        y += weight * ys[i];
+    }
+    return y;
+}
+
+/// A table of the angles [degrees] and one more between each two of them but 0 and the first, by a
+/// cubic through their neighbours, all in logarithms. The power laws of TabulatedPhase cut the
+/// corners of a function that is curved, by 1.6e-4 of the integral of bubbles; those of half the
+/// width by a quarter of that, for no more of Mie's series.
+SampledCurve table_with_middles(std::span<const double> angles, std::span<const double> phase) {
+    const auto degrees = [](double psi) {
+        return psi == std::numbers::pi ? 180 : psi * (180 / std::numbers::pi);
+    };
+    std::vector<double> x, y;
+    for (std::size_t i = 1; i < angles.size(); ++i) {
+        x.push_back(std::log(angles[i]));
+        y.push_back(std::log(std::max(phase[i], 1e-300)));
+    }
+    SampledCurve curve;
+    const auto add = [&](double psi, double value) {
+        curve.x.push_back(degrees(psi));
+        curve.y.push_back(value);
+    };
+    add(angles[0], phase[0]);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        add(angles[i + 1], phase[i + 1]);
+        if (i + 1 == x.size()) break;
+        const std::size_t first = i > 0 ? i - 1 : 0;
+        const std::size_t count = std::min(i + 3, x.size()) - first;
+        const double middle = 0.5 * (x[i] + x[i + 1]);
+        add(std::exp(middle), std::exp(interpolated(std::span(x).subspan(first, count),
+                                                    std::span(y).subspan(first, count), middle)));
+    }
+    return curve;
 }
 
 /// Sums over sizes, per unit of volume.
@@ -197,7 +242,7 @@ class SizeAverage {
   private:
     static constexpr std::size_t k_first = 128, k_most = 2048;
     /// To be raised with every change of the results: those of other versions are not used again.
-    static constexpr int k_version = 1;
+    static constexpr int k_version = 2;
 
     /// Counts the sizes that are done. Their number may be less than the most.
     class Progress {
@@ -293,12 +338,9 @@ SpeciesOptics compute(const SpeciesDesc& species, double wavelength_nm, double n
         keep_results(key, results);
     }
     constexpr double k_ppm = 1e-6;
-    SampledCurve curve;
-    for (const double psi : average.angles())
-        curve.x.push_back(psi == std::numbers::pi ? 180 : psi * (180 / std::numbers::pi));
-    curve.y = sums.phase;
     return {k_ppm * sums.absorption, k_ppm * sums.scattering,
-            std::make_shared<SpeciesPhase>(curve, species.name)};
+            std::make_shared<SpeciesPhase>(table_with_middles(average.angles(), sums.phase),
+                                           species.name)};
 }
 
 /// The results of this process, of which every image of a run needs the same.
