@@ -182,10 +182,12 @@ SpeciesDesc library_species(const ConfigValue& value) {
     species.sizes.least = number("least_um") * 1e-6;
     species.sizes.greatest = number("greatest_um") * 1e-6;
     species.index.n = number("n");
+    species.index.k = number("k_550");
+    species.index.k_slope = number("k_slope_per_nm");
     species.density = number("density");
     if (number("coat_um") > 0)
         species.coat = SpeciesDesc::Coat{number("coat_um") * 1e-6,
-                                         {number("coat_n"), 0, std::filesystem::path()}};
+                                         {number("coat_n"), 0, 0, std::filesystem::path()}};
     return species;
 }
 

@@ -35,6 +35,7 @@ struct SizesDesc {
 /// A refractive index relative to the water's, n + i k.
 struct ParticleIndexDesc {
     double n = 1, k = 0;
+    double k_slope = 0;          ///< k e^(-k_slope (lambda - 550 nm)) is that at lambda [1/nm]
     std::filesystem::path file;  ///< instead: CSV with columns wavelength_nm,n,k
 
     friend bool operator==(const ParticleIndexDesc&, const ParticleIndexDesc&) = default;

@@ -113,7 +113,9 @@ class VolumeBySize {
 
 std::complex<double> index_at(const ParticleIndexDesc& index, double wavelength_nm,
                               const SourceLocation& where) {
-    if (index.file.empty()) return {index.n, index.k};
+    constexpr double k_reference_nm = 550;
+    if (index.file.empty())
+        return {index.n, index.k * std::exp(-index.k_slope * (wavelength_nm - k_reference_nm))};
     const CsvTable table = read_csv_file(index.file, where);
     const SampledCurve n = table.curve("wavelength_nm", "n"), k = table.curve("wavelength_nm", "k");
     const std::complex<double> value{n.value(wavelength_nm), k.value(wavelength_nm)};

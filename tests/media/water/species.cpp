@@ -190,6 +190,30 @@ WaterDesc water(const std::string& text) {
     return read_water_overrides({"water=" + text});
 }
 
+// The index's k falls by e^(-slope (lambda - 550 nm)). Weakly absorbing spheres, even the largest here
+// (4 k x = 0.15 at most), absorb 4 pi k n_water / lambda of their volume, times a factor near n of
+// refraction into them, which is the same at both wavelengths.
+TEST(Species, OfTheLibraryAbsorbByTheWavelength) {
+    const WaterDesc desc =
+        water("{species: {d: {library: detritus}, s: {library: iron-sulphide}}}");
+    const auto of = [&](std::size_t species, double nm) {
+        return species_optics(desc.species[species], nm, 1.34);
+    };
+    const auto k = [](double nm) { return 0.75 * 0.010658 * std::exp(-0.007186 * nm); };
+    const double blue = of(0, 450).absorption, red = of(0, 620).absorption;
+    const double of_volume = 1e-6 * 4 * std::numbers::pi * k(450) * 1.34 / 450e-9;
+    EXPECT_GT(blue / of_volume, 0.9);
+    EXPECT_LT(blue / of_volume, 1.1);
+    EXPECT_NEAR(blue / red / (k(450) / k(620) * 620 / 450), 1, 0.05);
+    // What does not let light through absorbs about as much as it shadows, and scatters as much or
+    // more: 3 / (2 D) per volume, where 1 / D is 2.75 / um in the mean over volumes ~ D^-2. Spheres
+    // of some wavelengths do so within a factor of 1.5.
+    const double shadow = 1.5 * 0.5 * (1 / 0.2 + 1 / 2.0);
+    EXPECT_GT(of(1, 540).absorption, shadow / 1.5);
+    EXPECT_LT(of(1, 540).absorption, shadow * 1.5);
+    EXPECT_GT(of(1, 540).scattering, shadow / 1.5);
+}
+
 TEST(Species, AddToTheWaterInEachBand) {
     const WaterDesc desc = water(
         "{species: {silt: {library: clay}, haze: {size: {type: lognormal, median: 0.6 um, sigma: "
