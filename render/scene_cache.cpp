@@ -119,14 +119,15 @@ VolumeSet SceneCache::volumes(const SceneDesc& scene, const WaterModel& water) {
 
 SceneCache::KeptGlow SceneCache::make_glow(const VolumeDesc& desc, const SceneDesc& scene) {
     const EmissionDesc& emission = desc.emission.front();
-    LoadedVolume loaded = load_volume(desc, {{GridLoad{0, 1}}});
+    LoadedVolume loaded = load_light(desc);
     auto field = std::make_shared<GridField>(std::move(loaded.grids), 1);
     const Emission light(emission, scene.water.bands_nm);
     std::vector<GlowPart> parts = divide_glow(*field, light, emission.samples);
     if (parts.empty())
         loaded.warnings.push_back(
-            fmt::format("{}: '{}' gives off no light that is seen; check the unit of its values",
-                        emission.where, emission.grid));
+            fmt::format("{}: '{}' gives off no light that is seen; check the unit of its values{}",
+                        emission.where, emission.grid,
+                        emission.stimulus ? ", and how fast the water moves" : ""));
     return {desc, scene.water.bands_nm, FileStamps(files_of(desc)),
             std::make_shared<GlowingVolume>(std::move(field), light, std::move(parts)),
             std::move(loaded.warnings)};
@@ -140,9 +141,7 @@ std::vector<SceneGlow> SceneCache::glows(const SceneDesc& scene,
         if (!scene.lamps[lamp].glow) continue;
         const GlowDesc& glow = *scene.lamps[lamp].glow;
         VolumeDesc desc = scene.volumes[glow.volume];
-        desc.grids.assign(1, {});
-        desc.grids.front().grid = glow.emission.grid;
-        desc.grids.front().where = glow.emission.where;
+        desc.grids.clear();
         desc.emission.assign(1, glow.emission);
         const auto known = std::ranges::find_if(glows_, [&](const KeptGlow& kept) {
             return kept.desc == desc && kept.bands_nm == scene.water.bands_nm &&

@@ -104,7 +104,7 @@ class SceneCache {
         bool is_of(const VolumeDesc& other, const std::vector<std::vector<GridLoad>>& its) const;
     };
     struct KeptGlow {
-        VolumeDesc desc;  // its one grid is what glows
+        VolumeDesc desc;  // its one light is what glows
         std::vector<double> bands_nm;
         FileStamps files;
         std::shared_ptr<const GlowingVolume> volume;

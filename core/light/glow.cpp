@@ -41,6 +41,10 @@ std::vector<Spectrum> log_radiance(std::span<const double> bands_nm) {
 Emission::Emission(const EmissionDesc& desc, std::span<const double> bands_nm)
     : bands_(bands_nm.size()), blackbody_(desc.blackbody) {
     std::ranges::copy(desc.per_unit, per_unit_.begin());
+    for (const EmissionDesc::Row& row : desc.table) {
+        values_.push_back(row.value);
+        std::ranges::copy(row.light, light_.emplace_back().begin());
+    }
     if (!blackbody_) return;
     if (bands_nm.size() < 2)
         throw InputError(
@@ -51,6 +55,14 @@ Emission::Emission(const EmissionDesc& desc, std::span<const double> bands_nm)
 }
 
 Spectrum Emission::of(double value) const {
+    if (!values_.empty()) {
+        if (value < values_.front()) return {};
+        const auto above =
+            static_cast<std::size_t>(std::ranges::upper_bound(values_, value) - values_.begin());
+        if (above == values_.size()) return light_.back();
+        const double t = (value - values_[above - 1]) / (values_[above] - values_[above - 1]);
+        return (1 - t) * light_[above - 1] + t * light_[above];
+    }
     if (!blackbody_) return value * per_unit_;
     const double temperature = value * blackbody_->kelvin + blackbody_->offset;
     if (value <= 0 || temperature < k_coldest) return {};

@@ -20,14 +20,16 @@ class Emission {
     Emission(const EmissionDesc& desc, std::span<const double> bands_nm);
 
     /// What a cubic metre shines in each direction where the grid has this value, >= 0
-    /// [W/(sr m^3)]: in proportion to it, or as a blackbody (Planck's law, over each band's
-    /// interval) whose temperature the value is. Below 500 K there is no light to be seen.
+    /// [W/(sr m^3)]: in proportion to it, by a table, or as a blackbody (Planck's law, over each
+    /// band's interval) whose temperature the value is. Below 500 K there is no light to be seen.
     Spectrum of(double value) const;
 
   private:
     std::size_t bands_;
     Spectrum per_unit_;
     std::optional<EmissionDesc::Blackbody> blackbody_;
+    std::vector<double> values_;  // of a table
+    std::vector<Spectrum> light_;
     std::vector<Spectrum> log_radiance_;  // of a blackbody, at equal steps of 1/T
 };
 

@@ -224,7 +224,10 @@ void open_shutter(SceneDesc& desc) {
     for (VolumeDesc& volume : desc.volumes) {
         if (!volume.motion) continue;
         volume.motion->shutter = desc.render.shutter;
-        if (desc.render.shutter == 0)
+        const bool sets_off_light = std::ranges::any_of(
+            volume.emission,
+            [](const EmissionDesc& emission) { return emission.stimulus.has_value(); });
+        if (desc.render.shutter == 0 && !sets_off_light)
             desc.warnings.push_back(volume.motion->where +
                                     ": has no effect without render.shutter, the exposure time");
     }

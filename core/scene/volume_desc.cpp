@@ -98,6 +98,42 @@ EmissionDesc::Blackbody read_blackbody(ConfigMap& map) {
     return blackbody;
 }
 
+constexpr auto k_table_example = "write [[0.1, [0, 0, 0]], [1, [4, 1.5, 0.3]]]";
+
+/// Rows of a value of the grid and the light there, one number per band.
+void read_table(const ConfigValue& value, EmissionDesc& emission, const SceneContext& context) {
+    constexpr std::size_t k_most = 4096;
+    const std::vector<ConfigValue> rows = value.list(k_table_example);
+    if (rows.size() < 2 || rows.size() > k_most)
+        value.fail(std::string("needs 2 to 4096 rows; ") + k_table_example);
+    emission.per_unit.assign(context.band_count, 0.0);
+    for (const ConfigValue& entry : rows) {
+        const auto cells = entry.list_of(2, k_table_example);
+        EmissionDesc::Row row{cells[0].non_negative(k_table_example),
+                              cells[1].non_negative_per_band(context.band_count, k_table_example)};
+        if (!emission.table.empty() && !(row.value > emission.table.back().value))
+            entry.fail("values must ascend; sort the rows");
+        for (std::size_t i = 0; i < row.light.size(); ++i)
+            emission.per_unit[i] = std::max(emission.per_unit[i], row.light[i]);
+        emission.table.push_back(std::move(row));
+    }
+}
+
+/// `by_speed` or `by_shear`, the threshold and the saturation of the light.
+void read_stimulus(const ConfigMap& map, EmissionDesc& emission, const ConfigValue& value,
+                   EmissionDesc::Stimulus::Quantity quantity) {
+    if (emission.stimulus)
+        value.fail("light is set off by speed or by shear; remove by_speed or by_shear");
+    if (!map.has("per_unit")) value.fail("applies to per_unit only; remove it");
+    constexpr auto k_mend =
+        "give where the light begins and where there is all of it, such as [0.1, 0.5]";
+    const auto ends = value.list_of(2, k_mend);
+    emission.stimulus =
+        EmissionDesc::Stimulus{quantity, ends[0].non_negative(k_mend), ends[1].positive(k_mend)};
+    if (!(emission.stimulus->threshold < emission.stimulus->saturation))
+        value.fail("the first must be less than the second; " + std::string(k_mend));
+}
+
 EmissionDesc read_one_emission(const ConfigValue& value, const std::string& grid,
                                const SceneContext& context) {
     constexpr auto k_per_unit = "give W/(sr m3) per unit of the grid's value, one number per band";
@@ -111,22 +147,32 @@ EmissionDesc read_one_emission(const ConfigValue& value, const std::string& grid
         emission.per_unit = value.non_negative_per_band(context.band_count, k_per_unit);
         return emission;
     }
-    ConfigMap map(value, {"per_unit", "blackbody", "kelvin", "offset", "name", "samples"},
+    ConfigMap map(value,
+                  {"per_unit", "blackbody", "kelvin", "offset", "table", "name", "samples",
+                   "by_speed", "by_shear"},
                   "write flame: [4, 1.5, 0.3], or temperature: {blackbody: 0.5, kelvin: 1000}");
     if (const auto entry = map.find("blackbody")) {
         emission.per_unit.assign(
             context.band_count,
             entry->non_negative("give the share of a blackbody's radiance that a metre adds"));
         emission.blackbody = read_blackbody(map);
+    } else if (const auto table = map.find("table")) {
+        read_table(*table, emission, context);
     } else {
         emission.per_unit = map.require("per_unit", k_per_unit)
                                 .non_negative_per_band(context.band_count, k_per_unit);
     }
+    if (const auto entry = map.find("by_speed"))
+        read_stimulus(map, emission, *entry, EmissionDesc::Stimulus::Quantity::speed);
+    if (const auto entry = map.find("by_shear"))
+        read_stimulus(map, emission, *entry, EmissionDesc::Stimulus::Quantity::shear);
     if (const auto entry = map.find("name"))
         emission.name = read_short_name(*entry, "a layer's name", "name the light, such as fire");
     if (const auto entry = map.find("samples"))
         emission.samples = entry->integer(1, 1024, "give the number of points that stand for it");
-    map.finish(emission.blackbody ? "a blackbody" : "light per unit of a grid's value");
+    map.finish(emission.blackbody        ? "a blackbody"
+               : !emission.table.empty() ? "light by a table"
+                                         : "light per unit of a grid's value");
     return emission;
 }
 
@@ -166,6 +212,15 @@ MotionDesc read_motion(const ConfigValue& value, const VolumeDesc& volume,
     return motion;
 }
 
+void check_stimuli(const VolumeDesc& volume) {
+    if (volume.motion) return;
+    for (const EmissionDesc& emission : volume.emission)
+        if (emission.stimulus)
+            throw InputError(emission.where +
+                             ": the water's motion is not known; give the volume its velocity, "
+                             "such as velocity: {grid: vel}");
+}
+
 /// A grid that is in memory.
 VolumeDesc read_array(ConfigMap& map, const ConfigValue& name, const SceneContext& context) {
     VolumeDesc volume;
@@ -183,6 +238,7 @@ VolumeDesc read_array(ConfigMap& map, const ConfigValue& name, const SceneContex
     if (const auto entry = map.find("transform"))
         volume.world_from_upright = read_transform(*entry);
     map.finish("an array");
+    check_stimuli(volume);
     return volume;
 }
 
@@ -216,6 +272,7 @@ VolumeDesc read_volume(const ConfigValue& value, const SceneContext& context) {
         volume.world_from_upright = read_transform(*entry);
     if (const auto entry = map.find("velocity"))
         volume.motion = read_motion(*entry, volume, context);
+    check_stimuli(volume);
     return volume;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -70,12 +71,37 @@ struct EmissionDesc {
         friend bool operator==(const Blackbody&, const Blackbody&) = default;
     };
 
+    /// The light where the grid has this value.
+    struct Row {
+        double value = 0;  ///< >= 0
+        PerBand light;     ///< what a cubic metre shines in each direction [W/(sr m^3)]
+
+        friend bool operator==(const Row&, const Row&) = default;
+    };
+
+    /// Light that the water's motion sets off, as that of dinoflagellates: none up to a threshold,
+    /// all of it from saturation on, in proportion in between. Needs VolumeDesc::motion.
+    struct Stimulus {
+        enum class Quantity : std::uint8_t {
+            speed,  // [m/s]
+            shear   // rate of shear, sqrt(2 E:E) with the rate of strain E [1/s]
+        };
+        Quantity quantity = Quantity::shear;
+        double threshold = 0, saturation = 1;  ///< 0 <= threshold < saturation
+
+        friend bool operator==(const Stimulus&, const Stimulus&) = default;
+    };
+
     std::string name;  ///< of the lamp and its layers
     std::string grid;  ///< name in the file; name[i] if several share it
     /// What a cubic metre shines in each direction, per unit of the grid's value [W/(sr m^3)]; of a
-    /// blackbody, what share of its radiance a metre adds (its absorption, in equilibrium) [1/m].
+    /// blackbody, what share of its radiance a metre adds (its absorption, in equilibrium) [1/m];
+    /// of a table, the most in each band.
     PerBand per_unit;
+    /// Instead: ascending values, linear in between; no light below the first, beyond the last its.
+    std::vector<Row> table;
     std::optional<Blackbody> blackbody;
+    std::optional<Stimulus> stimulus;  ///< with per_unit alone
     int samples = 16;  ///< how many points stand for it where it lights others, 1..1024
     SourceLocation where;
 

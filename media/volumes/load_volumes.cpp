@@ -86,6 +86,18 @@ void check_limits(const VolumeReport& report, const VolumeDesc& desc,
             k_largest_concentration, k_largest_value));
 }
 
+/// What takes lengths in a grid's file to those in the world.
+Matrix3 world_from_file(const VdbHeader& header, const VolumeDesc& desc,
+                        const GridMappingDesc& mapping, const Placement& placement,
+                        const std::optional<FluidDomain>& domain) {
+    LoadedGrid grid;
+    const Affine file_from_index =
+        read_file_from_index(header, mapping.grid, mapping.where, desc.level_sets);
+    grid.file_from_index = with_voxel_size(file_from_index, desc, domain);
+    return world_from_index(grid, placement, desc.world_from_upright).linear() *
+           file_from_index.inverse().linear();
+}
+
 // Adds the next grid of a volume. Its file_from_index is that of where it lies in its file.
 void add_grid(LoadedGrid loaded, const VolumeDesc& desc, const Placement& placement,
               const std::vector<GridLoad>& loads, LoadedVolume& volume) {
@@ -99,10 +111,9 @@ void add_grid(LoadedGrid loaded, const VolumeDesc& desc, const Placement& placem
     check_limits(volume.reports.back(), desc, mapping);
 }
 
-}  // namespace
-
-LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
-                         std::size_t slab_bytes) {
+LoadedVolume load_grids(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
+                        std::size_t slab_bytes,
+                        const std::optional<EmissionDesc::Stimulus>& stimulus) {
     LoadedVolume volume;
     if (desc.array) {
         volume.warnings = desc.array->warnings;
@@ -117,10 +128,13 @@ LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<G
             fmt::format("{}: '{}': {}", desc.where, desc.file.string(), domain->description()));
     for (std::size_t g = 0; g < desc.grids.size(); ++g) {
         const GridMappingDesc& mapping = desc.grids[g];
+        std::optional<StimulatedLight> light;
+        if (stimulus)
+            light = {*stimulus, world_from_file(header, desc, mapping, placement, domain)};
         LoadedGrid loaded =
-            desc.motion && desc.motion->shutter > 0
-                ? load_moving_grid(header, mapping.grid, mapping.where, *desc.motion,
-                                   placement.centering, desc.level_sets)
+            light || (desc.motion && desc.motion->shutter > 0)
+                ? load_moving_grid(header, mapping.grid, mapping.where, desc.motion.value(),
+                                   placement.centering, desc.level_sets, light)
                 : load_grid(header, mapping.grid, mapping.where, slab_bytes, desc.level_sets);
         volume.warnings.insert(volume.warnings.end(), loaded.warnings.begin(),
                                loaded.warnings.end());
@@ -128,6 +142,22 @@ LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<G
         add_grid(std::move(loaded), desc, placement, loads.at(g), volume);
     }
     return volume;
+}
+
+}  // namespace
+
+LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
+                         std::size_t slab_bytes) {
+    return load_grids(desc, loads, slab_bytes, {});
+}
+
+LoadedVolume load_light(const VolumeDesc& desc) {
+    const EmissionDesc& emission = desc.emission.front();
+    VolumeDesc of_light = desc;
+    of_light.grids.assign(1, {});
+    of_light.grids.front().grid = emission.grid;
+    of_light.grids.front().where = emission.where;
+    return load_grids(of_light, {{GridLoad{0, 1}}}, k_default_slab_bytes, emission.stimulus);
 }
 
 std::unique_ptr<ConcentrationField> load_volumes(

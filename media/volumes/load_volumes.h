@@ -50,6 +50,10 @@ struct LoadedVolume {
 LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
                          std::size_t slab_bytes = k_default_slab_bytes);
 
+/// Reads the grid of a volume's one light, `desc.emission`, as that of a constituent 0, in units of
+/// its value, of which there is as much as the water's motion sets off. Throws as load_volume.
+LoadedVolume load_light(const VolumeDesc& desc);
+
 /// Reads the volumes. `loads[v][g]` gives the meaning of grid g of volume v. Fills one report per
 /// grid in that order, and appends warnings of one line each. Throws as load_volume.
 std::unique_ptr<ConcentrationField> load_volumes(

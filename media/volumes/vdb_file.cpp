@@ -157,6 +157,47 @@ std::vector<openvdb::Coord> blocks_in_reach(const openvdb::FloatGrid& density,
     return {blocks.begin(), blocks.end()};
 }
 
+/// The share of its light that the velocity sets off at `x`, in the file's axes.
+double share_set_off(const StimulatedLight& light, const VelocityField::Sampler& velocity,
+                     const openvdb::Vec3d& x) {
+    using Quantity = EmissionDesc::Stimulus::Quantity;
+    double amount = 0;
+    if (light.stimulus.quantity == Quantity::speed) {
+        const openvdb::Vec3d v = velocity(x);
+        amount = glm::length(light.world_from_file * Vector3(v.x(), v.y(), v.z()));
+    } else {
+        const Matrix3 gradient =
+            light.world_from_file * velocity.gradient(x) * glm::inverse(light.world_from_file);
+        const double trace = gradient[0][0] + gradient[1][1] + gradient[2][2];
+        double squares = 0;
+        for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b) {
+                const double strain =
+                    0.5 * (gradient[a][b] + gradient[b][a]) - (a == b ? trace / 3 : 0);
+                squares += strain * strain;
+            }
+        amount = std::sqrt(2 * squares);
+    }
+    const double range = light.stimulus.saturation - light.stimulus.threshold;
+    return std::clamp((amount - light.stimulus.threshold) / range, 0.0, 1.0);
+}
+
+void set_off(openvdb::FloatGrid& density, const VelocityField& velocity, Centering centering,
+             const StimulatedLight& light) {
+    std::vector<FloatLeaf*> leaves;
+    for (auto leaf = density.tree().beginLeaf(); leaf; ++leaf) leaves.push_back(leaf.getLeaf());
+    const openvdb::Vec3d shift(centering == Centering::cell ? 0.5 : 0.0);
+    parallel_for(leaves.size(), [&](std::size_t n) {
+        const VelocityField::Sampler sampler(velocity);
+        for (auto value = leaves[n]->beginValueOn(); value; ++value) {
+            const openvdb::Vec3d x =
+                density.transform().indexToWorld(value.getCoord().asVec3d() + shift);
+            value.setValue(
+                static_cast<float>(static_cast<double>(*value) * share_set_off(light, sampler, x)));
+        }
+    });
+}
+
 /// Reads the whole density, sanitized, with its uniform regions expanded to voxels.
 openvdb::FloatGrid::Ptr read_density(const VdbHeader& header, const GridSummary& grid,
                                      const SourceLocation& where, LevelSets level_sets,
@@ -206,7 +247,8 @@ openvdb::FloatGrid::Ptr average(const openvdb::FloatGrid& density, const Velocit
 
 LoadedGrid load_moving_grid(const VdbHeader& header, const std::string& name,
                             const SourceLocation& where, const MotionDesc& motion,
-                            Centering centering, LevelSets level_sets) {
+                            Centering centering, LevelSets level_sets,
+                            const std::optional<StimulatedLight>& light) {
     initialize_openvdb();
     const GridSummary& grid = select_grid(header, name, where, level_sets);
     const std::string prefix = describe_grid_place(header, grid, where);
@@ -217,9 +259,12 @@ LoadedGrid load_moving_grid(const VdbHeader& header, const std::string& name,
             read_density(header, grid, where, level_sets, loaded);
         check_loaded(header, grid, prefix, loaded);
         const VelocityField velocity(motion, centering);
-        const openvdb::Vec3d way = furthest_way(velocity, loaded, motion);
-        const GridIntake moved =
-            take_slab(average(*density, velocity, way, motion.shutter, centering), loaded.bricks);
+        if (light) set_off(*density, velocity, centering, *light);
+        openvdb::FloatGrid::Ptr moved_density = density;
+        if (motion.shutter > 0)
+            moved_density = average(*density, velocity, furthest_way(velocity, loaded, motion),
+                                    motion.shutter, centering);
+        const GridIntake moved = take_slab(moved_density, loaded.bricks);
         loaded.warnings = intake_warnings(loaded.statistics, prefix);
         // The rendered grid has other values than the file, and more voxels.
         const GridStatistics rendered = moved.statistics(loaded.statistics.background);

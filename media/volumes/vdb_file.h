@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/vector_math.h"
 #include "core/scene/volume_desc.h"
 #include "media/volumes/loaded_grid.h"
 
@@ -24,7 +26,15 @@ LoadedGrid load_grid(const VdbHeader& header, const std::string& name, const Sou
 Affine read_file_from_index(const VdbHeader& header, const std::string& name,
                             const SourceLocation& where, LevelSets level_sets = LevelSets::refused);
 
-/// Reads one grid as load_grid does, averaged over the exposure time: every voxel's value is the
+/// Light of a grid that the water's motion sets off.
+struct StimulatedLight {
+    EmissionDesc::Stimulus stimulus;
+    Matrix3 world_from_file;  // of lengths and velocities
+};
+
+/// Reads one grid as load_grid does. If it is light that motion sets off, each voxel's value is
+/// multiplied by the share of its light that the velocity there sets off. Then it is averaged over
+/// the exposure time, if that is not 0: every voxel's value is the
 /// mean of those advected there from -shutter/2 to +shutter/2 ("Eulerian Motion Blur", Kim and Ko
 /// 2007: traced back along the velocity at the frame's time, evaluated at the midpoint). The grid
 /// is enlarged accordingly. `centering`: of both grids. All of them are in memory at once, with 32
@@ -32,6 +42,7 @@ Affine read_file_from_index(const VdbHeader& header, const std::string& name,
 /// the grid by more than 128 voxels.
 LoadedGrid load_moving_grid(const VdbHeader& header, const std::string& name,
                             const SourceLocation& where, const MotionDesc& motion,
-                            Centering centering, LevelSets level_sets = LevelSets::refused);
+                            Centering centering, LevelSets level_sets = LevelSets::refused,
+                            const std::optional<StimulatedLight>& light = {});
 
 }  // namespace uw

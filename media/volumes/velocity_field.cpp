@@ -84,10 +84,18 @@ VelocityField::VelocityField(const MotionDesc& motion, Centering centering)
     if (motion.scale) {
         scale_ = *motion.scale;
     } else if (header.from_blender_fluid()) {
-        const openvdb::GridBase& grid =
-            vectors_ ? static_cast<const openvdb::GridBase&>(*vectors_) : *numbers_[0];
-        scale_ = k_blender_voxels_per_second * grid.voxelSize().x();
+        scale_ = k_blender_voxels_per_second * first_grid().voxelSize().x();
     }
+    const auto take_box = [&](const openvdb::GridBase& grid) {
+        openvdb::CoordBBox box;
+        if (grid.baseTree().evalActiveVoxelBoundingBox(box)) box_.expand(box);
+    };
+    if (vectors_) take_box(*vectors_);
+    for (const openvdb::FloatGrid::Ptr& grid : numbers_) take_box(*grid);
+}
+
+const openvdb::GridBase& VelocityField::first_grid() const {
+    return vectors_ ? static_cast<const openvdb::GridBase&>(*vectors_) : *numbers_[0];
 }
 
 VelocityField::Sampler::Sampler(const VelocityField& field) : field_(field) {
@@ -113,6 +121,32 @@ openvdb::Vec3d VelocityField::Sampler::operator()(const openvdb::Vec3d& x) const
                static_cast<double>(openvdb::tools::BoxSampler::sample(numbers_[n], at));
     }
     return v;
+}
+
+Matrix3 VelocityField::Sampler::gradient(const openvdb::Vec3d& x) const {
+    const openvdb::math::Transform& transform = field_.first_grid().transform();
+    const openvdb::Vec3d shift(field_.shift_);
+    const openvdb::Vec3d at = transform.worldToIndex(x) - shift;
+    Matrix3 along(0.0);  // the grid's own axes [m/s per voxel]
+    Matrix3 file_from_index(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        openvdb::Vec3d unit(0, 0, 0);
+        unit[axis] = 1;
+        const openvdb::Vec3d edge =
+            transform.indexToWorld(unit) - transform.indexToWorld(openvdb::Vec3d(0, 0, 0));
+        file_from_index[axis] = {edge.x(), edge.y(), edge.z()};
+        if (field_.box_.empty()) continue;
+        const double low = field_.box_.min()[axis], high = field_.box_.max()[axis];
+        openvdb::Vec3d before = at, behind = at;
+        before[axis] = std::clamp(at[axis] - 1, low, high);
+        behind[axis] = std::clamp(at[axis] + 1, low, high);
+        const double voxels = behind[axis] - before[axis];
+        if (!(voxels > 0)) continue;
+        const openvdb::Vec3d change = (*this)(transform.indexToWorld(behind + shift)) -
+                                      (*this)(transform.indexToWorld(before + shift));
+        along[axis] = Vector3(change.x(), change.y(), change.z()) / voxels;
+    }
+    return along * glm::inverse(file_from_index);
 }
 
 openvdb::Vec3d VelocityField::largest(const Matrix3& linear) const {

@@ -22,6 +22,10 @@ class VelocityField {
       public:
         explicit Sampler(const VelocityField& field);
         openvdb::Vec3d operator()(const openvdb::Vec3d& x) const;
+        /// The derivatives of the velocity, column a along axis a [1/s]: between the neighbouring
+        /// voxels of its grid, on one side only at the ends of the grid's active box, and 0 outside
+        /// of it.
+        Matrix3 gradient(const openvdb::Vec3d& x) const;
 
       private:
         const VelocityField& field_;
@@ -33,9 +37,12 @@ class VelocityField {
     openvdb::Vec3d largest(const Matrix3& linear) const;
 
   private:
+    const openvdb::GridBase& first_grid() const;
+
     double shift_ = 0;  // from a value's index to its position
     double scale_ = 1;
     bool staggered_ = false;
+    openvdb::CoordBBox box_;                        // of all active voxels
     openvdb::Vec3SGrid::Ptr vectors_;               // either this
     std::vector<openvdb::FloatGrid::Ptr> numbers_;  // or these three
 };

@@ -209,6 +209,63 @@ TEST(Glows, OfABlackbodyFollowPlancksLaw) {
     EXPECT_THROW(Emission(emission, one), InputError);
 }
 
+TEST(Glows, OfATableAreLinearBetweenItsRows) {
+    EmissionDesc emission = flame({4, 3, 0});
+    emission.table = {{0.5, {1, 0, 0}}, {1, {2, 3, 0}}, {3, {4, 1, 0}}};
+    const std::vector<double> bands{620, 540, 450};
+    const Emission light(emission, bands);
+    EXPECT_EQ(light.of(0.499), Spectrum{});
+    const std::vector<std::pair<double, std::array<double, 2>>> expected{
+        {0.5, {1, 0}},     {0.75, {1.5, 1.5}}, {1, {2, 3}},
+        {2.5, {3.5, 1.5}}, {3, {4, 1}},        {9, {4, 1}}};
+    for (const auto& [value, truth] : expected) {
+        EXPECT_NEAR(light.of(value)[0], truth[0], 1e-12) << value;
+        EXPECT_NEAR(light.of(value)[1], truth[1], 1e-12) << value;
+        EXPECT_EQ(light.of(value)[2], 0) << value;
+    }
+}
+
+// Light that the water's speed sets off, in a flow across the view whose speed grows along it: of v
+// = z / (1 s) from 1.5 to 2.5 m/s, the share at depth z is z - 1.5 m, int (z - 1.5) e^-cz dz.
+TEST(Glows, AreSetOffByTheWatersSpeed) {
+    const GlowFixture fixture;
+    VdbFixture grid;
+    grid.name = "flame";
+    grid.min = {-20, -20, 0};
+    grid.max = {20, 20, 19};
+    grid.value = [](int, int, int) { return 1.0; };
+    grid.file_from_index = Affine::translation({0.0, 0.0, 1.525}) * Affine::scale(Vector3(0.05));
+    VdbFixture velocity = grid;
+    velocity.name = "v.x";
+    velocity.value = [](int, int, int k) { return 1.525 + 0.05 * k; };
+    VdbFixture still = grid;
+    still.name = "v.y";
+    still.value = [](int, int, int) { return 0.0; };
+    VdbFixture still_too = still;
+    still_too.name = "v.z";
+    write_fixture(fixture.folder / "flow.vdb", {grid, velocity, still, still_too});
+    VolumeDesc volume;
+    volume.file = fixture.folder / "flow.vdb";
+    volume.where = "test";
+    volume.motion = MotionDesc{{"v.x", "v.y", "v.z"}, volume.file, false, {}, 0, "test.velocity"};
+    EmissionDesc emission = flame({3, 2, 1});
+    emission.stimulus = EmissionDesc::Stimulus{EmissionDesc::Stimulus::Quantity::speed, 1.5, 2.5};
+    const TestScene scene(glowing(volume, emission));
+    const Medium& medium = scene.assembled().water.medium;
+    const Ray ray = scene.assembled().camera->refracted_ray(4.5, 3.5).value();
+    const double slant = 1 / ray.direction.z;
+    const PixelResult pixel = scene.pixel(4, 3);
+    for (std::size_t band = 0; band < 3; ++band) {
+        const double c = medium.uniform.attenuation(band) * slant;
+        const double truth = (3 - static_cast<double>(band)) * slant *
+                             (std::exp(-c * 1.5) - (1 + c) * std::exp(-c * 2.5)) / (c * c);
+        // The light fades over a voxel around its far face, where it is brightest, and the voxels
+        // next to the faces have the shares at their centres: of a voxel's third moment, 1e-3 of
+        // it.
+        EXPECT_NEAR(pixel.direct[band], truth, 2e-3 * truth) << band;
+    }
+}
+
 // Within a gas that absorbs as much as it emits, and is as hot everywhere, one sees a blackbody.
 TEST(Glows, AreInEquilibriumInAFurnace) {
     const GlowFixture fixture;
