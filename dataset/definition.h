@@ -28,7 +28,7 @@ struct Exposures {
 /// What a data set is: which views it has, and what is written of each. Two processes that work on
 /// the same folder have the same, as its file `dataset.json` says.
 struct DatasetDefinition {
-    std::string program;     // "uwvdb 0.1.0"
+    std::string program;     // "uwvdb 1.0.0"
     std::string command;     // by which it can be made again
     std::string scene;       // its file's name, without folder
     std::string scene_hash;  // SceneDesc::hash

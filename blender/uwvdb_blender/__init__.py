@@ -5,7 +5,7 @@ bl_info = {
     "name": "uwvdb",
     "description": "Renders underwater scenes with lamps, plumes and camera housings",
     "author": "uwvdb maintainers",
-    "version": (0, 1, 0),
+    "version": (1, 0, 0),
     "blender": (3, 4, 0),
     "location": "Render > Render Engine > uwvdb",
     "category": "Render",

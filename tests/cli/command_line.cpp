@@ -13,7 +13,7 @@ class CommandLine : public test::CliTest {};
 TEST_F(CommandLine, VersionAndHelpGoToStdout) {
     const test::ProgramResult version = run({"--version"});
     EXPECT_EQ(version.exit_code, 0);
-    EXPECT_TRUE(version.out.starts_with("uwvdb 0.")) << version.out;
+    EXPECT_TRUE(version.out.starts_with("uwvdb 1.")) << version.out;
     // Scripts read the first line, which has two words; further ones are for people.
     const std::string first = version.out.substr(0, version.out.find('\n'));
     EXPECT_EQ(std::ranges::count(first, ' '), 1) << version.out;

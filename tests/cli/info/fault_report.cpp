@@ -35,7 +35,7 @@ class FaultReport : public test::CliTest {
 TEST_F(FaultReport, NeedsNoScene) {
     const std::string text = report({});
     expect_parts(text,
-                 {"uwvdb 0.", "\nBuilt with\n    OpenVDB ", "\nMachine\n", ", Linux ", ", glibc ",
+                 {"uwvdb 1.", "\nBuilt with\n    OpenVDB ", "\nMachine\n", ", Linux ", ", glibc ",
                   " processors, ", " GB of memory, ", "\nLoaded\n", "/libopenvdb.so"});
     // Sorted by name, the program is before or after its libraries, by where it was built.
     expect_parts(text, {"\nLoaded\n", "/uwvdb\n"});
