@@ -1,0 +1,11 @@
+#pragma once
+
+#include <mutex>
+
+namespace uw {
+
+/// To be held while FFTW makes or destroys a plan: its planner, unlike its transforms, is not
+/// thread safe.
+std::mutex& fourier_planner();
+
+}  // namespace uw
