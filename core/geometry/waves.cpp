@@ -25,7 +25,8 @@
 #include "core/base/numerics.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/image/image_formats.h"
+#include "core/image/image_file.h"
+#include "core/image/pixel_image.h"
 
 namespace uw {
 
@@ -527,28 +528,21 @@ class RandomSea : public WaterWaves::Shape {
 class ImageHeights : public WaterWaves::Shape {
   public:
     ImageHeights(const HeightImageDesc& desc, const SourceLocation& where) {
-        const std::shared_ptr<const PartialImage> image = open_partial_image(desc.file, 0);
-        if (!image)
-            throw InputError(fmt::format(
-                "{}: {}: heights are read from OpenEXR or TIFF files, by OpenImageIO; save the "
-                "image as one, in metres",
-                where, desc.file.string()));
-        const int width = image->width, height = image->height;
+        const PixelImage image = read_linear_image(desc.file);
+        const int width = image.width, height = image.height;
         if (width < 2 || height < 2 || std::int64_t{width} * height > k_most_heights)
             throw InputError(fmt::format("{}: {}: {} times {} heights; give 2 times 2 to {} in all",
                                          where, desc.file.string(), width, height, k_most_heights));
-        const auto channels = static_cast<std::size_t>(image->channels);
         step_ = desc.width / width;
         lattice_.step = step_;
         lattice_.nodes.assign(width, height);
-        const bool is_read = image->read_all([&](int y0, int y1, const float* values) {
-            for (int y = y0; y < y1; ++y)
-                for (int x = 0; x < width; ++x, values += channels)
-                    lattice_.nodes(x, height - 1 - y).h = static_cast<double>(values[0]);
-        });
-        if (!is_read)
-            throw InputError(fmt::format("{}: {}: the image is damaged; save it again", where,
-                                         desc.file.string()));
+        const auto channels = static_cast<std::size_t>(image.channels);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                lattice_.nodes(x, height - 1 - y).h = static_cast<double>(
+                    image.pixels[channels *
+                                 (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                  static_cast<std::size_t>(x))]);
         for (const HeightLattice::Node& node : lattice_.nodes)
             if (!std::isfinite(node.h))
                 throw InputError(fmt::format("{}: {}: has a height that is not a finite number",

@@ -84,7 +84,8 @@ struct WaveStatistics {
 ///   spectrum, their phases random, each by the seed and (i, j) alone: a finer resolution adds
 ///   small waves to the same large ones. Between heights it is bicubic, by the derivatives of the
 ///   sum itself.
-/// - An image: bicubic, by central differences. The place (0, 0) is its lower left corner.
+/// - An image, of linear floating-point values: bicubic, by central differences. The place (0, 0)
+/// is its lower left corner.
 ///
 /// Slopes are the derivatives of the heights, and continuous. Immutable, and safe to use from
 /// several threads; the same for any number of them.

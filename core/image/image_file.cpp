@@ -30,9 +30,7 @@ bool starts_with(std::span<const std::byte> encoded, std::initializer_list<int> 
                       [](int a, std::byte b) { return a == std::to_integer<int>(b); });
 }
 
-}  // namespace
-
-PixelImage read_image(const std::filesystem::path& file) {
+std::vector<std::byte> read_encoded(const std::filesystem::path& file) {
     std::error_code status;
     // A pipe or device under an image's name would block the reader.
     if (!std::filesystem::is_regular_file(file, status))
@@ -44,7 +42,26 @@ PixelImage read_image(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     in.read(reinterpret_cast<char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
     if (!in) throw IoError(file.string() + ": cannot read the image file; check its permissions");
-    return read_image(encoded, file.string());
+    return encoded;
+}
+
+}  // namespace
+
+PixelImage read_image(const std::filesystem::path& file) {
+    return read_image(read_encoded(file), file.string());
+}
+
+PixelImage read_linear_image(const std::filesystem::path& file) {
+    const std::vector<std::byte> encoded = read_encoded(file);
+    const std::optional<ImageFormat> format = other_image_format(encoded, file.string());
+    PixelImage image;
+    if (format) image = read_other_image(encoded, *format, file.string(), ImageRange::any);
+    if (!image.is_linear)
+        throw InputError(
+            file.string() +
+            ": not an image of linear floating-point values; save it as OpenEXR, or as "
+            "TIFF or Radiance HDR");
+    return image;
 }
 
 PixelImage read_image(std::span<const std::byte> encoded, const std::string& name) {

@@ -22,6 +22,10 @@ PixelImage read_image(const std::filesystem::path& file);
 /// The same for an image in memory; messages call it `name`. Throws InputError.
 PixelImage read_image(std::span<const std::byte> encoded, const std::string& name);
 
+/// Reads an image of light or lengths: OpenEXR, TIFF or Radiance HDR with linear floating-point
+/// values, which are as they are in the file. Throws as read_image, and InputError for others.
+PixelImage read_linear_image(const std::filesystem::path& file);
+
 /// The layout of an image file, without its pixels.
 struct ImageLayout {
     int width = 0, height = 0;  // of the whole image

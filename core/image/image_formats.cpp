@@ -79,7 +79,7 @@ bool is_stopped() {
 }  // namespace
 
 PixelImage read_other_image(std::span<const std::byte> encoded, const ImageFormat& format,
-                            const std::string& name) {
+                            const std::string& name, ImageRange range) {
     static const ModuleFunction module = load_function(k_module, k_decode_image);
     if (module.address == nullptr)
         throw InputError(fmt::format(
@@ -87,11 +87,12 @@ PixelImage read_other_image(std::span<const std::byte> encoded, const ImageForma
             "JPEG{}",
             name, format.name, module.fault, k_package, see_troubleshooting("Installing")));
     return decode_other_image(*reinterpret_cast<DecodeImage*>(module.address), encoded, format,
-                              name);
+                              name, range);
 }
 
 PixelImage decode_other_image(DecodeImage& decode, std::span<const std::byte> encoded,
-                              const ImageFormat& format, const std::string& name) {
+                              const ImageFormat& format, const std::string& name,
+                              ImageRange range) {
     PixelImage image;
     const ImageReceiver receiver{
         [&](int width, int height, int channels, bool is_linear) {
@@ -113,6 +114,7 @@ PixelImage decode_other_image(DecodeImage& decode, std::span<const std::byte> en
     if (!fault.empty())
         throw InputError(fmt::format("{}: cannot read the {} image: {}; save it again, or as PNG",
                                      name, format.name, fault));
+    if (range == ImageRange::any) return image;
     for (float& value : image.pixels)
         value = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, 1.0F);
     return image;

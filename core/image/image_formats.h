@@ -33,10 +33,14 @@ std::optional<ImageFormat> other_image_format(std::span<const std::byte> encoded
 /// Whether `file` has the ending of a format that read_image knows.
 bool has_ending_of_image(const std::filesystem::path& file);
 
-/// Decodes an image; messages call it `name`. Floating-point values are linear and clamped to 0..1.
-/// Throws InputError if it is damaged, too large, or if there is no module.
+/// What becomes of an image's values: those of colours are clamped to 0..1, and 0 for NaN; those of
+/// light or lengths stay as they are, and may be anything.
+enum class ImageRange { unit, any };
+
+/// Decodes an image; messages call it `name`. Floating-point values are linear. Throws InputError
+/// if it is damaged, too large, or if there is no module.
 PixelImage read_other_image(std::span<const std::byte> encoded, const ImageFormat& format,
-                            const std::string& name);
+                            const std::string& name, ImageRange range = ImageRange::unit);
 
 /// An image that is read in parts, when they are needed, since all of it would fill the memory.
 /// Threads may read at once.
@@ -123,7 +127,8 @@ inline constexpr const char* k_open_parts = "uwvdb_open_parts_1";
 
 /// read_other_image by this function of a module. Throws InputError.
 PixelImage decode_other_image(DecodeImage& decode, std::span<const std::byte> encoded,
-                              const ImageFormat& format, const std::string& name);
+                              const ImageFormat& format, const std::string& name,
+                              ImageRange range = ImageRange::unit);
 
 /// What the module exports as k_encode_image: writes an image to the file `path`, whatever its
 /// ending.

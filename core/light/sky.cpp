@@ -11,8 +11,12 @@
 #include <variant>
 
 #include "core/base/error.h"
+#include "core/base/grid2d.h"
 #include "core/base/numerics.h"
+#include "core/geometry/mesh.h"
+#include "core/image/image_file.h"
 #include "core/image/spectral_bands.h"
+#include "core/light/sun.h"
 
 namespace uw {
 
@@ -74,6 +78,95 @@ SampledCurve daylight_spectrum(double x, double y) {
     return spectrum;
 }
 
+/// A lattice of directions as a quadrature: rows of equal elevation, columns of equal azimuth, each
+/// with the radiance there.
+struct Sky::Quadrature {
+    struct Row {
+        double cosine;       // of the angle from the zenith
+        double solid_angle;  // of each of its columns [sr]
+
+        double sine() const { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
+    };
+    std::vector<Row> rows;      // from the zenith down
+    std::vector<double> edges;  // sines of the angles between rows, from 0 to 1: one more than rows
+    std::vector<double> column_sines, column_cosines;  // of azimuths, counterclockwise from east
+    double column_width = 0;                           // [rad]
+    std::size_t bands = 0;
+    std::vector<double> radiance;  // scaled, row by row, column by column
+
+    Vector3 towards(std::size_t row, std::size_t column) const {
+        const double sine = rows[row].sine();
+        return {sine * column_cosines[column], sine * column_sines[column], rows[row].cosine};
+    }
+    std::span<const double> radiance_at(std::size_t row, std::size_t column) const {
+        return std::span(radiance).subspan((row * column_sines.size() + column) * bands, bands);
+    }
+    void set_columns(std::size_t count, double first) {
+        column_width = 2 * std::numbers::pi / static_cast<double>(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double azimuth = first + (static_cast<double>(i) + 0.5) * column_width;
+            column_sines.push_back(std::sin(azimuth));
+            column_cosines.push_back(std::cos(azimuth));
+        }
+    }
+    // Gauss's rule with two nodes in each of so many intervals of the cosine is exact for what is
+    // cubic in it within them, and the midpoint rule converges quickly for what is periodic.
+    // `first`: the azimuth at which columns begin, the sun's, so that they are the same on both
+    // sides of it.
+    static Quadrature even(double first) {
+        constexpr int k_intervals = 64;
+        constexpr std::size_t k_columns = 256;
+        Quadrature quadrature;
+        quadrature.set_columns(k_columns, first);
+        for (int i = k_intervals - 1; i >= 0; --i) {
+            const std::span<const QuadratureNode> nodes = gauss_legendre(2);
+            const double lower = std::min(nodes[0].position, nodes[1].position);
+            for (const double position : {1 - lower, lower})
+                quadrature.rows.push_back(
+                    {(i + position) / k_intervals, 0.5 / k_intervals * quadrature.column_width});
+        }
+        quadrature.set_edges();
+        return quadrature;
+    }
+    void set_edges() {
+        double cosine = 1;
+        edges = {0};
+        for (const Row& row : rows) {
+            cosine -= row.solid_angle / column_width;
+            const double clamped = std::max(0.0, cosine);
+            edges.push_back(std::sqrt(1 - clamped * clamped));
+        }
+    }
+    /// Evaluates the sky everywhere.
+    template <class Radiance>
+    void fill(std::size_t band_count, const Radiance& of) {
+        bands = band_count;
+        radiance.clear();
+        for (std::size_t row = 0; row < rows.size(); ++row)
+            for (std::size_t column = 0; column < column_sines.size(); ++column) {
+                const Spectrum at = of(towards(row, column));
+                radiance.insert(radiance.end(), at.begin(),
+                                at.begin() + static_cast<std::ptrdiff_t>(bands));
+            }
+    }
+    /// int f cos theta dOmega of a function of row and column.
+    template <class Function>
+    double irradiance(const Function& function) const {
+        double sum = 0;
+        for (std::size_t row = 0; row < rows.size(); ++row) {
+            double of_row = 0;
+            for (std::size_t column = 0; column < column_sines.size(); ++column)
+                of_row += function(row, column);
+            sum += of_row * rows[row].cosine * rows[row].solid_angle;
+        }
+        return sum;
+    }
+    double irradiance_in(std::size_t band) const {
+        return irradiance(
+            [&](std::size_t row, std::size_t column) { return radiance_at(row, column)[band]; });
+    }
+};
+
 /// The sky's radiance up to a factor per band.
 class Sky::Distribution {
   public:
@@ -88,6 +181,12 @@ class Sky::Distribution {
     virtual Spectrum radiance(const Vector3& towards) const = 0;
     /// Relative luminance. Where there is none, lux become watts through a spectrum.
     virtual std::optional<double> luminance(const Vector3& /*towards*/) const { return {}; }
+    /// All of it, with its radiance; `sun`: the azimuth of the sun, counterclockwise from east.
+    virtual Sky::Quadrature quadrature(std::size_t bands, double sun) const {
+        Quadrature result = Quadrature::even(sun);
+        result.fill(bands, [&](const Vector3& towards) { return radiance(towards); });
+        return result;
+    }
 };
 
 namespace {
@@ -245,6 +344,112 @@ class ClearSky : public Sky::Distribution {
     std::array<double, 3> luminance_of_components_{};
 };
 
+/// An image of all directions.
+class PanoramaSky : public Sky::Distribution {
+  public:
+    PanoramaSky(const SkyDesc& desc, std::span<const double> bands_nm)
+        : to_bands_({bands_nm.begin(), bands_nm.end()}), rotate_(desc.rotate * k_degree) {
+        const PixelImage image = read_linear_image(desc.file);
+        if (image.width != 2 * image.height || image.height < 2 || image.height % 2 != 0)
+            throw InputError(
+                fmt::format("{}: {}: {} x {} pixels; a panorama of all directions is twice as wide "
+                            "as high, and "
+                            "an even number of pixels high",
+                            desc.where, desc.file.string(), image.width, image.height));
+        pixels_.assign(image.width, image.height / 2);  // above the horizon
+        const auto channels = static_cast<std::size_t>(image.channels);
+        for (std::size_t i = 0; i < pixels_.size(); ++i)
+            for (std::size_t c = 0; c < 3; ++c) {
+                // Grey ones have one channel, or two with alpha.
+                const float value = image.pixels[i * channels + (channels < 3 ? 0 : c)];
+                if (!std::isfinite(value))
+                    throw InputError(fmt::format(
+                        "{}: {}: has a value that is not a finite number; save it again",
+                        desc.where, desc.file.string()));
+                pixels_[i][c] = std::max(0.0, static_cast<double>(value));
+            }
+    }
+
+    Spectrum radiance(const Vector3& towards) const override {
+        const double azimuth = std::atan2(towards.x, towards.y);  // from north, clockwise
+        const double elevation = std::asin(std::clamp(towards.z, -1.0, 1.0));
+        const double pixel = 2 * std::numbers::pi / pixels_.width();
+        const double x = (azimuth - rotate_ + std::numbers::pi) / pixel - 0.5;
+        const double y = std::clamp((0.5 * std::numbers::pi - elevation) / pixel - 0.5, 0.0,
+                                    static_cast<double>(pixels_.height() - 1));
+        const auto column = static_cast<int>(std::floor(x)), row = static_cast<int>(y);
+        const double across = x - column, down = y - row;
+        const int right = wrapped(column + 1), lower = std::min(row + 1, pixels_.height() - 1);
+        const int left = wrapped(column);
+        Rgb sum{};
+        for (std::size_t c = 0; c < 3; ++c)
+            sum[c] =
+                (1 - down) *
+                    ((1 - across) * pixels_(left, row)[c] + across * pixels_(right, row)[c]) +
+                down * ((1 - across) * pixels_(left, lower)[c] + across * pixels_(right, lower)[c]);
+        return to_bands_.from_rgb(sum);
+    }
+
+    /// Its pixels, or squares of them, so that a sun of a single one is not missed.
+    Sky::Quadrature quadrature(std::size_t bands, double /*sun*/) const override {
+        const int square = square_of_pixels();
+        const int columns = pixels_.width() / square;
+        const double pixel = 2 * std::numbers::pi / pixels_.width();
+        Sky::Quadrature result;
+        result.bands = bands;
+        // The left edge is the azimuth -180 + rotate; the columns of a quadrature go the other way.
+        result.set_columns(static_cast<std::size_t>(columns), -0.5 * std::numbers::pi - rotate_);
+        for (int top = 0; top < pixels_.height(); top += square) {
+            const int bottom = std::min(top + square, pixels_.height());
+            const double upper = std::cos(top * pixel), lower = std::cos(bottom * pixel);
+            const double horizon = bottom == pixels_.height() ? 0 : lower;
+            // With the mean cosine, cos theta dOmega of a row is exact.
+            result.rows.push_back(
+                {0.5 * (upper + horizon), (upper - horizon) * result.column_width});
+            for (int column = columns - 1; column >= 0; --column) {
+                const Spectrum mean =
+                    to_bands_.from_rgb(mean_of(column * square, square, top, bottom));
+                result.radiance.insert(result.radiance.end(), mean.begin(),
+                                       mean.begin() + static_cast<std::ptrdiff_t>(bands));
+            }
+        }
+        result.set_edges();
+        return result;
+    }
+
+  private:
+    int wrapped(int column) const {
+        return (column % pixels_.width() + pixels_.width()) % pixels_.width();
+    }
+    // The least number of pixels that divides the width into no more columns than that; single ones
+    // if it would leave too few.
+    int square_of_pixels() const {
+        constexpr int k_most_columns = 1024, k_fewest_columns = 256;
+        for (int side = 1; pixels_.width() / side >= k_fewest_columns; ++side)
+            if (pixels_.width() % side == 0 && pixels_.width() / side <= k_most_columns)
+                return side;
+        return 1;
+    }
+    // Weighted by cos theta dOmega.
+    Rgb mean_of(int left, int width, int top, int bottom) const {
+        const double pixel = 2 * std::numbers::pi / pixels_.width();
+        Rgb sum{};
+        double weights = 0;
+        for (int row = top; row < bottom; ++row) {
+            const double weight = std::sin((2 * row + 1) * pixel);  // of sin^2 over the row
+            weights += weight * width;
+            for (int column = left; column < left + width; ++column)
+                for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * pixels_(column, row)[c];
+        }
+        for (double& value : sum) value /= weights;
+        return sum;
+    }
+
+    ReflectanceBands to_bands_;
+    double rotate_;
+    Grid2D<Rgb> pixels_;
+};
+
 Vector3 sun_in_sky(const SkyDesc& desc, const Matrix3& world_from_sky) {
     struct Find {
         const Matrix3& world_from_sky;
@@ -254,6 +459,11 @@ Vector3 sun_in_sky(const SkyDesc& desc, const Matrix3& world_from_sky) {
             const double elevation = angles.elevation * k_degree;
             return {std::cos(elevation) * std::sin(azimuth),
                     std::cos(elevation) * std::cos(azimuth), std::sin(elevation)};
+        }
+        Vector3 operator()(const SunTimeDesc& moment) const {
+            const SunPosition sun =
+                sun_position(moment.unix_time, moment.latitude, moment.longitude);
+            return (*this)(SunAnglesDesc{sun.azimuth, sun.apparent_elevation()});
         }
         Vector3 operator()(const SunDirectionDesc& light) const {
             return glm::transpose(world_from_sky) * -light.direction;
@@ -270,93 +480,6 @@ Vector3 sun_in_sky(const SkyDesc& desc, const Matrix3& world_from_sky) {
 
 }  // namespace
 
-struct Sky::Quadrature {
-    struct Row {
-        double cosine;       // of the angle from the zenith
-        double solid_angle;  // of each of its columns [sr]
-
-        double sine() const { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
-    };
-    std::vector<Row> rows;      // from the zenith down
-    std::vector<double> edges;  // sines of the angles between rows, from 0 to 1: one more than rows
-    std::vector<double> column_sines, column_cosines;  // of azimuths, counterclockwise from east
-    double column_width = 0;                           // [rad]
-    std::size_t bands = 0;
-    std::vector<double> radiance;  // scaled, row by row, column by column
-
-    Vector3 towards(std::size_t row, std::size_t column) const {
-        const double sine = rows[row].sine();
-        return {sine * column_cosines[column], sine * column_sines[column], rows[row].cosine};
-    }
-    std::span<const double> radiance_at(std::size_t row, std::size_t column) const {
-        return std::span(radiance).subspan((row * column_sines.size() + column) * bands, bands);
-    }
-    void set_columns(std::size_t count, double first) {
-        column_width = 2 * std::numbers::pi / static_cast<double>(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const double azimuth = first + (static_cast<double>(i) + 0.5) * column_width;
-            column_sines.push_back(std::sin(azimuth));
-            column_cosines.push_back(std::cos(azimuth));
-        }
-    }
-    // Gauss's rule with two nodes in each of so many intervals of the cosine is exact for what is
-    // cubic in it within them, and the midpoint rule converges quickly for what is periodic.
-    // `first`: the azimuth at which columns begin, the sun's, so that they are the same on both
-    // sides of it.
-    static Quadrature even(double first) {
-        constexpr int k_intervals = 64;
-        constexpr std::size_t k_columns = 256;
-        Quadrature quadrature;
-        quadrature.set_columns(k_columns, first);
-        for (int i = k_intervals - 1; i >= 0; --i) {
-            const std::span<const QuadratureNode> nodes = gauss_legendre(2);
-            const double lower = std::min(nodes[0].position, nodes[1].position);
-            for (const double position : {1 - lower, lower})
-                quadrature.rows.push_back(
-                    {(i + position) / k_intervals, 0.5 / k_intervals * quadrature.column_width});
-        }
-        quadrature.set_edges();
-        return quadrature;
-    }
-    void set_edges() {
-        double cosine = 1;
-        edges = {0};
-        for (const Row& row : rows) {
-            cosine -= row.solid_angle / column_width;
-            const double clamped = std::max(0.0, cosine);
-            edges.push_back(std::sqrt(1 - clamped * clamped));
-        }
-    }
-    /// Evaluates the sky everywhere.
-    template <class Radiance>
-    void fill(std::size_t band_count, const Radiance& of) {
-        bands = band_count;
-        radiance.clear();
-        for (std::size_t row = 0; row < rows.size(); ++row)
-            for (std::size_t column = 0; column < column_sines.size(); ++column) {
-                const Spectrum at = of(towards(row, column));
-                radiance.insert(radiance.end(), at.begin(),
-                                at.begin() + static_cast<std::ptrdiff_t>(bands));
-            }
-    }
-    /// int f cos theta dOmega of a function of row and column.
-    template <class Function>
-    double irradiance(const Function& function) const {
-        double sum = 0;
-        for (std::size_t row = 0; row < rows.size(); ++row) {
-            double of_row = 0;
-            for (std::size_t column = 0; column < column_sines.size(); ++column)
-                of_row += function(row, column);
-            sum += of_row * rows[row].cosine * rows[row].solid_angle;
-        }
-        return sum;
-    }
-    double irradiance_in(std::size_t band) const {
-        return irradiance(
-            [&](std::size_t row, std::size_t column) { return radiance_at(row, column)[band]; });
-    }
-};
-
 namespace {
 
 std::shared_ptr<const Sky::Distribution> make_distribution(const SkyDesc& desc,
@@ -367,6 +490,8 @@ std::shared_ptr<const Sky::Distribution> make_distribution(const SkyDesc& desc,
             return std::make_shared<GreySky>(2, bands_nm.size());
         case SkyDesc::Model::clear:
             return std::make_shared<ClearSky>(desc.turbidity, *sun, bands_nm);
+        case SkyDesc::Model::panorama:
+            return std::make_shared<PanoramaSky>(desc, bands_nm);
         case SkyDesc::Model::uniform:
         case SkyDesc::Model::black:
             break;
@@ -379,6 +504,7 @@ std::shared_ptr<const Sky::Distribution> make_distribution(const SkyDesc& desc,
 std::optional<PerBand> wanted_irradiance(const SkyDesc& desc, std::span<const double> bands_nm) {
     if (desc.model == SkyDesc::Model::black) return PerBand(bands_nm.size(), 0.0);
     if (desc.irradiance && !desc.spectrum) return desc.irradiance;
+    if (desc.model == SkyDesc::Model::panorama && !desc.spectrum) return std::nullopt;
     if (bands_nm.size() < 2)
         throw InputError(
             fmt::format("{}: how much of a spectrum falls into a single band is undefined, as it "
@@ -413,9 +539,8 @@ Sky::Sky(const SkyDesc& desc, const Vector3& up, std::span<const double> bands_n
     const std::optional<PerBand> wanted = wanted_irradiance(desc, bands_nm);
     if (desc.sun) sun_ = sun_in_sky(desc, world_from_sky_);
     distribution_ = make_distribution(desc, sun_, bands_nm);
-    Quadrature quadrature = Quadrature::even(sun_ ? std::atan2(sun_->y, sun_->x) : 0);
-    quadrature.fill(bands_,
-                    [&](const Vector3& towards) { return distribution_->radiance(towards); });
+    Quadrature quadrature =
+        distribution_->quadrature(bands_, sun_ ? std::atan2(sun_->y, sun_->x) : 0);
     double whole = 1;
     if (desc.lux && !wanted)
         whole = *desc.lux / quadrature.irradiance([&](std::size_t row, std::size_t column) {

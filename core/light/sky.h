@@ -48,13 +48,17 @@ struct SkyDirection {
 ///   with coefficients linear in the turbidity. The spectrum is daylight_spectrum(x, y), of the
 ///   luminance Y by 683 lm/W, averaged over each band's interval (core/image/spectral_bands.h) and
 ///   never negative. Irradiance or lux scale it, per band or as a whole.
+/// - panorama: the image's R, G and B as reflectances become bands (ReflectanceBands), bilinear
+///   between the centres of pixels; values below 0 count as 0. Without an irradiance they are W
+///   m^-2 sr^-1. A sun in the image is part of the sky.
 ///
 /// Immutable, and safe to use from several threads.
 class Sky {
   public:
     /// `up`: out of the water, world, unit. Throws InputError for a sun below the horizon, for what
-    /// needs a spectrum if there is a single band, whose width is undefined, and for a spectrum
-    /// without light in any band; IoError for a file that cannot be read.
+    /// needs a spectrum if there is a single band, whose width is undefined, for a spectrum without
+    /// light in any band, and for an image that is no panorama of finite values; IoError for a file
+    /// that cannot be read.
     Sky(const SkyDesc& desc, const Vector3& up, std::span<const double> bands_nm);
 
     /// Maps sky space to the world; orthonormal.
@@ -86,13 +90,9 @@ class Sky {
     std::vector<SkyDirection> directions(int count, double water_index) const;
 
     class Distribution;
-
-  private:
-    /// A grid of directions as a quadrature: rows of equal elevation, columns of equal azimuth.
     struct Quadrature;
 
-    Spectrum scaled(const Spectrum& relative) const;
-
+  private:
     Matrix3 world_from_sky_{1.0};
     std::optional<Vector3> sun_;
     std::size_t bands_ = 0;

@@ -1,19 +1,126 @@
 #include "core/scene/sky_desc.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
 #include <memory>
 #include <string_view>
 #include <utility>
 
+#include "core/base/text.h"
+
 namespace uw {
 
+namespace {
+
+/// The number that the next `digits` characters of `text` are, which are taken from it; none if
+/// they are something else.
+std::optional<int> take_digits(std::string_view& text, std::size_t digits) {
+    int number = 0;
+    if (text.size() < digits) return std::nullopt;
+    for (std::size_t i = 0; i < digits; ++i) {
+        if (text[i] < '0' || text[i] > '9') return std::nullopt;
+        number = 10 * number + (text[i] - '0');
+    }
+    text.remove_prefix(digits);
+    return number;
+}
+
+bool take(std::string_view& text, std::string_view expected) {
+    if (!text.starts_with(expected)) return false;
+    text.remove_prefix(expected.size());
+    return true;
+}
+
+/// Hours and minutes, "12:30" [s].
+std::optional<int> take_hours(std::string_view& text) {
+    const std::optional<int> hours = take_digits(text, 2);
+    if (!hours || *hours > 23 || !take(text, ":")) return std::nullopt;
+    const std::optional<int> minutes = take_digits(text, 2);
+    if (!minutes || *minutes > 59) return std::nullopt;
+    return 3600 * *hours + 60 * *minutes;
+}
+
+/// A time with its zone, as ISO 8601 has it: "2024-06-21T12:30:00Z", "2024-06-21 14:30+02:00".
+std::optional<double> unix_time(std::string_view text) {
+    const std::optional<int> year = take_digits(text, 4);
+    if (!year || !take(text, "-")) return std::nullopt;
+    const std::optional<int> month = take_digits(text, 2);
+    if (!month || !take(text, "-")) return std::nullopt;
+    const std::optional<int> day = take_digits(text, 2);
+    if (!day || !(take(text, "T") || take(text, " "))) return std::nullopt;
+    const std::chrono::year_month_day date{std::chrono::year(*year),
+                                           std::chrono::month(static_cast<unsigned>(*month)),
+                                           std::chrono::day(static_cast<unsigned>(*day))};
+    const std::optional<int> hours = take_hours(text);
+    if (!date.ok() || !hours) return std::nullopt;
+    double seconds = 0;
+    if (take(text, ":")) {
+        const std::optional<int> whole = take_digits(text, 2);
+        if (!whole || *whole > 59) return std::nullopt;
+        seconds = *whole;
+        if (take(text, "."))
+            for (double unit = 0.1; !text.empty() && text.front() >= '0' && text.front() <= '9';
+                 unit /= 10)
+                seconds += unit * *take_digits(text, 1);
+    }
+    int zone = 0;
+    const bool is_east = take(text, "+");
+    if (is_east || take(text, "-")) {
+        const std::optional<int> offset = take_hours(text);
+        if (!offset) return std::nullopt;
+        zone = is_east ? *offset : -*offset;
+    } else if (!take(text, "Z")) {
+        return std::nullopt;
+    }
+    if (!text.empty()) return std::nullopt;
+    const std::chrono::sys_days days(date);
+    return 86400.0 * static_cast<double>(days.time_since_epoch().count()) + *hours + seconds - zone;
+}
+
+SunTimeDesc read_sun_time(ConfigMap& map) {
+    constexpr auto k_example =
+        "write {time: 2024-06-21T12:30:00Z, latitude: 54.3, longitude: 10.1}";
+    const ConfigValue time = map.require("time", k_example);
+    const std::optional<double> moment = unix_time(time.text(k_example));
+    if (!moment)
+        time.fail(fmt::format(
+            "no time '{}'; give date, time and zone, such as 2024-06-21T12:30:00Z (UTC) or "
+            "2024-06-21T14:30:00+02:00",
+            printable(time.node().scalar)));
+    SunTimeDesc sun;
+    sun.unix_time = *moment;
+    // Meeus' formulas hold for some centuries around 2000.
+    constexpr double k_year_1900 = -2208988800, k_year_2101 = 4133980800;
+    if (sun.unix_time < k_year_1900 || sun.unix_time >= k_year_2101)
+        time.fail("is not from 1900 to 2100, for which the sun's position is known; give another");
+    sun.latitude = map.require("latitude", k_example)
+                       .within(-90, 90, "give the latitude in degrees, northward");
+    sun.longitude = map.require("longitude", k_example)
+                        .within(-180, 180, "give the longitude in degrees, eastward");
+    return sun;
+}
+
+}  // namespace
+
 SunPositionDesc read_sun_position(const ConfigValue& value, const SceneContext& /*context*/) {
-    constexpr auto k_example = "write {azimuth: 180, elevation: 40} or {direction: [0.3, -1, 0]}";
-    ConfigMap map(value, {"azimuth", "elevation", "direction"}, k_example);
+    constexpr auto k_example =
+        "write {azimuth: 180, elevation: 40}, {direction: [0.3, -1, 0]} or {time: "
+        "2024-06-21T12:30:00Z, latitude: 54.3, longitude: 10.1}";
+    ConfigMap map(value, {"azimuth", "elevation", "direction", "time", "latitude", "longitude"},
+                  k_example);
     if (const auto direction = map.find("direction")) {
         map.finish("a sun with 'direction'");
         return SunDirectionDesc{
             direction->direction("give the direction in which its light travels in the air")};
+    }
+    if (map.has("time")) {
+        const SunTimeDesc sun = read_sun_time(map);
+        map.finish("a sun with 'time'");
+        return sun;
     }
     SunAnglesDesc angles;
     angles.elevation =
@@ -22,6 +129,7 @@ SunPositionDesc read_sun_position(const ConfigValue& value, const SceneContext& 
     angles.azimuth =
         map.require("azimuth", k_example)
             .within(-360, 360, "give the sun's angle from north, clockwise from above, in degrees");
+    map.finish("a sun with 'elevation'");
     return angles;
 }
 
@@ -29,7 +137,11 @@ namespace {
 
 using SkyModel = SkyDesc::Model;
 
-// As much as no clear sky's model says by itself.
+/// Whether an image or a model says by itself how bright it is.
+bool has_own_brightness(SkyModel model) {
+    return model == SkyModel::clear || model == SkyModel::panorama;
+}
+
 void read_brightness(ConfigMap& map, const SceneContext& context, SkyDesc& sky) {
     if (const auto entry = map.find("spectrum")) sky.spectrum = read_spectrum(*entry, context);
     const auto irradiance = map.find("irradiance"), lux = map.find("lux");
@@ -46,18 +158,24 @@ void read_brightness(ConfigMap& map, const SceneContext& context, SkyDesc& sky) 
             lux->fail(
                 "only the sky's spectrum can convert lux to watts; give it, such as spectrum: "
                 "{type: d65}");
-    } else if (sky.model != SkyModel::clear) {
+    } else if (!has_own_brightness(sky.model)) {
         map.value().fail(
             "does not say how bright it is; give irradiance in W/m2 of a horizontal surface in "
             "the air, or its spectrum and lux");
     } else if (sky.spectrum) {
         map.value().fail(
-            "a clear sky has a spectrum of its own; give irradiance or lux with this one, or "
-            "remove it");
+            "this sky has a spectrum of its own; give irradiance or lux with another one, or "
+            "remove "
+            "it");
     }
     if (sky.irradiance &&
         std::ranges::all_of(*sky.irradiance, [](double value) { return value == 0; }))
         context.warn(*irradiance, "is 0 in every band: this sky is dark; model: black is the same");
+}
+
+void read_north(ConfigMap& map, SkyDesc& sky) {
+    if (const auto north = map.find("north"))
+        sky.north = north->direction("give the world's direction to the north, not all 0");
 }
 
 void read_clear(ConfigMap& map, const SceneContext& context, SkyDesc& sky) {
@@ -66,27 +184,38 @@ void read_clear(ConfigMap& map, const SceneContext& context, SkyDesc& sky) {
     if (const auto turbidity = map.find("turbidity"))
         sky.turbidity = turbidity->within(
             2, 10, "give the air's turbidity: 2 is very clear, 3 clear, 6 hazy, 10 foggy");
-    if (const auto north = map.find("north"))
-        sky.north = north->direction("give the world's direction to the north, not all 0");
+    read_north(map, sky);
+}
+
+void read_panorama(ConfigMap& map, const SceneContext& context, SkyDesc& sky) {
+    sky.file = read_existing_file(
+        map.require("file", "name a panorama in OpenEXR, TIFF or Radiance HDR"), context);
+    if (const auto rotate = map.find("rotate"))
+        sky.rotate = rotate->within(
+            -360, 360, "give the panorama's turn in degrees, clockwise from above, from north");
+    read_north(map, sky);
 }
 
 }  // namespace
 
 SkyDesc read_sky(const ConfigValue& value, const SceneContext& context) {
     constexpr auto k_example = "write {model: overcast, lux: 10000, spectrum: {type: d65}}";
-    ConfigMap map(
-        value, {"model", "irradiance", "lux", "spectrum", "turbidity", "sun", "north", "samples"},
-        k_example);
+    ConfigMap map(value,
+                  {"model", "irradiance", "lux", "spectrum", "turbidity", "sun", "file", "rotate",
+                   "north", "samples"},
+                  k_example);
     SkyDesc sky;
     sky.where = value.location();
     constexpr auto k_models =
         std::to_array<std::pair<std::string_view, SkyModel>>({{"uniform", SkyModel::uniform},
                                                               {"black", SkyModel::black},
                                                               {"overcast", SkyModel::overcast},
-                                                              {"clear", SkyModel::clear}});
+                                                              {"clear", SkyModel::clear},
+                                                              {"panorama", SkyModel::panorama}});
     const ConfigValue model = map.require("model", k_example);
     sky.model = model.choice(k_models);
     if (sky.model == SkyModel::clear) read_clear(map, context, sky);
+    if (sky.model == SkyModel::panorama) read_panorama(map, context, sky);
     if (sky.model != SkyModel::black) {
         read_brightness(map, context, sky);
         if (const auto samples = map.find("samples"))

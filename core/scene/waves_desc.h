@@ -49,8 +49,9 @@ struct WaveSpectrumDesc {
 
 /// Heights from an image, which repeats.
 struct HeightImageDesc {
-    std::filesystem::path file;  ///< OpenEXR or TIFF of floating-point numbers; channel 1 [m]
-    double width = 0;            ///< of the whole image, along u [m], > 0; its pixels are square
+    std::filesystem::path
+        file;          ///< of linear floating-point values, OpenEXR or TIFF; channel 1 [m]
+    double width = 0;  ///< of the whole image, along u [m], > 0; its pixels are square
 
     friend bool operator==(const HeightImageDesc&, const HeightImageDesc&) = default;
 };

@@ -8,14 +8,21 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/image/film.h"
+#include "core/image/image_file.h"
 #include "core/image/spectral_bands.h"
 #include "tests/support/adaptive_quadrature.h"
 #include "tests/support/fresnel_by_angles.h"
 #include "tests/support/message_of.h"
+#include "tests/support/scene_folder.h"
 
 namespace uw::test {
 namespace {
@@ -371,6 +378,126 @@ TEST(Sky, WaterTransmitsAsFresnelSays) {
                     fresnel_by_angles(degrees * k_degree, 1, 1.34).mean(), 1e-12);
     EXPECT_NEAR(transmittance_into_water(0, 1.34), 0, 1e-12);
     EXPECT_NEAR(transmittance_into_water(0.1, 1), 1, 1e-12);
+}
+
+TEST(Sky, StandsByTheClock) {
+    // Berlin at noon, UTC: by NREL's Solar Position Algorithm 203.723, 59.296 with refraction.
+    SkyDesc desc = clear_sky(0, 0);
+    desc.sun = SunTimeDesc{1624276800, 52.52, 13.405};
+    const Sky by_time = made(desc), by_angles = made(clear_sky(203.723, 59.296));
+    EXPECT_NEAR(glm::length(*by_time.sun() - *by_angles.sun()), 0, 0.01 * k_degree);
+    desc.sun = SunTimeDesc{1624276800 - 43200, 52.52, 13.405};
+    EXPECT_NE(message_of<InputError>([&] { made(desc); }).find("below the horizon"),
+              std::string::npos);
+}
+
+class Panorama : public ::testing::Test {
+  protected:
+    /// An image of `width` times half as many pixels with these R, G and B by azimuth from north
+    /// and elevation [rad].
+    template <class Colour>
+    SkyDesc write(int width, const Colour& colour) const {
+        const int height = width / 2;
+        Film film(width, height, {0, 0, width, height}, {"R", "G", "B", "A"});
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                const std::array<double, 3> rgb = colour((x + 0.5) / width * 2 * k_pi - k_pi,
+                                                         0.5 * k_pi - (y + 0.5) / height * k_pi);
+                for (std::size_t c = 0; c < 3; ++c)
+                    film.pixel(x, y)[c] = static_cast<float>(rgb[c]);
+                film.pixel(x, y)[k_alpha] = 1;
+            }
+        SkyDesc desc;
+        desc.model = SkyDesc::Model::panorama;
+        desc.file = folder_.path() / "sky.exr";
+        desc.where = "sky";
+        ExrOptions options;
+        options.precision = ExrOptions::Precision::single;
+        write_exr(desc.file, film, {}, options);
+        return desc;
+    }
+    /// Brighter than 1, and brightest in the east.
+    static std::array<double, 3> smooth(double azimuth, double elevation) {
+        const double east = std::sin(azimuth) * std::cos(elevation);
+        return {3 + 2 * east, 2, 1 + std::sin(elevation)};
+    }
+
+    SceneFolder folder_;
+};
+
+TEST_F(Panorama, HasItsLightWhereTheImageHasIt) {
+    const Sky sky = made(write(512, smooth));
+    for (const auto& [azimuth, elevation] : {std::pair{0.3, 0.5}, {-2.0, 0.02}, {3.13, 1.2}}) {
+        const Vector3 direction{std::cos(elevation) * std::sin(azimuth),
+                                std::cos(elevation) * std::cos(azimuth), std::sin(elevation)};
+        // Bilinear between pixels of 0.012 rad.
+        for (std::size_t band = 0; band < 3; ++band)
+            EXPECT_NEAR(sky.radiance(direction)[band], smooth(azimuth, elevation)[band], 1e-3);
+    }
+    // int cos theta dOmega = pi, int cos^2 theta dOmega = 2 pi / 3; the east cancels.
+    EXPECT_NEAR(sky.irradiance()[0], 3 * k_pi, 1e-4);
+    EXPECT_NEAR(sky.irradiance()[1], 2 * k_pi, 1e-4);
+    EXPECT_NEAR(sky.irradiance()[2], k_pi + 2 * k_pi / 3, 1e-3);
+    // Turned by a quarter, what was in the east is in the south.
+    SkyDesc turned = write(512, smooth);
+    turned.rotate = 90;
+    EXPECT_NEAR(made(turned).radiance(glm::normalize(Vector3(0, -1, 0.1)))[0],
+                sky.radiance(glm::normalize(Vector3(1, 0, 0.1)))[0], 1e-9);
+    turned.irradiance = PerBand{5, 6, 7};
+    EXPECT_NEAR(made(turned).irradiance()[2], 7, 1e-12);
+    // Its directions carry its light, to the side that it comes from.
+    Vector3 vector(0);
+    for (const SkyDirection& direction : sky.directions(64, 1))
+        vector += direction.normal_irradiance()[0] * direction.towards;
+    EXPECT_NEAR(vector.z, 3 * k_pi, 1e-3);
+    // int (3 + 2 e) e dOmega = 2 int e^2 dOmega = 4 pi / 3, and 0 to the north. Parts are as wide
+    // as 0.4 rad, over which directions are not parallel: cos 0.2 on average.
+    EXPECT_NEAR(vector.x, 4 * k_pi / 3, 0.05 * 4 * k_pi / 3);
+    EXPECT_NEAR(vector.y, 0, 0.01);
+}
+
+TEST_F(Panorama, LosesNoSmallSun) {
+    // One pixel of 2048 x 1024 that is as bright as half of the sky: squares of 2 x 2 are summed.
+    int lit = 0;
+    const auto colour = [&](double azimuth, double elevation) -> std::array<double, 3> {
+        const double pixel = 2 * k_pi / 2048;
+        const bool is_sun =
+            std::abs(azimuth - 1) < 0.5 * pixel && std::abs(elevation - 0.7) < 0.5 * pixel;
+        lit += is_sun;
+        return is_sun ? std::array<double, 3>{1e6, 1e6, 1e6} : std::array<double, 3>{1, 1, 1};
+    };
+    const Sky sky = made(write(2048, colour));
+    ASSERT_EQ(lit, 1);
+    const double pixel = 2 * k_pi / 2048;
+    // cos theta dOmega of that pixel, whose centre is at most half a pixel from there.
+    const double sun = 1e6 * pixel * pixel * std::cos(0.7) * std::sin(0.7);
+    EXPECT_NEAR(sky.irradiance()[1], k_pi + sun, 1e-3 * sun);
+    // Nearly half of the directions are wanted for it, and one has all of it.
+    const std::vector<SkyDirection> directions = sky.directions(32, k_index);
+    EXPECT_LT(directions.size(), 32U);
+    double most = 0;
+    for (const SkyDirection& direction : directions)
+        most = std::max(most, direction.normal_irradiance()[1] * direction.towards.z);
+    EXPECT_NEAR(most, sun, 0.01 * sun);
+}
+
+TEST_F(Panorama, RefusesWhatIsNone) {
+    const auto message = [&](const SkyDesc& desc) {
+        return message_of<InputError>([&] { made(desc); });
+    };
+    SkyDesc desc = write(64, [](double, double) {
+        return std::array<double, 3>{std::numeric_limits<double>::quiet_NaN(), 0, 0};
+    });
+    EXPECT_NE(message(desc).find("not a finite number"), std::string::npos);
+    Film square(32, 32, {0, 0, 32, 32}, {"R", "G", "B", "A"});
+    write_exr(desc.file, square, {}, {});
+    EXPECT_NE(message(desc).find("twice as wide as high"), std::string::npos);
+    desc.file = folder_.write("sky.png", "x");
+    EXPECT_NE(message(desc).find("save it as OpenEXR"), std::string::npos);
+    // Light that is asked for in a band must be in the image.
+    desc = write(64, [](double, double) { return std::array<double, 3>{1, 0, 1}; });
+    desc.irradiance = PerBand{1, 1, 1};
+    EXPECT_NE(message(desc).find("no light of 540 nm"), std::string::npos);
 }
 
 }  // namespace

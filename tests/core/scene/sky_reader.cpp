@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/scene/yaml_document.h"
 #include "tests/support/message_of.h"
+#include "tests/support/scene_folder.h"
 
 namespace uw::test {
 namespace {
@@ -26,8 +28,9 @@ class SkyReader : public ::testing::Test {
         EXPECT_EQ(message.find("scene.yaml:1:"), 0U) << message;
     }
 
+    SceneFolder folder_;
     std::vector<std::string> warnings_;
-    SceneContext context_{".", 3, &warnings_};
+    SceneContext context_{folder_.path(), 3, &warnings_};
 };
 
 TEST_F(SkyReader, ReadsEachModel) {
@@ -56,6 +59,56 @@ TEST_F(SkyReader, ReadsEachModel) {
     EXPECT_EQ(read("{model: uniform, irradiance: 4}").irradiance, (PerBand{4, 4, 4}));
     EXPECT_EQ(read("{model: uniform, irradiance: 4, spectrum: {type: d65}}").irradiance,
               (PerBand{4}));
+}
+
+TEST_F(SkyReader, ReadsTheSunsTimeAndPlace) {
+    const auto time_of = [&](const std::string& text) {
+        const SkyDesc sky =
+            read("{model: clear, sun: {time: " + text + ", latitude: 54.3, longitude: -10.1}}");
+        const auto sun = std::get<SunTimeDesc>(*sky.sun);
+        EXPECT_EQ(sun.latitude, 54.3);
+        EXPECT_EQ(sun.longitude, -10.1);
+        return sun.unix_time;
+    };
+    // By `date -u -d ... +%s`.
+    EXPECT_EQ(time_of("2024-06-21T12:30:00Z"), 1718973000);
+    EXPECT_EQ(time_of("2024-06-21T14:30:00+02:00"), 1718973000);
+    EXPECT_EQ(time_of("'2024-06-21 08:45-03:45'"), 1718973000);
+    EXPECT_NEAR(time_of("2024-02-29T23:59:59.25Z"), 1709251199.25, 1e-6);
+    EXPECT_EQ(time_of("1970-01-01T00:00Z"), 0);
+    const auto refused = [&](const std::string& time) {
+        expect_refused("{model: clear, sun: {time: '" + time + "', latitude: 1, longitude: 2}}",
+                       "time");
+    };
+    for (const char* const time :
+         {"2024-06-21T12:30:00", "2024-06-21", "2023-02-29T12:00Z", "2024-06-21T24:00Z",
+          "2024-06-21T12:60Z", "2024-06-21T12:30:00Zulu", "21.6.2024 12:00Z", "noon",
+          "1899-12-31T12:00Z", "2101-01-01T00:00Z", "2024-06-21T12:30:00+2"})
+        refused(time);
+    time_of("2100-12-31T23:59Z");
+    expect_refused("{model: clear, sun: {time: 2024-06-21T12:30Z, latitude: 1}}", "longitude");
+    expect_refused("{model: clear, sun: {time: 2024-06-21T12:30Z, latitude: 91, longitude: 0}}",
+                   "latitude");
+    expect_refused("{model: clear, sun: {latitude: 1, longitude: 0, elevation: 3, azimuth: 3}}",
+                   "a sun with 'elevation'");
+}
+
+TEST_F(SkyReader, ReadsPanoramas) {
+    const std::filesystem::path file = folder_.write("sky.hdr", "x");
+    const SkyDesc sky =
+        read("{model: panorama, file: sky.hdr, rotate: -30, north: [1, 0, 0], samples: 64}");
+    EXPECT_EQ(sky.model, SkyDesc::Model::panorama);
+    EXPECT_TRUE(std::filesystem::equivalent(sky.file, file));
+    EXPECT_EQ(sky.rotate, -30);
+    EXPECT_EQ(*sky.north, Vector3(1, 0, 0));
+    EXPECT_FALSE(sky.irradiance);
+    EXPECT_EQ(read("{model: panorama, file: sky.hdr, irradiance: 2}").irradiance,
+              (PerBand{2, 2, 2}));
+    expect_refused("{model: panorama}", "file");
+    expect_refused("{model: panorama, file: none.hdr}", "none.hdr");
+    expect_refused("{model: panorama, file: sky.hdr, lux: 4}", "spectrum");
+    expect_refused("{model: panorama, file: sky.hdr, turbidity: 4}", "sky model 'panorama'");
+    expect_refused("{model: uniform, irradiance: 1, file: sky.hdr}", "sky model 'uniform'");
 }
 
 TEST_F(SkyReader, RefusesWhatItDoesNotUse) {
