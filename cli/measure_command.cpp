@@ -217,8 +217,9 @@ PlotFigure figure_of(const std::string& title, const std::vector<SensorReadings>
         PlotPanel panel;
         panel.title = of.sensor->name;
         const bool has_depth = of.readings.front().depth.has_value();
-        panel.x = {has_depth ? "depth [m]" : "way along the line [m]", {}};
-        panel.y = {"irradiance [W/m²]", {.scale = AxisScale::log}};
+        panel.x.label = has_depth ? "depth [m]" : "way along the line [m]";
+        panel.y.label = "irradiance [W/m²]";
+        panel.y.request.scale = AxisScale::log;
         for (std::size_t b = 0; b < bands.size(); ++b)
             for (const auto& [value, dashes] :
                  {std::pair{&MeterReading::down, ""}, std::pair{&MeterReading::up, "6 3"}}) {

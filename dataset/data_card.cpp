@@ -51,7 +51,8 @@ Json water_json(const SceneDesc& scene) {
 Json lamps_json(const SceneDesc& scene) {
     Json lamps = Json::array();
     for (const LampDesc& lamp : scene.lamps) {
-        const char* const frame = lamp.sun               ? "sun"
+        const char* const frame = lamp.sky               ? "sky"
+                                  : lamp.sun             ? "sun"
                                   : lamp.glow            ? "volume"
                                   : lamp.fixed_to_camera ? "camera"
                                   : lamp.fixed_to_rig    ? "rig"

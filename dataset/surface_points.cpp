@@ -99,7 +99,8 @@ std::vector<SurfacePoint> point_seeds(const DatasetDefinition& definition, std::
         for (const ImageSight& sight : sights_of(camera, side, surfaces)) {
             if (!sight.hit) continue;
             const SurfaceName& object = surfaces.names().objects[sight.hit->object_id - 1];
-            if (is_still(scene.geometry[object.entry])) points.push_back({sight.hit->position});
+            if (object.entry && is_still(scene.geometry[*object.entry]))
+                points.push_back({sight.hit->position});
         }
     }
     return points;

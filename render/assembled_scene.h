@@ -13,6 +13,7 @@
 #include "core/light/lamps_in_view.h"
 #include "core/light/sky.h"
 #include "core/light/slabs.h"
+#include "core/light/sun_focus.h"
 #include "core/paths/scattering_tables.h"
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
@@ -39,6 +40,8 @@ struct AssembledScene {
     std::optional<WaterSurface> water_surface;  // which reflects; none: the water has no end
     /// With it, the field and its mirror image above (SubmergedField).
     std::shared_ptr<const ConcentrationField> field_with_image;
+    /// How waves focus each sun, by its lamp's index; null: they do not.
+    std::vector<std::shared_ptr<const SunFocus>> sun_foci;
     std::vector<Lamp> lamps;                 // as the description has them, each at its centre
     std::vector<Lamp> emitters;              // the points that they consist of (LitScene::emitters)
     std::vector<LampSurface> lamp_surfaces;  // of those with an extent

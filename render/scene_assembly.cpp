@@ -15,6 +15,7 @@
 #include "core/light/submerged.h"
 #include "core/passes/forward_images.h"
 #include "core/paths/path_tracer.h"
+#include "core/scene/waves_desc.h"
 #include "media/volumes/load_volumes.h"
 #include "render/scene_cache.h"
 
@@ -105,6 +106,14 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
         scene.lamps.push_back(make_lamp(lamp, desc.camera.world_from_camera,
                                         scene.water.medium.wavelengths_nm, scene.warnings));
         const std::size_t index = scene.lamps.size() - 1;
+        if (index < scene.sun_foci.size() && scene.sun_foci[index]) {
+            // The disc is in the map already.
+            scene.emitters.push_back(
+                scene.lamps.back()
+                    .emitter(index, scene.lamps.back().sunlight()->direction, 1)
+                    .focused(scene.sun_foci[index]));
+            continue;
+        }
         append_emitters(lamp, scene.lamps.back(), index, thinning, desc.camera.world_from_camera,
                         scene.emitters);
         if (scene.water_surface) append_mirror_images(*scene.water_surface, first, scene.emitters);
@@ -123,14 +132,51 @@ SkyRadiance radiance_of(const std::optional<Sky>& sky) {
 void submerge(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
     const std::optional<WaterSurfaceDesc>& surface = desc.water.surface;
     if (!surface || !surface->n) return;
-    scene.water_surface.emplace(*surface);
+    scene.water_surface.emplace(*surface, scene.image.time().value_or(0));
     for (const LampDesc& lamp : desc.lamps)
         if (lamp.sky) scene.sky.emplace(*lamp.sky, surface->normal, desc.water.bands_nm);
-    const SubmergedParts& parts =
-        cache.submerged(*surface, scene.surfaces, scene.field, radiance_of(scene.sky));
+    const SubmergedParts& parts = cache.submerged(*scene.water_surface, *surface, scene.surfaces,
+                                                  scene.field, radiance_of(scene.sky));
     scene.surfaces = parts.surfaces;
     scene.field = parts.field;
     scene.field_with_image = parts.field_with_image;
+}
+
+// The water that maps of caustics hold: a tile of the sea, else around the camera.
+SunFocus::Extent extent_of_focus(const SceneDesc& desc, const AssembledScene& scene) {
+    constexpr double k_side = 32, k_least_depth = 2, k_margin = 1.2;
+    const WaterSurface& surface = *scene.water_surface;
+    const Vector3 camera =
+        surface.coordinates(at_origin_plus(scene.camera->world_from_camera().offset()));
+    SunFocus::Extent extent{.side = k_side, .u = camera.x, .v = camera.y};
+    if (const auto* sea = std::get_if<WaveSpectrumDesc>(&desc.water.surface->waves->shape))
+        extent = {.side = sea->tile, .is_periodic = true};
+    double depth = std::max(k_least_depth, -camera.z);
+    const auto include = [&](const Point3& x) { depth = std::max(depth, -surface.height(x)); };
+    if (const Bounds bounds = scene.surfaces->bounds(); !bounds.empty())
+        for (int corner = 0; corner < 8; ++corner)
+            include({(corner & 1 ? bounds.max : bounds.min).x,
+                     (corner & 2 ? bounds.max : bounds.min).y,
+                     (corner & 4 ? bounds.max : bounds.min).z});
+    for (const GeometryDesc& geometry : desc.geometry)
+        if (geometry.type == GeometryDesc::Type::plane) include(geometry.point);
+    extent.depth = k_margin * depth;
+    return extent;
+}
+
+// Precondition: the scene has surfaces.
+void focus_suns(const SceneDesc& desc, AssembledScene& scene) {
+    constexpr int k_resolution = 512, k_draft_resolution = 256;
+    if (!scene.water_surface || !scene.water_surface->has_waves()) return;
+    const bool is_draft = desc.render.quality == RenderDesc::Quality::draft;
+    const SunFocus::Extent extent = extent_of_focus(desc, scene);
+    for (const LampDesc& lamp : desc.lamps)
+        scene.sun_foci.push_back(
+            lamp.sun && !lamp.sky
+                ? std::make_shared<const SunFocus>(*scene.water_surface, lamp.direction,
+                                                   glm::radians(lamp.sun->angle), extent,
+                                                   is_draft ? k_draft_resolution : k_resolution)
+                : nullptr);
 }
 
 // Precondition: the lamps are placed.
@@ -143,13 +189,14 @@ void check_below_surface(const SceneDesc& desc, const AssembledScene& scene) {
             desc.water.forward_scatter.where));
     const auto refuse = [&](const auto& where, const char* what, double height) {
         throw InputError(fmt::format(
-            "{}: {} is {:.3g} m above water.surface, which refracts: what is seen or lit from the "
-            "air is not rendered; move it below",
+            "{}: {} is {:.3g} m above water.surface, or among its waves; what is seen or lit from "
+            "the air is not rendered; move it below",
             where, what, height));
     };
     const double camera =
         scene.water_surface->height(at_origin_plus(scene.camera->world_from_camera().offset()));
-    if (camera > 0) refuse(desc.file.filename().string(), "the camera", camera);
+    if (camera > scene.water_surface->lowest())
+        refuse(desc.file.filename().string(), "the camera", camera);
     for (const Lamp& emitter : scene.emitters) {
         if (emitter.sunlight() || emitter.is_mirrored()) continue;
         const double height = scene.water_surface->height(emitter.position());
@@ -213,6 +260,7 @@ AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
     scene.geometry_warnings = built.warnings;
     append(scene.warnings, scene.geometry_warnings);
     submerge(desc, cache, scene);
+    focus_suns(desc, scene);
     scene.glows = cache.glows(desc, scene.warnings);
     place_lamps(desc, scene);
     check_below_surface(desc, scene);
@@ -237,6 +285,7 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
     moved.surfaces = scene.surfaces;
     moved.water_surface = scene.water_surface;
     moved.sky = scene.sky;
+    moved.sun_foci = scene.sun_foci;
     moved.field_with_image = scene.field_with_image;
     if (desc.geometry != scene.desc().geometry) {
         moved.surfaces = cache.surfaces_of_moment(desc).surfaces;

@@ -210,13 +210,13 @@ SurfaceSet SceneCache::surfaces_of_moment(const SceneDesc& then) {
     return set;
 }
 
-const SubmergedParts& SceneCache::submerged(const WaterSurfaceDesc& desc,
+const SubmergedParts& SceneCache::submerged(const WaterSurface& surface,
+                                            const WaterSurfaceDesc& desc,
                                             std::shared_ptr<const Surfaces> surfaces,
                                             std::shared_ptr<const ConcentrationField> field,
                                             SkyRadiance sky) {
-    if (sky || !submerged_ || submerged_->surface != desc || submerged_->surfaces != surfaces ||
-        submerged_->field != field) {
-        const WaterSurface surface(desc);
+    if (sky || surface.has_waves() || !submerged_ || submerged_->surface != desc ||
+        submerged_->surfaces != surfaces || submerged_->field != field) {
         SubmergedParts parts{std::make_shared<SubmergedSurfaces>(surfaces, surface, std::move(sky)),
                              std::make_shared<SubmergedField>(field, surface, false),
                              std::make_shared<SubmergedField>(field, surface, true)};

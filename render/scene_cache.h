@@ -67,9 +67,10 @@ class SceneCache {
     /// are.
     SurfaceSet surfaces_of_moment(const SceneDesc& then);
 
-    /// What is below a water surface that reflects, as light meets it there. Without a sky they are
-    /// the same objects if they are asked for again with the same arguments.
-    const SubmergedParts& submerged(const WaterSurfaceDesc& surface,
+    /// What is below a water surface that reflects, as light meets it there. Calm and without
+    /// a sky they are the same objects if they are asked for again with the same arguments. `desc`:
+    /// what the surface was made of.
+    const SubmergedParts& submerged(const WaterSurface& surface, const WaterSurfaceDesc& desc,
                                     std::shared_ptr<const Surfaces> surfaces,
                                     std::shared_ptr<const ConcentrationField> field,
                                     SkyRadiance sky);

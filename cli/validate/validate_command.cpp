@@ -1,5 +1,6 @@
 #include "cli/validate/validate_command.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "cli/console.h"
 #include "cli/process.h"
+#include "cli/report.h"
 #include "cli/validate/validation_report.h"
 #include "core/base/error.h"
 #include "core/base/output_files.h"
@@ -19,6 +21,7 @@
 #include "render/scene_loading.h"
 #include "render/scene_rendering.h"
 #include "validation/built_in_suite.h"
+#include "validation/published.h"
 
 namespace uw {
 
@@ -27,6 +30,7 @@ namespace {
 const char* const k_validate_examples = R"(Examples:
   uwvdb validate
   uwvdb validate plume.yaml --report plume.html
+  uwvdb validate --published
   uwvdb validate uniform.yaml --set water.absorption=0.1 --tolerance 0.002
 
 Computes a scene in every available way and compares the results, per component and band:
@@ -35,7 +39,8 @@ constant value against the volume integrator in uniform water (grids replaced by
 the scene's own grids the volume against the reference integrator. If the scene has forward scatter,
 its effect is compared, too, also with a sum over all pairs of pixels. If it has multiple
 scattering, the fast form is compared with unbiased light paths, in units of their standard errors.
-Without a scene: a built-in suite, which compares light paths with tables, too.
+Without a scene: a built-in suite, which compares light paths with tables, too. --published: canonical
+problems of ocean optics, and corners of boards in photographs through ports.
 Exit codes: 0 all within the tolerance, 5 not; 1 internal fault, 2 wrong usage, 3 bad input,
 4 cannot read or write, 130 interrupted.)";
 
@@ -44,6 +49,8 @@ Options validate_options(ValidateArguments& a) {
     options.path("SCENE", "", a.scene, "scene file; default: the built-in suite");
     options.set(a.overrides);
     options.path("--report", "FILE.html", a.report, "write one HTML page with pictures and plots");
+    options.flag("--published", a.published,
+                 "compare with what others have published and photographed, some minutes");
     options.number("--tolerance", "R", a.tolerance, 0, 1,
                    "largest relative difference allowed at a pixel; default 0.001");
     options.threads(a.threads);
@@ -54,10 +61,41 @@ Options validate_options(ValidateArguments& a) {
 
 }  // namespace
 
+namespace {
+
+bool run_published(const ValidateArguments& a, std::ostream& out) {
+    if (!a.scene.empty() || !a.report.empty())
+        throw UsageError(
+            "--published: has its own scenes, and a table alone; leave out SCENE and "
+            "--report");
+    PublishedOptions options;
+    if (!a.quiet) options.say = [](const std::string& what) { print_message(what + "\n"); };
+    const std::vector<PublishedFigure> figures = compare_with_published(options);
+    std::vector<std::vector<std::string>> rows{
+        {"source", "quantity", "published", "spread", "ours", "±", "difference", ""}};
+    bool passed = true;
+    for (const PublishedFigure& figure : figures) {
+        passed = passed && figure.passed();
+        rows.push_back({figure.source, figure.quantity, fmt::format("{:.4g}", figure.published),
+                        figure.spread > 0 ? fmt::format("{:.1f} %", 100 * figure.spread) : "",
+                        fmt::format("{:.4g}", figure.ours),
+                        figure.error > 0 ? fmt::format("{:.1f} %", 100 * figure.error) : "",
+                        fmt::format("{:+.2f} %", 100 * figure.difference()),
+                        figure.passed() ? "" : "FAILED"});
+    }
+    for (const std::string& row : aligned_rows(rows, 2)) out << row << '\n';
+    out << (passed ? "validation passed" : "validation FAILED") << '\n';
+    if (!out.flush()) throw IoError("standard output: cannot write; is the disk full?");
+    return passed;
+}
+
+}  // namespace
+
 bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out) {
     const ThreadLimit limit(a.threads);
     if (a.scene.empty() && !a.overrides.empty())
         throw UsageError("--set: the built-in suite has no scene file to change; name a scene");
+    if (a.published) return run_published(a, out);
     if (!a.report.empty()) const AtomicFile probe(a.report);
     const ValidationSuite suite;
     std::vector<std::pair<std::string, SceneDesc>> scenes = suite.scenes();

@@ -15,6 +15,7 @@ struct ValidateArguments {
     std::vector<std::string> overrides;  // --set key.path=value
     std::filesystem::path report;        // --report: HTML
     double tolerance = 1e-3;
+    bool published = false;
     int threads = 0;  // 0: all
     bool quiet = false;
 };

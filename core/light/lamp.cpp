@@ -6,12 +6,14 @@
 #include <variant>
 
 #include "core/light/lamp_profile.h"
+#include "core/light/sun_focus.h"
 
 namespace uw {
 
 Sunlight Sunlight::from_air(const Vector3& direction, const WaterSurfaceDesc& surface) {
     if (!surface.n) return {direction, surface};
-    return {WaterSurface(surface).into_water(direction), surface};
+    const WaterSurfaceDesc calm = without_waves(surface);
+    return {WaterSurface(calm).into_water(direction), calm};
 }
 
 double distance_aside(const Point3& point, double patch_radius, const Ray& ray) {
@@ -69,6 +71,16 @@ Lamp Lamp::mirrored(const WaterSurface& surface) const {
     image.position_ = surface.mirrored(position_);
     image.mirror_ = surface;
     return image;
+}
+
+Lamp Lamp::focused(std::shared_ptr<const SunFocus> focus) const {
+    Lamp sun = *this;
+    sun.focus_ = std::move(focus);
+    return sun;
+}
+
+double Lamp::focus(const Point3& x) const {
+    return focus_ ? focus_->at(x) : 1;
 }
 
 Lamp Lamp::brightened(double factor) const {
@@ -150,11 +162,21 @@ Interval Lamp::below_surface(const Ray& ray, const Interval& stretch) const {
     return below.length() > 0 ? below : dark;
 }
 
+// Every other texel, within reason: what lies far away is seen through much water.
+void Lamp::append_focus_breaks(const Ray& ray, const Interval& stretch,
+                               std::vector<double>& s) const {
+    constexpr int k_most_breaks = 1000;
+    const double step = 2 * focus_->texel() / std::max(1e-6, focus_->slide(ray.direction));
+    for (int i = 1; i <= k_most_breaks && stretch.begin + i * step < stretch.end; ++i)
+        s.push_back(stretch.begin + i * step);
+}
+
 void Lamp::append_profile_breaks(const Ray& ray, const Interval& stretch,
                                  std::vector<double>& s) const {
     if (sunlight_) {
         const double slope = sunlight_->slope(ray.direction);
         if (slope != 0) s.push_back(-sunlight_->length_to(ray.origin) / slope);
+        if (focus_) append_focus_breaks(ray, stretch, s);
         return;
     }
     const auto append_breaks = [&](const Ray& seen, const Point3& from) {

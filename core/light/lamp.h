@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +17,8 @@
 #include "core/scene/scene_context.h"
 
 namespace uw {
+
+class SunFocus;
 
 /// Parallel light that enters the water through its plane surface. There is none above.
 struct Sunlight {
@@ -106,6 +109,11 @@ class Lamp {
     std::size_t index() const { return index_; }
     /// The share of that lamp's light that comes from here.
     double share() const { return share_; }
+    /// The same sun, focused by waves.
+    Lamp focused(std::shared_ptr<const SunFocus> focus) const;
+    /// By what its light at `x` is multiplied where waves focus it (SunFocus); else 1.
+    double focus(const Point3& x) const;
+
     /// Whether it is a mirror image, above the surface.
     bool is_mirrored() const { return mirror_.has_value(); }
     /// Null unless it is a sun.
@@ -160,6 +168,7 @@ class Lamp {
                                std::vector<double>& s) const;
 
   private:
+    void append_focus_breaks(const Ray& ray, const Interval& stretch, std::vector<double>& s) const;
     Interval below_surface(const Ray& ray, const Interval& stretch) const;
 
     std::string name_;
@@ -167,7 +176,8 @@ class Lamp {
     LampProfile profile_;
     Spectrum axis_intensity_{};
     std::optional<Sunlight> sunlight_;
-    std::optional<WaterSurface> mirror_;  // of an image, whose profile_ is that of the original
+    std::shared_ptr<const SunFocus> focus_;  // null: none
+    std::optional<WaterSurface> mirror_;     // of an image, whose profile_ is that of the original
     std::size_t index_ = 0;
     double share_ = 1;
     std::optional<LampPatch> patch_;

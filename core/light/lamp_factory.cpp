@@ -88,7 +88,7 @@ Spectrum axis_intensity(const LampDesc& desc, const LampProfile& profile, std::s
 // on a wider beam.
 double irradiance_below(const WaterSurfaceDesc& surface, const Vector3& direction) {
     if (!surface.n) return 1;
-    const WaterSurface boundary(surface);
+    const WaterSurface boundary(without_waves(surface));
     const double in_air = -glm::dot(direction, surface.normal);
     const double in_water = -glm::dot(boundary.into_water(direction), surface.normal);
     return (1 - boundary.reflectance_from_air(in_air)) * in_air / in_water;
@@ -251,7 +251,8 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
 }
 
 Lamp make_lamp(const LampDesc& desc, const Sky& sky) {
-    return {desc.name, Sunlight{desc.direction, desc.sun->surface}, sky.irradiance()};
+    return {desc.name, Sunlight{desc.direction, without_waves(desc.sun->surface)},
+            sky.irradiance()};
 }
 
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,

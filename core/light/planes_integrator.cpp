@@ -131,7 +131,8 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
         const Point3 origin = lamp.origin(x);
         const Vector3 from_lamp = x - origin;
         const double radius = std::sqrt(glm::dot(from_lamp, from_lamp) + aside);
-        const double relative = lamp.holds(radius) ? 0.0 : lamp.relative_intensity(from_lamp);
+        const double relative =
+            lamp.holds(radius) ? 0.0 : lamp.relative_intensity(from_lamp) * lamp.focus(x);
         if (relative <= 0 || scene_.surfaces->occluded(origin, x)) continue;
         w.lit.push_back(i);
         w.path.push_back(radius + sample.s);

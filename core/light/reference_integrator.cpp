@@ -108,7 +108,7 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
     const Vector3 from_lamp = x - origin;
     const double aside = lamp.aside(ray);
     const double radius = std::sqrt(glm::dot(from_lamp, from_lamp) + aside);
-    const double relative = lamp.relative_intensity(from_lamp);
+    const double relative = lamp.relative_intensity(from_lamp) * lamp.focus(x);
     if (lamp.holds(radius) || relative <= 0 || scene_.surfaces->occluded(origin, x)) return {};
     // psi is the angle between the directions of travel: w_in = from_lamp, w_out = -ray.direction.
     const Vector3 across = glm::cross(from_lamp, ray.direction);
@@ -214,7 +214,7 @@ class QuadratureIntegrator::RayIntegral {
     // The light scattered at `s` by `psi`, attenuated over the `path` from the lamp to the camera.
     Spectrum scattered(double psi, double s, double path, double weight) const {
         const Point3 x = ray_.at(s), origin = lamp_.origin(x);
-        const double relative = lamp_.relative_intensity(x - origin);
+        const double relative = lamp_.relative_intensity(x - origin) * lamp_.focus(x);
         Spectrum value{};
         if (relative <= 0 || owner_.scene_.surfaces->occluded(origin, x)) return value;
         const Medium& medium = *owner_.scene_.medium;
@@ -306,7 +306,8 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
             const Point3 origin = lamp.origin(hit.position);
             const Vector3 v = origin - hit.position;
             const double r2 = glm::dot(v, v);
-            const double geometry_term = lamp.relative_intensity(-v) * glm::dot(hit.normal, v) /
+            const double geometry_term = lamp.relative_intensity(-v) * lamp.focus(hit.position) *
+                                         glm::dot(hit.normal, v) /
                                          (lamp.spread(std::sqrt(r2)) * std::sqrt(r2));
             if (geometry_term <= 0 || glm::dot(hit.geometric_normal, v) <= 0) continue;
             double& share = light.visible_share(i, j);

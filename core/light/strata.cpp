@@ -35,8 +35,7 @@ void Strata::add_column(const Point3& a, const Point3& b, std::span<double> colu
 
 // Interval by interval, in each of which the mean of the values at both ends is that of all between
 // them: no difference of large integrals loses digits, however level the way is.
-void Strata::add_straight_column(const Point3& a, const Point3& b,
-                                 std::span<double> column) const {
+void Strata::add_straight_column(const Point3& a, const Point3& b, std::span<double> column) const {
     const double from = std::min(depth(a), depth(b)), to = std::max(depth(a), depth(b));
     const double length = distance(a, b);
     const auto add = [&](double first, double last, std::size_t i) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/light/lamp_profile.h"
+#include "core/light/integrator.h"
 
 namespace uw {
 
@@ -27,25 +27,30 @@ SubmergedSurfaces::SubmergedSurfaces(std::shared_ptr<const Surfaces> below,
       textures_(textures_of(*below_)),
       surface_(surface),
       sky_(std::move(sky)),
-      across_(LampPlacement{{}, surface.up()}.across()),
-      along_(glm::cross(surface.up(), across_)),
       names_(below_->names()) {
     names_.objects.push_back({"water surface", {}});
 }
 
+// `u` and `v` of the hit are where its light comes from in the air, in the plane of calm water:
+// what Surfaces::material needs.
 bool SubmergedSurfaces::meet_water_surface(const Ray& ray, double s_end, bool found,
                                            SurfaceHit& hit) const {
-    const std::optional<double> distance = surface_.crossing(ray);
-    if (!distance || *distance > (found ? hit.distance : s_end)) return found;
+    const std::optional<WaterSurface::Meeting> meeting =
+        surface_.meet(ray, found ? hit.distance : s_end);
+    if (!meeting) return found;
     hit = {};
-    hit.distance = *distance;
-    hit.position = ray.at(*distance);
-    hit.normal = hit.geometric_normal = -surface_.up();
+    hit.distance = meeting->distance;
+    hit.position = ray.at(meeting->distance);
+    hit.normal = hit.geometric_normal = -meeting->normal;
     hit.object_id = static_cast<std::uint32_t>(names_.objects.size());
     hit.is_water_surface = true;
-    hit.has_material = static_cast<bool>(sky_);
-    hit.u = glm::dot(ray.direction, across_);
-    hit.v = glm::dot(ray.direction, along_);
+    if (!sky_) return true;
+    const std::optional<Vector3> out = surface_.into_air(ray.direction, meeting->normal);
+    // Steep waves may refract light from below the horizon.
+    hit.has_material = out && glm::dot(*out, surface_.up()) > 0;
+    if (!hit.has_material) return true;
+    hit.u = glm::dot(*out, surface_.across());
+    hit.v = glm::dot(*out, surface_.along());
     return true;
 }
 
@@ -64,21 +69,21 @@ void SubmergedSurfaces::closest_hits(std::span<const Ray> rays, double s_end,
 SurfaceMaterial SubmergedSurfaces::material(const SurfaceHit& hit) const {
     if (!hit.is_water_surface) return below_->material(hit);
     SurfaceMaterial material;
-    const double cosine = std::sqrt(std::max(0.0, 1 - hit.u * hit.u - hit.v * hit.v));
-    const std::optional<Vector3> out =
-        surface_.into_air(hit.u * across_ + hit.v * along_ + cosine * surface_.up());
-    if (!sky_ || !out) return material;
-    material.emission = sky_(*out);
-    material.emission *=
-        (1 - surface_.reflectance_from_water(cosine)) * surface_.n() * surface_.n();
+    if (!hit.has_material) return material;
+    const double rise = std::sqrt(std::max(0.0, 1 - hit.u * hit.u - hit.v * hit.v));
+    const Vector3 towards =
+        hit.u * surface_.across() + hit.v * surface_.along() + rise * surface_.up();
+    material.emission = sky_(towards);
+    const double cosine = -glm::dot(towards, hit.geometric_normal);
+    material.emission *= (1 - surface_.reflectance_from_air(cosine)) * surface_.n() * surface_.n();
     return material;
 }
 
 double SubmergedSurfaces::hit_distance(const Ray& ray) const {
     if (!(surface_.height(ray.origin) > 0)) {
         const double distance = below_->hit_distance(ray);
-        const std::optional<double> crossing = surface_.crossing(ray);
-        return crossing ? std::min(distance, *crossing) : distance;
+        const auto meeting = surface_.meet(ray, std::min(distance, k_far));
+        return meeting ? meeting->distance : distance;
     }
     const Ray image = surface_.mirrored(ray);
     const double distance = below_->hit_distance(image);
@@ -95,8 +100,9 @@ void SubmergedSurfaces::hit_distances(const Point3& origin, std::span<const Vect
     }
     below_->hit_distances(origin, directions, distances);
     for (std::size_t i = 0; i < directions.size(); ++i)
-        if (const auto crossing = surface_.crossing({origin, directions[i]}))
-            distances[i] = std::min(distances[i], *crossing);
+        if (const auto meeting =
+                surface_.meet({origin, directions[i]}, std::min(distances[i], k_far)))
+            distances[i] = meeting->distance;
 }
 
 bool SubmergedSurfaces::occluded(const Point3& from, const Point3& to) const {

@@ -56,7 +56,6 @@ class SubmergedSurfaces final : public Surfaces, public TexturedSurfaces {
     const TexturedSurfaces* textures_;  // of `below_`; null: there are none
     WaterSurface surface_;
     SkyRadiance sky_;
-    Vector3 across_, along_;  // in the surface, unit
     SurfaceNames names_;
 };
 

@@ -241,7 +241,7 @@ struct Facing {
             // affects shading.
             const double towards = glm::dot(hit.normal, to_lamp);
             if (towards <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
-            const double relative = lamp.relative_intensity(-to_lamp);
+            const double relative = lamp.relative_intensity(-to_lamp) * lamp.focus(hit.position);
             if (relative <= 0) continue;
             const double radius = glm::length(to_lamp);
             samples.push_back(i);

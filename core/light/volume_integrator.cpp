@@ -166,7 +166,7 @@ void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, con
             const double radius = passage.radius(s);
             const Point3 x = ray.at(s);
             const double relative =
-                panel.evenly ? 1.0 : lamp.relative_intensity(x - lamp.origin(x));
+                (panel.evenly ? 1.0 : lamp.relative_intensity(x - lamp.origin(x))) * lamp.focus(x);
             nodes.s.push_back(s);
             nodes.radius.push_back(radius);
             nodes.weight.push_back(node.weight * length * relative / lamp.spread(radius));

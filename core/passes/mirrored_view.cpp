@@ -16,49 +16,59 @@ bool MirroredView::may_see(const RaySource& rays, const WaterSurface& surface) {
             const std::optional<Ray> ray =
                 rays.refracted_ray(static_cast<double>(i) / k_steps * rays.width(),
                                    static_cast<double>(j) / k_steps * rays.height());
-            if (ray && surface.crossing(*ray)) return true;
+            if (ray && surface.meet(*ray, k_far)) return true;
         }
     }
     return false;
 }
 
-double MirroredView::distance_to_surface(const Ray& ray) const {
+std::optional<WaterSurface::Meeting> MirroredView::meeting(const Ray& ray) const {
+    const std::optional<WaterSurface::Meeting> meeting = scene_.water_surface->meet(ray, k_far);
     SurfaceHit hit;
-    const bool meets_it = scene_.water_surface->crossing(ray) &&
-                          scene_.surfaces->closest_hit(ray, k_far, hit) && hit.is_water_surface;
-    return meets_it ? hit.distance : k_far;
+    if (!meeting || !scene_.surfaces->closest_hit(ray, k_far, hit) || !hit.is_water_surface)
+        return std::nullopt;
+    return meeting;
 }
 
 std::optional<Ray> MirroredView::mirrored(const std::optional<Ray>& ray) const {
     if (!ray) return std::nullopt;
-    const double distance = distance_to_surface(*ray);
-    if (!(distance < k_far)) return std::nullopt;
-    return Ray{ray->at(distance), scene_.water_surface->mirrored(ray->direction)};
+    const std::optional<WaterSurface::Meeting> meets = meeting(*ray);
+    if (!meets) return std::nullopt;
+    return scene_.water_surface->reflected(*ray, *meets);
 }
 
-Spectrum MirroredView::arriving(int x, int y) const {
-    // The centre tells for the whole pixel; at the edge of something else, any place that does not
-    // see that.
-    constexpr int k_places = 4;
-    double distance = k_far;
-    Ray seen;
-    const auto look = [&](double across, double down) {
-        const std::optional<Ray> ray = rays_.refracted_ray(x + across, y + down);
-        if (!ray) return;
-        seen = *ray;
-        distance = distance_to_surface(seen);
-    };
-    look(0.5, 0.5);
-    for (int k = 0; k < k_places * k_places && !(distance < k_far); ++k)
-        look((k % k_places + 0.5) / k_places, (k / k_places + 0.5) / k_places);
-    if (!(distance < k_far)) return {};
+bool MirroredView::add_arriving(double x, double y, Spectrum& sum) const {
+    const std::optional<Ray> ray = rays_.refracted_ray(x, y);
+    const std::optional<WaterSurface::Meeting> meets = ray ? meeting(*ray) : std::nullopt;
+    if (!meets) return false;
     thread_local std::vector<double> columns;
     columns.resize(attenuation_.constituents.size());
-    scene_.field->column(seen.origin, seen.at(distance), columns);
-    Spectrum arriving = attenuation_.transmittance(distance, columns);
-    arriving *= scene_.water_surface->reflectance_from_water(
-        glm::dot(seen.direction, scene_.water_surface->up()));
-    return arriving;
+    scene_.field->column(ray->origin, ray->at(meets->distance), columns);
+    Spectrum arriving = attenuation_.transmittance(meets->distance, columns);
+    arriving *=
+        scene_.water_surface->reflectance_from_water(glm::dot(ray->direction, meets->normal));
+    sum += arriving;
+    return true;
+}
+
+// The centre tells for all of the pixel, but on waves, and where something else hides the surface
+// there.
+Spectrum MirroredView::arriving(int x, int y) const {
+    constexpr int k_places = 4;
+    Spectrum sum{};
+    const bool has_waves = scene_.water_surface->has_waves();
+    if (!has_waves && add_arriving(x + 0.5, y + 0.5, sum)) return sum;
+    int count = 0;
+    for (int j = 0; j < k_places; ++j)
+        for (int i = 0; i < k_places; ++i) {
+            const bool meets =
+                add_arriving(x + (i + 0.5) / k_places, y + (j + 0.5) / k_places, sum);
+            if (!meets) continue;
+            ++count;
+            if (!has_waves) return sum;
+        }
+    if (count > 0) sum /= count;
+    return sum;
 }
 
 }  // namespace uw

@@ -4,6 +4,7 @@
 
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
+#include "core/geometry/water_surface.h"
 #include "core/light/integrator.h"
 
 namespace uw {
@@ -43,8 +44,10 @@ class MirroredView final : public RaySource {
     Affine world_from_camera_at(double y) const override { return rays_.world_from_camera_at(y); }
 
   private:
-    // k_far if it does not meet the surface.
-    double distance_to_surface(const Ray& ray) const;
+    // None if something else is nearer.
+    std::optional<WaterSurface::Meeting> meeting(const Ray& ray) const;
+    // Adds the share at image position (x, y); false if the surface is not seen there.
+    bool add_arriving(double x, double y, Spectrum& sum) const;
     std::optional<Ray> mirrored(const std::optional<Ray>& ray) const;
 
     const RaySource& rays_;

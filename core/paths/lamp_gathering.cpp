@@ -340,7 +340,7 @@ void LampGathering::gather_from_water(const WaterSegment& segment, const PathSta
     const Lamp& lamp = (*optics_.scene().emitters)[place->lamp];
     const Point3 x = segment.ray.at(s);
     const Point3 origin = lamp.origin(x);
-    const double relative = lamp.relative_intensity(x - origin);
+    const double relative = lamp.relative_intensity(x - origin) * lamp.focus(x);
     if (!(relative > 0) || optics_.scene().surfaces->occluded(origin, x)) return;
     optics_.look_up(segment, s, w.point);
     optics_.find_scattering(w.point);
@@ -388,7 +388,8 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
         const Vector3 to_lamp = lamps[j].origin(hit.position) - hit.position;
         const double towards = glm::dot(hit.normal, to_lamp);
         if (towards <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
-        const double relative = lamps[j].relative_intensity(-to_lamp);
+        const double relative =
+            lamps[j].relative_intensity(-to_lamp) * lamps[j].focus(hit.position);
         if (!(relative > 0)) continue;
         const double radius = glm::length(to_lamp);
         const double geometry = relative * towards / (lamps[j].spread(radius) * radius);

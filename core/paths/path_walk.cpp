@@ -157,14 +157,14 @@ bool PathWalk::meets_water_surface() const {
 
 Ray PathWalk::mirrored_ray() const {
     const WaterSegment& segment = workspace_of_thread().segment;
-    return {segment.hit.position,
-            tables_.optics.scene().water_surface->mirrored(segment.ray.direction)};
+    return tables_.optics.scene().water_surface->reflected(
+        segment.ray, {segment.hit.distance, -segment.hit.geometric_normal});
 }
 
 double PathWalk::reflectance_of_water_surface() const {
-    const WaterSurface& surface = *tables_.optics.scene().water_surface;
-    return surface.reflectance_from_water(
-        glm::dot(workspace_of_thread().segment.ray.direction, surface.up()));
+    const WaterSegment& segment = workspace_of_thread().segment;
+    return tables_.optics.scene().water_surface->reflectance_from_water(
+        -glm::dot(segment.ray.direction, segment.hit.geometric_normal));
 }
 
 void PathWalk::follow_mirrored() {

@@ -139,6 +139,9 @@ struct LampDesc {
     std::optional<TrajectoryDesc> trajectory;
     SourceLocation where;
 
+    /// Whether all that it is, is in another part of the scene: of a volume or the sky.
+    bool is_of_scene() const { return glow || sky; }
+
     /// Maps the lamp's frame to the world.
     const Affine& world_from_frame(const Affine& world_from_camera) const {
         return fixed_to_camera ? world_from_camera : world_from_mount;

@@ -18,6 +18,8 @@ namespace uw {
 /// One value per band of the scene, in the order of WaterDesc::bands_nm.
 using PerBand = std::vector<double>;
 
+struct WavesDesc;  // core/scene/waves_desc.h
+
 /// The surface of the water: a plane, through which sunlight enters.
 struct WaterSurfaceDesc {
     Point3 point;             ///< on it, world [m]
@@ -25,6 +27,7 @@ struct WaterSurfaceDesc {
     /// The water's refractive index against that of the air. None: light meets nothing there, and
     /// suns are what is left of them below.
     std::optional<double> n{};
+    std::shared_ptr<const WavesDesc> waves{};  ///< null: calm; only with `n`
 
     friend bool operator==(const WaterSurfaceDesc&, const WaterSurfaceDesc&) = default;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -11,6 +12,7 @@
 #include "core/base/spectrum.h"
 #include "core/scene/config_value.h"
 #include "core/scene/scene_context.h"
+#include "core/scene/waves_desc.h"
 
 namespace uw {
 
@@ -190,10 +192,10 @@ void read_dissolved(ConfigMap& map, WaterDesc& water) {
 // Of the water against the air.
 constexpr double k_least_n = 1.0001, k_greatest_n = 3;
 
-WaterSurfaceDesc read_surface(const ConfigValue& value) {
+WaterSurfaceDesc read_surface(const ConfigValue& value, const SceneContext& context) {
     constexpr auto k_example =
         "write {height: 10, n: 1.34}, or {point: [0, 10, 0], normal: [0, 1, 0]}";
-    ConfigMap map(value, {"height", "point", "normal", "n"}, k_example);
+    ConfigMap map(value, {"height", "point", "normal", "n", "waves"}, k_example);
     WaterSurfaceDesc surface;
     if (const auto height = map.find("height")) {
         for (const auto* const other : {"point", "normal"})
@@ -210,6 +212,13 @@ WaterSurfaceDesc read_surface(const ConfigValue& value) {
     if (const auto entry = map.find("n"))
         surface.n = entry->within(k_least_n, k_greatest_n,
                                   "give the water's refractive index against air, such as 1.34");
+    if (const auto entry = map.find("waves")) {
+        if (!surface.n)
+            entry->fail(
+                "waves are seen by what they refract and reflect, and the surface has no index; "
+                "add n: 1.34");
+        surface.waves = std::make_shared<const WavesDesc>(read_waves(*entry, context));
+    }
     return surface;
 }
 
@@ -288,7 +297,7 @@ WaterDesc read_water(const ConfigValue& value, SceneContext& context) {
     if (const auto entry = map.find("particles")) read_particles(*entry, water);
     if (const auto entry = map.find("forward_scatter"))
         water.forward_scatter = read_forward_scatter(*entry);
-    if (const auto entry = map.find("surface")) water.surface = read_surface(*entry);
+    if (const auto entry = map.find("surface")) water.surface = read_surface(*entry, context);
     context.water_surface = water.surface;
     if (const auto entry = map.find("profile")) {
         if (!water.surface)

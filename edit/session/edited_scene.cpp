@@ -65,9 +65,9 @@ EditedLamp make_edited_lamp(EditedScene& edited, const ConfigNode* entries, std:
     const SceneDesc& desc = edited.scene.desc();
     const LampDesc& lamp = desc.lamps[index];
     EditedLamp made;
-    if (lamp.glow) {  // all that it is, is in the rest of the scene
+    if (lamp.is_of_scene()) {
         made.brightness = per_band(edited.bands(), [](std::size_t) { return 1.0; });
-        made.key = "volume " + lamp.name;
+        made.key = "of the scene " + lamp.name;
         return made;
     }
     made.brightness =
@@ -276,6 +276,8 @@ std::string SceneChanges::entry_of(std::size_t lamp) const {
             "'{}' {}", this->lamp(lamp).name,
             this->lamp(lamp).glow
                 ? "is the light of a volume; change its emission in the scene file"
+            : this->lamp(lamp).sky
+                ? "is the light of the sky; change that in the scene file"
                 : "comes from a glTF file, which is not written here; change it there"));
     return fmt::format("lamps[{}]", *entry);
 }

@@ -24,7 +24,7 @@ constexpr const char* k_unlit = "unlit";
 
 // A lamp's image serves any brightness of it, unless it is rendered in the dark.
 void light_up(LampDesc& lamp, const Spectrum& brightness, std::size_t bands) {
-    if (lamp.glow || brightness.least(bands) > 0) return;
+    if (lamp.is_of_scene() || brightness.least(bands) > 0) return;
     lamp.spectrum.reset();
     lamp.power.reset();
     lamp.lumens.reset();
@@ -273,7 +273,7 @@ PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, Pictur
             {.layers = layers, .paths = {.share = share_of_paths(scene, quality, lamp)}});
     }
     Spectrum brightness;
-    if (lamp && renderer_.scene().desc().lamps.front().glow)
+    if (lamp && renderer_.scene().desc().lamps.front().is_of_scene())
         brightness = scene.lamps[*lamp].brightness;
     else if (lamp)
         brightness = renderer_.assembled().lamps.front().axis_intensity();

@@ -293,6 +293,7 @@ Json brightness_json(const LampDesc& lamp, const ConfigNode* entry) {
 // Why the editor does not change a lamp; empty if it does.
 std::string reason_to_lock(const LampDesc& lamp, const ConfigNode* entry) {
     if (lamp.glow) return "it is the light of a volume, and is changed there in the scene file";
+    if (lamp.sky) return "it is the light of the sky, and is changed there in the scene file";
     return entry ? "" : "it comes from a glTF file, which is not written here";
 }
 

@@ -14,6 +14,7 @@
 #include "core/geometry/surface_reflection.h"
 #include "core/geometry/water_surface.h"
 #include "core/paths/path_tracer.h"
+#include "core/paths/path_walk.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -25,6 +26,9 @@ constexpr int k_batches = 16;
 constexpr double k_least_half_tangent = 1e-4;
 // The share of rays that are drawn evenly.
 constexpr double k_even_share = 0.5;
+// A single direction needs fewer rays than all together.
+constexpr int k_share_of_vertical = 4;
+constexpr int k_trial_rays = 256;
 constexpr std::uint64_t k_meter_seed = 0x6d65746572;
 
 /// The sum of what paths bring.
@@ -58,7 +62,8 @@ std::vector<Beam> beams_at(const AssembledScene& scene, const Point3& x) {
         const Vector3 way = x - origin;
         const double radius = glm::length(way);
         if (!(radius > 0) || emitter.holds(radius)) continue;
-        const double relative = emitter.relative_intensity(way) / emitter.spread(radius);
+        const double relative =
+            emitter.relative_intensity(way) * emitter.focus(x) / emitter.spread(radius);
         if (!(relative > 0)) continue;
         Beam beam{-way / radius};
         for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation.band_count); ++b)
@@ -126,9 +131,13 @@ class Directions {
 /// One estimate of the radiance that arrives along a ray, but for that of lamps themselves.
 class RadianceEstimate {
   public:
-    RadianceEstimate(const AssembledScene& scene, const LightTransport& transport)
+    /// `typical`: the radiance from all around, in the mean over directions and bands, as far as it
+    /// is known. Deep in the water paths know nothing but the little of it that lamps give
+    /// directly.
+    RadianceEstimate(const AssembledScene& scene, const LightTransport& transport, double typical)
         : scene_(scene),
           transport_(transport),
+          typical_(typical),
           attenuation_(scene.water.medium),
           bands_(static_cast<std::size_t>(scene.water.medium.band_count())),
           columns_(attenuation_.constituents.size()) {}
@@ -146,6 +155,9 @@ class RadianceEstimate {
             if (is_surface) find_direct(sample, leaving);
             transport_.paths->begin(ray, has_hit ? &sample.hit : nullptr, leaving.first(bands_),
                                     segment_);
+            CameraSegment::Light& light = segment_.light;
+            light.own = std::max(light.own, typical_);
+            light.ambient = std::max(light.ambient, typical_ / k_ambient_beyond);
             const auto stream = [&](std::uint64_t kind) {
                 return PathRandom(
                     PathRandom::seed_of(seed, kind, static_cast<std::uint64_t>(mirrors)), index);
@@ -166,8 +178,9 @@ class RadianceEstimate {
             const WaterSurface& mirror = *scene_.water_surface;
             scene_.field->column(ray.origin, sample.hit.position, columns_);
             share *= attenuation_.transmittance(sample.hit.distance, columns_);
-            share *= mirror.reflectance_from_water(glm::dot(ray.direction, mirror.up()));
-            ray = {sample.hit.position, mirror.mirrored(ray.direction)};
+            const Vector3 normal = -sample.hit.geometric_normal;
+            share *= mirror.reflectance_from_water(glm::dot(ray.direction, normal));
+            ray = mirror.reflected(ray, {sample.hit.distance, normal});
         }
         return radiance;
     }
@@ -189,6 +202,7 @@ class RadianceEstimate {
 
     const AssembledScene& scene_;
     const LightTransport& transport_;
+    double typical_;
     AttenuationTable attenuation_;
     std::size_t bands_;
     std::vector<double> columns_;
@@ -196,6 +210,29 @@ class RadianceEstimate {
     SurfaceLight light_;
     RadianceSum sum_{bands_};
 };
+
+double mean_radiance(const AssembledScene& scene, const LightTransport& transport,
+                     const Directions& directions, const Point3& x, std::uint64_t trial,
+                     double typical) {
+    std::array<double, k_batches> sums{};
+    const auto bands = static_cast<std::size_t>(scene.water.medium.band_count());
+    parallel_for(sums.size(), [&](std::size_t batch) {
+        RadianceEstimate estimate(scene, transport, typical);
+        for (int i = 0; i < k_trial_rays / k_batches; ++i) {
+            const auto index = static_cast<std::uint32_t>(i);
+            const std::uint64_t seed = PathRandom::seed_of(k_meter_seed + 1, batch, trial);
+            PathRandom random(seed, index);
+            const Vector3 towards = directions.draw(random);
+            const Spectrum light = estimate({x, towards}, seed + 1, index);
+            double sum = 0;
+            for (const double band : light.first(bands)) sum += band;
+            sums[batch] += sum / static_cast<double>(bands) / directions.density(towards);
+        }
+    });
+    double sum = 0;
+    for (const double each : sums) sum += each;
+    return sum / k_trial_rays / (4 * std::numbers::pi);
+}
 
 constexpr std::array k_readings{&MeterReading::down,          &MeterReading::up,
                                 &MeterReading::scalar_down,   &MeterReading::scalar_up,
@@ -210,13 +247,17 @@ MeterReading LightMeter::read(const Point3& x, const Vector3& up, int rays) cons
     const std::vector<Beam> beams = beams_at(scene_, x);
     const Directions directions(beams);
     const int in_batch = std::max(1, rays / k_batches);
+    // Two trials, the second of which knows what the first has found.
+    double typical = 0;
+    for (std::uint64_t trial = 0; trial < 2; ++trial)
+        typical = mean_radiance(scene_, transport_, directions, x, trial, typical);
     const std::uint64_t seed =
         PathRandom::seed_of(k_meter_seed, PathRandom::seed_of(std::bit_cast<std::uint64_t>(x.x),
                                                               std::bit_cast<std::uint64_t>(x.y),
                                                               std::bit_cast<std::uint64_t>(x.z)));
     std::array<MeterReading, k_batches> batches;
     parallel_for(batches.size(), [&](std::size_t batch) {
-        RadianceEstimate estimate(scene_, transport_);
+        RadianceEstimate estimate(scene_, transport_, typical);
         MeterReading& sums = batches[batch];
         for (int i = 0; i < in_batch; ++i) {
             throw_if_stopped();
@@ -233,11 +274,18 @@ MeterReading LightMeter::read(const Point3& x, const Vector3& up, int rays) cons
             (rise > 0 ? sums.scalar_down : sums.scalar_up).mean += light;
             light *= std::abs(rise);
             (rise > 0 ? sums.down : sums.up).mean += light;
-            for (const auto& [reading, from] : {std::pair{&MeterReading::radiance_down, up},
-                                                std::pair{&MeterReading::radiance_up, -up}}) {
-                Spectrum vertical = estimate({x, from}, of(from == up ? 2 : 3), index, true);
-                vertical /= in_batch;
-                (sums.*reading).mean += vertical;
+        }
+        const int vertical = std::max(1, in_batch / k_share_of_vertical);
+        for (const auto& [reading, from] : {std::pair{&MeterReading::radiance_down, up},
+                                            std::pair{&MeterReading::radiance_up, -up}}) {
+            for (int i = 0; i < vertical; ++i) {
+                throw_if_stopped();
+                Spectrum light = estimate(
+                    {x, from},
+                    PathRandom::seed_of(seed, batch, reading == &MeterReading::radiance_up ? 2 : 3),
+                    static_cast<std::uint32_t>(i), true);
+                light /= vertical;
+                (sums.*reading).mean += light;
             }
         }
     });

@@ -108,7 +108,7 @@ std::string key_of(const LampDesc& lamp, double distance) {
         key += fmt::format("{} {} {} {} {} {} ", static_cast<int>(extent.shape), extent.width,
                            extent.height, extent.rotate, extent.radius, extent.samples);
     }
-    if (lamp.glow) key += "volume " + lamp.name;  // the rest is of the surrounding
+    if (lamp.is_of_scene()) key += "of the scene " + lamp.name;  // the rest is of the surrounding
     if (lamp.sun) key += fmt::format("sun {} {} ", lamp.sun->angle, lamp.sun->samples);
     return key + profile_key(lamp.profile);
 }
@@ -198,7 +198,7 @@ LampOnTarget TargetProbe::lamp_on_target(const ImageScene& scene, const LampDesc
         throw_if_stopped();
         found = kept_.emplace(key, render(lamp, distance)).first;
     }
-    if (lamp.glow) return found->second;
+    if (lamp.is_of_scene()) return found->second;
     std::vector<std::string> warnings;  // those of the scene's own picture
     const SceneDesc& desc = scene.desc();
     const Spectrum intensity =

@@ -34,7 +34,7 @@ TEST(WaterSurface, RefractsThereAndBack) {
     const Vector3 up = k_sloping.up();
     for (const Vector3& v : {Vector3(0.3, 0.9, 0.1), Vector3(-0.1, 1, 0.4), Vector3(0, 1, 0)}) {
         const Vector3 in_water = glm::normalize(v);
-        const Vector3 in_air = k_sloping.into_air(in_water).value();
+        const Vector3 in_air = k_sloping.into_air(in_water, up).value();
         // Snell's law: the parts along the surface are as 1.34 to 1.
         EXPECT_LT(glm::length(in_air - glm::dot(in_air, up) * up -
                               1.34 * (in_water - glm::dot(in_water, up) * up)),
@@ -43,7 +43,8 @@ TEST(WaterSurface, RefractsThereAndBack) {
         EXPECT_GT(glm::dot(in_air, up), 0);
         EXPECT_LT(glm::length(k_sloping.into_water(-in_air) + in_water), 1e-14);
     }
-    EXPECT_FALSE(k_sloping.into_air(glm::normalize(Vector3(1, 0.5, 0))).has_value());
+    EXPECT_FALSE(
+        k_sloping.into_air(glm::normalize(Vector3(1, 0.5, 0)), k_sloping.up()).has_value());
 }
 
 TEST(WaterSurface, HasAMirrorImage) {

@@ -1,0 +1,175 @@
+#include "core/light/sun_focus.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/geometry/waves.h"
+
+namespace uw {
+
+namespace {
+
+constexpr int k_slices = 48;
+constexpr int k_beams_of_texel = 4;  // along each side
+
+/// Where a beam enters the water, at depth 0, and what becomes of it.
+struct Beam {
+    double u = 0, v = 0;              // of its place at depth 0, less the grid's
+    double slope_u = 0, slope_v = 0;  // per metre of depth, less those of calm water
+    double flux = 0;                  // relative to what calm water lets through
+};
+
+}  // namespace
+
+SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double angle,
+                   const Extent& extent, int resolution)
+    : surface_(surface), extent_(extent), resolution_(resolution) {
+    const WaterWaves& waves = *surface.waves();
+    const Vector3 in_air = surface.in_plane(direction);
+    const Vector3 calm = surface.in_plane(surface.into_water(direction));
+    shift_u_ = -calm.x / calm.z;
+    shift_v_ = -calm.y / calm.z;
+    const double calm_flux = -in_air.z * (1 - surface.reflectance_from_air(-in_air.z));
+    const int beams_across = resolution * k_beams_of_texel;
+    const double step = extent.side / beams_across;
+    const auto place = [&](double centre, int i) {
+        return centre + (i + 0.5) * step - 0.5 * extent.side;
+    };
+    Grid2D<Beam> beams;
+    beams.assign(beams_across, beams_across);
+    parallel_for(static_cast<std::size_t>(beams_across), [&](std::size_t row) {
+        throw_if_stopped();
+        for (int i = 0; i < beams_across; ++i) {
+            const WavePoint wave =
+                waves.at(place(extent.u, i), place(extent.v, static_cast<int>(row)));
+            const Vector3 normal = wave.normal();
+            const double towards = -glm::dot(in_air, normal);
+            if (!(towards > 0)) continue;  // it lies in the waves' own shadow
+            const std::optional<Vector3> down = surface.refracted_into_water(in_air, normal);
+            if (!down || !(down->z < 0)) continue;
+            Beam& beam = beams(i, static_cast<int>(row));
+            const double slope_u = -down->x / down->z, slope_v = -down->y / down->z;
+            // The light enters at the wave's height, from where it goes down to depth 0.
+            beam.u = wave.height * slope_u;
+            beam.v = wave.height * slope_v;
+            beam.slope_u = slope_u - shift_u_;
+            beam.slope_v = slope_v - shift_v_;
+            beam.flux = towards / normal.z * (1 - surface.reflectance_from_air(towards)) /
+                        (calm_flux * k_beams_of_texel * k_beams_of_texel);
+        }
+    });
+    slices_.resize(k_slices + 1);
+    const double radius = 0.5 * angle / surface.n();  // of the disc in the water, near the zenith
+    parallel_for(slices_.size(), [&](std::size_t k) {
+        throw_if_stopped();
+        Grid2D<float>& slice = slices_[k];
+        slice.assign(resolution_, resolution_);
+        const double depth = depth_of(k);
+        const double texels = resolution_ / extent.side;
+        for (int j = 0; j < beams_across; ++j) {
+            for (int i = 0; i < beams_across; ++i) {
+                const Beam& beam = beams(i, j);
+                const double x =
+                    (i + 0.5) / k_beams_of_texel - 0.5 + texels * (beam.u + depth * beam.slope_u);
+                const double y =
+                    (j + 0.5) / k_beams_of_texel - 0.5 + texels * (beam.v + depth * beam.slope_v);
+                const double x0 = std::floor(x), y0 = std::floor(y);
+                const auto add = [&](double column, double line, double share) {
+                    int c = static_cast<int>(column), l = static_cast<int>(line);
+                    if (extent.is_periodic) {
+                        c = (c % resolution_ + resolution_) % resolution_;
+                        l = (l % resolution_ + resolution_) % resolution_;
+                    } else if (c < 0 || l < 0 || c >= resolution_ || l >= resolution_) {
+                        return;
+                    }
+                    slice(c, l) += static_cast<float>(share * beam.flux);
+                };
+                const double s = x - x0, t = y - y0;
+                add(x0, y0, (1 - s) * (1 - t));
+                add(x0 + 1, y0, s * (1 - t));
+                add(x0, y0 + 1, (1 - s) * t);
+                add(x0 + 1, y0 + 1, s * t);
+            }
+        }
+        blur(slice, depth * radius * texels);
+    });
+}
+
+// Evenly over a square whose variance is that of a disc of this radius [texels].
+void SunFocus::blur(Grid2D<float>& slice, double radius) const {
+    const double half = 0.5 * std::sqrt(3.0) * radius;
+    if (half < 0.5) return;
+    // Whole texels on each side, and a part of those beyond.
+    const int whole = static_cast<int>(half - 0.5);
+    const double part = half - 0.5 - whole;
+    std::vector<double> line(static_cast<std::size_t>(resolution_));
+    const auto at = [&](int i) {
+        i = extent_.is_periodic ? (i % resolution_ + resolution_) % resolution_
+                                : std::clamp(i, 0, resolution_ - 1);
+        return line[static_cast<std::size_t>(i)];
+    };
+    const auto run = [&](const auto& cell) {
+        for (int i = 0; i < resolution_; ++i)
+            line[static_cast<std::size_t>(i)] = static_cast<double>(cell(i));
+        for (int i = 0; i < resolution_; ++i) {
+            double sum = part * (at(i - whole - 1) + at(i + whole + 1));
+            for (int d = -whole; d <= whole; ++d) sum += at(i + d);
+            cell(i) = static_cast<float>(sum / (2 * half));
+        }
+    };
+    for (int j = 0; j < resolution_; ++j) run([&](int i) -> float& { return slice(i, j); });
+    for (int i = 0; i < resolution_; ++i) run([&](int j) -> float& { return slice(i, j); });
+}
+
+double SunFocus::depth_of(std::size_t slice) const {
+    const double share = static_cast<double>(slice) / k_slices;
+    return extent_.depth * share * share;
+}
+
+double SunFocus::slide(const Vector3& direction) const {
+    const Vector3 v = surface_.in_plane(direction);
+    return std::hypot(v.x + v.z * shift_u_, v.y + v.z * shift_v_);
+}
+
+double SunFocus::value(const Grid2D<float>& slice, double u, double v) const {
+    const double x = u - 0.5, y = v - 0.5;
+    const double x0 = std::floor(x), y0 = std::floor(y);
+    const auto at = [&](double column, double line) {
+        int c = static_cast<int>(column), l = static_cast<int>(line);
+        c = extent_.is_periodic ? (c % resolution_ + resolution_) % resolution_
+                                : std::clamp(c, 0, resolution_ - 1);
+        l = extent_.is_periodic ? (l % resolution_ + resolution_) % resolution_
+                                : std::clamp(l, 0, resolution_ - 1);
+        return static_cast<double>(slice(c, l));
+    };
+    const double s = x - x0, t = y - y0;
+    return (1 - t) * ((1 - s) * at(x0, y0) + s * at(x0 + 1, y0)) +
+           t * ((1 - s) * at(x0, y0 + 1) + s * at(x0 + 1, y0 + 1));
+}
+
+double SunFocus::at(const Point3& x) const {
+    const Vector3 place = surface_.coordinates(x);
+    const double depth = -place.z;
+    if (!(depth > 0)) return 1;
+    const double texels = resolution_ / extent_.side;
+    double u = (place.x - depth * shift_u_ - extent_.u + 0.5 * extent_.side) * texels;
+    double v = (place.y - depth * shift_v_ - extent_.v + 0.5 * extent_.side) * texels;
+    if (extent_.is_periodic) {
+        u -= std::floor(u / resolution_) * resolution_;
+        v -= std::floor(v / resolution_) * resolution_;
+    } else if (!(u > 0 && v > 0 && u < resolution_ && v < resolution_)) {
+        return 1;
+    }
+    const double level = k_slices * std::sqrt(std::min(1.0, depth / extent_.depth));
+    const auto k =
+        std::min(static_cast<std::size_t>(level), static_cast<std::size_t>(k_slices - 1));
+    const double from = depth_of(k), to = depth_of(k + 1);
+    const double share = std::clamp((depth - from) / (to - from), 0.0, 1.0);
+    return std::lerp(value(slices_[k], u, v), value(slices_[k + 1], u, v), share);
+}
+
+}  // namespace uw

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "core/base/grid2d.h"
+#include "core/base/vector_math.h"
+#include "core/geometry/water_surface.h"
+
+namespace uw {
+
+/// How waves focus the light of a sun in the water below them: caustics. A factor on its plane
+/// irradiance below calm water, whose mean over a level plane is the share that waves let through,
+/// relative to that of calm water.
+///
+/// A regular grid of beams meets the waves, 16 for each texel, and is refracted by them. Where each
+/// crosses a level plane its flux is shared out among the four texels around, and so at a series of
+/// depths, which lie closer near the surface. Between depths the factor is linear along the light
+/// of calm water. What beams differ in direction, by a few degrees, moves light to where it goes,
+/// but counts neither for scattering angles nor for lengths.
+class SunFocus {
+  public:
+    /// What of the water the map holds.
+    struct Extent {
+        double side = 0;           ///< of a level square [m], > 0
+        bool is_periodic = false;  ///< the square repeats; else there is no focusing outside
+        double u = 0, v = 0;       ///< its centre, in the surface's coordinates
+        double depth = 0;          ///< down to here [m], > 0; the same below
+    };
+
+    /// `direction` of the sun's light in the air, unit; `angle` across its disc in the air [rad].
+    /// Precondition: the surface has waves.
+    SunFocus(const WaterSurface& surface, const Vector3& direction, double angle,
+             const Extent& extent, int resolution);
+
+    /// The factor at a point in the world, >= 0; 1 above the water.
+    double at(const Point3& x) const;
+    /// Side of a texel [m].
+    double texel() const { return extent_.side / resolution_; }
+    /// By how many metres the place in the map changes per metre along a unit vector, level.
+    double slide(const Vector3& direction) const;
+
+  private:
+    double depth_of(std::size_t slice) const;
+    double value(const Grid2D<float>& slice, double u, double v) const;
+    void blur(Grid2D<float>& slice, double radius) const;
+
+    WaterSurface surface_;
+    Extent extent_;
+    int resolution_;
+    double shift_u_ = 0, shift_v_ = 0;  // of calm water's light per metre of depth
+    std::vector<Grid2D<float>> slices_;
+};
+
+}  // namespace uw
