@@ -10,7 +10,7 @@ from mathutils import Vector
 
 from . import bands as colours
 from . import meshes
-from .materials import _source
+from .materials import source_of
 
 # Cycles multiplies an emission by a luminaire's candelas over this (candelas to watts at 555 nm and
 # the sphere's 4 pi, as its IES reader has them).
@@ -149,7 +149,7 @@ class Lamps:
         if not light.use_nodes or light.node_tree is None:
             return colour, None
         output = light.node_tree.get_output_node("CYCLES") or light.node_tree.get_output_node("ALL")
-        found = _source(output.inputs["Surface"]) if output is not None else None
+        found = source_of(output.inputs["Surface"]) if output is not None else None
         if found is None:
             return None
         node = found[0]
@@ -157,7 +157,7 @@ class Lamps:
             self._note(shown, f"of its nodes an Emission is used alone, not {node.bl_label}")
             return colour, None
         value, ies = float(node.inputs["Strength"].default_value), None
-        behind = _source(node.inputs["Strength"])
+        behind = source_of(node.inputs["Strength"])
         if behind is not None and behind[0].type == "TEX_IES":
             self._unlinked(shown, behind[0].inputs["Strength"])
             value = float(behind[0].inputs["Strength"].default_value)
@@ -169,7 +169,7 @@ class Lamps:
         else:
             self._unlinked(shown, node.inputs["Strength"])
         tint = node.inputs["Color"].default_value
-        behind = _source(node.inputs["Color"])
+        behind = source_of(node.inputs["Color"])
         if behind is not None and behind[0].type == "RGB":
             tint = behind[0].outputs[0].default_value
         else:
@@ -177,7 +177,7 @@ class Lamps:
         return [c * float(t) * value for c, t in zip(colour, tint)], ies
 
     def _unlinked(self, shown, socket):
-        if _source(socket) is not None:
+        if source_of(socket) is not None:
             self._note(shown, f"the nodes behind '{socket.name}' are left out; its own value is taken")
 
     def _ies(self, shown, node):

@@ -25,17 +25,17 @@ def shows_surface(material):
     """False for materials of volumes alone, and for those that only let through."""
     if material is None or not material.use_nodes or material.node_tree is None:
         return True
-    output = _output(material)
+    output = output_of(material)
     if output is None:
         return True
     return output.inputs["Surface"].is_linked or not output.inputs["Volume"].is_linked
 
 
-def _output(material):
+def output_of(material):
     return material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
 
 
-def _source(socket):
+def source_of(socket):
     """The (node, socket) that feeds a socket, through reroutes; None if nothing does."""
     while socket.is_linked:
         link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)
@@ -85,8 +85,8 @@ class Exporter:
             self._set_plain(done, material.diffuse_color, material.metallic, material.roughness,
                             1.5 if material.specular_intensity > 0 else WATER_INDEX)
             return done
-        output = _output(material)
-        found = _source(output.inputs["Surface"]) if output is not None else None
+        output = output_of(material)
+        found = source_of(output.inputs["Surface"]) if output is not None else None
         if found is None:
             self._note(material, "has no surface shader and is black")
             self._set_plain(done, (0, 0, 0, 1), 0, 1, WATER_INDEX)
@@ -127,7 +127,7 @@ class Exporter:
     def _convert_mix(self, material, done, node):
         """Transparent mixed with another shader by a texture's alpha is a cut-out, as Principled has
         it itself."""
-        shaders = [_source(node.inputs[1]), _source(node.inputs[2])]
+        shaders = [source_of(node.inputs[1]), source_of(node.inputs[2])]
         if all(shaders) and shaders[0][0].type == "BSDF_TRANSPARENT":
             self._convert_shader(material, done, shaders[1][0])
             self._set_alpha(material, done, node.inputs[0])
@@ -168,7 +168,7 @@ class Exporter:
                 self._note(material, f"{what} is left out")
 
     def _unlinked(self, material, socket):
-        if _source(socket) is not None:
+        if source_of(socket) is not None:
             self._note(material, f"the nodes behind '{socket.name}' are left out; its own value is taken")
 
     def _set_colour(self, material, done, socket):
@@ -193,7 +193,7 @@ class Exporter:
 
     def _product(self, socket):
         """(colour, nodes) whose product a socket gets, through nodes that multiply with full effect."""
-        found = _source(socket)
+        found = source_of(socket)
         colour = self._constant(socket, found)
         if colour is not None:
             return colour, []
@@ -241,12 +241,12 @@ class Exporter:
 
     def _channel(self, material, socket):
         """(image node, pixels -> one channel) behind a socket of a number, or None."""
-        found = _source(socket)
+        found = source_of(socket)
         if found is None:
             return None
         node, output = found
         if node.type in ("SEPRGB", "SEPARATE_COLOR") and getattr(node, "mode", "RGB") == "RGB":
-            inner = _source(node.inputs[0])
+            inner = source_of(node.inputs[0])
             if inner is not None and self._is_image(inner[0]):
                 index = list(node.outputs).index(output)
                 return inner[0], lambda pixels: pixels[..., index]
@@ -264,11 +264,11 @@ class Exporter:
         return node.type == "TEX_IMAGE" and node.image is not None and node.image.size[0] > 0
 
     def _set_normal(self, material, done, socket):
-        found = _source(socket)
+        found = source_of(socket)
         if found is None:
             return
         node = found[0]
-        inner = _source(node.inputs["Color"]) if node.type == "NORMAL_MAP" else None
+        inner = source_of(node.inputs["Color"]) if node.type == "NORMAL_MAP" else None
         if inner is None or not self._is_image(inner[0]) or node.space != "TANGENT":
             self._note(material, f"of bumps, only tangent-space normal maps are supported; "
                                  f"the {node.bl_label} node is left out")
@@ -298,7 +298,7 @@ class Exporter:
             done.content["extensions"]["KHR_materials_emissive_strength"] = {"emissiveStrength": value}
 
     def _set_alpha(self, material, done, socket):
-        found = _source(socket)
+        found = source_of(socket)
         if found is None:
             if socket.default_value < 1:
                 self._note(material, "is opaque here: only cut-outs by a texture are supported")
@@ -356,7 +356,7 @@ class Exporter:
 
     def _placement(self, material, node):
         """(name of the UV map, '' for the active one; glTF's transform or None) of an image node."""
-        found = _source(node.inputs["Vector"])
+        found = source_of(node.inputs["Vector"])
         if found is None:
             return "", None
         transform = None
@@ -367,7 +367,7 @@ class Exporter:
                 self._note(material, f"the Mapping node of image '{node.image.name}' is left out: it "
                                      "has to be a Point mapping by numbers, turned about z alone")
                 transform = {}
-            found = _source(mapping.inputs["Vector"])
+            found = source_of(mapping.inputs["Vector"])
         if found is not None and found[0].type == "UVMAP":
             return found[0].uv_map, transform
         if found is not None and (found[0].type, found[1].name) == ("TEX_COORD", "UV"):

@@ -9,7 +9,8 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from . import meshes, program
+from . import bands as colours
+from . import emission, meshes, program
 from .notes import Refusal
 
 class Source:
@@ -146,24 +147,43 @@ class Volumes:
             grids[name] = {"small": mapping.small, "large": mapping.large}
         is_domain = shown.type != "VOLUME"
         of_file, extra = _domain_place(shown, source) if is_domain else (Matrix.Identity(4), {})
+        light = self._light(shown, source, scene)
         if not grids:
             mapped, _ = for_size(self._advise(source), size_of(shown, scene))
             grids = {name: {"small": small, "large": large}
                      for name, (small, large) in mapped.items()}
-            if not grids:
+            if not grids and not light:
                 self._notes.add(f"'{shown.name}' is left out: no grid of its file looks like a "
                                 "concentration; map one in its panel uwvdb")
                 return
-            self._notes.add(f"'{shown.name}' has ppm by advice: " + ", ".join(
-                f"{name} {g['small']:.3g} small, {g['large']:.3g} large" for name, g in grids.items()))
+            if grids:
+                self._notes.add(f"'{shown.name}' has ppm by advice: " + ", ".join(
+                    f"{name} {g['small']:.3g} small, {g['large']:.3g} large"
+                    for name, g in grids.items()))
         grids = {n: {k: v for k, v in g.items() if v > 0} for n, g in grids.items()}
-        grids = {n: g for n, g in grids.items() if g}
-        if not grids:
+        content = {"grids": {n: g for n, g in grids.items() if g}, "emission": light}
+        content = {section: entries for section, entries in content.items() if entries}
+        if not content:
             return
         with contextlib.suppress(FileExistsError):
             os.symlink(os.path.abspath(source.path), os.path.join(self._folder, link))
-        self.entries.append({"file": link, "grids": grids, "centering": "cell", "up": "y", **extra,
+        self.entries.append({"file": link, **content, "centering": "cell", "up": "y", **extra,
                              "transform": self._transform(shown, matrix @ of_file)})
+
+    def _light(self, shown, source, scene):
+        """What the object's material gives off: the entries of `emission`."""
+        if not emission.emits(shown):
+            return {}
+        suffix = "_noise" if source.is_noise else ""
+        _, names = self._advise(source)
+        domain = meshes.domain_settings(shown) if shown.type == "MESH" else None
+        found = emission.of_object(shown, domain, {name.removesuffix(suffix) for name in names},
+                                   colours.parse(scene.uwvdb.bands),
+                                   Matrix.Scale(scene.unit_settings.scale_length, 4), self._notes)
+        # The name of its lamp: letters, digits and hyphens.
+        number = len(self.entries)
+        return {grid + suffix: {**light, "name": re.sub("[^A-Za-z0-9-]", "-", f"volume{number}-{grid}")[:64]}
+                for grid, light in found.items()}
 
     def _transform(self, shown, matrix):
         location, rotation, scale = matrix.decompose()
