@@ -115,6 +115,7 @@ LoadedVolume load_grids(const VolumeDesc& desc, const std::vector<std::vector<Gr
                         std::size_t slab_bytes,
                         const std::optional<EmissionDesc::Stimulus>& stimulus) {
     LoadedVolume volume;
+    if (desc.grids.empty()) return volume;  // it only gives off light
     if (desc.array) {
         volume.warnings = desc.array->warnings;
         add_grid(*desc.array, desc, {Centering::node, UpAxis::y}, loads.at(0), volume);

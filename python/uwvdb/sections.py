@@ -64,7 +64,8 @@ class Volumes(Section):
             origin: ArrayLike = (0, 0, 0), world_from_index: ArrayLike | None = None,
             concentration: Mapping[str, float] | None = None,
             absorption: ArrayLike | None = None, scattering: ArrayLike | None = None,
-            phase: Mapping[str, Any] | None = None, name: str | None = None,
+            phase: Mapping[str, Any] | None = None,
+            emission: Mapping[str, Any] | ArrayLike | None = None, name: str | None = None,
             transform: Mapping[str, Any] | None = None) -> str:
         """Adds a grid of values, without a file. Returns its name.
 
@@ -78,6 +79,9 @@ class Volumes(Section):
         concentration  {"small": s, "large": l}: ppm of particles per unit of value
         absorption, scattering, phase  instead of it: coefficients [1/m] per unit of value, one per
                        band or one for all, and a phase function as scene files have it
+        emission       the light that it gives off, beside one of these or alone: W/(sr m3) per unit
+                       of value, one per band or one for all; or, as scene files have it,
+                       {"blackbody": 0.5, "kelvin": 1000}, {"table": ...}, {"per_unit": ...}
         transform      of a scene file's volume: scale, rotate, translate, applied last
 
         The entry can then be changed as any other: `scene["volumes[0].grids.array1.small"] = 2`.
@@ -103,11 +107,16 @@ class Volumes(Section):
                            ("phase", phase)):
             if value is not None:
                 meaning[key] = value
-        if not meaning:
+        if not meaning and emission is None:
             raise UsageError(f"{where}: does not say what the values mean; give concentration in "
-                             "ppm per unit, or absorption and scattering in 1/m")
+                             "ppm per unit, absorption and scattering in 1/m, or emission")
         name = self._new_name(name)
-        entry: dict[str, Any] = {"array": name, "grids": {name: meaning}}
+        entry: dict[str, Any] = {"array": name}
+        if meaning:
+            entry["grids"] = {name: meaning}
+        if emission is not None:
+            entry["emission"] = {name: dict(emission) if isinstance(emission, Mapping)
+                                 else {"per_unit": emission}}
         if transform is not None:
             entry["transform"] = dict(transform)
         self._scene.add_volume(name, values, place, entry, where)

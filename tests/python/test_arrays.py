@@ -69,6 +69,36 @@ def test_a_constant_array_is_uniform_water(scene):
     assert np.allclose(total(scene), total(uniform), rtol=1e-5, equal_nan=True)
 
 
+def test_an_array_gives_off_light(scene):
+    """In an array around the camera, in water that absorbs alone, one sees (1 - e^(-a L)) / a of what a
+    cubic metre shines, up to a black wall. With absorption of its own it is the same as beside an array
+    that absorbs."""
+    scene["water.scattering"] = {"b": 0, "phase": {"type": "hg", "g": 0.5}}
+    scene["water.absorption"] = 0.4
+    scene["geometry[0].reflectance"] = 0
+    scene["lamps"] = []
+    array = np.full((16, 16, 16), 0.5)
+    place = dict(voxel_size=1, origin=(-7.5, -7.5, -7.5))
+    name = scene.volumes.add(array, emission=[4, 2, 1], **place)
+    assert scene.volumes[0] == {"array": name, "emission": {name: {"per_unit": [4, 2, 1]}}}
+    image = uwvdb.Renderer().render(scene, ["direct", "range", f"lamp.{name}"])
+    truth = (1 - np.exp(-0.4 * image["range"][..., None])) / 0.4 * 0.5 * np.array([4, 2, 1])
+    # Light is the mean over a pixel, the range that of its middle: pixels are 0.08 rad wide, whose square
+    # over 12, for both directions, is 5e-4 of the way.
+    assert np.allclose(image["direct"], truth, rtol=5e-4)
+    assert np.allclose(image[f"lamp.{name}"], truth, rtol=5e-4)
+
+    scene[f"volumes[0].emission.{name}.samples"] = 1
+    beside, both = scene.copy(), scene.copy()
+    beside.volumes.add(array, absorption=0.2, scattering=0, **place)
+    del both.volumes[0]
+    both.volumes.add(array, emission={"per_unit": [4, 2, 1], "name": "fire", "samples": 1},
+                     absorption=0.2, scattering=0, **place)
+    dimmed = uwvdb.Renderer().render(both, ["direct", "lamp.fire"])["direct"]
+    assert np.array_equal(dimmed, uwvdb.Renderer().render(beside, ["direct"])["direct"])
+    assert (dimmed < image["direct"]).all()
+
+
 def test_entries_are_values_of_the_scene(scene, plume):
     name = scene.volumes.add(plume, **PLACE)
     assert name == "array1" and len(scene.volumes) == 1
