@@ -8,9 +8,12 @@
 #include <cmath>
 #include <functional>
 
+#include "core/scene/scene_desc.h"
 #include "media/volumes/load_volumes.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_fixtures.h"
+#include "tests/support/vdb/vdb_loading.h"
 
 namespace uw {
 namespace {
@@ -150,6 +153,37 @@ TEST_F(StimulatedLight, IsBlurredWhileTheShutterIsOpen) {
     // Its edge, at 15.5 voxels in the mean, reaches 3 voxels to either side.
     EXPECT_NEAR(blurred.value({15.5 * k_edge, 0, 0}), 0.5, 5e-3);
     EXPECT_NEAR(blurred.column({-2, 0, 0}, {2, 0, 0}), column, 1e-3 * column);
+}
+
+TEST_F(StimulatedLight, IsReadWithItsVelocity) {
+    in_flow({Quantity::speed, 0, 1}, [](const Vector3&) { return Vector3(1); });
+    const auto read = [&](const std::string& emission, const std::string& velocity) {
+        return read_scene_text(
+            "uwvdb: 1\ncamera: {resolution: [4, 3], intrinsics: {fov_x: 50}}\n"
+            "volumes: [{file: a.vdb, emission: {cells: " +
+                emission + "}" + velocity + "}]\n",
+            dir_ / "scene.yaml", {});
+    };
+    const std::string velocity = ", velocity: {grid: [v.x, v.y, v.z]}";
+    const SceneDesc scene = read("{per_unit: [1, 2, 3], by_shear: [0, 20]}", velocity);
+    EXPECT_EQ(scene.volumes[0].emission[0].stimulus,
+              (EmissionDesc::Stimulus{Quantity::shear, 0, 20}));
+    EXPECT_EQ(scene.volumes[0].motion->grids.size(), 3U);
+    for (const std::string& warning : scene.warnings)
+        EXPECT_EQ(warning.find("shutter"), std::string::npos) << warning;
+    const SceneDesc table = read("{table: [[0, [0, 0, 1]], [2, [5, 0, 0]]]}", "");
+    EXPECT_EQ(table.volumes[0].emission[0].table[1].light, (PerBand{5, 0, 0}));
+    const auto error = [&](const std::string& emission, const std::string& with) {
+        return test::message_of<InputError>([&] { (void)read(emission, with); });
+    };
+    test::expect_contains(error("{per_unit: 1, by_speed: [1, 2]}", ""),
+                          "give the volume its velocity");
+    test::expect_contains(error("{per_unit: 1, by_speed: [2, 1]}", velocity),
+                          "less than the second");
+    test::expect_contains(error("{per_unit: 1, by_speed: [1, 2], by_shear: [1, 2]}", velocity),
+                          "by speed or by shear");
+    test::expect_contains(error("{blackbody: 1, by_speed: [1, 2]}", velocity), "per_unit only");
+    test::expect_contains(error("{table: [[1, 1], [1, 2]]}", velocity), "must ascend");
 }
 
 }  // namespace

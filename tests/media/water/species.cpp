@@ -190,9 +190,9 @@ WaterDesc water(const std::string& text) {
     return read_water_overrides({"water=" + text});
 }
 
-// The index's k falls by e^(-slope (lambda - 550 nm)). Weakly absorbing spheres, even the largest here
-// (4 k x = 0.15 at most), absorb 4 pi k n_water / lambda of their volume, times a factor near n of
-// refraction into them, which is the same at both wavelengths.
+// The index's k falls by e^(-slope (lambda - 550 nm)). Weakly absorbing spheres, even the largest
+// here (4 k x = 0.15 at most), absorb 4 pi k n_water / lambda of their volume, times a factor near
+// n of refraction into them, which is the same at both wavelengths.
 TEST(Species, OfTheLibraryAbsorbByTheWavelength) {
     const WaterDesc desc =
         water("{species: {d: {library: detritus}, s: {library: iron-sulphide}}}");
