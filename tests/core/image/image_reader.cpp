@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -164,6 +167,40 @@ TEST(ImageReader, LinearImagesBecomeTexturesAsTheyAre) {
     const Rgb texel = texture.sample(0.5 / image.width, 0.5 / image.height, {});
     for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(texel[c], values[c] / 255.0, 5e-4 * values[c] / 255.0);
+}
+
+TEST(ImageReader, LightAndLengthsAreReadAsTheyAre) {
+    const test::SceneFolder folder;
+    Film film(2, 1, {0, 0, 2, 1}, {"R", "G", "B", "A"});
+    const std::array<float, 3> values{-3.5F, 250.25F, 0.5F};
+    for (const int x : {0, 1}) {
+        std::ranges::copy(values, film.pixel(x, 0).begin());
+        film.pixel(x, 0)[k_alpha] = 1;
+    }
+    const std::filesystem::path file = folder.path() / "light.exr";
+    ExrOptions options;
+    options.precision = ExrOptions::Precision::single;
+    write_exr(file, film, {}, options);
+    const PixelImage light = read_linear_image(file);
+    ASSERT_EQ(light.channels, 4);
+    EXPECT_TRUE(light.is_linear);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(light.pixels[4 + c], values[c]);
+    // Those of a reflectance are between 0 and 1.
+    EXPECT_EQ(read_image(file).pixels[0], 0);
+    EXPECT_EQ(read_image(file).pixels[1], 1);
+    EXPECT_TRUE(
+        read_linear_image(folder.write("a.hdr", test::encoded_image("hdr", 1, 1, 3, {90, 80, 70})))
+            .is_linear);
+    for (const std::string format : {"png", "tif", "bmp"}) {
+        const auto whole =
+            folder.write("a." + format, test::encoded_image(format, 1, 1, 3, {90, 80, 70}));
+        EXPECT_NE(test::message_of<InputError>([&] {
+                      read_linear_image(whole);
+                  }).find("not an image of linear floating-point values"),
+                  std::string::npos)
+            << format;
+    }
+    EXPECT_THROW(read_linear_image(folder.path() / "none.exr"), IoError);
 }
 
 TEST(ImageReader, RefusesOtherImagesThatAreDamaged) {
