@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/fourier.h"
 #include "core/base/parallel.h"
 
 namespace uw {
@@ -206,20 +207,10 @@ int BlurKernel::fill_column(int column, std::span<double> spectrum) const {
     return row_count_;
 }
 
-namespace {
-
-// FFTW's planner, unlike its transforms, is not thread safe.
-std::mutex& planner_mutex() {
-    static std::mutex mutex;
-    return mutex;
-}
-
-}  // namespace
-
 struct CosineTransform::Plans {
     struct Destroy {
         void operator()(fftw_plan_s* plan) const {
-            const std::lock_guard lock(planner_mutex());
+            const std::lock_guard lock(fourier_planner());
             fftw_destroy_plan(plan);
         }
     };
@@ -233,7 +224,7 @@ struct CosineTransform::Plans {
   private:
     static Plan plan_line(int length, fftw_r2r_kind kind) {
         std::vector<double> line(static_cast<std::size_t>(length));
-        const std::lock_guard lock(planner_mutex());
+        const std::lock_guard lock(fourier_planner());
         // Estimated, not measured, so that the plan, and thus the rounding, is the same in every
         // run. Lines of an image differ in alignment.
         Plan plan(fftw_plan_r2r_1d(length, line.data(), line.data(), kind,
