@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/grid2d.h"
 #include "core/base/numerics.h"
+#include "core/base/refraction.h"
 #include "core/geometry/mesh.h"
 #include "core/image/image_file.h"
 #include "core/image/spectral_bands.h"
@@ -21,11 +22,7 @@
 namespace uw {
 
 double transmittance_into_water(double cosine, double n) {
-    if (n == 1) return 1;
-    const double in_water = std::sqrt(1 - (1 - cosine * cosine) / (n * n));
-    const double s = (cosine - n * in_water) / (cosine + n * in_water);
-    const double p = (n * cosine - in_water) / (n * cosine + in_water);
-    return 1 - 0.5 * (s * s + p * p);
+    return fresnel_transmittance(cosine, 1, n).mean();
 }
 
 Matrix3 world_from_sky(const Vector3& up, const std::optional<Vector3>& north,

@@ -23,11 +23,10 @@ bool MirroredView::may_see(const RaySource& rays, const WaterSurface& surface) {
 }
 
 std::optional<WaterSurface::Meeting> MirroredView::meeting(const Ray& ray) const {
-    const std::optional<WaterSurface::Meeting> meeting = scene_.water_surface->meet(ray, k_far);
     SurfaceHit hit;
-    if (!meeting || !scene_.surfaces->closest_hit(ray, k_far, hit) || !hit.is_water_surface)
+    if (!scene_.surfaces->closest_hit(ray, k_far, hit) || !hit.is_water_surface)
         return std::nullopt;
-    return meeting;
+    return WaterSurface::Meeting{hit.distance, -hit.geometric_normal};
 }
 
 std::optional<Ray> MirroredView::mirrored(const std::optional<Ray>& ray) const {
@@ -54,15 +53,14 @@ bool MirroredView::add_arriving(double x, double y, Spectrum& sum) const {
 // The centre tells for all of the pixel, but on waves, and where something else hides the surface
 // there.
 Spectrum MirroredView::arriving(int x, int y) const {
-    constexpr int k_places = 4;
-    Spectrum sum{};
     const bool has_waves = scene_.water_surface->has_waves();
+    const int places = has_waves ? 2 : 4;
+    Spectrum sum{};
     if (!has_waves && add_arriving(x + 0.5, y + 0.5, sum)) return sum;
     int count = 0;
-    for (int j = 0; j < k_places; ++j)
-        for (int i = 0; i < k_places; ++i) {
-            const bool meets =
-                add_arriving(x + (i + 0.5) / k_places, y + (j + 0.5) / k_places, sum);
+    for (int j = 0; j < places; ++j)
+        for (int i = 0; i < places; ++i) {
+            const bool meets = add_arriving(x + (i + 0.5) / places, y + (j + 0.5) / places, sum);
             if (!meets) continue;
             ++count;
             if (!has_waves) return sum;

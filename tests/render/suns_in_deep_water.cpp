@@ -13,7 +13,7 @@
 namespace uw::test {
 namespace {
 
-constexpr WaterSurfaceDesc k_surface{{0, -1.2, 0}, {0, -1, 0}};
+const WaterSurfaceDesc k_surface{{0, -1.2, 0}, {0, -1, 0}};
 
 double hg_phase(double cosine) {  // of hg_water(0.9)
     constexpr double g = 0.9;

@@ -22,17 +22,17 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double k_n = 1.34, k_wall = 4, k_surface = -1.2, k_g = 0.9;
+constexpr double k_water_index = 1.34, k_far_wall = 4, k_ceiling = -1.2, k_eccentricity = 0.9;
 // The coefficients of hg_water.
-constexpr std::array k_attenuation{0.55, 0.30, 0.30};
-constexpr std::array k_scattering{0.20, 0.22, 0.25};
+constexpr std::array k_attenuation_below{0.55, 0.30, 0.30};
+constexpr std::array k_scattering_below{0.20, 0.22, 0.25};
 
 /// 60 degrees wide, `tilt` degrees up.
 SceneDesc scene_below(double tilt = 0) {
     SceneDesc desc = pinhole_scene(24, 18);
     desc.camera.world_from_camera = Affine::rotation_xyz_degrees({tilt, 0, 0});
-    desc.water.surface = WaterSurfaceDesc{{0, k_surface, 0}, {0, -1, 0}, k_n};
-    desc.geometry = {plane_at_z(k_wall)};
+    desc.water.surface = WaterSurfaceDesc{{0, k_ceiling, 0}, {0, -1, 0}, k_water_index};
+    desc.geometry = {plane_at_z(k_far_wall)};
     return desc;
 }
 
@@ -43,25 +43,27 @@ SceneDesc lit_from(const Point3& lamp, double tilt = 0) {
     return desc;
 }
 
-Point3 image_of(const Point3& x) {
-    return {x.x, 2 * k_surface - x.y, x.z};
+Point3 mirror_image(const Point3& x) {
+    return {x.x, 2 * k_ceiling - x.y, x.z};
 }
 
 /// Of light from the water that meets the surface in this direction.
-double reflectance(const Vector3& direction) {
+double fresnel_reflectance(const Vector3& direction) {
     const double angle = std::acos(std::abs(direction.y) / glm::length(direction));
-    if (k_n * std::sin(angle) >= 1) return 1;
-    return 1 - fresnel_by_angles(angle, k_n, 1).mean();
+    if (k_water_index * std::sin(angle) >= 1) return 1;
+    return 1 - fresnel_by_angles(angle, k_water_index, 1).mean();
 }
 
-double phase(double cosine) {
-    return (1 - k_g * k_g) / (4 * pi * std::pow(1 + k_g * k_g - 2 * k_g * cosine, 1.5));
+double phase_below(double cosine) {
+    return (1 - k_eccentricity * k_eccentricity) /
+           (4 * pi *
+            std::pow(1 + k_eccentricity * k_eccentricity - 2 * k_eccentricity * cosine, 1.5));
 }
 
 /// What a lamp of 5 W/sr at `from`, or its image, throws on the wall at x, without reflection.
-double on_wall(const Point3& from, const Point3& x, std::size_t band) {
+double light_on_wall(const Point3& from, const Point3& x, std::size_t band) {
     const double radius = distance(from, x);
-    return 5 * (x.z - from.z) / std::pow(radius, 3) * std::exp(-k_attenuation[band] * radius);
+    return 5 * (x.z - from.z) / std::pow(radius, 3) * std::exp(-k_attenuation_below[band] * radius);
 }
 
 class BelowSurface : public testing::TestWithParam<RenderDesc::Integrator> {};
@@ -72,23 +74,23 @@ TEST_P(BelowSurface, ALampLightsTheWallAndTheWaterByItsImage) {
     desc.render.integrator = GetParam();
     if (GetParam() == RenderDesc::Integrator::planes) desc.render.planes.count = 1000;
     const TestScene scene(desc);
-    const Point3 image = image_of(lamp);
+    const Point3 image = mirror_image(lamp);
     for (const auto& [x, y] : {std::pair{12, 12}, {3, 15}, {20, 9}}) {
         const PixelResult pixel = scene.pixel(x, y);
         const Ray ray = *scene.assembled().camera->refracted_ray(x + 0.5, y + 0.5);
-        const double end = k_wall / ray.direction.z;
+        const double end = k_far_wall / ray.direction.z;
         const Point3 on = ray.at(end);
         for (std::size_t b = 0; b < 3; ++b) {
-            const double irradiance =
-                on_wall(lamp, on, b) + reflectance(on - image) * on_wall(image, on, b);
+            const double irradiance = light_on_wall(lamp, on, b) +
+                                      fresnel_reflectance(on - image) * light_on_wall(image, on, b);
             EXPECT_NEAR(pixel.irradiance[b], irradiance, 1e-9 * irradiance);
             const auto scattered = [&](const Point3& from, double s) {
                 const Vector3 way = ray.at(s) - from;
                 const double radius = glm::length(way);
-                const double share = from.y < k_surface ? reflectance(way) : 1;
-                return share * 5 / (radius * radius) * k_scattering[b] *
-                       phase(-glm::dot(way, ray.direction) / radius) *
-                       std::exp(-k_attenuation[b] * (radius + s));
+                const double share = from.y < k_ceiling ? fresnel_reflectance(way) : 1;
+                return share * 5 / (radius * radius) * k_scattering_below[b] *
+                       phase_below(-glm::dot(way, ray.direction) / radius) *
+                       std::exp(-k_attenuation_below[b] * (radius + s));
             };
             double backscatter = 0;
             for (const Point3& from : {lamp, image})
@@ -116,9 +118,9 @@ TEST(WaterSurfaceLight, WhatHidesALampFromTheSurfaceHidesItsImage) {
     const TestScene scene(desc);
     const PixelResult pixel = scene.pixel(12, 10);
     const Point3 on = pixel.hit.position;
-    ASSERT_NEAR(on.z, k_wall, 1e-9);
-    EXPECT_NEAR(pixel.irradiance[1], on_wall(lamp, on, 1), 1e-9 * whole);
-    EXPECT_GT(whole, 1.05 * on_wall(lamp, on, 1));
+    ASSERT_NEAR(on.z, k_far_wall, 1e-9);
+    EXPECT_NEAR(pixel.irradiance[1], light_on_wall(lamp, on, 1), 1e-9 * whole);
+    EXPECT_GT(whole, 1.05 * light_on_wall(lamp, on, 1));
 }
 
 // Looking up at 45 degrees and more from the vertical the surface shows the wall, mirrored.
@@ -132,27 +134,28 @@ TEST(WaterSurfaceLight, ShowsWhatIsBelowAsAMirror) {
     for (int y = 0; y < 18; ++y) {
         for (int x = 0; x < 24; x += 3) {
             const Ray ray = *scene.assembled().camera->refracted_ray(x + 0.5, y + 0.5);
-            const double s = k_surface / ray.direction.y, to_wall = k_wall / ray.direction.z;
+            const double s = k_ceiling / ray.direction.y, to_wall = k_far_wall / ray.direction.z;
             if (!(s > 0) || s > 0.9 * to_wall) continue;
-            const Point3 on = image_of(ray.at(to_wall));
+            const Point3 on = mirror_image(ray.at(to_wall));
             for (std::size_t b = 0; b < 3; ++b) {
-                const double c = k_attenuation[b];
-                const Point3 image = image_of(lamp);
-                const double lit =
-                    on_wall(lamp, on, b) + reflectance(on - image) * on_wall(image, on, b);
+                const double c = k_attenuation_below[b];
+                const Point3 image = mirror_image(lamp);
+                const double lit = light_on_wall(lamp, on, b) +
+                                   fresnel_reflectance(on - image) * light_on_wall(image, on, b);
                 const double direct =
-                    reflectance(ray.direction) * 0.5 / pi * lit * std::exp(-c * to_wall);
+                    fresnel_reflectance(ray.direction) * 0.5 / pi * lit * std::exp(-c * to_wall);
                 const auto scattered = [&](const Point3& from, double at) {
-                    const Point3 point = at < s ? ray.at(at) : image_of(ray.at(at));
+                    const Point3 point = at < s ? ray.at(at) : mirror_image(ray.at(at));
                     const Vector3 back =
                         at < s ? ray.direction
                                : Vector3(ray.direction.x, -ray.direction.y, ray.direction.z);
                     const Vector3 way = point - from;
                     const double radius = glm::length(way);
-                    const double share = from.y < k_surface ? reflectance(way) : 1;
-                    return share * (at < s ? 1 : reflectance(ray.direction)) * 5 /
-                           (radius * radius) * k_scattering[b] *
-                           phase(-glm::dot(way, back) / radius) * std::exp(-c * (radius + at));
+                    const double share = from.y < k_ceiling ? fresnel_reflectance(way) : 1;
+                    return share * (at < s ? 1 : fresnel_reflectance(ray.direction)) * 5 /
+                           (radius * radius) * k_scattering_below[b] *
+                           phase_below(-glm::dot(way, back) / radius) *
+                           std::exp(-c * (radius + at));
                 };
                 double backscatter = 0;
                 for (const Point3& from : {lamp, image})
@@ -201,11 +204,11 @@ TEST(WaterSurfaceLight, SkyIsSeenInSnellsWindow) {
     for (int y = 0; y < 18; ++y)
         for (int x = 0; x < 24; ++x) {
             const Ray ray = *scene.assembled().camera->refracted_ray(x + 0.5, y + 0.5);
-            const double share = 1 - reflectance(ray.direction);
-            const double s = k_surface / ray.direction.y;
+            const double share = 1 - fresnel_reflectance(ray.direction);
+            const double s = k_ceiling / ray.direction.y;
             for (int b = 0; b < 3; ++b) {
-                const double sky = 2 * k_n * k_n * share *
-                                   std::exp(-k_attenuation[static_cast<std::size_t>(b)] * s);
+                const double sky = 2 * k_water_index * k_water_index * share *
+                                   std::exp(-k_attenuation_below[static_cast<std::size_t>(b)] * s);
                 EXPECT_NEAR(film.value(Layer::direct, x, y, b), sky, 1e-6);
             }
             ++(share > 0 ? inside : outside);
@@ -226,7 +229,7 @@ TEST(WaterSurfaceLight, SkyLightsWhatLiesBelow) {
     const double passed = AdaptiveQuadrature::integrate(
         [](double theta) {
             return theta > 0 ? 2 * std::sin(theta) * std::cos(theta) *
-                                   fresnel_by_angles(theta, 1, k_n).mean()
+                                   fresnel_by_angles(theta, 1, k_water_index).mean()
                              : 0;
         },
         0, pi / 2 - 1e-9, 1e-10);
@@ -248,11 +251,11 @@ TEST(WaterSurfaceLight, SunIsRefracted) {
     sun.fixed_to_camera = false;
     desc.lamps = {sun};
     const PixelResult pixel = TestScene(desc).pixel(12, 9);
-    const double in_water = std::sqrt(1 - std::pow(std::sin(angle) / k_n, 2));
+    const double in_water = std::sqrt(1 - std::pow(std::sin(angle) / k_water_index, 2));
     for (std::size_t b = 0; b < 3; ++b) {
         const double irradiance = static_cast<double>(b + 1) * std::cos(angle) *
-                                  fresnel_by_angles(angle, 1, k_n).mean() *
-                                  std::exp(-k_attenuation[b] * 3.2 / in_water);
+                                  fresnel_by_angles(angle, 1, k_water_index).mean() *
+                                  std::exp(-k_attenuation_below[b] * 3.2 / in_water);
         EXPECT_NEAR(pixel.irradiance[b], irradiance, 1e-9 * irradiance);
     }
 }
@@ -272,7 +275,7 @@ TEST(WaterSurfaceLight, IsInEquilibriumWhereNothingIsAbsorbed) {
     for (const double tilt : {-90.0, -20.0, 35.0, 90.0}) {
         desc.camera.world_from_camera = Affine::rotation_xyz_degrees({tilt, 0, 0});
         const RenderedFilm film(desc);
-        const double truth = 2 * k_n * k_n;
+        const double truth = 2 * k_water_index * k_water_index;
         double mean = 0;
         for (int i = 0; i < 4; ++i) mean += 0.25 * film.value(Layer::total, i % 2, i / 2, 1);
         // Three standard errors of 4096 paths: a single one deviates by about as much as its mean.

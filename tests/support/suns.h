@@ -6,7 +6,7 @@
 /// Suns over the scenes of tests, in whose world y points down: the water begins at y = -3.
 namespace uw::test {
 
-inline constexpr WaterSurfaceDesc k_sea_level{{0, -3, 0}, {0, -1, 0}};
+inline const WaterSurfaceDesc k_sea_level{{0, -3, 0}, {0, -1, 0}};
 
 /// A slanting sun, brighter in each band than in the one before.
 inline LampDesc slanting_sun(double angle = 0, int samples = 32) {
