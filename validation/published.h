@@ -31,7 +31,7 @@ struct PublishedFigure {
 };
 
 struct PublishedOptions {
-    int rays = 16384;  // from each meter (LightMeter)
+    int rays = 65536;  // from each meter (LightMeter)
     /// Problems by these names alone, such as "problem 2"; empty: all.
     std::string only;
     std::function<void(const std::string&)> say = [](const std::string&) {};

@@ -37,7 +37,10 @@ bool SubmergedSurfaces::meet_water_surface(const Ray& ray, double s_end, bool fo
                                            SurfaceHit& hit) const {
     const std::optional<WaterSurface::Meeting> meeting =
         surface_.meet(ray, found ? hit.distance : s_end);
-    if (!meeting) return found;
+    if (!meeting) {
+        hit.is_water_surface = false;  // hits are reused
+        return found;
+    }
     hit = {};
     hit.distance = meeting->distance;
     hit.position = ray.at(meeting->distance);

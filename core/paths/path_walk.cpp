@@ -26,6 +26,10 @@ constexpr int k_long = 100;
 constexpr int k_places = 3;
 // None is guessed far darker than the mean: what shines there after all would be too bright.
 constexpr double k_least_light_of_place = 0.3;
+// Of what is mirrored by the water's surface, relative to the pixel's light.
+constexpr double k_least_in_mirror = 0.1;
+// What is expected to come from there, from any direction, relative to what is around.
+constexpr double k_share_in_mirror = 0.3;
 constexpr double k_work_of_plain_vertex = 0.1;
 constexpr double k_golden = 0.6180339887498949;
 
@@ -176,6 +180,9 @@ void PathWalk::follow_mirrored() {
 ExpectedLight PathWalk::expected_from(const Point3& x) const {
     ExpectedLight expected{.ambient = k_ambient_of_direction * light_.ambient};
     const PathState::LeftSurface& left = state_.left;
+    // The water's surface shows all of it again.
+    if (tables_.optics.scene().water_surface)
+        expected.ambient += k_share_in_mirror * std::max(left.radiance, light_.own);
     const double height = glm::dot(x - left.position, left.normal);
     if (!(left.radiance > 0) || !(height > 0) || stays_in_water_) return expected;
     const WaterOptics& optics = tables_.optics;
@@ -217,12 +224,7 @@ void PathWalk::find_surface_ahead() {
     }
     if (!(arrived > 0)) return;
     if (meets_water_surface()) {
-        const Ray mirrored = mirrored_ray();
-        w.guides_at_water_surface.find(tables_.guides, mirrored.origin, arriving);
-        w.surface_radiance = reflectance_of_water_surface() *
-                             (w.guides_at_water_surface.multiple(mirrored.direction) +
-                              tables_.guides.particles.at(mirrored.origin) +
-                              k_ambient_of_direction * light_.ambient);
+        w.surface_radiance = reflectance_of_water_surface() * radiance_in_mirror(arriving);
         w.surface_ahead = arrived * w.surface_radiance;
         return;
     }
@@ -245,6 +247,24 @@ void PathWalk::find_emission(const Spectrum& throughput) {
     light_.own = std::max(light_.own, light / static_cast<double>(bands));
     light_.ambient =
         std::max(light_.ambient, emission / (k_ambient_beyond * static_cast<double>(bands)));
+}
+
+// What the water's surface mirrors, roughly: scattered light, and the next surface. There may be
+// some where nothing is known of it.
+double PathWalk::radiance_in_mirror(const Spectrum& throughput) {
+    Workspace& w = workspace_of_thread();
+    const WaterOptics& optics = tables_.optics;
+    const Ray mirrored = mirrored_ray();
+    w.guides_at_water_surface.find(tables_.guides, mirrored.origin, throughput);
+    double radiance =
+        w.guides_at_water_surface.multiple(mirrored.direction) +
+        tables_.guides.particles.at(mirrored.origin) +
+        std::max(k_ambient_of_direction * light_.ambient, k_least_in_mirror * light_.own);
+    SurfaceHit hit;
+    if (optics.scene().surfaces->closest_hit(mirrored, k_far, hit) && !hit.is_water_surface)
+        radiance += std::exp(-optics.attenuation().uniform[optics.clearest_band()] * hit.distance) *
+                    guessed_reflection(tables_.guides, hit, throughput);
+    return radiance;
 }
 
 void PathWalk::trace(const Ray& ray) {

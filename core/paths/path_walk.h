@@ -62,6 +62,7 @@ class PathWalk {
     bool meets_water_surface() const;
     Ray mirrored_ray() const;
     double reflectance_of_water_surface() const;
+    double radiance_in_mirror(const Spectrum& throughput);
     // Moves on to the segment that begins there, and gathers its light. The throughput is that at
     // the surface, after reflection.
     void follow_mirrored();

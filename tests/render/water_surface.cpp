@@ -120,14 +120,13 @@ TEST(WaterSurfaceLight, WhatHidesALampFromTheSurfaceHidesItsImage) {
     const Point3 on = pixel.hit.position;
     ASSERT_NEAR(on.z, k_far_wall, 1e-9);
     EXPECT_NEAR(pixel.irradiance[1], light_on_wall(lamp, on, 1), 1e-9 * whole);
-    EXPECT_GT(whole, 1.05 * light_on_wall(lamp, on, 1));
+    EXPECT_GT(whole, 1.01 * light_on_wall(lamp, on, 1));
 }
 
 // Looking up at 45 degrees and more from the vertical the surface shows the wall, mirrored.
 TEST(WaterSurfaceLight, ShowsWhatIsBelowAsAMirror) {
     const Point3 lamp{0.3, 0.2, 2};
     SceneDesc desc = lit_from(lamp, 20);
-    desc.render.samples = 4;
     const RenderedFilm film(desc);
     const TestScene scene(desc);
     int seen = 0;
@@ -162,11 +161,10 @@ TEST(WaterSurfaceLight, ShowsWhatIsBelowAsAMirror) {
                     for (const auto& [begin, end] : {std::pair{0.0, s}, {s, to_wall}})
                         backscatter += AdaptiveQuadrature::integrate(
                             [&](double at) { return scattered(from, at); }, begin, end, 1e-9);
-                // Four samples stand for the pixel, whose light is not quite linear across it.
                 EXPECT_NEAR(film.value(Layer::direct, x, y, static_cast<int>(b)), direct,
-                            2e-2 * direct);
+                            1e-5 * direct);
                 EXPECT_NEAR(film.value(Layer::backscatter, x, y, static_cast<int>(b)), backscatter,
-                            1e-2 * backscatter);
+                            1e-3 * backscatter);
             }
             ++seen;
             EXPECT_NEAR(film.value(Layer::path, x, y, 0), s, 1e-5 * s);
@@ -224,7 +222,7 @@ TEST(WaterSurfaceLight, SkyLightsWhatLiesBelow) {
     desc.camera.world_from_camera = Affine::rotation_xyz_degrees({-90, 0, 0});
     desc.geometry = {plane({0, 2, 0}, {0, -1, 0})};
     desc.water.absorption = PerBand{0, 0, 0};
-    desc.water.scattering.reset();
+    desc.water.scattering->b = {0, 0, 0};
     const PixelResult pixel = TestScene(desc).pixel(12, 9);
     const double passed = AdaptiveQuadrature::integrate(
         [](double theta) {
@@ -276,10 +274,14 @@ TEST(WaterSurfaceLight, IsInEquilibriumWhereNothingIsAbsorbed) {
         desc.camera.world_from_camera = Affine::rotation_xyz_degrees({tilt, 0, 0});
         const RenderedFilm film(desc);
         const double truth = 2 * k_water_index * k_water_index;
-        double mean = 0;
-        for (int i = 0; i < 4; ++i) mean += 0.25 * film.value(Layer::total, i % 2, i / 2, 1);
-        // Three standard errors of 4096 paths: a single one deviates by about as much as its mean.
-        EXPECT_NEAR(mean, truth, 0.05 * truth) << tilt;
+        double mean = 0, variance = 0;
+        for (int i = 0; i < 4; ++i) {
+            mean += 0.25 * film.value(Layer::total, i % 2, i / 2, 1);
+            variance += std::pow(0.25 * film.value(Layer::error, i % 2, i / 2, 1), 2);
+        }
+        const double error = std::sqrt(variance);
+        EXPECT_LT(error, 0.06 * truth) << tilt;
+        EXPECT_NEAR(mean, truth, 3 * error) << tilt;
     }
 }
 
