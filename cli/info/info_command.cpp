@@ -242,7 +242,11 @@ std::string info_on_vdb(const InfoArguments& a) {
 /// How clearly the volumes of a scene are seen in a draft of this width. Leaves them loaded.
 DraftContrast draft_contrast(Renderer& renderer, const ImageScene& scene, int width) {
     const ImageScene with = single_draft_of(scene, width);
-    renderer.set_scene(with.with([](SceneDesc& desc) { desc.volumes.clear(); }));
+    renderer.set_scene(with.with([](SceneDesc& desc) {
+        desc.volumes.clear();
+        // The light of a volume is a lamp, which names its volume.
+        std::erase_if(desc.lamps, [](const LampDesc& lamp) { return lamp.glow.has_value(); });
+    }));
     renderer.render();
     const Film before = renderer.release_film();
     renderer.set_scene(with);
@@ -250,9 +254,12 @@ DraftContrast draft_contrast(Renderer& renderer, const ImageScene& scene, int wi
     return compare_drafts(renderer.assembled(), film, before);
 }
 
-/// The same; none if the scene has no volume, or no lamp to see it by.
+/// The same; none if the scene has no volume, or no lamp to see it by but the light of volumes:
+/// without them its picture is black.
 std::optional<DraftContrast> draft_contrast(Renderer& renderer, const ImageScene& scene) {
-    if (scene.desc().volumes.empty() || scene.desc().lamps.empty()) return std::nullopt;
+    const auto is_glow = [](const LampDesc& lamp) { return lamp.glow.has_value(); };
+    if (scene.desc().volumes.empty() || std::ranges::all_of(scene.desc().lamps, is_glow))
+        return std::nullopt;
     const DraftContrast draft = draft_contrast(renderer, scene, k_draft_width);
     if (draft.seen >= k_least_seen) return draft;
     return draft_contrast(renderer, scene, k_fine_draft_width);

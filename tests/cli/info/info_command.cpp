@@ -211,6 +211,27 @@ lamps: [{name: left, position: [0.5, 0.2, 0], intensity: 50}]
     EXPECT_TRUE(warns(json_of({"plume.yaml", "--set", "water.absorption=3"}), "none will be seen"));
 }
 
+// Judged by a draft without the volumes, in which there is no light of theirs either.
+TEST_F(Info, SurveysAVolumeThatGivesOffLight) {
+    write("fire.yaml", std::string(R"(uwvdb: 1
+camera: {resolution: [64, 36], intrinsics: {fov_x: 60}, pose: {position: [2.1, 0.5, 2], look_at: [2.1, 0.5, -1.5]}}
+volumes: [{file: ')") + k_plume +
+                           R"(', emission: {density: [5, 5, 5]}}]
+geometry: [{type: plane, point: [0, 0, -4], normal: [0, 0, 1]}]
+)");
+    const ParsedJson alone = json_of({"fire.yaml"});
+    EXPECT_EQ(alone.at("lamps").size(), 1U);
+    EXPECT_FALSE(warns(alone, "the volumes change the picture"));
+    // Next to a faint lamp it is plain to see.
+    EXPECT_FALSE(warns(json_of({"fire.yaml", "--set",
+                                "lamps=[{name: faint, position: [0, 0, 0], intensity: 0.01}]"}),
+                       "the volumes change the picture"));
+    // A file that cannot be read is named as that of any volume.
+    write("fire.vdb", "");
+    expect_failure({"info", "fire.yaml", "--set", "volumes[0].file=fire.vdb"}, 3,
+                   "is not a VDB file");
+}
+
 TEST_F(Info, AWholeSceneNamesItsFileFromTheFolderItIsPrintedTo) {
     test::VdbFixture smoke;
     smoke.boxes = {{{0, 0, 0}, {19, 19, 19}, 1}};
