@@ -162,13 +162,13 @@ Interval Lamp::below_surface(const Ray& ray, const Interval& stretch) const {
     return below.length() > 0 ? below : dark;
 }
 
-// Every other texel, within reason: what lies far away is seen through much water.
+// Every fourth texel, and farther away, where more of them are seen by one pixel, fewer.
 void Lamp::append_focus_breaks(const Ray& ray, const Interval& stretch,
                                std::vector<double>& s) const {
-    constexpr int k_most_breaks = 1000;
-    const double step = 2 * focus_->texel() / std::max(1e-6, focus_->slide(ray.direction));
-    for (int i = 1; i <= k_most_breaks && stretch.begin + i * step < stretch.end; ++i)
-        s.push_back(stretch.begin + i * step);
+    constexpr double k_texels = 4, k_share = 0.02;
+    const double least = k_texels * focus_->texel() / std::max(1e-3, focus_->slide(ray.direction));
+    for (double at = stretch.begin + least; at < stretch.end; at += std::max(least, k_share * at))
+        s.push_back(at);
 }
 
 void Lamp::append_profile_breaks(const Ray& ray, const Interval& stretch,

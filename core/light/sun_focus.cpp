@@ -14,7 +14,7 @@ namespace uw {
 namespace {
 
 constexpr int k_slices = 48;
-constexpr int k_beams_of_texel = 4;  // along each side
+constexpr int k_beams_of_texel = 3;  // along each side
 
 /// Where a beam enters the water, at depth 0, and what becomes of it.
 struct Beam {

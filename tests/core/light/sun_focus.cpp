@@ -47,7 +47,7 @@ TEST(SunFocus, OfALowWaveIsTheClosedForm) {
             const double at = u - bend * k_amplitude * k * std::sin(k * u);
             const double truth = 1 / (1 - bend * k_amplitude * k * k * std::cos(k * u));
             largest = std::max(largest, std::abs(truth - 1));
-            // Beams, 16 per texel, and texels of 3 cm.
+            // Beams, nine per texel, and texels of 3 cm.
             EXPECT_NEAR(focus.at({at, 5 - z, 0.3}), truth, 1e-3 + 0.02 * std::abs(truth - 1));
         }
     }
