@@ -32,9 +32,13 @@ Renderer make_renderer(const ImageScene& scene) {
     return renderer;
 }
 
-// `scene` without its volumes and strata, in the water of `medium`; not splatted.
+// `scene` without its volumes, the light that they give off, and strata, in the water of `medium`;
+// not splatted.
 Renderer in_water(const ImageScene& scene, Medium medium) {
-    Renderer renderer = make_renderer(scene.with([](SceneDesc& desc) { desc.volumes.clear(); }));
+    Renderer renderer = make_renderer(scene.with([](SceneDesc& desc) {
+        desc.volumes.clear();
+        std::erase_if(desc.lamps, [](const LampDesc& lamp) { return lamp.glow.has_value(); });
+    }));
     renderer.edit([&](AssembledScene& parts) {
         parts.water.medium = std::move(medium);
         parts.water.strata = nullptr;
