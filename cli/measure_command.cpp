@@ -120,7 +120,7 @@ std::vector<SensorReadings> read_all(const MeasureArguments& a, const AssembledS
 
 std::string with_error(const MeteredSpectrum& value, std::size_t band) {
     if (!(value.mean[band] > 0)) return "0";
-    return fmt::format("{:.4g} ±{:.1g}%", value.mean[band],
+    return fmt::format("{:.4g} ±{:.2g}%", value.mean[band],
                        100 * value.error[band] / value.mean[band]);
 }
 
