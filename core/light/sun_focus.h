@@ -12,11 +12,11 @@ namespace uw {
 /// irradiance below calm water, whose mean over a level plane is the share that waves let through,
 /// relative to that of calm water.
 ///
-/// A regular grid of beams meets the waves, nine for each texel, and is refracted by them. Where each
-/// crosses a level plane its flux is shared out among the four texels around, and so at a series of
-/// depths, which lie closer near the surface. Between depths the factor is linear along the light
-/// of calm water. What beams differ in direction, by a few degrees, moves light to where it goes,
-/// but counts neither for scattering angles nor for lengths.
+/// A regular grid of beams meets the waves, nine for each texel, and is refracted by them. Where
+/// each crosses a level plane its flux is shared out among the four texels around, and so at a
+/// series of depths, which lie closer near the surface. Between depths the factor is linear along
+/// the light of calm water. What beams differ in direction, by a few degrees, moves light to where
+/// it goes, but counts neither for scattering angles nor for lengths.
 class SunFocus {
   public:
     /// What of the water the map holds.

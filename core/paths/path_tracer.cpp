@@ -169,8 +169,7 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
     const std::vector<double>& s = segment.distances;
     Spectrum light_of_surface, weights;
     // Light of the sky that is scattered is that of lamps.
-    const bool has_surface =
-        water.has_hit && !water.hit.is_water_surface && !surface_light.empty();
+    const bool has_surface = water.has_hit && !water.hit.is_water_surface && !surface_light.empty();
     const double reflected =
         has_surface ? guess_surface_light(segment, surface_light, light_of_surface) : 0;
     w.guided.clear();

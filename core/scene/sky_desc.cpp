@@ -227,15 +227,15 @@ SkyDesc read_sky(const ConfigValue& value, const SceneContext& context) {
 
 void append_sky(const ConfigValue& value, const SceneContext& context,
                 std::vector<LampDesc>& lamps) {
+    LampDesc lamp;
+    lamp.name = "sky";
+    lamp.sky = std::make_shared<const SkyDesc>(read_sky(value, context));
     if (!context.water_surface || !context.water_surface->n)
         value.fail(
             "its light is refracted by the water's surface; add water: {surface: {height: 10, n: "
             "1.34}}");
     if (std::ranges::find(lamps, "sky", &LampDesc::name) != lamps.end())
         value.fail("its light is called 'sky', but so is a lamp; give the lamp another name");
-    LampDesc lamp;
-    lamp.name = "sky";
-    lamp.sky = std::make_shared<const SkyDesc>(read_sky(value, context));
     lamp.direction = -context.water_surface->normal;
     lamp.sun = SunDesc{.surface = *context.water_surface};
     lamp.intensity = PerBand(context.band_count, 0.0);
