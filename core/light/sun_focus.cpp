@@ -1,6 +1,7 @@
 #include "core/light/sun_focus.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -21,6 +22,21 @@ struct Beam {
     double u = 0, v = 0;              // of its place at depth 0, less the grid's
     double slope_u = 0, slope_v = 0;  // per metre of depth, less those of calm water
     double flux = 0;                  // relative to what calm water lets through
+};
+
+/// How the flux at a place is shared out among the three texels around: a quadratic B-spline. Even
+/// beams light texels evenly, and as they move apart or together, evenly more or less; with kinks,
+/// as a linear share has them, some texels would see a sixth more of any change.
+struct SplineWeights {
+    /// `x`: in texels from the centre of the first.
+    explicit SplineWeights(double x) {
+        const double nearest = std::floor(x + 0.5), d = x - nearest;
+        first = static_cast<int>(nearest) - 1;
+        weights = {0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)};
+    }
+
+    int first;
+    std::array<double, 3> weights;
 };
 
 }  // namespace
@@ -77,22 +93,21 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
                     (i + 0.5) / k_beams_of_texel - 0.5 + texels * (beam.u + depth * beam.slope_u);
                 const double y =
                     (j + 0.5) / k_beams_of_texel - 0.5 + texels * (beam.v + depth * beam.slope_v);
-                const double x0 = std::floor(x), y0 = std::floor(y);
-                const auto add = [&](double column, double line, double share) {
-                    int c = static_cast<int>(column), l = static_cast<int>(line);
-                    if (extent.is_periodic) {
-                        c = (c % resolution_ + resolution_) % resolution_;
-                        l = (l % resolution_ + resolution_) % resolution_;
-                    } else if (c < 0 || l < 0 || c >= resolution_ || l >= resolution_) {
-                        return;
+                const SplineWeights across(x), down(y);
+                for (int l = 0; l < 3; ++l)
+                    for (int c = 0; c < 3; ++c) {
+                        int column = across.first + c, line = down.first + l;
+                        if (extent.is_periodic) {
+                            column = (column % resolution_ + resolution_) % resolution_;
+                            line = (line % resolution_ + resolution_) % resolution_;
+                        } else if (column < 0 || line < 0 || column >= resolution_ ||
+                                   line >= resolution_) {
+                            continue;
+                        }
+                        slice(column, line) += static_cast<float>(
+                            beam.flux * across.weights[static_cast<std::size_t>(c)] *
+                            down.weights[static_cast<std::size_t>(l)]);
                     }
-                    slice(c, l) += static_cast<float>(share * beam.flux);
-                };
-                const double s = x - x0, t = y - y0;
-                add(x0, y0, (1 - s) * (1 - t));
-                add(x0 + 1, y0, s * (1 - t));
-                add(x0, y0 + 1, (1 - s) * t);
-                add(x0 + 1, y0 + 1, s * t);
             }
         }
         blur(slice, depth * radius * texels);

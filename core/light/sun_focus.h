@@ -13,7 +13,7 @@ namespace uw {
 /// relative to that of calm water.
 ///
 /// A regular grid of beams meets the waves, nine for each texel, and is refracted by them. Where
-/// each crosses a level plane its flux is shared out among the four texels around, and so at a
+/// each crosses a level plane its flux is shared out among the nine texels around, and so at a
 /// series of depths, which lie closer near the surface. Between depths the factor is linear along
 /// the light of calm water. What beams differ in direction, by a few degrees, moves light to where
 /// it goes, but counts neither for scattering angles nor for lengths.

@@ -22,7 +22,7 @@ TEST_F(SceneErrors, wholeScene) {
             {"uwvdb: 1\ncamra: {}\n", "scene.yaml:2:1: camra: unknown key; did you mean 'camera'?"},
             {"uwvdb: 1\nfoo: {}\n",
              "scene.yaml:2:1: foo: unknown key; use one of: uwvdb, camera, "
-             "cameras, rig, water, volumes, geometry, lamps, render"},
+             "cameras, rig, water, volumes, geometry, lamps, sky, sensors, render, variations"},
             {"just text\n", "scene.yaml:1:1: expected a map, found the text 'just text'; a scene"},
             {"- 1\n", "scene.yaml:1:1: expected a map, found a list of 1"},
             {"uwvdb: 1\nuwvdb: 1\n",
