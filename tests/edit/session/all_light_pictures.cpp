@@ -22,6 +22,13 @@ TEST(AllLightPictures, OfTheHarbourAreThoseThatRenderGives) {
     expect_same_but_for_noise("harbour.yaml");
 }
 
+// No light paths here: as exact as other examples.
+TEST(AllLightPictures, OfWavesAreThoseThatRenderGives) {
+    const TwoPictures pictures = both_pictures_of("shallows.yaml", 48, 27);
+    EXPECT_GT(pictures.mean(), 0);
+    EXPECT_LT(pictures.rms_difference(), 1e-3 * pictures.mean());
+}
+
 TEST(AllLightPictures, OfSunlitWaterAreThoseThatRenderGives) {
     expect_same_but_for_noise("sunlit.yaml");
 }

@@ -12,9 +12,10 @@ namespace {
 using namespace uw;
 using namespace uw::test;
 
-// These render all light by light paths (tests/edit/session/all_light_pictures.cpp), or need a file
-// of the user's.
-const std::set<std::string> k_elsewhere{"harbour.yaml", "sunlit.yaml", "houdini.yaml"};
+// These render all light by light paths or make maps of caustics, which take long
+// (tests/edit/session/all_light_pictures.cpp), or need a file of the user's.
+const std::set<std::string> k_elsewhere{"harbour.yaml", "sunlit.yaml", "houdini.yaml",
+                                        "shallows.yaml"};
 
 // Forward scatter blurs a lamp's light by how far it has come: by its own way where the lamp is
 // rendered alone, by the mean of the ways from all lamps in their one image.
